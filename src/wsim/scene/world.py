@@ -1,0 +1,160 @@
+"""What a stage says, as plain data: the part of a world that simulator, recording and judge share.
+
+SI units, Z up, quaternions xyzw. Nothing here imports pxr, so a recording can be read without USD.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Vec3 = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+ShapeKind = Literal["box", "sphere", "cylinder", "capsule", "mesh", "plane"]
+
+SCHEMA_VERSION = 1
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class Shape(_Model):
+    """One geometric primitive.
+
+    `size` by kind: box = full edge lengths (x, y, z); sphere = (radius,); cylinder and capsule = (radius, height)
+    along local Z, a capsule's height without its caps; plane = (); mesh = extent of its bounding box.
+    """
+
+    prim: str
+    kind: ShapeKind
+    size: tuple[float, ...]  # [m]
+    position: Vec3 = (0.0, 0.0, 0.0)  # [m], in the body's frame, or the world's for a static shape
+    rotation: Quat = (0.0, 0.0, 0.0, 1.0)
+    color: Vec3 = (0.7, 0.7, 0.7)  # linear RGB in 0..1
+    opacity: float = 1.0
+    collides: bool = True
+    friction: float = 0.5
+    restitution: float = 0.0
+    vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
+    triangles: list[tuple[int, int, int]] = Field(default_factory=list)
+
+
+class Body(_Model):
+    """A rigid body that the simulator moves."""
+
+    prim: str
+    mass: float  # [kg]
+    volume: float  # [m^3], of its colliding shapes
+    com: Vec3 = (0.0, 0.0, 0.0)  # [m], body frame
+    inertia: tuple[float, ...]  # 9 numbers, row-major, about the centre of mass, body frame [kg m^2]
+    position: Vec3  # [m], initial, world
+    rotation: Quat  # initial, world
+    kinematic: bool = False
+    shapes: list[Shape]
+    line: str | None = None  # "program.py:12": who made it
+
+
+class Static(_Model):
+    """An object that never moves: ground, tank, obstacle."""
+
+    prim: str
+    shapes: list[Shape]  # in the world's frame
+    line: str | None = None
+
+
+class Container(_Model):
+    """The hollow of an open tank."""
+
+    prim: str
+    inner_size: Vec3  # [m]
+    inner_center: Vec3  # [m], world
+    rotation: Quat = (0.0, 0.0, 0.0, 1.0)
+
+
+class Fluid(_Model):
+    """A box of fluid as it stands at t = 0."""
+
+    prim: str
+    density: float  # [kg/m^3]
+    viscosity: float  # dynamic [Pa s]
+    spacing: float  # particle spacing [m]
+    size: Vec3  # [m]
+    center: Vec3  # [m], world
+    speed_of_sound: float = 0.0  # [m/s]; 0 lets the solver choose
+    container: str | None = None  # prim of the container it fills
+    color: Vec3 = (0.15, 0.4, 0.6)
+    line: str | None = None
+
+
+class Joint(_Model):
+    """A joint between two bodies, or a body and the world (parent None)."""
+
+    prim: str
+    kind: Literal["fixed", "revolute", "prismatic", "spherical"]
+    parent: str | None
+    child: str
+    axis: Literal["X", "Y", "Z"] = "X"
+    line: str | None = None
+
+
+class Camera(_Model):
+    """A pinhole camera that looks from `eye` to `target`."""
+
+    prim: str
+    eye: Vec3
+    target: Vec3
+    up: Vec3 = (0.0, 0.0, 1.0)
+    fov: float = 50.0  # horizontal [deg]
+    width: int = 640
+    height: int = 360
+
+
+class Light(_Model):
+    """A light; `direction` points from the light into the scene, for a distant one."""
+
+    prim: str
+    kind: Literal["distant", "dome", "sphere"]
+    intensity: float
+    color: Vec3 = (1.0, 1.0, 1.0)
+    direction: Vec3 = (0.0, 0.0, -1.0)
+    position: Vec3 = (0.0, 0.0, 0.0)
+
+
+class Parameter(_Model):
+    """A number of the program that a sweep may change."""
+
+    name: str
+    value: float
+    default: float
+    low: float | None = None
+    high: float | None = None
+    unit: str = ""
+
+
+class World(_Model):
+    """All that a stage states."""
+
+    version: int = SCHEMA_VERSION
+    name: str = "world"
+    gravity: Vec3 = (0.0, 0.0, -9.81)  # [m/s^2]
+    duration: float = 5.0  # [s]
+    frame_rate: float = 30.0  # recorded frames a second
+    time_step: float = 0.0  # [s]; 0: chosen by the simulator
+    seed: int = 0
+    bodies: list[Body] = Field(default_factory=list)
+    statics: list[Static] = Field(default_factory=list)
+    containers: list[Container] = Field(default_factory=list)
+    fluids: list[Fluid] = Field(default_factory=list)
+    joints: list[Joint] = Field(default_factory=list)
+    cameras: list[Camera] = Field(default_factory=list)
+    lights: list[Light] = Field(default_factory=list)
+    parameters: list[Parameter] = Field(default_factory=list)
+
+    def body(self, prim: str) -> Body:
+        """The body at a prim path; KeyError naming the known ones."""
+        for body in self.bodies:
+            if body.prim == prim:
+                return body
+        raise KeyError(f"no body {prim!r}; the world has {[b.prim for b in self.bodies]}")
