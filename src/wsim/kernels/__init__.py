@@ -1,1 +1,1 @@
-"""TODO."""
+"""Warp kernels and functions, nothing else: no classes, no I/O, no Newton model."""

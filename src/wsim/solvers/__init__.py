@@ -1,1 +1,1 @@
-"""TODO."""
+"""Thin classes that validate and launch kernels."""

@@ -1,0 +1,122 @@
+"""Particles that stand for solids: lattices that fill a shape, and layers behind the walls of a container."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Particles of a solid: positions [m] of shape (n, 3) and volumes [m^3] of shape (n,)."""
+
+    position: Array
+    volume: Array
+
+
+def lattice_axis(length: float, spacing: float) -> tuple[int, float]:
+    """Cells that divide a length [m] evenly at about `spacing` [m], and their exact edge [m]."""
+    count = max(1, round(length / spacing))
+    return count, length / count
+
+
+def box_lattice(size: Array, spacing: float) -> Samples:
+    """Cell centres of a box of edge lengths `size` [m] about the origin; the volumes add up to the box's."""
+    axes = [lattice_axis(float(length), spacing) for length in size]
+    ticks = [(np.arange(count) + 0.5) * edge - 0.5 * count * edge for count, edge in axes]
+    position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
+
+
+def _inside_lattice(half_extent: Array, spacing: float, inside: Array, volume: float, points: Array) -> Samples:
+    """The lattice points that are inside, sharing the shape's exact volume; one at the centre if none is."""
+    kept = points[inside]
+    if len(kept) == 0:
+        kept = np.zeros((1, 3))
+    return Samples(kept, np.full(len(kept), volume / len(kept)))
+
+
+def sphere_lattice(radius: float, spacing: float) -> Samples:
+    """Lattice points inside a sphere of `radius` [m]; the volumes add up to the sphere's."""
+    points = box_lattice(np.full(3, 2.0 * radius), spacing).position
+    inside = np.linalg.norm(points, axis=1) <= radius
+    return _inside_lattice(np.full(3, radius), spacing, inside, 4.0 / 3.0 * np.pi * radius**3, points)
+
+
+def cylinder_lattice(radius: float, half_height: float, spacing: float) -> Samples:
+    """Lattice points inside a cylinder along Z; the volumes add up to the cylinder's."""
+    half = np.array([radius, radius, half_height])
+    points = box_lattice(2.0 * half, spacing).position
+    inside = np.hypot(points[:, 0], points[:, 1]) <= radius
+    return _inside_lattice(half, spacing, inside, 2.0 * np.pi * radius**2 * half_height, points)
+
+
+def capsule_lattice(radius: float, half_height: float, spacing: float) -> Samples:
+    """Lattice points inside a capsule along Z whose cylinder is `2 half_height` [m] long."""
+    half = np.array([radius, radius, half_height + radius])
+    points = box_lattice(2.0 * half, spacing).position
+    above = np.maximum(np.abs(points[:, 2]) - half_height, 0.0)
+    inside = np.sqrt(points[:, 0] ** 2 + points[:, 1] ** 2 + above**2) <= radius
+    volume = 2.0 * np.pi * radius**2 * half_height + 4.0 / 3.0 * np.pi * radius**3
+    return _inside_lattice(half, spacing, inside, volume, points)
+
+
+def mesh_lattice(vertices: Array, triangles: Array, spacing: float, convex: bool) -> Samples:
+    """Lattice points inside a closed triangle mesh, or inside its convex hull.
+
+    Args:
+        vertices: Positions [m], shape (n, 3).
+        triangles: Vertex indices, shape (m, 3).
+        spacing: Lattice spacing [m].
+        convex: Fill the convex hull.
+    """
+    import trimesh
+    from scipy.spatial import Delaunay
+
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    solid = mesh.convex_hull if convex or not mesh.is_watertight else mesh
+    low, high = solid.bounds
+    points = box_lattice(high - low, spacing).position + 0.5 * (low + high)
+    if convex or not mesh.is_watertight:
+        inside = Delaunay(solid.vertices).find_simplex(points) >= 0
+    else:
+        inside = solid.contains(points)
+    return _inside_lattice(0.5 * (high - low), spacing, inside, abs(float(solid.volume)), points)
+
+
+def container_walls(inner_size: Array, spacing: float, support: float) -> Samples:
+    """Layers of particles behind the floor and four walls of an open box, as deep as a kernel's support reaches.
+
+    The layers carry on the lattice of a fluid that fills the box, whose first particles stand half a cell off the
+    wall, and go up to its rim. Positions [m] are relative to the centre of the hollow.
+
+    Args:
+        inner_size: Inner edge lengths [m].
+        spacing: Particle spacing [m].
+        support: Radius of the kernel's support [m].
+    """
+    axes = [lattice_axis(float(length), spacing) for length in inner_size]
+    ticks, outside = [], []
+    for axis, (count, edge) in enumerate(axes):
+        layers = max(1, round(support / edge - 0.5))
+        index = np.arange(-layers, count + (layers if axis < 2 else 0))
+        ticks.append((index + 0.5) * edge - 0.5 * count * edge)
+        outside.append((index < 0) | (index >= count))
+    position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    keep = np.stack(np.meshgrid(*outside, indexing="ij"), axis=-1).reshape(-1, 3).any(axis=1)
+    position = position[keep]
+    return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
+
+
+def plane_patch(low: Array, high: Array, spacing: float, support: float) -> Samples:
+    """Layers below z = 0 over the rectangle from `low` to `high` [m], shape (2,) each."""
+    size = np.append(np.asarray(high) - np.asarray(low), 0.0)
+    axes = [lattice_axis(float(length), spacing) for length in size[:2]]
+    layers = max(1, round(support / spacing - 0.5))
+    ticks = [low[k] + (np.arange(count) + 0.5) * edge for k, (count, edge) in enumerate(axes)]
+    ticks.append(-(np.arange(layers) + 0.5) * spacing)
+    position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+    return Samples(position, np.full(len(position), axes[0][1] * axes[1][1] * spacing))

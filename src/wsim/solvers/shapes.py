@@ -1,0 +1,171 @@
+"""The solids that an SPH fluid meets, read from a Newton model and sampled with particles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsim.solvers.sampling import (
+    Samples,
+    box_lattice,
+    capsule_lattice,
+    container_walls,
+    cylinder_lattice,
+    mesh_lattice,
+    plane_patch,
+    sphere_lattice,
+)
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class OpenBox:
+    """The hollow of an open tank, the same in every world.
+
+    Its walls are sampled outward as deep as the kernel reaches, however thin the glass is: a thin wall's own volume
+    would leave the kernel of a particle beside it half empty, and the fluid would leak.
+    """
+
+    center: tuple[float, float, float]
+    """Centre of the hollow [m]."""
+    size: tuple[float, float, float]
+    """Inner edge lengths [m]."""
+    rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    """Orientation, xyzw."""
+    shapes: frozenset[str] = frozenset()
+    """Labels of the model's shapes that are its walls; they are not sampled again."""
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """Boundary particles of all worlds, those of one body next to each other, fixed ones first.
+
+    `local` is in the owner's frame (the world's where owner is -1) [m]; `body_first[b]` is the first particle of body b,
+    and `body_first[-1]` the number of particles.
+    """
+
+    local: Array  # (n, 3)
+    volume: Array  # (n,)
+    owner: Array  # (n,) body, or -1
+    world: Array  # (n,)
+    body_first: Array  # (body_count + 1,)
+
+
+def rotate(quaternion: Array, vectors: Array) -> Array:
+    """Rotate vectors, shape (n, 3), by a quaternion xyzw."""
+    axis, w = np.asarray(quaternion[:3]), quaternion[3]
+    cross = 2.0 * np.cross(np.broadcast_to(axis, vectors.shape), vectors)
+    return vectors + w * cross + np.cross(np.broadcast_to(axis, vectors.shape), cross)
+
+
+def sample_shape(kind: int, scale: Array, source: Any, spacing: float) -> Samples | None:
+    """Fill one Newton shape with particles in its own frame; None for kinds that have no inside.
+
+    Args:
+        kind: A `newton.GeoType`.
+        scale: Newton's shape scale: half extents of a box [m], radius and half height of a cylinder [m], …
+        source: The `newton.Mesh` of a mesh.
+        spacing: Particle spacing [m].
+    """
+    from newton import GeoType
+
+    if kind == GeoType.BOX:
+        return box_lattice(2.0 * scale, spacing)
+    if kind == GeoType.SPHERE:
+        return sphere_lattice(float(scale[0]), spacing)
+    if kind == GeoType.CYLINDER:
+        return cylinder_lattice(float(scale[0]), float(scale[1]), spacing)
+    if kind == GeoType.CAPSULE:
+        return capsule_lattice(float(scale[0]), float(scale[1]), spacing)
+    if kind in (GeoType.MESH, GeoType.CONVEX_MESH):
+        vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * scale
+        triangles = np.asarray(source.indices).reshape(-1, 3)
+        return mesh_lattice(vertices, triangles, spacing, convex=kind == GeoType.CONVEX_MESH)
+    return None
+
+
+def near_fluid(position: Array, fluid: Array, support: float) -> Array:
+    """Which static samples can ever matter little: those far outside the fluid's column are dropped by the caller."""
+    low, high = fluid.min(axis=0), fluid.max(axis=0)
+    reach = max(float((high - low).max()), support)
+    return ((position[:, :2] >= low[:2] - reach) & (position[:, :2] <= high[:2] + reach)).all(axis=1)
+
+
+def sample_boundary(
+    model: Any, spacing: float, support: float, containers: tuple[OpenBox, ...], fluid: Array, fluid_world: Array
+) -> Boundary:
+    """Sample every colliding shape of a model.
+
+    Ground planes are sampled under fluid that no container holds, out to one fluid's length around it.
+
+    Args:
+        model: The `newton.Model`.
+        spacing: Particle spacing [m].
+        support: Radius of the kernel's support [m].
+        containers: Tanks, in every world.
+        fluid: Fluid positions [m], shape (n, 3).
+        fluid_world: World of each fluid particle, shape (n,).
+    """
+    from newton import GeoType, ShapeFlags
+
+    walls = frozenset().union(*(c.shapes for c in containers)) if containers else frozenset()
+    bodies, poses, kinds = model.shape_body.numpy(), model.shape_transform.numpy(), model.shape_type.numpy()
+    scales, flags, worlds = model.shape_scale.numpy(), model.shape_flags.numpy(), model.shape_world.numpy()
+    world_count = max(1, model.world_count)
+    fixed: list[list[tuple[Array, Array]]] = [[] for _ in range(world_count)]
+    moving: list[list[tuple[Array, Array]]] = [[] for _ in range(model.body_count)]
+
+    for world in range(world_count):
+        for box in containers:
+            samples = container_walls(np.array(box.size), spacing, support)
+            position = rotate(np.array(box.rotation), samples.position) + np.array(box.center)
+            fixed[world].append((position, samples.volume))
+
+    for shape in range(model.shape_count):
+        if not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
+            continue
+        homes = range(world_count) if worlds[shape] < 0 else [int(worlds[shape])]
+        if kinds[shape] == GeoType.PLANE:
+            for world in homes:
+                here = fluid[fluid_world == world]
+                if len(here) and not containers:
+                    reach = float((here.max(axis=0) - here.min(axis=0)).max())
+                    low, high = here.min(axis=0)[:2] - reach, here.max(axis=0)[:2] + reach
+                    samples = plane_patch(low, high, spacing, support)
+                    height = np.array([0.0, 0.0, poses[shape][2]])
+                    fixed[world].append((samples.position + height, samples.volume))
+            continue
+        found = sample_shape(int(kinds[shape]), scales[shape], model.shape_source[shape], spacing)
+        if found is None:
+            continue
+        position = rotate(poses[shape][3:], found.position) + poses[shape][:3]
+        if bodies[shape] >= 0:
+            moving[bodies[shape]].append((position, found.volume))
+            continue
+        for world in homes:
+            here = fluid[fluid_world == world]
+            if len(here):
+                keep = near_fluid(position, here, support)
+                fixed[world].append((position[keep], found.volume[keep]))
+    return _join(fixed, moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+
+
+def _join(fixed: list, moving: list, body_world: Array) -> Boundary:
+    """Fixed particles world by world, then those of each body."""
+    groups = [(p, v, -1, w) for w, pieces in enumerate(fixed) for p, v in pieces]
+    first = sum(len(p) for p, _, _, _ in groups)
+    body_first = [first]
+    for body, pieces in enumerate(moving):
+        groups += [(p, v, body, max(0, int(body_world[body]))) for p, v in pieces]
+        body_first.append(body_first[-1] + sum(len(p) for p, _ in pieces))
+    sizes = [len(p) for p, _, _, _ in groups]
+    return Boundary(
+        local=np.concatenate([p for p, _, _, _ in groups]) if groups else np.zeros((0, 3)),
+        volume=np.concatenate([v for _, v, _, _ in groups]) if groups else np.zeros(0),
+        owner=np.repeat([o for _, _, o, _ in groups], sizes).astype(np.int32) if groups else np.zeros(0, np.int32),
+        world=np.repeat([w for _, _, _, w in groups], sizes).astype(np.int32) if groups else np.zeros(0, np.int32),
+        body_first=np.array(body_first, dtype=np.int32),
+    )
