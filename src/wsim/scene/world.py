@@ -51,6 +51,8 @@ class Body(_Model):
     inertia: tuple[float, ...]  # 9 numbers, row-major, about the centre of mass, body frame [kg m^2]
     position: Vec3  # [m], initial, world
     rotation: Quat  # initial, world
+    velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial, of the centre of mass
+    angular_velocity: Vec3 = (0.0, 0.0, 0.0)  # [rad/s], initial, world
     kinematic: bool = False
     shapes: list[Shape]
     line: str | None = None  # "program.py:12": who made it
