@@ -1,1 +1,1 @@
-"""TODO."""
+"""Kernels that draw glass, water and sky over an opaque ray-traced picture."""

@@ -1,0 +1,65 @@
+"""A fluid's surface mesh made ready for the eye."""
+
+import warp as wp
+
+
+@wp.kernel(enable_backward=False)
+def keep_finite(
+    # Data in:
+    positions: wp.array(dtype=wp.vec3f),
+    limit: float,  # [m], from the origin
+    # Data out:
+    out_positions: wp.array(dtype=wp.vec3f),
+    out_flags: wp.array(dtype=wp.int32),
+):
+    """Copy positions; those that are not numbers, or farther out than `limit`, are moved to the origin and left out."""
+    i = wp.tid()
+    p = positions[i]
+    inside = wp.abs(p[0]) < limit and wp.abs(p[1]) < limit and wp.abs(p[2]) < limit
+    if inside:
+        out_positions[i] = p
+        out_flags[i] = 1
+    else:
+        out_positions[i] = wp.vec3f(0.0)
+        out_flags[i] = 0
+
+
+@wp.func
+def _reach_wall(x: float, half: float, near: float, overlap: float) -> float:
+    """Move a coordinate close to a wall at +-half onto it, and a bit into it."""
+    gap = half - wp.abs(x)
+    wall = half + overlap
+    side = wp.sign(x)
+    if gap <= 0.5 * near:
+        return side * wall
+    if gap < near:
+        # Stretch the last stretch before the wall, so that the surface stays in one piece without a crease.
+        share = (near - gap) / (0.5 * near)
+        return side * (half - near + (near + overlap) * share)
+    return x
+
+
+@wp.kernel(enable_backward=False)
+def fit_container(
+    # Data in:
+    center: wp.vec3f,
+    rotation: wp.quatf,
+    half: wp.vec3f,  # [m], of the container's hollow; its top is open
+    near: float,  # [m]
+    overlap: float,  # [m]
+    # Data in and out:
+    vertices: wp.array(dtype=wp.vec3f),
+):
+    """Bring vertices within `near` of a container's walls and floor onto them; those elsewhere stay."""
+    i = wp.tid()
+    p = wp.quat_rotate_inv(rotation, vertices[i] - center)
+    # Fluid that went over the rim, or through a wall, is shown where it is.
+    slack = 0.5 * near
+    if wp.abs(p[0]) > half[0] + slack or wp.abs(p[1]) > half[1] + slack or wp.abs(p[2]) > half[2] + slack:
+        return
+    x = _reach_wall(p[0], half[0], near, overlap)
+    y = _reach_wall(p[1], half[1], near, overlap)
+    z = p[2]
+    if z < 0.0:
+        z = _reach_wall(z, half[2], near, overlap)
+    vertices[i] = center + wp.quat_rotate(rotation, wp.vec3f(x, y, z))

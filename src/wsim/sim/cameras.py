@@ -1,0 +1,286 @@
+"""Pictures of a Newton model with glass and water, without a display, on the CPU or a CUDA device.
+
+Newton's ray-traced camera sensor draws the opaque shapes. The same rays are then cast through the glass and the
+fluids' surfaces (`wsim.kernels.render`), and both are blended by depth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import warp as wp
+
+from wsim.kernels.render import composite, display
+from wsim.progress import silent
+from wsim.sim import render_materials, render_views
+from wsim.sim.render_surface import FluidMesh
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from wsim.progress import Progress
+    from wsim.scene.world import Camera, World
+
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class CameraImage:
+    """One camera's picture.
+
+    Attributes:
+        rgb: (H, W, 3) uint8, sRGB.
+        shape_index: (H, W) int32, index into `model.shape_label` of the opaque shape seen through glass and water;
+            -1 where there is none.
+        depth: (H, W) float32, distance of that shape along the camera's optical axis [m]; 0 where there is none.
+    """
+
+    rgb: np.ndarray
+    shape_index: np.ndarray
+    depth: np.ndarray
+
+
+@dataclass(frozen=True)
+class Style:
+    """Light and sky; colours are linear RGB."""
+
+    sun_color: Color = (0.78, 0.74, 0.68)
+    sun_direction: Color = (-0.45, 0.55, -0.85)  # from the sun into the scene; a distant light of the world goes first
+    ambient_up: Color = (0.42, 0.46, 0.52)  # on faces that look up
+    ambient_down: Color = (0.16, 0.15, 0.14)  # on faces that look down
+    zenith: Color = (0.16, 0.34, 0.66)
+    horizon: Color = (0.70, 0.78, 0.85)
+    checker_contrast: float = 0.10  # of the ground's pattern; 0 is plain
+    reflection: float = 1.0  # 0 is none, 1 is Fresnel's
+    scatter: float = 1.0  # 0: water and glass only absorb
+    shadows: bool = True
+    smooth_edges: bool = True
+
+
+class CameraRenderer:
+    """Renders every camera of a world.
+
+    Args:
+        model: Newton model made from the world's stage; `model.shape_label` has the prim paths. Its shape colours are
+            set from the world, and its shape BVH is rebuilt without the glass.
+        world: What the stage says: cameras, colours, glass, fluids. Without a camera, a three-quarter view that has
+            everything in frame is used, with prim `/World/default_camera`.
+        width: Picture width [px] for all cameras, in place of their own.
+        height: Picture height [px], likewise; one of the two keeps the aspect ratio.
+        world_index: Which of the model's worlds is drawn.
+        style: Light and sky.
+        progress: Told about the compilation of kernels, which a first use needs.
+
+    Attributes:
+        cameras: The cameras drawn, with the size of their pictures.
+        shape_prims: Prim path by shape index.
+    """
+
+    def __init__(
+        self,
+        model: Any,
+        world: World,
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        world_index: int = 0,
+        style: Style | None = None,
+        progress: Progress = silent,
+    ) -> None:
+        if not 0 <= world_index < max(int(model.world_count), 1):
+            raise ValueError(f"world_index {world_index}: the model has {model.world_count} worlds")
+        self.model = model
+        self.world = world
+        self.style = style or Style()
+        self.cameras = [render_views.resized(c, width, height) for c in _cameras_of(world)]
+        self.shape_prims = [str(label) for label in model.shape_label]
+        self._device = model.device
+        self._world_indices = wp.array([world_index], dtype=wp.int32, device=self._device)
+        self._init_shapes(world_index)
+        self._init_fluids()
+        self._init_sensor()
+        self._views = [self._view(camera) for camera in self.cameras]
+        self._compile(progress)
+
+    def render(self, state: Any, fluids: Mapping[str, Any] | None = None) -> dict[str, CameraImage]:
+        """Draw the world as it stands in `state`.
+
+        Args:
+            state: Newton state of the model.
+            fluids: Particle centres [m] by fluid prim: (N, 3) numbers, or a Warp array of vec3.
+
+        Returns:
+            One picture for each camera, by camera prim.
+
+        Raises:
+            KeyError: `fluids` names a fluid that the world does not have.
+            ValueError: positions of a wrong shape.
+        """
+        self._fluid_mesh.update(fluids or {})
+        self.model.bvh_refit_shapes(state)
+        return {view.camera.prim: self._draw(view, state) for view in self._views}
+
+    def _init_shapes(self, world_index: int) -> None:
+        model = self.model
+        looks = render_materials.shape_looks(model, self.world, world_index)
+        if model.shape_count:
+            model.shape_color.assign(looks.color.astype(np.float32))
+        render_materials.hide(model, model.state(), looks.hidden)
+        self._glass = render_materials.Glass(looks.panes, self._device)
+        self._shape_is_ground = wp.array(looks.ground, dtype=wp.int32, device=self._device)
+
+    def _init_fluids(self) -> None:
+        fluids = self.world.fluids
+        self._fluid_mesh = FluidMesh(self.world, self._device)
+        extinction = [tuple(render_materials.extinction_of_fluid(f)) for f in fluids]
+        self._fluid_extinction = wp.array(extinction or [(0.0, 0.0, 0.0)], dtype=wp.vec3f, device=self._device)
+        colors = [f.color for f in fluids] or [(0.0, 0.0, 0.0)]
+        self._fluid_color = wp.array(colors, dtype=wp.vec3f, device=self._device)
+
+    def _init_sensor(self) -> None:
+        from newton.sensors import SensorCamera
+
+        style = self.style
+        self._sun = _unit(_sun_direction(self.world, style))
+        self._sensor = SensorCamera(self.model, load_textures=False)
+        self._sensor.create_default_light(
+            enable_shadows=style.shadows, direction=wp.vec3f(*self._sun), color=style.sun_color
+        )
+        self._sensor.set_ambient_light(style.ambient_up, style.ambient_down)
+        self._config = SensorCamera.RenderConfig(
+            enable_shadows=style.shadows, enable_particles=False, enable_backface_culling=False
+        )
+
+    def _view(self, camera: Camera) -> _View:
+        from newton.sensors import SensorCamera
+
+        w, h, device = camera.width, camera.height, self._device
+        fov = render_views.vertical_fov(camera)
+        return _View(
+            camera=camera,
+            rays=SensorCamera.compute_camera_rays_pinhole(w, h, camera_fov=fov, device=device),
+            pose=wp.array([render_views.camera_pose(camera)], dtype=wp.transformf, device=device),
+            look=self._look(camera),
+            light=wp.zeros((1, h, w), dtype=wp.vec3f, device=device),
+            opaque_depth=wp.zeros((1, h, w), dtype=wp.float32, device=device),
+            opaque_shape=wp.zeros((1, h, w), dtype=wp.uint32, device=device),
+            color=wp.zeros((h, w), dtype=wp.vec3f, device=device),
+            encoded=wp.zeros((h, w), dtype=wp.vec3f, device=device),
+            rgb=wp.zeros((h, w, 3), dtype=wp.uint8, device=device),
+            depth=wp.zeros((h, w), dtype=wp.float32, device=device),
+            shape=wp.zeros((h, w), dtype=wp.int32, device=device),
+        )
+
+    def _look(self, camera: Camera) -> Any:
+        style = self.style
+        low, high = render_views.bounds(self.world)
+        radius = 0.5 * float(np.linalg.norm(high - low))
+        look = composite.Look()
+        look.sun_direction = wp.vec3(*self._sun)
+        look.sun_color = wp.vec3(*style.sun_color)
+        look.ambient = wp.vec3(*style.ambient_up)
+        look.zenith = wp.vec3(*style.zenith)
+        look.horizon = wp.vec3(*style.horizon)
+        look.fog_distance = 22.0 * max(radius, 1e-3)
+        look.checker = 2.0 ** round(np.log2(max(radius, 1e-3) / 2.5))
+        look.checker_contrast = style.checker_contrast
+        look.reflection = style.reflection
+        look.scatter = style.scatter
+        look.pixel_angle = render_views.vertical_fov(camera) / camera.height
+        return look
+
+    def _draw(self, view: _View, state: Any) -> CameraImage:
+        self._sensor.update(
+            state,
+            view.pose,
+            view.rays,
+            hdr_color_image=view.light,
+            depth_image=view.opaque_depth,
+            shape_index_image=view.opaque_shape,
+            world_indices=self._world_indices,
+            render_config=self._config,
+        )
+        self._composite(view)
+        wp.launch(
+            display.encode, dim=view.color.shape, inputs=[view.color], outputs=[view.encoded], device=self._device
+        )
+        finish = display.smooth_edges if self.style.smooth_edges else display.quantize
+        wp.launch(finish, dim=view.color.shape, inputs=[view.encoded], outputs=[view.rgb], device=self._device)
+        return CameraImage(
+            rgb=view.rgb.numpy().copy(), shape_index=view.shape.numpy().copy(), depth=view.depth.numpy().copy()
+        )
+
+    def _composite(self, view: _View) -> None:
+        mesh, glass = self._fluid_mesh, self._glass
+        wp.launch(
+            composite.composite,
+            dim=view.color.shape,
+            inputs=[
+                view.rays,
+                view.pose,
+                view.opaque_depth,
+                view.opaque_shape,
+                view.light,
+                self._shape_is_ground,
+                self.model.bvh_shape_world_transforms,
+                glass.shape,
+                glass.box_count,
+                glass.half,
+                glass.mesh,
+                glass.extinction,
+                glass.color,
+                mesh.id,
+                mesh.normals,
+                mesh.fluid_of_vertex,
+                self._fluid_extinction,
+                self._fluid_color,
+                view.look,
+            ],
+            outputs=[view.color, view.depth, view.shape],
+            device=self._device,
+        )
+
+    def _compile(self, progress: Progress) -> None:
+        """Draw once, with a drop of each fluid, so that later frames take no time for compilation."""
+        stage = "preparing the camera"
+        progress(stage, 0.0, 1.0)
+        drop = np.zeros((1, 3), dtype=np.float32)
+        self.render(
+            self.model.state(), {f.prim: drop + np.asarray(f.center, dtype=np.float32) for f in self.world.fluids}
+        )
+        progress(stage, 1.0, 1.0)
+
+
+@dataclass
+class _View:
+    """A camera with its rays and its buffers."""
+
+    camera: Camera
+    rays: wp.array
+    pose: wp.array
+    look: Any
+    light: wp.array
+    opaque_depth: wp.array
+    opaque_shape: wp.array
+    color: wp.array
+    encoded: wp.array
+    rgb: wp.array
+    depth: wp.array
+    shape: wp.array
+
+
+def _cameras_of(world: World) -> list[Camera]:
+    return world.cameras or [render_views.default_camera(world)]
+
+
+def _sun_direction(world: World, style: Style) -> Color:
+    return next((light.direction for light in world.lights if light.kind == "distant"), style.sun_direction)
+
+
+def _unit(v: Color) -> Color:
+    length = float(np.linalg.norm(v))
+    if length < 1e-9:
+        raise ValueError(f"a light's direction must not be zero, got {v}")
+    return (v[0] / length, v[1] / length, v[2] / length)

@@ -1,0 +1,171 @@
+"""What the model's shapes look like: colours, glass, ground."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import warp as wp
+
+from wsim.sim.render_views import is_ground
+
+if TYPE_CHECKING:
+    from wsim.scene.world import Fluid, Shape, World
+
+OPAQUE = 0.995  # opacity from which a shape is drawn opaque
+CLARITY = 0.35  # how much of a fluid's depth of colour shows across its largest edge
+
+
+def extinction_of_fluid(fluid: Fluid) -> np.ndarray:
+    """Beer-Lambert coefficients of a fluid for red, green and blue [1/m], (3,).
+
+    White light has taken on the fluid's colour, in part (`CLARITY`), after the longest edge of the box of fluid: a
+    beaker and a pool look alike.
+    """
+    color = np.clip(np.asarray(fluid.color, dtype=np.float64), 0.02, 0.98)
+    return -np.log(color) * CLARITY / max(fluid.size)
+
+
+def extinction_of_glass(shape: Shape, thickness: float) -> np.ndarray:
+    """Beer-Lambert coefficients of a glass shape [1/m], (3,): its tint is met straight across its thinnest side."""
+    # The square keeps a usual opacity of 0.25 clear through the four panes of a tank, and 1 opaque.
+    cover = min(shape.opacity, 0.999) ** 2
+    tint = 1.0 - shape.opacity * (1.0 - np.clip(np.asarray(shape.color), 0.0, 1.0)) * 0.5
+    return -np.log(np.clip((1.0 - cover) * tint, 1e-4, 1.0)) / max(thickness, 1e-6)
+
+
+@dataclass(frozen=True)
+class Pane:
+    """One glass shape."""
+
+    shape: int  # index in the model
+    half: tuple[float, float, float]  # [m], half edges of its box
+    mesh: wp.Mesh | None  # None for a box
+    extinction: np.ndarray  # [1/m], (3,)
+    color: tuple[float, float, float]
+
+    @classmethod
+    def of(cls, model: Any, index: int, shape: Shape) -> Pane:
+        """The pane of the model's shape `index`, which the world describes as `shape`."""
+        import newton
+
+        is_box = int(model.shape_type.numpy()[index]) == int(newton.GeoType.BOX)
+        mesh = None if is_box else _mesh_of(model, index)
+        half = model.shape_scale.numpy()[index] if mesh is None else 0.5 * np.ptp(mesh.points.numpy(), axis=0)
+        extinction = extinction_of_glass(shape, 2.0 * float(min(half)))
+        return cls(index, tuple(float(h) for h in half), mesh, extinction, shape.color)
+
+
+class Glass:
+    """Glass shapes as the arrays that the compositing kernel reads, boxes first."""
+
+    def __init__(self, panes: list[Pane], device: wp.Device) -> None:
+        self._panes = sorted(panes, key=lambda pane: pane.mesh is not None)  # keeps the meshes alive
+        panes = self._panes
+        self.box_count = sum(pane.mesh is None for pane in panes)
+        self.shape = wp.array([p.shape for p in panes], dtype=wp.int32, device=device)
+        self.half = wp.array([p.half for p in panes], dtype=wp.vec3f, device=device)
+        ids = [0 if p.mesh is None else int(p.mesh.id) for p in panes]
+        self.mesh = wp.array(ids, dtype=wp.uint64, device=device)
+        self.extinction = wp.array([tuple(p.extinction) for p in panes], dtype=wp.vec3f, device=device)
+        self.color = wp.array([p.color for p in panes], dtype=wp.vec3f, device=device)
+
+
+@dataclass
+class ShapeLooks:
+    """How each of the model's shapes is to be drawn."""
+
+    panes: list[Pane]
+    hidden: list[int]  # shapes that no picture shows: glass (drawn apart) and boxes of fluid
+    ground: np.ndarray  # (shape_count,) 1 for ground
+    color: np.ndarray  # (shape_count, 3) sRGB
+
+
+def shape_looks(model: Any, world: World, world_index: int) -> ShapeLooks:
+    """Match the model's shapes with the world's by prim path."""
+    described = {s.prim: (s, static) for static, s in _shapes(world)}
+    fluids = tuple(f"{f.prim}/" for f in world.fluids)
+    labels = list(model.shape_label)
+    worlds = model.shape_world.numpy() if model.shape_world is not None else np.full(len(labels), -1)
+    looks = ShapeLooks(
+        panes=[],
+        hidden=[],
+        ground=np.zeros(max(len(labels), 1), dtype=np.int32),
+        color=model.shape_color.numpy().copy() if len(labels) else np.zeros((0, 3)),
+    )
+    for index, label in enumerate(labels):
+        if fluids and any(f"{label}/".startswith(p) or f"/{label}/".find(p) >= 0 for p in fluids):
+            looks.hidden.append(index)
+            continue
+        found = _described(described, label)
+        if found is None:
+            continue
+        shape, static = found
+        looks.color[index] = [_to_srgb(c) for c in shape.color]
+        looks.ground[index] = int(static and is_ground(shape))
+        if shape.opacity < OPAQUE:
+            looks.hidden.append(index)
+            if worlds[index] in (-1, world_index):
+                looks.panes.append(Pane.of(model, index, shape))
+    return looks
+
+
+def hide(model: Any, state: Any, hidden: list[int]) -> None:
+    """Leave shapes out of what rays of the model's camera meet; the model's flags stay as they were."""
+    import newton
+
+    if not hidden:
+        return
+    flags = model.shape_flags.numpy().copy()
+    shown = flags.copy()
+    shown[hidden] &= ~int(newton.ShapeFlags.VISIBLE)
+    model.shape_flags.assign(shown)
+    model.bvh_build_shapes(state)
+    model.shape_flags.assign(flags)
+
+
+def _shapes(world: World) -> list[tuple[bool, Shape]]:
+    statics = [(True, shape) for static in world.statics for shape in static.shapes]
+    return statics + [(False, shape) for body in world.bodies for shape in body.shapes]
+
+
+def _described(described: dict[str, tuple[Shape, bool]], label: str) -> tuple[Shape, bool] | None:
+    """The world's shape of a label, which may have a batched world's prefix or name a part of a decomposed mesh."""
+    at = label.find("/World/")
+    path = label[at:] if at > 0 else label
+    while path:
+        if path in described:
+            return described[path]
+        path = path.rpartition("/")[0]
+    return None
+
+
+def _mesh_of(model: Any, index: int) -> wp.Mesh:
+    """A closed mesh of any shape that is not a box, in the shape's frame."""
+    import newton
+
+    kind = newton.GeoType(int(model.shape_type.numpy()[index]))
+    size = [float(s) for s in model.shape_scale.numpy()[index]]
+    if kind == newton.GeoType.SPHERE:
+        mesh = newton.Mesh.create_sphere(size[0])
+    elif kind == newton.GeoType.CAPSULE:
+        mesh = newton.Mesh.create_capsule(size[0], size[1])
+    elif kind == newton.GeoType.CYLINDER:
+        mesh = newton.Mesh.create_cylinder(size[0], size[1])
+    elif kind in (newton.GeoType.MESH, newton.GeoType.CONVEX_MESH):
+        source = model.shape_source[index]
+        mesh = newton.Mesh(np.asarray(source.vertices) * size, source.indices, compute_inertia=False)
+    else:
+        raise ValueError(f"shape {model.shape_label[index]}: a {kind.name.lower()} cannot be drawn as glass")
+    return wp.Mesh(
+        points=wp.array(np.asarray(mesh.vertices), dtype=wp.vec3f, device=model.device),
+        indices=wp.array(np.asarray(mesh.indices).reshape(-1), dtype=wp.int32, device=model.device),
+    )
+
+
+def _to_srgb(linear: float) -> float:
+    if linear <= 0.0031308:
+        return 12.92 * linear
+    return 1.055 * math.pow(linear, 1.0 / 2.4) - 0.055

@@ -1,0 +1,122 @@
+"""Where cameras stand and which rays they cast."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from wsim.scene.world import Camera
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from wsim.scene.world import Shape, World
+
+DEFAULT_CAMERA = "/World/default_camera"
+GROUND_EDGE = 20.0  # [m]: a box at least this long in x and y is taken for ground
+
+
+def camera_pose(camera: Camera) -> tuple[float, ...]:
+    """Position and quaternion (xyzw) of a frame that looks along its -Z from eye to target, +Y up."""
+    eye = np.asarray(camera.eye)
+    forward = np.asarray(camera.target) - eye
+    distance = float(np.linalg.norm(forward))
+    if distance < 1e-9:
+        raise ValueError(f"camera {camera.prim}: eye and target are the same point, {camera.eye}")
+    forward = forward / distance
+    right = np.cross(forward, np.asarray(camera.up))
+    if np.linalg.norm(right) < 1e-6:
+        # The camera looks along its up vector: any other axis serves as well.
+        right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
+    right = right / np.linalg.norm(right)
+    up = np.cross(right, forward)
+    rotation = Rotation.from_matrix(np.column_stack((right, up, -forward)))
+    return (*map(float, eye), *map(float, rotation.as_quat()))
+
+
+def vertical_fov(camera: Camera) -> float:
+    """Vertical field of view [rad] of a camera whose `fov` is horizontal [deg]."""
+    return 2.0 * math.atan(math.tan(math.radians(camera.fov) / 2.0) * camera.height / camera.width)
+
+
+def resized(camera: Camera, width: int | None, height: int | None) -> Camera:
+    """The camera with another picture size; one number alone keeps the aspect ratio."""
+    if width is None and height is None:
+        return camera
+    aspect = camera.width / camera.height
+    w = width if width is not None else max(1, round((height or camera.height) * aspect))
+    h = height if height is not None else max(1, round(w / aspect))
+    if w < 1 or h < 1:
+        raise ValueError(f"camera {camera.prim}: width and height must be at least 1, not {w} x {h}")
+    return camera.model_copy(update={"width": w, "height": h})
+
+
+def is_ground(shape: Shape) -> bool:
+    """Whether a static shape is the ground: a plane, or a very wide box."""
+    if shape.kind == "plane":
+        return True
+    return shape.kind == "box" and min(shape.size[0], shape.size[1]) >= GROUND_EDGE
+
+
+def bounds(world: World) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest corner [m] of all there is but the ground, at t = 0; a metre's cube if there is nothing."""
+    corners = [points for points in _corners(world) if len(points)]
+    if not corners:
+        return np.array((-0.5, -0.5, 0.0)), np.array((0.5, 0.5, 1.0))
+    points = np.concatenate(corners)
+    return points.min(axis=0), points.max(axis=0)
+
+
+def default_camera(world: World, width: int = 640, height: int = 360) -> Camera:
+    """A three-quarter view from the front left, a little from above, that has everything in frame."""
+    low, high = bounds(world)
+    center = 0.5 * (low + high)
+    radius = max(0.5 * float(np.linalg.norm(high - low)), 1e-3)
+    fov = 45.0
+    camera = Camera(prim=DEFAULT_CAMERA, eye=(1, 0, 0), target=(0, 0, 0), fov=fov, width=width, height=height)
+    narrow = min(math.radians(fov), vertical_fov(camera))
+    distance = 1.08 * radius / math.sin(0.5 * narrow)
+    azimuth, elevation = math.radians(-62.0), math.radians(20.0)
+    toward = np.array(
+        (math.cos(azimuth) * math.cos(elevation), math.sin(azimuth) * math.cos(elevation), math.sin(elevation))
+    )
+    eye = center + distance * toward
+    return camera.model_copy(update={"eye": tuple(float(v) for v in eye), "target": tuple(float(v) for v in center)})
+
+
+def _corners(world: World) -> Iterator[np.ndarray]:
+    """Points that enclose everything but the ground, in the world's frame."""
+    for static in world.statics:
+        for shape in static.shapes:
+            if not is_ground(shape):
+                yield _placed(_outline(shape), shape.position, shape.rotation)
+    for body in world.bodies:
+        for shape in body.shapes:
+            points = _placed(_outline(shape), shape.position, shape.rotation)
+            yield _placed(points, body.position, body.rotation)
+    for fluid in world.fluids:
+        yield _box(0.5 * np.asarray(fluid.size)) + np.asarray(fluid.center)
+
+
+def _outline(shape: Shape) -> np.ndarray:
+    """Points whose hull encloses a shape, in its own frame [m]."""
+    if shape.vertices:
+        return np.asarray(shape.vertices)
+    if shape.kind == "sphere":
+        return _box(np.full(3, shape.size[0]))
+    if shape.kind in ("cylinder", "capsule"):
+        radius, height = shape.size
+        cap = radius if shape.kind == "capsule" else 0.0
+        return _box(np.array((radius, radius, 0.5 * height + cap)))
+    return _box(0.5 * np.asarray(shape.size)) if len(shape.size) == 3 else np.zeros((1, 3))
+
+
+def _box(half: np.ndarray) -> np.ndarray:
+    return np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
+
+
+def _placed(points: np.ndarray, position: tuple[float, ...], rotation: tuple[float, ...]) -> np.ndarray:
+    return Rotation.from_quat(rotation).apply(points) + np.asarray(position)
