@@ -1,1 +1,27 @@
-"""TODO."""
+"""What programs import: author a physical world as an OpenUSD stage.
+
+    from wsim.scene import Scene
+
+    def build(scene: Scene) -> None:
+        scene.ground()
+        scene.box("block", size=(0.2, 0.2, 0.2), position=(0.0, 0.0, 0.5), density=600.0)
+
+Imports pxr and numpy only. To read a stage back see `wsim.scene.describe`; to check one, `wsim.scene.check`.
+"""
+
+from __future__ import annotations
+
+from wsim.scene import schema
+
+# Before the first stage is made: that is when USD reads its schemas.
+schema.register()
+
+from wsim.scene.authoring import Handle  # noqa: E402
+from wsim.scene.errors import SceneError  # noqa: E402
+from wsim.scene.fluids import Fluid  # noqa: E402
+from wsim.scene.joints import Drive  # noqa: E402
+from wsim.scene.materials import Material  # noqa: E402
+from wsim.scene.scene import Scene  # noqa: E402
+from wsim.scene.tanks import Tank  # noqa: E402
+
+__all__ = ["Drive", "Fluid", "Handle", "Material", "Scene", "SceneError", "Tank"]

@@ -1,0 +1,74 @@
+"""Mark chains of jointed bodies as articulations, which is how a solver in joint coordinates takes them."""
+
+from __future__ import annotations
+
+from pxr import Sdf, Usd, UsdPhysics
+
+WORLD_END = Sdf.Path.absoluteRootPath
+
+
+def mark_articulations(stage: Usd.Stage) -> None:
+    """Put one articulation root on each tree of joints, and take joints that close a loop out of the tree.
+
+    The root is the joint to the world, or the body that no joint has as its child. Called after each new joint:
+    joints made by other means are marked with the rest.
+    """
+    tree = _Forest()
+    joints = [UsdPhysics.Joint(prim) for prim in stage.Traverse() if prim.IsA(UsdPhysics.Joint)]
+    for joint in joints:
+        parent, child = joint_ends(joint)
+        _unmark(joint.GetPrim())
+        for path in {parent, child} - {WORLD_END}:
+            _unmark(stage.GetPrimAtPath(path))
+        if not tree.add(parent, child, joint.GetPath()):
+            joint.CreateExcludeFromArticulationAttr(True)
+        elif joint.GetExcludeFromArticulationAttr().HasAuthoredValue():
+            joint.GetExcludeFromArticulationAttr().Clear()
+    for path in tree.roots():
+        UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(path))
+
+
+def joint_ends(joint: UsdPhysics.Joint) -> tuple[Sdf.Path, Sdf.Path]:
+    """Paths of a joint's parent and child as authored; the world's is `WORLD_END`, and the world is never the child."""
+    ends = []
+    for relation in (joint.GetBody0Rel(), joint.GetBody1Rel()):
+        targets = relation.GetTargets()
+        ends.append(targets[0] if targets else WORLD_END)
+    parent, child = ends
+    return (child, parent) if child == WORLD_END else (parent, child)
+
+
+class _Forest:
+    """Rooted trees of bodies, grown a joint at a time."""
+
+    def __init__(self) -> None:
+        self._parent: dict[Sdf.Path, Sdf.Path] = {}
+        self._anchor: dict[Sdf.Path, Sdf.Path] = {}  # body → the joint that ties it to the world
+        self._bodies: dict[Sdf.Path, None] = {}
+
+    def add(self, parent: Sdf.Path, child: Sdf.Path, joint: Sdf.Path) -> bool:
+        """Hang `child` on `parent`; False, and nothing done, where that would give it two parents or close a loop."""
+        if child in self._parent or self._top(parent) == child:
+            return False
+        self._parent[child] = parent
+        if parent == WORLD_END:
+            self._anchor[child] = joint
+        for path in (parent, child):
+            if path != WORLD_END:
+                self._bodies[path] = None
+        return True
+
+    def roots(self) -> list[Sdf.Path]:
+        """The prim that roots each tree: a joint to the world, or the topmost body."""
+        tops = dict.fromkeys(self._top(path) for path in self._bodies)
+        return [self._anchor.get(top, top) for top in tops]
+
+    def _top(self, path: Sdf.Path) -> Sdf.Path:
+        while self._parent.get(path, WORLD_END) != WORLD_END:
+            path = self._parent[path]
+        return path
+
+
+def _unmark(prim: Usd.Prim) -> None:
+    if prim and prim.HasAPI(UsdPhysics.ArticulationRootAPI):
+        prim.RemoveAPI(UsdPhysics.ArticulationRootAPI)

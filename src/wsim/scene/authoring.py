@@ -1,0 +1,129 @@
+"""What every call of a scene needs: the stage, names, poses, and the line of the program that called."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
+
+from wsim.scene.validate import Call, Vec3, shown, suggestion
+
+WORLD = "/World"
+LOOKS = "/World/Looks"
+PARAMETERS = "/World/Parameters"
+PHYSICS_SCENE = "/World/PhysicsScene"
+
+_PACKAGE = str(Path(__file__).parent) + os.sep
+
+
+@dataclass(frozen=True)
+class Handle:
+    """What a call made: usable wherever another call asks for a `parent`, `child`, `fills` or `material`."""
+
+    name: str
+    path: str
+    kind: str
+
+    def __str__(self) -> str:
+        return self.path
+
+
+class Author:
+    """An empty stage in SI units, Z up, and the ways to add a prim to it."""
+
+    def __init__(self) -> None:
+        stage = Usd.Stage.CreateInMemory("scene.usda")
+        UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+        UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+        UsdPhysics.SetStageKilogramsPerUnit(stage, 1.0)
+        stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, WORLD).GetPrim())
+        self._stage = stage
+
+    @property
+    def stage(self) -> Usd.Stage:
+        """The stage itself, for all that the calls do not cover."""
+        return self._stage
+
+    def _path(self, call: Call, parent: str = WORLD) -> str:
+        """The path of the prim that `call` is to make; a `SceneError` if its name is illegal or taken."""
+        root = self._stage.GetPrimAtPath(parent)
+        name = call.identifier(root.GetAllChildrenNames() if root else ())
+        return f"{parent}/{name}"
+
+    def _find(self, call: Call, field: str, what: object) -> Usd.Prim:
+        """The prim that an argument means: a handle, a name or a path."""
+        if isinstance(what, Handle):
+            path = what.path
+        elif isinstance(what, Usd.Prim):
+            path = str(what.GetPath())
+        elif isinstance(what, Sdf.Path):
+            path = str(what)
+        elif isinstance(what, str) and what:
+            path = what if what.startswith("/") else f"{WORLD}/{what}"
+        else:
+            call.fail(f"{field} = {shown(what)} must be what a call returned, or its name")
+        prim = self._stage.GetPrimAtPath(path) if Sdf.Path.IsValidPathString(path) else None
+        if not prim:
+            name = path.rsplit("/", 1)[-1]
+            call.fail(f"{field} = {shown(name)} is not in the scene; {suggestion(name, self._object_names())}")
+        return prim
+
+    def _object_names(self) -> list[str]:
+        reserved = {LOOKS, PARAMETERS, PHYSICS_SCENE}
+        children = self._stage.GetPrimAtPath(WORLD).GetAllChildren()
+        return [prim.GetName() for prim in children if str(prim.GetPath()) not in reserved]
+
+
+def note_line(prim: Usd.Prim) -> None:
+    """Write on a prim which line of the program made it, as customData `wsim:line` = "program.py:12"."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        frame = frame.f_back
+    prim.SetCustomDataByKey("wsim:line", f"{Path(frame.f_code.co_filename).name}:{frame.f_lineno}")
+
+
+def calling_folder() -> Path | None:
+    """The folder of the program that calls, if it is a file."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        frame = frame.f_back
+    file = Path(frame.f_code.co_filename)
+    return file.resolve().parent if file.is_file() else None
+
+
+def rotation(degrees: Vec3) -> Gf.Quatd:
+    """Roll about X, then pitch about Y, then yaw about Z, all fixed axes [deg]."""
+    turns = [
+        Gf.Rotation(axis, angle).GetQuat()
+        for axis, angle in zip((Gf.Vec3d.XAxis(), Gf.Vec3d.YAxis(), Gf.Vec3d.ZAxis()), degrees, strict=True)
+    ]
+    return (turns[2] * turns[1] * turns[0]).GetNormalized()
+
+
+def set_pose(prim: Usd.Prim, position: Vec3, turn: Gf.Quatd | None = None, scale: Vec3 | None = None) -> None:
+    """Author translate, orient and scale, leaving out what does nothing."""
+    xform = UsdGeom.Xformable(prim)
+    xform.ClearXformOpOrder()
+    if position != (0.0, 0.0, 0.0) or (turn is None and scale is None):
+        xform.AddTranslateOp().Set(Gf.Vec3d(*position))
+    if turn is not None and turn != Gf.Quatd(1.0):
+        xform.AddOrientOp(UsdGeom.XformOp.PrecisionDouble).Set(turn)
+    if scale is not None:
+        xform.AddScaleOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*scale))
+
+
+def world_pose(prim: Usd.Prim) -> tuple[Gf.Vec3d, Gf.Quatd]:
+    """Position [m] and rotation of a prim in the world, its scale left out."""
+    matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default())
+    return matrix.ExtractTranslation(), matrix.RemoveScaleShear().ExtractRotationQuat().GetNormalized()
+
+
+def set_extent(prim: Usd.Prim) -> None:
+    """Author the bounding box of a prim, as USD asks of geometry."""
+    boundable = UsdGeom.Boundable(prim)
+    extent = UsdGeom.Boundable.ComputeExtentFromPlugins(boundable, Usd.TimeCode.Default())
+    if extent is not None:
+        boundable.CreateExtentAttr(extent)

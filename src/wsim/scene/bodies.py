@@ -1,0 +1,131 @@
+"""What all solid objects share: a pose, a mass, a motion, a surface, and how they are written to the stage."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
+
+from wsim.scene.authoring import Handle, note_line, rotation, set_extent, set_pose
+from wsim.scene.materials import Material, Materials, bind
+from wsim.scene.validate import Call, Vec3
+
+DENSITY = 1000.0  # [kg/m^3], what UsdPhysics takes where nothing is said
+
+
+@dataclass(frozen=True)
+class BodyOptions:
+    """The arguments that every solid takes, as they were given."""
+
+    position: Sequence[float]
+    rotation_deg: Sequence[float]
+    density: float | None
+    mass: float | None
+    velocity: Sequence[float]
+    angular_velocity_deg: Sequence[float]
+    static: bool
+    kinematic: bool
+    material: Handle | str | None
+    friction: float | None
+    restitution: float | None
+    color: Sequence[float] | None
+
+
+@dataclass(frozen=True)
+class MassProperties:
+    """Mass properties that geometry alone would not give: mass [kg], com [m], principal inertia [kg m^2] and axes."""
+
+    mass: float
+    com: Gf.Vec3f
+    inertia: Gf.Vec3f
+    axes: Gf.Quatf
+
+
+class Bodies(Materials):
+    """Writes a solid: an Xform with the body's physics, and one child with its geometry."""
+
+    def _solid(
+        self,
+        call: Call,
+        options: BodyOptions,
+        geometry: Callable[[str], UsdGeom.Gprim],
+        mass_properties: Callable[[float | None, float | None], MassProperties | None] | None = None,
+    ) -> Handle:
+        """Author one solid.
+
+        Args:
+            call: The call, for its name and errors.
+            options: What the call was given.
+            geometry: Defines the Gprim at a path, centred on the body.
+            mass_properties: From (mass, density), what is to be written instead of leaving it to the geometry.
+        """
+        path = self._path(call)
+        position = call.position("position", options.position)
+        turn = rotation(call.angles(options.rotation_deg))
+        velocity = call.velocity(options.velocity)
+        spin = call.spin(options.angular_velocity_deg)
+        mass, density = self._mass_or_density(call, options)
+        moving = self._moving(call, options, velocity, spin)
+        material = self._surface(call, options.material, options.friction, options.restitution, options.color)
+        if mass is None and density is None:
+            density = material.density or DENSITY
+
+        prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
+        note_line(prim)
+        set_pose(prim, position, turn)
+        if moving:
+            _make_rigid(prim, turn, velocity, spin, kinematic=options.kinematic)
+            properties = mass_properties(mass, density) if mass_properties else None
+            _set_mass(prim, mass, density, properties)
+        shape = geometry(f"{path}/geometry").GetPrim()
+        note_line(shape)
+        finish_collider(shape, material)
+        return Handle(name=prim.GetName(), path=path, kind="body" if moving else "static")
+
+    def _mass_or_density(self, call: Call, options: BodyOptions) -> tuple[float | None, float | None]:
+        mass = None if options.mass is None else call.mass(options.mass)
+        density = None if options.density is None else call.density(options.density)
+        if mass is not None and density is not None:
+            call.fail(f"mass = {mass:g} kg and density = {density:g} kg/m^3 are both given; give one")
+        return mass, density
+
+    def _moving(self, call: Call, options: BodyOptions, velocity: Vec3, spin: Vec3) -> bool:
+        if options.static and options.kinematic:
+            call.fail("static = True and kinematic = True are both given; a static object never moves")
+        if options.static and (any(velocity) or any(spin)):
+            field, value = ("velocity", velocity) if any(velocity) else ("angular_velocity_deg", spin)
+            call.fail(f"{field} = {value} on a static object; leave it out, or static=True")
+        return not options.static
+
+
+def _make_rigid(prim: Usd.Prim, turn: Gf.Quatd, velocity: Vec3, spin: Vec3, *, kinematic: bool) -> None:
+    body = UsdPhysics.RigidBodyAPI.Apply(prim)
+    if kinematic:
+        body.CreateKinematicEnabledAttr(True)
+    # UsdPhysics states velocities in the body's own axes; the calls take them in the world's.
+    back = turn.GetInverse()
+    if any(velocity):
+        body.CreateVelocityAttr(Gf.Vec3f(back.Transform(Gf.Vec3d(*velocity))))
+    if any(spin):
+        body.CreateAngularVelocityAttr(Gf.Vec3f(back.Transform(Gf.Vec3d(*spin))))
+
+
+def _set_mass(prim: Usd.Prim, mass: float | None, density: float | None, given: MassProperties | None) -> None:
+    api = UsdPhysics.MassAPI.Apply(prim)
+    if given is not None:
+        api.CreateMassAttr(given.mass)
+        api.CreateCenterOfMassAttr(given.com)
+        api.CreateDiagonalInertiaAttr(given.inertia)
+        api.CreatePrincipalAxesAttr(given.axes)
+    elif mass is not None:
+        api.CreateMassAttr(mass)
+    elif density is not None:
+        api.CreateDensityAttr(density)
+
+
+def finish_collider(prim: Usd.Prim, material: Material) -> None:
+    """Make a piece of geometry collide, and give it its surface."""
+    UsdPhysics.CollisionAPI.Apply(prim)
+    set_extent(prim)
+    bind(prim, material)

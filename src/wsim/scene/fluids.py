@@ -1,0 +1,190 @@
+"""Fluid: a box of it as it stands at time 0."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pxr import Gf, Sdf, UsdGeom
+
+from wsim.scene import schema
+from wsim.scene.authoring import Handle, note_line, set_extent, set_pose
+from wsim.scene.materials import Look, Material, bind
+from wsim.scene.tanks import Tank, Tanks
+from wsim.scene.validate import Call, Vec3, shown, suggestion
+
+_WATER: Vec3 = (0.15, 0.4, 0.6)
+_OPACITY = 0.6
+_TOUCH = 1e-6  # [m]: rounding, not overlap
+
+
+@dataclass(frozen=True)
+class Fluid(Handle):
+    """A volume of fluid: `size` and `center` of its box in the world, and particle `spacing` [m]."""
+
+    size: Vec3
+    center: Vec3
+    spacing: float
+
+    @property
+    def surface(self) -> float:
+        """Height of the surface at time 0 [m]."""
+        return self.center[2] + self.size[2] / 2
+
+
+class Fluids(Tanks):
+    """The call that makes fluid."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._fluids: list[Fluid] = []
+
+    def fluid(
+        self,
+        name: str,
+        *,
+        spacing: float,
+        fills: Handle | str | None = None,
+        level: float | None = None,
+        size: Sequence[float] | None = None,
+        position: Sequence[float] | None = None,
+        container: Handle | str | None = None,
+        density: float = 1000.0,
+        viscosity: float = 0.001,
+        speed_of_sound: float = 0.0,
+        color: Sequence[float] = _WATER,
+    ) -> Fluid:
+        """Fill a tank up to a level, or stand a free box of fluid somewhere.
+
+        Args:
+            name: Name of the prim.
+            spacing: Distance between particles [m].
+            fills: The tank to fill, with `level`.
+            level: Depth above the tank's inner floor [m].
+            size: Instead of `fills`: edges (x, y, z) of a box of fluid [m], with `position`.
+            position: Centre of that box [m].
+            container: The tank that box stands in; found by itself where the box lies inside one.
+            density: Rest density [kg/m^3].
+            viscosity: Dynamic viscosity [Pa s]; water 0.001, honey 10.
+            speed_of_sound: Numerical, of weakly compressible SPH [m/s]; 0 lets the solver choose.
+            color: Linear RGB.
+
+        Raises:
+            SceneError: If the fluid does not fit its tank, is thinner than one particle, overlaps another fluid, or
+                a number is out of range.
+        """
+        call = Call("fluid", name)
+        path = self._path(call)
+        step = call.size("spacing", spacing)
+        if fills is not None:
+            if size is not None or position is not None or container is not None:
+                call.fail("fills is given with size, position or container; give fills and level, or size and position")
+            tank: Tank | None = self._tank(call, "fills", fills)
+            assert tank is not None
+            edges, center = _filling(call, tank, level)
+            _check_thickness(call, tank.inner_size, step, "inner_size", f'tank "{tank.name}"')
+        else:
+            if level is not None:
+                call.fail(f"level = {shown(level)} needs fills=, the tank to fill")
+            if size is None or position is None:
+                call.fail("give fills= and level=, or size= and position= of a free box of fluid")
+            edges, center = call.sizes("size", size), call.position("position", position)
+            tank = self._holder(call, edges, center, container)
+        _check_thickness(call, edges, step, "level" if fills is not None else "size", "the fluid")
+        call.particles(edges, step)
+        fluid = Fluid(name=name, path=path, kind="fluid", size=edges, center=center, spacing=step)
+        self._check_overlap(call, fluid)
+        values = {
+            "density": (Sdf.ValueTypeNames.Double, call.density(density)),
+            "viscosity": (Sdf.ValueTypeNames.Double, call.within("viscosity", viscosity, 0.0, 1e6, "Pa s")),
+            "spacing": (Sdf.ValueTypeNames.Double, step),
+            "size": (Sdf.ValueTypeNames.Float3, Gf.Vec3f(*edges)),
+            "speedOfSound": (
+                Sdf.ValueTypeNames.Double,
+                call.within("speed_of_sound", speed_of_sound, 0.0, 1e4, "m/s"),
+            ),
+        }
+        self._author_fluid(fluid, values, tank, call.color("color", color))
+        return fluid
+
+    def _author_fluid(
+        self, fluid: Fluid, values: dict[str, tuple[Sdf.ValueTypeName, object]], tank: Tank | None, color: Vec3
+    ) -> None:
+        prim = UsdGeom.Xform.Define(self._stage, fluid.path).GetPrim()
+        note_line(prim)
+        set_pose(prim, fluid.center)
+        schema.apply(prim, schema.FLUID, values)
+        relation = prim.CreateRelationship("wsim:container", False)
+        if tank is not None:
+            relation.SetTargets([Sdf.Path(tank.path)])
+        cube = UsdGeom.Cube.Define(self._stage, f"{fluid.path}/volume")
+        cube.CreateSizeAttr(1.0)
+        set_pose(cube.GetPrim(), (0.0, 0.0, 0.0), scale=fluid.size)
+        set_extent(cube.GetPrim())
+        note_line(cube.GetPrim())
+        bind(cube.GetPrim(), self._water(fluid.name, color))
+        self._fluids.append(fluid)
+
+    def _water(self, name: str, color: Vec3) -> Material:
+        call = Call("fluid", name)
+        return self._surface(call, None, None, None, color, opacity=_OPACITY, look=Look(roughness=0.02, ior=1.33))
+
+    def _tank(self, call: Call, field: str, what: Handle | str) -> Tank:
+        path = str(self._find(call, field, what).GetPath())
+        if path not in self._tanks:
+            name = path.rsplit("/", 1)[-1]
+            hint = suggestion(name, [tank.name for tank in self._tanks.values()])
+            call.fail(f"{field} = {shown(name)} is not a tank; {hint}")
+        return self._tanks[path]
+
+    def _holder(self, call: Call, size: Vec3, center: Vec3, container: Handle | str | None) -> Tank | None:
+        """The tank that a free box of fluid stands in."""
+        if container is None:
+            inside = [tank for tank in self._tanks.values() if _outside(tank, size, center) is None]
+            return inside[0] if inside else None
+        tank = self._tank(call, "container", container)
+        axis = _outside(tank, size, center)
+        if axis is not None:
+            low, high = tank.low[axis], tank.low[axis] + tank.inner_size[axis]
+            call.fail(
+                f"the box reaches {'xyz'[axis]} = {center[axis] - size[axis] / 2:g} to "
+                f"{center[axis] + size[axis] / 2:g} m, outside the hollow of {shown(tank.name)}, {low:g} to {high:g} m"
+            )
+        return tank
+
+    def _check_overlap(self, call: Call, fluid: Fluid) -> None:
+        for other in self._fluids:
+            gaps = [abs(fluid.center[i] - other.center[i]) - (fluid.size[i] + other.size[i]) / 2 for i in range(3)]
+            if max(gaps) < -_TOUCH:
+                call.fail(f"the fluid overlaps {shown(other.name)}; move it or make one of them smaller")
+
+
+def _filling(call: Call, tank: Tank, level: float | None) -> tuple[Vec3, Vec3]:
+    """Size and centre of the fluid in a tank [m]."""
+    if level is None:
+        call.fail("fills is given without level, the depth above the tank's inner floor in m")
+    depth = call.size("level", level)
+    if depth > tank.inner_size[2] + _TOUCH:
+        call.fail(
+            f'level = {depth:g} m is above the rim of tank "{tank.name}": its hollow is {tank.inner_size[2]:g} m high'
+        )
+    x, y, _ = tank.inner_size
+    return (x, y, depth), (tank.inner_center[0], tank.inner_center[1], tank.floor + depth / 2)
+
+
+def _check_thickness(call: Call, size: Vec3, spacing: float, field: str, what: str) -> None:
+    thinnest = min(size)
+    if thinnest < spacing * (1.0 - 1e-9):
+        call.fail(
+            f"spacing = {spacing:g} m is wider than {what}: its {field}, least edge {thinnest:g} m, must hold at "
+            f"least one particle; take spacing <= {thinnest / 4:.3g}"
+        )
+
+
+def _outside(tank: Tank, size: Vec3, center: Vec3) -> int | None:
+    """The first axis along which a box leaves the hollow of a tank; None if it lies inside."""
+    for axis in range(3):
+        low, high = center[axis] - size[axis] / 2, center[axis] + size[axis] / 2
+        if low < tank.low[axis] - _TOUCH or high > tank.low[axis] + tank.inner_size[axis] + _TOUCH:
+            return axis
+    return None

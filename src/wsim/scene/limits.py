@@ -1,0 +1,18 @@
+"""What a world may hold: beyond these a number is a mistake. One table for the calls and for the check of a stage."""
+
+from __future__ import annotations
+
+MAX_POSITION = 1e4  # [m]
+MIN_SIZE = 1e-4  # [m]
+MAX_SIZE = 1e3  # [m]
+MAX_MASS = 1e5  # [kg]
+MAX_DENSITY = 1e5  # [kg/m^3]
+MAX_FRICTION = 10.0
+MAX_SPEED = 1e4  # [m/s]
+MAX_SPIN = 1e6  # [deg/s]
+MAX_COUNT = 20_000_000  # fluid particles
+MAX_DURATION = 3600.0  # [s]
+MAX_FRAME_RATE = 1000.0  # [1/s]
+MAX_PRIMS = 20_000
+MAX_BYTES = 100_000_000
+MAX_POINTS = 5_000_000  # vertices of all meshes together

@@ -1,0 +1,170 @@
+"""Materials: how a surface looks and how it rubs, bounces and weighs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
+
+from wsim.scene.authoring import LOOKS, Author, Handle, note_line
+from wsim.scene.validate import Call, Vec3, shown, suggestion
+
+# Told apart by people with any kind of colour vision (Okabe and Ito 2008), linear RGB.
+_PALETTE: tuple[Vec3, ...] = (
+    (0.79, 0.35, 0.0),
+    (0.09, 0.45, 0.81),
+    (0.0, 0.34, 0.17),
+    (0.87, 0.78, 0.05),
+    (0.0, 0.17, 0.45),
+    (0.67, 0.11, 0.0),
+    (0.6, 0.19, 0.39),
+)
+FRICTION = 0.5
+RESTITUTION = 0.0
+
+
+@dataclass(frozen=True)
+class Material(Handle):
+    """A material by name. `density` [kg/m^3] is None where the material leaves it to the object."""
+
+    density: float | None
+    friction: float
+    restitution: float
+    color: Vec3
+    opacity: float
+
+
+@dataclass(frozen=True)
+class Look:
+    """How light meets a surface, beyond colour and opacity."""
+
+    roughness: float = 0.6
+    metallic: float = 0.0
+    ior: float = 1.5
+
+
+class Materials(Author):
+    """The calls that make materials."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._materials: dict[str, Material] = {}
+        self._colors_used = 0
+
+    def material(
+        self,
+        name: str,
+        *,
+        density: float | None = None,
+        friction: float = FRICTION,
+        restitution: float = RESTITUTION,
+        color: Sequence[float] = (0.7, 0.7, 0.7),
+        opacity: float = 1.0,
+    ) -> Material:
+        """Make a material that objects can name.
+
+        Args:
+            name: Name of the prim, under /World/Looks.
+            density: [kg/m^3]; what an object made of it weighs unless the object says otherwise.
+            friction: Coefficient of friction, 0 to 10.
+            restitution: 0 (dead) to 1 (elastic).
+            color: Linear red, green, blue, 0 to 1.
+            opacity: 0 (clear) to 1.
+
+        Raises:
+            SceneError: If the name is taken or a number is out of range.
+        """
+        call = Call("material", name)
+        path = self._path(call, LOOKS)
+        material = Material(
+            name=name,
+            path=path,
+            kind="material",
+            density=None if density is None else call.density(density),
+            friction=call.friction(friction),
+            restitution=call.fraction("restitution", restitution),
+            color=call.color("color", color),
+            opacity=call.fraction("opacity", opacity),
+        )
+        return self._author_material(material)
+
+    def _author_material(self, material: Material, look: Look | None = None) -> Material:
+        look = look or Look()
+        if not self._stage.GetPrimAtPath(LOOKS):
+            UsdGeom.Scope.Define(self._stage, LOOKS)
+        usd = UsdShade.Material.Define(self._stage, material.path)
+        shader = UsdShade.Shader.Define(self._stage, f"{material.path}/surface")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(*material.color))
+        for key, value in (("roughness", look.roughness), ("metallic", look.metallic), ("ior", look.ior)):
+            shader.CreateInput(key, Sdf.ValueTypeNames.Float).Set(value)
+        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(material.opacity)
+        output = shader.CreateOutput("surface", Sdf.ValueTypeNames.Token)
+        usd.CreateSurfaceOutput().ConnectToSource(output)
+        physics = UsdPhysics.MaterialAPI.Apply(usd.GetPrim())
+        physics.CreateStaticFrictionAttr(material.friction)
+        physics.CreateDynamicFrictionAttr(material.friction)
+        physics.CreateRestitutionAttr(material.restitution)
+        if material.density is not None:
+            physics.CreateDensityAttr(material.density)
+        note_line(usd.GetPrim())
+        self._materials[material.name] = material
+        return material
+
+    def _surface(
+        self,
+        call: Call,
+        material: Handle | str | None,
+        friction: float | None,
+        restitution: float | None,
+        color: Sequence[float] | None,
+        *,
+        opacity: float = 1.0,
+        look: Look | None = None,
+    ) -> Material:
+        """The material of an object: the one it names, or one of its own where it overrides or names none."""
+        base = self._named(call, material)
+        if base is not None and friction is None and restitution is None and color is None:
+            return base
+        name = str(call.name)
+        while self._stage.GetPrimAtPath(f"{LOOKS}/{name}"):
+            name += "_look"
+        own = Material(
+            name=name,
+            path=f"{LOOKS}/{name}",
+            kind="material",
+            density=base.density if base else None,
+            friction=call.friction(_given(friction, base.friction if base else FRICTION)),
+            restitution=call.fraction("restitution", _given(restitution, base.restitution if base else RESTITUTION)),
+            color=call.color("color", color) if color is not None else base.color if base else self._next_color(),
+            opacity=base.opacity if base else opacity,
+        )
+        return self._author_material(own, look)
+
+    def _named(self, call: Call, material: Handle | str | None) -> Material | None:
+        if material is None or isinstance(material, Material):
+            return material
+        if isinstance(material, str) and material in self._materials:
+            return self._materials[material]
+        if not isinstance(material, str):
+            call.fail(f"material = {shown(material)} must be what scene.material returned, or its name")
+        hint = suggestion(material, self._materials)
+        return call.fail(f'material = "{material}" is not in the scene; {hint}; make it with scene.material(name)')
+
+    def _next_color(self) -> Vec3:
+        self._colors_used += 1
+        return _PALETTE[(self._colors_used - 1) % len(_PALETTE)]
+
+
+def _given(value: float | None, default: float) -> float:
+    return default if value is None else value
+
+
+def bind(prim: Usd.Prim, material: Material) -> None:
+    """Give a piece of geometry its material, and its colour for tools that read no materials."""
+    usd = UsdShade.Material(prim.GetStage().GetPrimAtPath(material.path))
+    UsdShade.MaterialBindingAPI.Apply(prim).Bind(usd)
+    gprim = UsdGeom.Gprim(prim)
+    gprim.CreateDisplayColorAttr(Vt.Vec3fArray([Gf.Vec3f(*material.color)]))
+    gprim.CreateDisplayOpacityAttr(Vt.FloatArray([material.opacity]))

@@ -1,0 +1,122 @@
+"""Read a triangle mesh from a file and write it to a stage."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pxr import Gf, Usd, UsdGeom, UsdPhysics, Vt
+
+from wsim.scene.bodies import MassProperties
+from wsim.scene.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
+from wsim.scene.validate import Call, shown
+
+FORMATS = (".obj", ".stl", ".ply", ".glb")
+APPROXIMATIONS = ("convexHull", "convexDecomposition", "none")
+
+
+@dataclass(frozen=True)
+class MeshFile:
+    """The triangles of a file, scaled and with Z up."""
+
+    mesh: Any  # trimesh.Trimesh
+
+    @classmethod
+    def read(
+        cls, call: Call, file: str | Path, folder: Path | None, *, scale: float | Sequence[float], up_axis: str
+    ) -> MeshFile:
+        """Read `file`; `SceneError` if it is missing, of another format, empty or of an absurd size."""
+        path = _find(call, file, folder)
+        factors = _factors(call, scale)
+        up = call.axis(up_axis)
+        if up == "X":
+            call.fail('up_axis = "X" must be "Z" or "Y"')
+        import trimesh  # heavy, and few programs read meshes
+
+        try:
+            mesh = trimesh.load(path, force="mesh", process=False)
+        except Exception as error:  # noqa: BLE001 - each of trimesh's readers raises its own kinds
+            call.fail(f"file = {shown(str(file))} cannot be read as a mesh: {error}")
+        if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
+            call.fail(f"file = {shown(str(file))} holds no triangles")
+        if len(mesh.vertices) > MAX_POINTS:
+            call.fail(f"file = {shown(str(file))} has {len(mesh.vertices)} vertices; at most {MAX_POINTS}")
+        mesh.merge_vertices()
+        vertices = np.asarray(mesh.vertices) * factors
+        if up == "Y":
+            vertices = vertices[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
+        if not np.isfinite(vertices).all():
+            call.fail(f"file = {shown(str(file))} holds vertices that are not finite")
+        longest = float(np.ptp(vertices, axis=0).max())
+        if not MIN_SIZE <= longest <= MAX_SIZE:
+            call.fail(
+                f"scale = {shown(scale)} makes {Path(file).name} {longest:g} m long; it must be {MIN_SIZE:g} to "
+                f"{MAX_SIZE:g} m. Files in millimetres need scale=0.001"
+            )
+        return cls(trimesh.Trimesh(vertices, mesh.faces, process=False))
+
+    def approximation(self, call: Call, collision: str | None, *, static: bool) -> str:
+        """How the mesh collides: as asked for, or the default for what it is."""
+        if collision is None:
+            return "none" if static else "convexHull"
+        if collision not in APPROXIMATIONS:
+            call.fail(f"collision = {shown(collision)} must be one of {', '.join(APPROXIMATIONS)}")
+        if collision == "none" and not static:
+            call.fail('collision = "none" needs static=True; a mesh that moves takes convexHull or convexDecomposition')
+        return collision
+
+    def define(self, stage: Usd.Stage, path: str, approximation: str) -> UsdGeom.Mesh:
+        """Write the triangles to a stage."""
+        usd = UsdGeom.Mesh.Define(stage, path)
+        faces = np.asarray(self.mesh.faces, dtype=np.int32)
+        usd.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(np.asarray(self.mesh.vertices, dtype=np.float32)))
+        usd.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(faces), 3, dtype=np.int32)))
+        usd.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(np.ascontiguousarray(faces.reshape(-1))))
+        usd.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        UsdPhysics.MeshCollisionAPI.Apply(usd.GetPrim()).CreateApproximationAttr(approximation)
+        return usd
+
+    def mass_properties(self, mass: float | None, density: float | None) -> MassProperties | None:
+        """Mass properties of the convex hull, for a mesh whose own volume means nothing; None for a closed mesh."""
+        if self.mesh.is_volume:
+            return None
+        hull = self.mesh.convex_hull
+        if mass is None:
+            mass = float(density or 0.0) * float(hull.volume)
+        inertia, vectors = np.linalg.eigh(np.asarray(hull.moment_inertia) * (mass / float(hull.volume)))
+        if np.linalg.det(vectors) < 0.0:
+            vectors[:, 0] *= -1.0
+        matrix = Gf.Matrix3d(*(float(v) for v in vectors.T.reshape(-1)))  # USD multiplies rows
+        return MassProperties(
+            mass=mass,
+            com=Gf.Vec3f(*(float(v) for v in hull.center_mass)),
+            inertia=Gf.Vec3f(*(float(v) for v in inertia)),
+            axes=Gf.Quatf(matrix.ExtractRotation().GetQuat()),
+        )
+
+
+def _find(call: Call, file: str | Path, folder: Path | None) -> Path:
+    if not isinstance(file, (str, Path)):
+        call.fail(f"file = {shown(file)} must be the path of an OBJ, STL, PLY or GLB file")
+    path = Path(file)
+    if path.suffix.lower() not in FORMATS:
+        call.fail(f"file = {shown(str(file))} must end in one of {', '.join(FORMATS)}")
+    places = [path] if path.is_absolute() or folder is None else [folder / path, path]
+    for place in places:
+        if place.is_file():
+            return place
+    return call.fail(
+        f"file = {shown(str(file))} is not there; looked at {', '.join(str(p.absolute()) for p in places)}"
+    )
+
+
+def _factors(call: Call, scale: float | Sequence[float]) -> np.ndarray:
+    if isinstance(scale, (Sequence, np.ndarray)):
+        values = [call.positive(f"scale[{i}]", v, 1e6, "") for i, v in enumerate(scale)]
+        if len(values) != 3:
+            call.fail(f"scale = {shown(scale)} must be one number or three")
+        return np.array(values)
+    return np.full(3, call.positive("scale", scale, 1e6, ""))

@@ -1,0 +1,182 @@
+"""`Scene`: what a program builds a world with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from pxr import Gf, Sdf, UsdGeom, UsdPhysics
+
+from wsim.scene import schema
+from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
+from wsim.scene.errors import SceneError
+from wsim.scene.fluids import Fluids
+from wsim.scene.joints import Joints
+from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE
+from wsim.scene.validate import Call, shown, suggestion
+from wsim.scene.views import Views
+
+_GRAVITY = (0.0, 0.0, -9.81)
+_MAX_SEED = 2**31 - 1
+
+
+class Scene(Fluids, Joints, Views):
+    """A world to be: an OpenUSD stage and the calls that author it.
+
+    SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,
+    the value and the way out. What a call makes is a prim of its name under /World.
+
+    Args:
+        params: Values that override the defaults of `param`, by name.
+        seed: Seed of `random` and of the simulation.
+    """
+
+    def __init__(self, params: Mapping[str, float] | None = None, seed: int = 0) -> None:
+        super().__init__()
+        call = Call("Scene")
+        self._overrides = {name: call.number(f"params[{shown(name)}]", v) for name, v in (params or {}).items()}
+        self._parameters: list[str] = []
+        seed = call.integer("seed", seed, 0, _MAX_SEED)
+        self._random = np.random.default_rng(seed)
+        self._duration, self._frame_rate = 5.0, 30.0
+        physics = UsdPhysics.Scene.Define(self._stage, PHYSICS_SCENE)
+        self._set_gravity(_GRAVITY)
+        schema.apply(physics.GetPrim(), schema.SCENE, {})
+        self._author_run(0.0, seed)
+
+    @property
+    def random(self) -> np.random.Generator:
+        """Random numbers that are the same in every build with the same seed."""
+        return self._random
+
+    def param(
+        self,
+        name: str,
+        default: float,
+        *,
+        low: float | None = None,
+        high: float | None = None,
+        unit: str = "",
+    ) -> float:
+        """Name a number that a sweep may change, and get its value.
+
+        Args:
+            name: Name of the parameter.
+            default: Its value where nothing overrides it.
+            low: Least value of a sweep; an override may lie below.
+            high: Greatest value of a sweep.
+            unit: For people, e.g. "kg/m^3".
+
+        Returns:
+            The override given to `Scene`, or the default.
+
+        Raises:
+            SceneError: If the name is taken, a number is not finite, or the default lies outside low..high.
+        """
+        call = Call("param", name)
+        path = self._path(call, PARAMETERS)
+        standard = call.number("default", default, unit)
+        least = None if low is None else call.number("low", low, unit)
+        most = None if high is None else call.number("high", high, unit)
+        if least is not None and most is not None and least > most:
+            call.fail(f"low = {least:g} is above high = {most:g}")
+        if (least is not None and standard < least) or (most is not None and standard > most):
+            call.fail(f"default = {standard:g} lies outside low = {least}, high = {most}")
+        value = self._overrides.get(name, standard)
+        if not self._stage.GetPrimAtPath(PARAMETERS):
+            UsdGeom.Scope.Define(self._stage, PARAMETERS)
+        prim = UsdGeom.Scope.Define(self._stage, path).GetPrim()
+        note_line(prim)
+        double = Sdf.ValueTypeNames.Double
+        values: dict[str, tuple[Sdf.ValueTypeName, object]] = {
+            "value": (double, value),
+            "default": (double, standard),
+            "unit": (Sdf.ValueTypeNames.String, str(unit)),
+        }
+        values |= {key: (double, bound) for key, bound in (("low", least), ("high", most)) if bound is not None}
+        schema.apply(prim, schema.PARAMETER, values)
+        self._parameters.append(name)
+        return value
+
+    def simulation(
+        self,
+        *,
+        duration: float | None = None,
+        frame_rate: float | None = None,
+        time_step: float | None = None,
+        seed: int | None = None,
+        gravity: Sequence[float] | None = None,
+    ) -> None:
+        """Say how the world is run; what is not given stays as it is.
+
+        Args:
+            duration: Simulated time [s]; 5 if never given.
+            frame_rate: Recorded frames a second; 30.
+            time_step: [s]; 0, the simulator's choice.
+            seed: 0.
+            gravity: (x, y, z) [m/s^2]; (0, 0, -9.81).
+
+        Raises:
+            SceneError: If a number is out of range.
+        """
+        call = Call("simulation")
+        if duration is not None:
+            self._duration = call.positive("duration", duration, MAX_DURATION, "s")
+        if frame_rate is not None:
+            self._frame_rate = call.positive("frame_rate", frame_rate, MAX_FRAME_RATE, "Hz")
+        step = None if time_step is None else call.within("time_step", time_step, 0.0, 1.0, "s")
+        number = None if seed is None else call.integer("seed", seed, 0, _MAX_SEED)
+        if gravity is not None:
+            self._set_gravity(call.vector("gravity", gravity, 1e3, "m/s^2"))
+        self._author_run(step, number)
+        note_line(self._stage.GetPrimAtPath(PHYSICS_SCENE))
+
+    def save(self, path: str | Path) -> Path:
+        """Write the stage, whole or not at all.
+
+        Args:
+            path: A .usda, .usdc or .usd file.
+
+        Raises:
+            SceneError: If an override names no parameter of the program, or the file is no USD file.
+        """
+        call = Call("save", str(path))
+        unknown = [name for name in self._overrides if name not in self._parameters]
+        if unknown:
+            raise SceneError(
+                f"Scene(params=...): {shown(unknown[0])} is no parameter of this program; "
+                f"{suggestion(str(unknown[0]), self._parameters)}"
+            )
+        target = Path(path)
+        if target.suffix not in (".usda", ".usdc", ".usd"):
+            call.fail(f"{shown(target.name)} must end in .usda, .usdc or .usd")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        side = target.with_name(f".{target.stem}.part{target.suffix}")
+        self._stage.GetRootLayer().Export(str(side))
+        side.replace(target)
+        return target
+
+    def _author_run(self, step: float | None, seed: int | None) -> None:
+        double = Sdf.ValueTypeNames.Double
+        values: dict[str, tuple[Sdf.ValueTypeName, object]] = {
+            "duration": (double, self._duration),
+            "frameRate": (double, self._frame_rate),
+        }
+        if step is not None:
+            values["timeStep"] = (double, step)
+        if seed is not None:
+            values["seed"] = (Sdf.ValueTypeNames.Int, seed)
+        schema.apply(self._stage.GetPrimAtPath(PHYSICS_SCENE), schema.SCENE, values)
+        self._stage.SetTimeCodesPerSecond(self._frame_rate)
+        self._stage.SetFramesPerSecond(self._frame_rate)
+        self._stage.SetStartTimeCode(0.0)
+        self._stage.SetEndTimeCode(round(self._duration * self._frame_rate))
+
+    def _set_gravity(self, gravity: tuple[float, float, float]) -> None:
+        vector = Gf.Vec3d(*gravity)
+        magnitude = vector.GetLength()
+        direction = vector / magnitude if magnitude > 0.0 else Gf.Vec3d(0.0, 0.0, -1.0)
+        scene = UsdPhysics.Scene(self._stage.GetPrimAtPath(PHYSICS_SCENE))
+        scene.CreateGravityDirectionAttr(Gf.Vec3f(direction))
+        scene.CreateGravityMagnitudeAttr(magnitude)

@@ -1,0 +1,37 @@
+"""wsim's codeless USD schema: `generatedSchema.usda` and `plugInfo.json`, and how to apply it and ask for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pxr import Plug, Sdf, Usd
+
+SCENE = "WsimSceneAPI"
+FLUID = "WsimFluidAPI"
+CONTAINER = "WsimContainerAPI"
+CAMERA = "WsimCameraAPI"
+PARAMETER = "WsimParameterAPI"
+
+
+def register() -> None:
+    """Tell USD about the schema. Safe to call again."""
+    Plug.Registry().RegisterPlugins([Path(__file__).parent.absolute().as_posix()])
+
+
+def apply(prim: Usd.Prim, name: str, values: dict[str, tuple[Sdf.ValueTypeName, object]]) -> None:
+    """Apply the API schema `name` and author its attributes, given as name → (USD type, value).
+
+    USD reads its schema plugins once, when the first stage is made; a stage made before `wsim.scene` was imported
+    must not change what is written, so neither the application nor the types are left to the registry.
+    """
+    prim.AddAppliedSchema(name)
+    for key, (kind, value) in values.items():
+        prim.CreateAttribute(f"wsim:{key}", kind, False, Sdf.VariabilityUniform).Set(value)
+
+
+def has(prim: Usd.Prim, name: str) -> bool:
+    """Whether the API schema `name` is applied, whether or not USD knows it."""
+    if name in prim.GetAppliedSchemas():
+        return True
+    listed = prim.GetMetadata("apiSchemas")
+    return listed is not None and name in listed.GetAddedOrExplicitItems()
