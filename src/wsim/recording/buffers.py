@@ -1,0 +1,212 @@
+"""Frames wait here until there are enough of them to write a chunk of columns.
+
+A chunk costs the same whether it holds one row or a thousand, in the file, in the viewer and when it is read.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsim.recording import columns as names
+from wsim.recording.shapes import ROOT_FRAME, is_nested, rgba
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.recording.frames import FluidFrame
+    from wsim.scene.world import Fluid, World
+
+    Floats = NDArray[np.float32]
+
+CHUNK_BYTES = 4 * 1024 * 1024  # of particles or bodies that wait in memory
+CHUNK_ROWS = 256
+MAX_HEIGHT_PLOTS = 16  # more lines than this say nothing in a plot
+COLOR_STEPS = 32  # few colours compress well
+FOAM = (0.92, 0.97, 1.0)  # what the fastest particles tend to
+
+
+class BodyBuffer:
+    """The frames' times; poses, velocities and forces of all bodies."""
+
+    def __init__(self, stream: Any, world: World) -> None:
+        self._stream = stream
+        self._entities = [names.entity_path(body.prim) for body in world.bodies]
+        self._nested = [is_nested(body.prim, world) for body in world.bodies]
+        self._heights = [names.entity_path(names.HEIGHT_ROOT + _short(b.prim)) for b in world.bodies[:MAX_HEIGHT_PLOTS]]
+        self._times: list[int] = []
+        self._seconds: list[float] = []
+        self._rows: list[tuple[Floats, Floats, Floats]] = []
+        self._bytes = 0
+
+    def add(self, ns: int, t: float, body_q: Floats, body_qd: Floats, contact_force: Floats) -> None:
+        """Keep one frame: its time [ns] and as it was given [s], (B, 7), (B, 6), (B, 3)."""
+        self._times.append(ns)
+        self._seconds.append(t)
+        self._rows.append((body_q, body_qd, contact_force))
+        self._bytes += body_q.nbytes + body_qd.nbytes + contact_force.nbytes
+        if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the frames that wait."""
+        if not self._times:
+            return
+        # Bodies first, so that each body's rows are one contiguous block.
+        q, qd, force = (np.stack(arrays, axis=1) for arrays in zip(*self._rows, strict=True))
+        index = names.time_column(self._times)
+        for i, entity in enumerate(self._entities):
+            self._stream.send_columns(
+                entity, [index], [*self._pose(q[i], self._nested[i]), *_motion(qd[i], force[i])], strict=True
+            )
+        for i, entity in enumerate(self._heights):
+            height = names.column(names.SCALARS, q[i, :, 2].astype(np.float64))
+            self._stream.send_columns(entity, [index], [height], strict=True)
+        # Last, so that a frame that the file knows of has all its bodies, even if the process is killed here.
+        seconds = names.column(names.FRAME_TIME, np.array(self._seconds))
+        self._stream.send_columns(names.FRAME_ENTITY, [index], [seconds], strict=True)
+        self._times, self._seconds, self._rows, self._bytes = [], [], [], 0
+
+    @staticmethod
+    def _pose(q: Floats, nested: bool) -> list[Any]:
+        import rerun as rr
+
+        # Poses are the world's: for a body below another, say so, or Rerun stacks the two.
+        frame = {"parent_frame": [ROOT_FRAME] * len(q)} if nested else {}
+        return list(rr.Transform3D.columns(translation=q[:, :3], quaternion=q[:, 3:], **frame))
+
+
+class FluidBuffer:
+    """The particles of one fluid."""
+
+    def __init__(self, stream: Any, fluid: Fluid, world: World) -> None:
+        self._stream = stream
+        self._prim = fluid.prim
+        self._count: int | None = None
+        # Falling from the fluid's own height is fast: particles are drawn from its colour to foam over that range.
+        gravity = float(np.linalg.norm(world.gravity))
+        self._fast = max(float(np.sqrt(2.0 * gravity * fluid.size[2])), 0.1)
+        self._palette = _palette(fluid.color)
+        self._times: list[int] = []
+        self._rows: list[tuple[Floats, Floats, Floats]] = []
+        self._bytes = 0
+
+    def check(self, frame: FluidFrame) -> tuple[Floats, Floats, Floats]:
+        """Copies of a frame's arrays; ValueError when they do not fit together or their count changed."""
+        position = np.array(frame.position, dtype=np.float32)
+        velocity = np.array(frame.velocity, dtype=np.float32)
+        density = np.array(frame.density, dtype=np.float32)
+        count = len(density) if density.ndim else 0
+        for name, array, shape in (
+            ("position", position, (count, 3)),
+            ("velocity", velocity, (count, 3)),
+            ("density", density, (count,)),
+        ):
+            if array.shape != shape:
+                raise ValueError(f"frame: fluid {self._prim}: {name} has shape {array.shape}, expected {shape}")
+        if self._count is not None and count != self._count:
+            raise ValueError(
+                f"frame: fluid {self._prim} has {count} particles, {self._count} before: "
+                "their number must not change; park lost ones outside the scene"
+            )
+        return position, velocity, density
+
+    def add(self, ns: int, position: Floats, velocity: Floats, density: Floats) -> None:
+        """Keep one frame of checked arrays."""
+        self._count = len(density)
+        self._times.append(ns)
+        self._rows.append((position, velocity, density))
+        self._bytes += position.nbytes + velocity.nbytes + density.nbytes
+        if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the frames that wait."""
+        import rerun as rr
+
+        if not self._times:
+            return
+        position, velocity, density = (np.concatenate(arrays) for arrays in zip(*self._rows, strict=True))
+        lengths = [self._count or 0] * len(self._times)
+        points = rr.Points3D.columns(positions=position, colors=self._colors(velocity)).partition(lengths)
+        own = [
+            names.column(names.PARTICLE_VELOCITY, velocity, lengths),
+            names.column(names.PARTICLE_DENSITY, density, lengths),
+        ]
+        index = names.time_column(self._times)
+        self._stream.send_columns(names.entity_path(self._prim), [index], [*points, *own], strict=True)
+        self._times, self._rows, self._bytes = [], [], 0
+
+    def _colors(self, velocity: Floats) -> NDArray[np.uint32]:
+        speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
+        level = np.nan_to_num(speed * ((COLOR_STEPS - 1) / self._fast), nan=COLOR_STEPS - 1, posinf=COLOR_STEPS - 1)
+        return self._palette[np.minimum(level, COLOR_STEPS - 1).astype(np.intp)]
+
+
+class RowBuffer:
+    """Small rows of any entity: scalars, log lines, pictures. All rows of an entity have the same columns."""
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+        self._times: dict[tuple[str, str], list[int]] = defaultdict(list)
+        self._values: dict[tuple[str, str], list[dict[str, Any]]] = defaultdict(list)
+        self._bytes: dict[tuple[str, str], int] = defaultdict(int)
+
+    def add(self, entity: str, ns: int, row: dict[str, Any]) -> None:
+        """Keep one row: values by column."""
+        # One prim may have both log lines and pictures: they go to chunks of their own.
+        key = (entity, next(iter(row)))
+        self._times[key].append(ns)
+        self._values[key].append(row)
+        self._bytes[key] += sum(value.nbytes for value in row.values() if isinstance(value, np.ndarray))
+        if len(self._times[key]) >= CHUNK_ROWS or self._bytes[key] >= CHUNK_BYTES:
+            self._flush(key)
+
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        for key in list(self._times):
+            self._flush(key)
+
+    def _flush(self, key: tuple[str, str]) -> None:
+        times, rows = self._times.pop(key), self._values.pop(key)
+        self._bytes.pop(key)
+        if key[1] == names.IMAGE:
+            columns = _jpeg_columns([row[names.IMAGE] for row in rows])
+        else:
+            columns = [_row_column(name, [row[name] for row in rows]) for name in rows[0]]
+        self._stream.send_columns(key[0], [names.time_column(times)], columns, strict=True)
+
+
+def _motion(qd: Floats, force: Floats) -> list[Any]:
+    return [
+        names.column(names.LINEAR_VELOCITY, qd[:, :3]),
+        names.column(names.ANGULAR_VELOCITY, qd[:, 3:]),
+        names.column(names.CONTACT_FORCE, force),
+    ]
+
+
+def _palette(color: tuple[float, float, float]) -> NDArray[np.uint32]:
+    """Colours from the fluid's own to foam, as Rerun packs them: 0xRRGGBBAA."""
+    packed = []
+    for mix in np.linspace(0.0, 0.85, COLOR_STEPS):
+        blended = (1.0 - mix) * np.asarray(color) + mix * np.asarray(FOAM)
+        r, g, b, a = rgba((blended[0], blended[1], blended[2]))
+        packed.append((r << 24) | (g << 16) | (b << 8) | a)
+    return np.array(packed, dtype=np.uint32)
+
+
+def _jpeg_columns(blobs: list[NDArray[np.uint8]]) -> list[Any]:
+    import rerun as rr
+
+    return list(rr.EncodedImage.columns(blob=blobs, media_type=["image/jpeg"] * len(blobs)))
+
+
+def _row_column(name: str, values: list[Any]) -> Any:
+    return names.column(name, values if isinstance(values[0], str) else np.asarray(values))
+
+
+def _short(prim: str) -> str:
+    """A prim's path without the stage's root, for the legend of a plot."""
+    return prim.removeprefix("/World/")

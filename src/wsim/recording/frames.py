@@ -1,0 +1,48 @@
+"""What one recorded moment holds, as plain arrays: the shared words of writer and reader."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float32]
+else:
+    Floats = object
+
+
+@dataclass
+class FluidFrame:
+    """The particles of one fluid at one moment."""
+
+    position: Floats  # (N, 3) [m], world
+    velocity: Floats  # (N, 3) [m/s]
+    density: Floats  # (N,) [kg/m^3]
+
+
+@dataclass
+class Frame:
+    """The state of a world at one moment; rows follow `World.bodies`.
+
+    Values are stored as float32 (scalars as float64); NaN and infinity are kept.
+    """
+
+    body_q: Floats  # (B, 7) [x y z qx qy qz qw], world
+    body_qd: Floats  # (B, 6) [vx vy vz wx wy wz], of the centre of mass [m/s, rad/s]
+    contact_force: Floats  # (B, 3) net contact force on each body [N]
+    fluids: Mapping[str, FluidFrame] = field(default_factory=dict)  # by the fluid's prim
+    scalars: Mapping[str, float] = field(default_factory=dict)  # by name, e.g. "energy/kinetic" [SI]
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """One line of the recording's log."""
+
+    time: float  # [s]
+    level: str  # TRACE, DEBUG, INFO, WARN, ERROR or CRITICAL
+    text: str
+    prim: str | None = None

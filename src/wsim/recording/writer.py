@@ -1,0 +1,270 @@
+"""Writes what happens in a world to a Rerun recording, in chunks of columns."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsim.errors import UserError
+from wsim.recording import columns as names
+from wsim.recording.buffers import BodyBuffer, FluidBuffer, RowBuffer
+from wsim.recording.frames import Frame
+from wsim.scene.world import World
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from types import TracebackType
+
+    from numpy.typing import NDArray
+
+RESERVED_METADATA = ("complete", "error")
+SCALAR_NAME = re.compile(r"[A-Za-z0-9_.\-]+(/[A-Za-z0-9_.\-]+)*")
+JPEG_QUALITY = 90
+FLUSH_SECONDS = 10.0  # a slow run writes this often, so that one that is killed leaves its evidence
+
+
+class RecordingWriter:
+    """Writes one world's recording to `<path>.partial`, and renames it to `path` when closed.
+
+    Entities are the prims of the world, the time line is `sim_time`. Used as a context manager it closes itself; after
+    an exception the recording of what happened so far is kept and marked as incomplete in its metadata.
+
+    Args:
+        path: Where the recording is to be, e.g. "recording.rrd". Its folder is made.
+        world: What the stage states. Rows of a frame's arrays follow `world.bodies`.
+        metadata: Anything that JSON can hold; the keys "complete" and "error" are the writer's own.
+        blueprint: Whether to store how the viewer lays it out.
+
+    Raises:
+        UserError: Rerun is switched off in the environment, or the file cannot be written.
+        ValueError: The metadata is not JSON, or uses a reserved key.
+    """
+
+    def __init__(
+        self, path: str | Path, world: World, metadata: Mapping[str, Any] | None = None, *, blueprint: bool = True
+    ) -> None:
+        self.path = Path(path)
+        self.partial_path = self.path.with_name(self.path.name + ".partial")
+        self.world = world
+        self.frame_count = 0
+        self._metadata = _check_metadata(metadata or {})
+        self._last_ns: int | None = None
+        self._log_count = 0
+        self._image_sizes = {c.prim: (c.width, c.height) for c in world.cameras}
+        self._closed = False
+        self._flushed_at = time.monotonic()
+        self._stream = _open_stream(self.partial_path, world.name)
+        self._bodies = BodyBuffer(self._stream, world)
+        self._fluids = {fluid.prim: FluidBuffer(self._stream, fluid, world) for fluid in world.fluids}
+        self._rows = RowBuffer(self._stream)
+        self._write_setup(blueprint)
+
+    def frame(self, t: float, frame: Frame) -> None:
+        """Record the state at time `t` [s]; times must increase.
+
+        Raises:
+            ValueError: A shape does not match the world, a prim or a name is unknown, or time stands still.
+        """
+        ns = self._frame_time(t)
+        body_q, body_qd, contact_force = self._check_bodies(frame)
+        fluids = {prim: self._fluid(prim).check(value) for prim, value in frame.fluids.items()}
+        for name in frame.scalars:
+            if not SCALAR_NAME.fullmatch(name):
+                raise ValueError(f"scalar {name!r}: a name is letters, digits and _.-, its parts separated by /")
+        self._last_ns = ns
+        self.frame_count += 1
+        self._bodies.add(ns, float(t), body_q, body_qd, contact_force)
+        for prim, arrays in fluids.items():
+            self._fluids[prim].add(ns, *arrays)
+        for name, value in frame.scalars.items():
+            self._rows.add(names.SCALAR_ROOT + name, ns, {names.SCALARS: float(value)})
+        if time.monotonic() - self._flushed_at > FLUSH_SECONDS:
+            self._flush()
+
+    def log(self, t: float, level: str, text: str, prim: str | None = None) -> None:
+        """Record a line of the log.
+
+        Args:
+            t: When [s].
+            level: TRACE, DEBUG, INFO, WARN, ERROR or CRITICAL, in any case; "warning" is WARN.
+            text: What happened.
+            prim: The prim that it is about; the line is kept on that prim's entity.
+        """
+        self._check_open()
+        if prim is not None and not re.fullmatch(r"(/[^/\s]+)+", prim):
+            raise ValueError(f"log: prim {prim!r} is not an absolute prim path such as /World/block")
+        row = {
+            names.LOG_TEXT: text,
+            names.LOG_LEVEL: names.log_level(level),
+            names.LOG_INDEX: self._log_count,
+            names.LOG_PRIM: prim or "",
+        }
+        entity = names.entity_path(prim) if prim is not None else names.LOG_ENTITY
+        self._rows.add(entity, _time_ns(t), row)
+        self._log_count += 1
+
+    def image(self, t: float, camera_prim: str, rgb: NDArray[np.uint8]) -> None:
+        """Record a camera's picture as JPEG.
+
+        Args:
+            t: When [s].
+            camera_prim: One of `world.cameras`.
+            rgb: (H, W, 3) uint8.
+        """
+        import cv2
+
+        self._check_open()
+        camera = next((c for c in self.world.cameras if c.prim == camera_prim), None)
+        if camera is None:
+            raise ValueError(f"image: no camera {camera_prim!r}; the world has {sorted(self._image_sizes)}")
+        if rgb.ndim != 3 or rgb.shape[2] != 3 or rgb.dtype != np.uint8 or 0 in rgb.shape:
+            raise ValueError(f"image of {camera_prim}: expected (H, W, 3) uint8, got {rgb.shape} {rgb.dtype}")
+        height, width = rgb.shape[:2]
+        if self._image_sizes[camera_prim] != (width, height):  # the frustum must fit the pictures
+            from wsim.recording.shapes import is_nested, log_camera
+
+            log_camera(self._stream, camera, width, height, nested=is_nested(camera_prim, self.world))
+            self._image_sizes[camera_prim] = (width, height)
+        _, jpeg = cv2.imencode(".jpg", rgb[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+        self._rows.add(names.entity_path(camera_prim), _time_ns(t), {names.IMAGE: np.asarray(jpeg).reshape(-1)})
+
+    def close(self, complete: bool = True, error: str | None = None) -> Path:
+        """Write what is left, check the file and give it its name. Closing twice is fine.
+
+        Args:
+            complete: False notes in the metadata that the run ended early.
+            error: Why it did.
+
+        Returns:
+            The recording's path.
+
+        Raises:
+            UserError: The file was not written whole, e.g. the disk is full; `<path>.partial` stays.
+        """
+        if self._closed:
+            return self.path
+        self._closed = True
+        self._flush()
+        state: dict[str, Any] = {"complete": complete} | ({"error": error} if error is not None else {})
+        self._write_metadata(state)
+        self._stream.flush()
+        self._stream.disconnect()
+        del self._stream
+        _check_whole(self.partial_path, self.frame_count)
+        self.partial_path.replace(self.path)
+        return self.path
+
+    def __enter__(self) -> RecordingWriter:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close(complete=error is None, error=None if error is None else f"{type(error).__name__}: {error}")
+
+    def _flush(self) -> None:
+        for fluid in self._fluids.values():
+            fluid.flush()
+        self._rows.flush()
+        self._bodies.flush()
+        self._flushed_at = time.monotonic()
+
+    def _write_setup(self, blueprint: bool) -> None:
+        from wsim.recording.blueprint import make_blueprint
+        from wsim.recording.shapes import log_scene
+
+        self._stream.send_recording_name(self.world.name)
+        self._send_property(
+            {names.WORLD: [self.world.model_dump_json()], names.VERSION: np.array([names.FORMAT_VERSION])}
+        )
+        # A killed run never gets to close: until then its recording says that it is incomplete.
+        self._write_metadata({"complete": False, "error": "the recording was never closed"})
+        log_scene(self._stream, self.world)
+        if blueprint:
+            self._stream.send_blueprint(make_blueprint(self.world))
+
+    def _write_metadata(self, state: dict[str, Any]) -> None:
+        self._send_property({names.METADATA: [json.dumps(self._metadata | state)]})
+
+    def _send_property(self, values: dict[str, Any]) -> None:
+        # Static, on the entity that Rerun keeps for properties: the viewer lists them with the recording.
+        batch = [names.column(name, value) for name, value in values.items()]
+        self._stream.send_columns(names.PROPERTY_ENTITY, [], batch, strict=True)
+
+    def _frame_time(self, t: float) -> int:
+        self._check_open()
+        ns = _time_ns(t)
+        if self._last_ns is not None and ns <= self._last_ns:
+            raise ValueError(f"frame: time {t} s does not follow {self._last_ns / 1e9} s, the last frame's")
+        return ns
+
+    def _check_bodies(self, frame: Frame) -> tuple[NDArray[np.float32], ...]:
+        count = len(self.world.bodies)
+        arrays = []
+        for name, width in (("body_q", 7), ("body_qd", 6), ("contact_force", 3)):
+            # A copy: a simulator may hand out the same array each frame.
+            array = np.array(getattr(frame, name), dtype=np.float32)
+            if array.shape != (count, width):
+                raise ValueError(
+                    f"frame: {name} has shape {array.shape}, the world has {count} bodies: ({count}, {width})"
+                )
+            arrays.append(array)
+        return tuple(arrays)
+
+    def _fluid(self, prim: str) -> FluidBuffer:
+        if prim not in self._fluids:
+            raise ValueError(f"frame: no fluid {prim!r}; the world has {sorted(self._fluids)}")
+        return self._fluids[prim]
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise ValueError(f"{self.path} is closed; nothing more can be recorded")
+
+
+def _open_stream(path: Path, name: str) -> Any:
+    import rerun as rr
+
+    stream = rr.RecordingStream(names.APPLICATION)
+    if not rr.is_enabled(stream):
+        raise UserError("Rerun is switched off by the environment variable RERUN; unset it to record")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.unlink(missing_ok=True)
+        stream.save(path)
+    except (OSError, RuntimeError) as error:
+        raise UserError(f"cannot write the recording of {name!r} to {path}: {error}") from error
+    return stream
+
+
+def _check_whole(path: Path, frames: int) -> None:
+    """Rerun's file writer works in the background and only prints its errors: look at what it left."""
+    from rerun.chunk import RrdReader
+
+    try:
+        RrdReader(path).store()  # reads the footer, which is written last
+    except (RuntimeError, ValueError) as error:
+        raise UserError(
+            f"{path} was not written whole ({frames} frames were recorded); is the disk full? {error}"
+        ) from error
+
+
+def _check_metadata(metadata: Mapping[str, Any]) -> dict[str, Any]:
+    for key in RESERVED_METADATA:
+        if key in metadata:
+            raise ValueError(f"metadata: {key!r} is the writer's own key; give yours another name")
+    try:
+        return dict(json.loads(json.dumps(dict(metadata))))
+    except TypeError as error:
+        raise ValueError(f"metadata must be plain JSON: {error}") from error
+
+
+def _time_ns(t: float) -> int:
+    if not math.isfinite(t):
+        raise ValueError(f"time {t} is not finite")
+    return names.nanoseconds(t)
