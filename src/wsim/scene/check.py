@@ -1,0 +1,273 @@
+"""Check a stage before it is trusted: the border between what is generated and what simulates.
+
+A problem is one line naming the prim, the attribute and the value. No stage makes this raise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
+
+from wsim.scene import schema
+from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
+from wsim.scene.limits import (
+    MAX_BYTES,
+    MAX_COUNT,
+    MAX_DENSITY,
+    MAX_DURATION,
+    MAX_FRAME_RATE,
+    MAX_MASS,
+    MAX_POINTS,
+    MAX_POSITION,
+    MAX_PRIMS,
+    MAX_SIZE,
+)
+
+_NOW = Usd.TimeCode.Default()
+# Where USD itself means "without limit" or "not given" by an infinity.
+_MAY_BE_INFINITE = {
+    "lowerLimit",
+    "upperLimit",
+    "low",
+    "high",
+    "maxForce",
+    "breakForce",
+    "breakTorque",
+    "centerOfMass",
+    "gravityMagnitude",
+    "velocityLimit",
+}
+_SPACES = ("physics", "drive", "limit", "newton")
+_MAX_PROBLEMS = 50
+
+
+def check_stage(path: str | Path, roots: Sequence[str | Path]) -> list[str]:
+    """What is wrong with a stage; empty if nothing is.
+
+    Args:
+        path: A .usd, .usda or .usdc file.
+        roots: Folders that everything it names must lie in: references, payloads, sublayers, textures.
+
+    Returns:
+        At most 50 problems, one line each.
+    """
+    path = Path(path)
+    problems = _file_problems(path)
+    if problems:
+        return problems
+    problems = check_assets(path, [Path(root) for root in roots])
+    if problems:
+        return problems[:_MAX_PROBLEMS]
+    try:
+        stage = Usd.Stage.Open(str(path))
+    except Tf.ErrorException as error:
+        return [f"{path.name}: does not open: {_last_line(error)}"]
+    try:
+        return list(islice(_stage_problems(stage), _MAX_PROBLEMS))
+    except Exception as error:  # noqa: BLE001 - a stage that no reader foresaw is refused, not a crash
+        return [f"{path.name}: cannot be checked: {type(error).__name__}: {_last_line(error)}"]
+
+
+def _last_line(error: Exception) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[-1].strip() if lines else ""
+
+
+def _file_problems(path: Path) -> list[str]:
+    if not path.is_file():
+        return [f"{path.name}: no such file"]
+    if path.suffix.lower() not in LAYER_SUFFIXES:
+        return [f"{path.name}: must end in one of {', '.join(LAYER_SUFFIXES)}"]
+    size = path.stat().st_size
+    if size > MAX_BYTES:
+        return [f"{path.name}: {size} bytes; at most {MAX_BYTES}"]
+    return []
+
+
+def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
+    prims = []
+    for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
+        prims.append(prim)
+        if len(prims) > MAX_PRIMS:
+            yield f"{stage.GetRootLayer().GetDisplayName()}: more than {MAX_PRIMS} prims"
+            return
+    yield from _metadata(stage)
+    yield from _validators(stage)
+    points = 0
+    for prim in prims:
+        yield from _numbers(prim)
+        yield from _pose(prim)
+        yield from _mass(prim)
+        yield from _wsim(prim)
+        if prim.IsA(UsdGeom.Gprim):
+            yield from _geometry(prim)
+        if prim.IsA(UsdGeom.PointBased):
+            points += len(UsdGeom.PointBased(prim).GetPointsAttr().Get() or ())
+    if points > MAX_POINTS:
+        yield f"{stage.GetRootLayer().GetDisplayName()}: {points} vertices; at most {MAX_POINTS}"
+
+
+def _metadata(stage: Usd.Stage) -> Iterator[str]:
+    name = stage.GetRootLayer().GetDisplayName()
+    if not stage.GetDefaultPrim():
+        yield f"{name}: no defaultPrim; name the prim that holds the world"
+    for key, value in (
+        ("metersPerUnit", UsdGeom.GetStageMetersPerUnit(stage)),
+        ("kilogramsPerUnit", UsdPhysics.GetStageKilogramsPerUnit(stage)),
+    ):
+        if not math.isclose(value, 1.0):
+            yield f"{name}: {key} = {value:g} must be 1"
+    if UsdGeom.GetStageUpAxis(stage) != UsdGeom.Tokens.z:
+        yield f"{name}: upAxis = {UsdGeom.GetStageUpAxis(stage)} must be Z"
+
+
+def _validators(stage: Usd.Stage) -> Iterator[str]:
+    """USD's own validators."""
+    registry = UsdValidation.ValidationRegistry()
+    # Those of packages ask for what only a .usdz file has.
+    found = [v for v in registry.GetOrLoadAllValidators() if "Usdz" not in v.GetMetadata().name]
+    for error in UsdValidation.ValidationContext(found).Validate(stage):
+        sites = [str(site.GetPrim().GetPath()) for site in error.GetSites() if site.IsPrim()]
+        where = sites[0] if sites else stage.GetRootLayer().GetDisplayName()
+        yield f"{where}: {error.GetMessage()} [{error.GetIdentifier()}]"
+
+
+def _numbers(prim: Usd.Prim) -> Iterator[str]:
+    """Authored values and time samples that are not finite."""
+    for attribute in prim.GetAuthoredAttributes():
+        parts = attribute.GetName().split(":")
+        may_be_infinite = parts[0] in _SPACES and parts[-1] in _MAY_BE_INFINITE
+        times = [_NOW, *attribute.GetTimeSamples()]
+        for time in times:
+            numbers = _as_array(attribute.Get(time))
+            if numbers is None:
+                break
+            bad = np.isnan(numbers) if may_be_infinite else ~np.isfinite(numbers)
+            if bad.any():
+                yield f"{attribute.GetPath()}: {float(numbers[bad][0])} must be finite"
+                break
+
+
+def _as_array(value: object) -> np.ndarray | None:
+    """The floating-point numbers of a USD value, in one row; None if it holds none."""
+    if isinstance(value, float):
+        return np.array([value])
+    if isinstance(value, _QUATERNIONS):
+        return np.array([value.GetReal(), *value.GetImaginary()], dtype=np.float64)
+    if isinstance(value, _FLOATS):
+        try:
+            array = np.array(value, dtype=np.float64).reshape(-1)
+        except (TypeError, ValueError):
+            return None
+        return array if array.size else None
+    return None
+
+
+_QUATERNIONS = (Gf.Quatd, Gf.Quatf, Gf.Quath)
+_FLOATS = tuple(
+    getattr(module, name)
+    for module in (Gf, Vt)
+    for name in dir(module)
+    if name.startswith(("Vec", "Matrix", "Quat", "Double", "Float", "Half", "DualQuat"))
+    and (module is Gf or name.endswith("Array"))
+    and not name.startswith(("Vec2i", "Vec3i", "Vec4i"))
+    and isinstance(getattr(module, name), type)
+)
+
+
+def _pose(prim: Usd.Prim) -> Iterator[str]:
+    if not prim.IsA(UsdGeom.Xformable):
+        return
+    matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(_NOW)
+    numbers = np.array(matrix)
+    if not np.isfinite(numbers).all():
+        yield f"{prim.GetPath()}: its pose is not finite"
+        return
+    for axis, value in zip("xyz", matrix.ExtractTranslation(), strict=True):
+        if abs(value) > MAX_POSITION:
+            yield f"{prim.GetPath()}.xformOp: {axis} = {value:g} m must be within {MAX_POSITION:g} m of the origin"
+    if abs(np.linalg.det(numbers[:3, :3])) < 1e-15:
+        yield f"{prim.GetPath()}.xformOp:scale: the scale is zero along an axis"
+
+
+def _geometry(prim: Usd.Prim) -> Iterator[str]:
+    """Sizes of a Gprim, scaled [m]."""
+    matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(_NOW)
+    scales = [matrix.GetRow3(i).GetLength() for i in range(3)]
+    largest = max(scales)
+    for name in ("size", "radius", "height"):
+        attribute = prim.GetAttribute(name)
+        value = attribute.Get() if attribute else None
+        if value is None or not math.isfinite(value):
+            continue
+        if value <= 0.0:
+            yield f"{attribute.GetPath()}: {value:g} must be > 0 m"
+        elif value * largest > MAX_SIZE:
+            yield f"{attribute.GetPath()}: {value * largest:g} m must be <= {MAX_SIZE:g} m"
+    if prim.IsA(UsdGeom.PointBased):
+        points = np.asarray(UsdGeom.PointBased(prim).GetPointsAttr().Get() or [], dtype=np.float64)
+        if len(points) and np.isfinite(points).all():
+            reach = float(np.ptp(points @ np.array(matrix)[:3, :3], axis=0).max())
+            if not 0.0 < reach <= MAX_SIZE:
+                yield f"{prim.GetPath()}.points: {reach:g} m across must be > 0 and <= {MAX_SIZE:g} m"
+
+
+def _mass(prim: Usd.Prim) -> Iterator[str]:
+    """Masses and densities. USD reads a 0 as "not given", which is allowed where the other one is given."""
+    if prim.HasAPI(UsdPhysics.MassAPI):
+        api = UsdPhysics.MassAPI(prim)
+        mass, density = api.GetMassAttr(), api.GetDensityAttr()
+        given = any((attribute.Get() or 0.0) > 0.0 for attribute in (mass, density))
+        yield from _bounded(mass, MAX_MASS, "kg", zero=given)
+        yield from _bounded(density, MAX_DENSITY, "kg/m^3", zero=given)
+    if prim.HasAPI(UsdPhysics.MaterialAPI):
+        yield from _bounded(UsdPhysics.MaterialAPI(prim).GetDensityAttr(), MAX_DENSITY, "kg/m^3", zero=True)
+
+
+def _wsim(prim: Usd.Prim) -> Iterator[str]:
+    """What wsim's own schemas say."""
+    if schema.has(prim, schema.SCENE):
+        for name, limit, unit in (("duration", MAX_DURATION, "s"), ("frameRate", MAX_FRAME_RATE, "Hz")):
+            yield from _bounded(prim.GetAttribute(f"wsim:{name}"), limit, unit)
+        yield from _bounded(prim.GetAttribute("wsim:timeStep"), 1.0, "s", zero=True)
+    if schema.has(prim, schema.FLUID):
+        yield from _fluid(prim)
+    if schema.has(prim, schema.CONTAINER):
+        yield from _bounded(prim.GetAttribute("wsim:innerSize"), MAX_SIZE, "m")
+
+
+def _fluid(prim: Usd.Prim) -> Iterator[str]:
+    problems = [
+        *_bounded(prim.GetAttribute("wsim:density"), MAX_DENSITY, "kg/m^3"),
+        *_bounded(prim.GetAttribute("wsim:viscosity"), 1e6, "Pa s", zero=True),
+        *_bounded(prim.GetAttribute("wsim:size"), MAX_SIZE, "m"),
+        *_bounded(prim.GetAttribute("wsim:spacing"), MAX_SIZE, "m"),
+        *_bounded(prim.GetAttribute("wsim:speedOfSound"), 1e4, "m/s", zero=True),
+    ]
+    yield from problems
+    size, spacing = prim.GetAttribute("wsim:size").Get(), prim.GetAttribute("wsim:spacing").Get()
+    if size is None or spacing is None:
+        yield f"{prim.GetPath()}: a fluid needs wsim:size and wsim:spacing"
+    elif not problems:
+        count = size[0] * size[1] * size[2] / spacing**3
+        if count > MAX_COUNT:
+            yield f"{prim.GetPath()}.wsim:spacing: {spacing:g} m gives {count:.3g} particles; at most {MAX_COUNT:.3g}"
+
+
+def _bounded(attribute: Usd.Attribute, high: float, unit: str, *, zero: bool = False) -> Iterator[str]:
+    """Problems of an authored number, or vector of numbers, that must be > 0 (or >= 0) and <= high."""
+    if not attribute or not attribute.HasAuthoredValue():
+        return
+    numbers = _as_array(attribute.Get())
+    if numbers is None:
+        return
+    for number in numbers[np.isfinite(numbers)]:
+        if number < 0.0 or (number == 0.0 and not zero):
+            yield f"{attribute.GetPath()}: {number:g} must be {'>=' if zero else '>'} 0 {unit}"
+        elif number > high:
+            yield f"{attribute.GetPath()}: {number:g} must be <= {high:g} {unit}"

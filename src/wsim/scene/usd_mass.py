@@ -1,0 +1,66 @@
+"""Mass properties of a rigid body, by USD's own rules."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from pxr import Gf, Usd, UsdPhysics
+
+from wsim.scene.usd_shapes import Array, rotation_matrix, solid, to_quat
+from wsim.scene.world import Shape
+
+_SMALL_SPHERE = 0.1  # [m]: radius of the ball that USD takes a body without colliders for
+
+
+@dataclass(frozen=True)
+class Mass:
+    """mass [kg], com [m] and inertia about it [kg m^2] in the body's frame, volume [m^3] of the colliding shapes."""
+
+    mass: float
+    com: Array  # (3,)
+    inertia: Array  # (3, 3)
+    volume: float
+
+
+def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:
+    """Mass properties of the body at `prim` with these shapes in its frame.
+
+    USD resolves what is authored: the body's mass or density, a collider's own, its material's density, 1000 kg/m^3.
+    The shapes give volume, centre and inertia.
+    """
+    solids = {shape.prim: (shape, solid(shape)) for shape in shapes if shape.collides}
+    volume = sum(each.volume for _, each in solids.values())
+    if volume <= 0.0:
+        return _without_geometry(prim)
+
+    def information(collider: Usd.Prim) -> UsdPhysics.RigidBodyAPI.MassInformation:
+        info = UsdPhysics.RigidBodyAPI.MassInformation()
+        info.localRot = Gf.Quatf(1.0)
+        found = solids.get(str(collider.GetPath()))
+        if found is None:
+            info.volume = 0.0
+            return info
+        shape, each = found
+        x, y, z, w = shape.rotation
+        info.volume = each.volume
+        info.centerOfMass = Gf.Vec3f(*each.com.tolist())
+        info.inertia = Gf.Matrix3f(*each.inertia.reshape(-1).tolist())
+        info.localPos = Gf.Vec3f(*shape.position)
+        info.localRot = Gf.Quatf(w, x, y, z)
+        return info
+
+    mass, diagonal, com, axes = UsdPhysics.RigidBodyAPI(prim).ComputeMassProperties(information)
+    if not (math.isfinite(mass) and mass > 0.0):
+        return _without_geometry(prim)
+    turn = rotation_matrix(to_quat(axes))
+    inertia = turn @ np.diag(np.array(diagonal, dtype=np.float64)) @ turn.T
+    return Mass(float(mass), np.array(com, dtype=np.float64), inertia, volume)
+
+
+def _without_geometry(prim: Usd.Prim) -> Mass:
+    api = UsdPhysics.MassAPI(prim)
+    mass = float(api.GetMassAttr().Get() or 0.0) if prim.HasAPI(UsdPhysics.MassAPI) else 0.0
+    mass = mass if mass > 0.0 else 1.0
+    return Mass(mass, np.zeros(3), np.eye(3) * 0.4 * mass * _SMALL_SPHERE**2, 0.0)

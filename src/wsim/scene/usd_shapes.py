@@ -1,0 +1,244 @@
+"""Read a stage's geometry: Gprims as plain shapes, and what each weighs at density 1."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pxr import Gf, Usd, UsdGeom, UsdPhysics, UsdShade
+
+from wsim.scene.world import Quat, Shape, ShapeKind, Vec3
+
+Array = NDArray[np.float64]
+
+_CONE_SIDES = 32
+_TO_X = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))  # turns Z to X
+_TO_Y = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))  # turns Z to Y
+
+
+@dataclass(frozen=True)
+class Solid:
+    """What a shape is at density 1: volume [m^3], its centre [m] and inertia [m^5], in the shape's own frame."""
+
+    volume: float
+    com: Array  # (3,)
+    inertia: Array  # (3, 3), about com
+
+
+def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
+    """A Gprim as a shape in the frame `base` (a rigid transform, to the world); None for what is no solid."""
+    matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default()) * base.GetInverse()
+    position = to_vec3(matrix.ExtractTranslation())
+    turn = to_quat(matrix.RemoveScaleShear().ExtractRotationQuat())
+    scale = tuple(abs(matrix.GetRow3(i).GetLength()) for i in range(3))
+    found = _measure(prim, scale)
+    vertices: Array | None = None
+    triangles: NDArray[np.int64] | None = None
+    if found is None:
+        mesh = _mesh(prim)
+        if mesh is None:
+            return None
+        local, triangles = mesh
+        placed = np.c_[local, np.ones(len(local))] @ np.array(matrix)
+        vertices = (placed[:, :3] - position) @ rotation_matrix(turn)
+        if matrix.GetDeterminant() < 0.0:
+            triangles = triangles[:, ::-1]
+        found = ("mesh", tuple(np.ptp(vertices, axis=0).tolist()), (0.0, 0.0, 0.0, 1.0))
+    kind, size, own_turn = found
+    color, opacity = _look(prim)
+    friction, restitution = _surface(prim)
+    return Shape(
+        prim=str(prim.GetPath()),
+        kind=kind,
+        size=size,
+        position=position,
+        rotation=multiply(turn, own_turn),
+        color=color,
+        opacity=opacity,
+        collides=collides(prim),
+        friction=friction,
+        restitution=restitution,
+        vertices=[] if vertices is None else vertices.tolist(),
+        triangles=[] if triangles is None else triangles.tolist(),
+    )
+
+
+def collides(prim: Usd.Prim) -> bool:
+    """Whether a prim is a collider that is switched on."""
+    if not prim.HasAPI(UsdPhysics.CollisionAPI):
+        return False
+    return bool(UsdPhysics.CollisionAPI(prim).GetCollisionEnabledAttr().Get())
+
+
+def solid(shape: Shape) -> Solid:
+    """Volume, centre and inertia of a shape at density 1, in its own frame; zero for a plane."""
+    size = shape.size
+    if shape.kind == "box":
+        x, y, z = size
+        return _centred(x * y * z, np.array([y * y + z * z, x * x + z * z, x * x + y * y]) / 12.0)
+    if shape.kind == "sphere":
+        (r,) = size
+        return _centred(4.0 / 3.0 * math.pi * r**3, np.full(3, 0.4 * r * r))
+    if shape.kind == "cylinder":
+        r, h = size
+        side = r * r / 4.0 + h * h / 12.0
+        return _centred(math.pi * r * r * h, np.array([side, side, r * r / 2.0]))
+    if shape.kind == "capsule":
+        return _capsule(*size)
+    if shape.kind == "mesh":
+        return _polyhedron(np.array(shape.vertices), np.array(shape.triangles, dtype=np.int64))
+    return _centred(0.0, np.zeros(3))
+
+
+def _centred(volume: float, per_mass: Array) -> Solid:
+    return Solid(volume, np.zeros(3), np.diag(volume * per_mass))
+
+
+def _capsule(r: float, h: float) -> Solid:
+    tube, ball = math.pi * r * r * h, 4.0 / 3.0 * math.pi * r**3
+    axial = tube * r * r / 2.0 + ball * 0.4 * r * r
+    # Each half ball about its own base, moved out by h/2: its centre lies 3r/8 beyond the base.
+    lateral = tube * (r * r / 4.0 + h * h / 12.0) + ball * (0.4 * r * r + h * h / 4.0 + 3.0 / 8.0 * h * r)
+    return Solid(tube + ball, np.zeros(3), np.diag([lateral, lateral, axial]))
+
+
+def _polyhedron(vertices: Array, triangles: NDArray[np.int64]) -> Solid:
+    """Integrals over the tetrahedra from the origin to each triangle (Mirtich 1996; Tonon 2004)."""
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    total = float(volumes.sum())
+    if abs(total) < 1e-18:
+        return _centred(0.0, np.zeros(3))
+    corners = a + b + c
+    com = (volumes[:, None] * corners).sum(axis=0) / (4.0 * total)
+    square = (
+        sum(np.einsum("i,ij,ik->jk", volumes, p, q) for p, q in ((a, a), (b, b), (c, c), (corners, corners))) / 20.0
+    )
+    about_origin = np.trace(square) * np.eye(3) - square
+    about_com = about_origin - total * (com @ com * np.eye(3) - np.outer(com, com))
+    sign = math.copysign(1.0, total)
+    return Solid(abs(total), com, sign * about_com)
+
+
+def _measure(prim: Usd.Prim, scale: tuple[float, ...]) -> tuple[ShapeKind, tuple[float, ...], Quat] | None:
+    """Kind, size [m] and the turn of its Z axis, as UsdPhysics scales primitives; None for a mesh or nothing."""
+    still = (0.0, 0.0, 0.0, 1.0)
+    if prim.IsA(UsdGeom.Cube):
+        edge = UsdGeom.Cube(prim).GetSizeAttr().Get()
+        return "box", tuple(edge * s for s in scale), still
+    if prim.IsA(UsdGeom.Sphere):
+        return "sphere", (UsdGeom.Sphere(prim).GetRadiusAttr().Get() * max(scale),), still
+    for usd, kind in ((UsdGeom.Cylinder, "cylinder"), (UsdGeom.Capsule, "capsule")):
+        if prim.IsA(usd):
+            gprim = usd(prim)
+            along = "XYZ".index(gprim.GetAxisAttr().Get())
+            across = max(s for i, s in enumerate(scale) if i != along)
+            size = (gprim.GetRadiusAttr().Get() * across, gprim.GetHeightAttr().Get() * scale[along])
+            return ("cylinder" if kind == "cylinder" else "capsule"), size, (_TO_X, _TO_Y, still)[along]
+    if prim.IsA(UsdGeom.Plane):
+        along = "XYZ".index(UsdGeom.Plane(prim).GetAxisAttr().Get())
+        return "plane", (), (_TO_X, _TO_Y, still)[along]
+    return None
+
+
+def _mesh(prim: Usd.Prim) -> tuple[Array, NDArray[np.int64]] | None:
+    """Vertices and triangles in the prim's own coordinates; a cone counts as a mesh."""
+    if prim.IsA(UsdGeom.Cone):
+        return _cone(UsdGeom.Cone(prim))
+    if not prim.IsA(UsdGeom.Mesh):
+        return None
+    mesh = UsdGeom.Mesh(prim)
+    points, counts = mesh.GetPointsAttr().Get(), mesh.GetFaceVertexCountsAttr().Get()
+    indices = mesh.GetFaceVertexIndicesAttr().Get()
+    if not points or not counts or not indices:
+        return None
+    corners = np.asarray(indices, dtype=np.int64)
+    sizes = np.asarray(counts, dtype=np.int64)
+    starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+    fans = []
+    for k in range(1, int(sizes.max()) - 1):  # the k-th triangle of each face that has one
+        first = starts[sizes > k + 1]
+        fans.append(np.stack([corners[first], corners[first + k], corners[first + k + 1]], axis=1))
+    triangles = np.concatenate(fans) if fans else np.zeros((0, 3), dtype=np.int64)
+    if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
+        triangles = triangles[:, ::-1]
+    return np.asarray(points, dtype=np.float64), triangles
+
+
+def _cone(cone: UsdGeom.Cone) -> tuple[Array, NDArray[np.int64]]:
+    r, h = cone.GetRadiusAttr().Get(), cone.GetHeightAttr().Get()
+    angle = np.linspace(0.0, 2.0 * math.pi, _CONE_SIDES, endpoint=False)
+    ring = np.stack([r * np.cos(angle), r * np.sin(angle), np.full(_CONE_SIDES, -h / 2.0)], 1)
+    points = np.concatenate([ring, [[0.0, 0.0, -h / 2.0], [0.0, 0.0, h / 2.0]]])
+    first = np.arange(_CONE_SIDES)
+    then = (first + 1) % _CONE_SIDES
+    bottom, top = np.full(_CONE_SIDES, _CONE_SIDES), np.full(_CONE_SIDES, _CONE_SIDES + 1)
+    triangles = np.concatenate([np.stack([then, first, bottom], 1), np.stack([first, then, top], 1)])
+    along = "XYZ".index(cone.GetAxisAttr().Get())
+    order = {0: [2, 0, 1], 1: [1, 2, 0], 2: [0, 1, 2]}[along]
+    return points[:, order], triangles.astype(np.int64)
+
+
+def _look(prim: Usd.Prim) -> tuple[Vec3, float]:
+    """Linear RGB and opacity of a Gprim: its material's, else its display colour."""
+    gprim = UsdGeom.Gprim(prim)
+    colors, opacities = gprim.GetDisplayColorAttr().Get(), gprim.GetDisplayOpacityAttr().Get()
+    color = to_vec3(colors[0]) if colors else (0.7, 0.7, 0.7)
+    opacity = float(opacities[0]) if opacities else 1.0
+    material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
+    shader = material.ComputeSurfaceSource()[0] if material else None
+    if shader:
+        diffuse, clear = shader.GetInput("diffuseColor"), shader.GetInput("opacity")
+        if diffuse and diffuse.Get() is not None:
+            color = to_vec3(diffuse.Get())
+        if clear and clear.Get() is not None:
+            opacity = float(clear.Get())
+    return color, opacity
+
+
+def _surface(prim: Usd.Prim) -> tuple[float, float]:
+    """Friction and restitution of the bound physics material, or the defaults of `Shape`."""
+    material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
+    if not material or not material.GetPrim().HasAPI(UsdPhysics.MaterialAPI):
+        return 0.5, 0.0
+    api = UsdPhysics.MaterialAPI(material.GetPrim())
+    return float(api.GetDynamicFrictionAttr().Get()), float(api.GetRestitutionAttr().Get())
+
+
+def to_vec3(vector: Gf.Vec3d) -> Vec3:
+    """A USD vector as plain numbers."""
+    return (float(vector[0]), float(vector[1]), float(vector[2]))
+
+
+def to_quat(quat: Gf.Quatd) -> Quat:
+    """A USD quaternion (w first) as (x, y, z, w), of length 1."""
+    x, y, z = quat.GetImaginary()
+    w = quat.GetReal()
+    length = math.sqrt(x * x + y * y + z * z + w * w) or 1.0
+    return (x / length, y / length, z / length, w / length)
+
+
+def multiply(a: Quat, b: Quat) -> Quat:
+    """The rotation that turns by b, then by a."""
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+def rotation_matrix(quat: Quat) -> Array:
+    """The 3 by 3 matrix that turns column vectors."""
+    x, y, z, w = quat
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
