@@ -16,7 +16,7 @@ __all__ = ["__version__", "run"]
 def run(build: Callable[[Scene], None]) -> None:
     """Build, simulate, record and judge a program in this process, as `python program.py` does.
 
-    The program's own folder gets `<program>.run/` with the stage, the recording, the video and the verdict.
+    Leaves a run folder under ./runs with the stage, the recording, the video, the verdict and a report.
     Unlike `wsim run`, nothing is sandboxed: it is the caller's own program.
     """
     from wsim.pipeline import run_in_process

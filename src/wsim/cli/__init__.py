@@ -1,1 +1,42 @@
-"""TODO."""
+"""The command line: one verb a file; parses, calls, prints."""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from wsim.cli import doctor, generate, judge, plan, run, view
+from wsim.errors import UserError
+
+app = typer.Typer(
+    name="wsim",
+    help="A sentence becomes a physical world: planned, built as OpenUSD, simulated on Newton, judged against physics.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+)
+for verb in (generate, plan, run, judge, view, doctor):
+    verb.register(app)
+
+
+@app.callback(invoke_without_command=True)
+def _options(version: bool = typer.Option(False, "--version", help="Print the version and stop.")) -> None:
+    if version:
+        from wsim import __version__
+
+        print(f"wsim {__version__}")
+        raise typer.Exit
+
+
+def main() -> None:
+    """Run the command line; a user's mistake is one line and exit code 2."""
+    try:
+        app()
+    except UserError as error:
+        print(f"wsim: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("wsim: stopped", file=sys.stderr)
+        sys.exit(130)

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Stage → Newton model of one or many worlds → stepped → recorded."""

@@ -1,0 +1,5 @@
+"""Run the command line with `python -m wsim.cli`."""
+
+from wsim.cli import main
+
+main()

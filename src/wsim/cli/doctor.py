@@ -1,0 +1,77 @@
+"""`wsim doctor`: what this machine has."""
+
+from __future__ import annotations
+
+import typer
+
+PACKAGES = ("newton", "warp-lang", "mujoco", "mujoco-warp", "usd-core", "rerun-sdk", "numpy", "av", "torch")
+
+
+def doctor() -> None:
+    """List devices, versions, isolation and the models configured. Exit code 1 if wsim cannot run here."""
+    from rich.table import Table
+
+    from wsim.cli.show import console
+
+    table = Table(show_header=False, show_edge=False)
+    table.add_column(style="bold")
+    table.add_column()
+    for name, text in (*_versions(), *_devices(), *_isolation(), *_rest()):
+        table.add_row(name, text)
+    console.print(table)
+    if any("missing" in text and name != "torch" for name, text in _versions()):
+        raise typer.Exit(1)
+
+
+def _versions() -> list[tuple[str, str]]:
+    import platform
+    from importlib.metadata import PackageNotFoundError, version
+
+    from wsim import __version__
+
+    rows = [("wsim", __version__), ("python", platform.python_version())]
+    for package in PACKAGES:
+        try:
+            rows.append((package, version(package)))
+        except PackageNotFoundError:
+            optional = "not installed (only policies need it: pip install wsim[policy])"
+            rows.append((package, optional if package == "torch" else "missing"))
+    return rows
+
+
+def _devices() -> list[tuple[str, str]]:
+    import os
+
+    import warp as wp
+
+    from wsim.sim.devices import start_warp
+
+    start_warp()
+    rows = []
+    for device in wp.get_devices():
+        memory = f", {device.total_memory / 2**30:.0f} GiB" if device.is_cuda else ""
+        cores = "" if device.is_cuda else f", {len(os.sched_getaffinity(0))} cores"
+        rows.append((f"device {device.alias}", f"{device.name}{memory}{cores}"))
+    rows.append(("kernel cache", str(wp.config.kernel_cache_dir)))
+    return rows
+
+
+def _isolation() -> list[tuple[str, str]]:
+    from wsim.program.sandbox import available
+
+    modes = available()
+    return [(f"isolation {mode}", "works" if not why else f"not here: {why}") for mode, why in modes.items()]
+
+
+def _rest() -> list[tuple[str, str]]:
+    from wsim.recording.view import has_display
+
+    return [
+        ("display", "yes" if has_display() else "none: `wsim view --web` serves a browser"),
+        ("models", "builtin for every role (no language model is needed or used)"),
+    ]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the verb."""
+    app.command()(doctor)

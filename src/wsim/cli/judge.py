@@ -1,0 +1,65 @@
+"""`wsim judge`: judge a recording again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wsim.cli.options import EXIT_CODES
+from wsim.errors import UserError
+from wsim.runs import RunFolder
+
+
+def judge(
+    target: Annotated[Path, typer.Argument(help="The folder of a run, or a recording.rrd.")],
+    plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the verdict as JSON.")] = False,
+) -> None:
+    """Judge a recording: the checks that hold for any world, and the plan's objectives.
+
+    The run's own verdict.json is not touched. Exit code: 0 accepted, 1 rejected, 3 blocked.
+    """
+    from wsim.cli.show import ConsoleProgress, show_verdict
+    from wsim.pipeline import judge_recording
+    from wsim.plan.store import load
+
+    recording, own = find_recording(target)
+    path = plan or own
+    chosen = load(path) if path else None
+    if json:
+        verdict = judge_recording(recording, chosen)
+        print(verdict.model_dump_json(indent=2))
+    else:
+        with ConsoleProgress() as progress:
+            verdict = judge_recording(recording, chosen, progress)
+        show_verdict(verdict, recording.parent)
+    raise typer.Exit(EXIT_CODES[verdict.status])
+
+
+def find_recording(target: Path) -> tuple[Path, Path | None]:
+    """The recording that a target means, and the plan of its run.
+
+    Raises:
+        UserError: If there is no recording.
+    """
+    if target.suffix == ".rrd":
+        if not target.is_file():
+            raise UserError(f"{target} does not exist")
+        try:
+            plan = RunFolder.open(target).path / "plan.json"
+        except UserError:
+            return target, None
+        return target, plan if plan.is_file() else None
+    run = RunFolder.open(target)
+    iteration = target if (target / "recording.rrd").is_file() else run.last_iteration()
+    recording, plan = iteration / "recording.rrd", run.path / "plan.json"
+    if not recording.is_file():
+        raise UserError(f"{iteration} has no recording: its program made no world; see {iteration / 'verdict.json'}")
+    return recording, plan if plan.is_file() else None
+
+
+def register(app: typer.Typer) -> None:
+    """Add the verb."""
+    app.command()(judge)

@@ -1,0 +1,43 @@
+"""Options that several verbs share, and how their values are read."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wsim.errors import UserError
+
+EXIT_CODES = {"accepted": 0, "rejected": 1, "blocked": 3}
+
+Device = Annotated[str, typer.Option("--device", help="auto (CUDA where there is any), cpu, cuda:0, …")]
+Runs = Annotated[Path, typer.Option("--runs", help="Folder that the run's folder goes into.")]
+Isolation = Annotated[
+    str, typer.Option("--isolation", help="Sandbox of the program: auto, bubblewrap, landlock, or none (trust it).")
+]
+Pictures = Annotated[bool, typer.Option("--pictures/--no-pictures", help="Render camera frames and the video.")]
+TimeStep = Annotated[
+    float | None, typer.Option("--time-step", min=1e-7, max=0.1, help="Upper bound of the time step [s]; default: chosen.")
+]
+Set = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the program.")]
+
+
+def parse_params(pairs: list[str] | None) -> dict[str, float]:
+    """`--set name=value` options as numbers.
+
+    Raises:
+        UserError: Naming the option that is not NAME=NUMBER.
+    """
+    params = {}
+    for pair in pairs or []:
+        name, equals, text = pair.partition("=")
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not equals or not name.isidentifier() or not math.isfinite(value):
+            raise UserError(f"--set {pair}: expected NAME=NUMBER, such as --set wood_density=2500")
+        params[name] = value
+    return params

@@ -1,0 +1,82 @@
+"""`wsim run`: a program, or a run's program again, built in the sandbox, simulated and judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, parse_params
+from wsim.errors import UserError
+from wsim.runs import RunFolder
+
+
+def run(
+    target: Annotated[Path, typer.Argument(help="A program.py, or the folder of a run.")],
+    plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
+    params: Set = None,
+    device: Device = "auto",
+    runs: Runs = Path("runs"),
+    isolation: Isolation = "auto",
+    pictures: Pictures = True,
+    time_step: TimeStep = None,
+    timeout: Annotated[float, typer.Option("--timeout", min=0.5, help="Seconds that build may take.")] = 30.0,
+    memory: Annotated[float, typer.Option("--memory", min=0.25, help="Memory that build may use [GiB].")] = 4.0,
+) -> None:
+    """Run a program: build its stage in the sandbox, simulate it, and judge it.
+
+    Without a plan the judge makes the checks that hold for any world.
+    Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
+    """
+    from wsim.cli.show import ConsoleProgress, show_verdict
+    from wsim.pipeline import Settings, run_program
+    from wsim.plan.store import load
+    from wsim.report import write as write_report
+
+    program, plan = find_program(target, plan)
+    chosen = load(plan) if plan else None
+    settings = Settings(
+        device=device,
+        isolation=isolation,
+        pictures=pictures,
+        time_step=time_step,
+        params=parse_params(params),
+        build_timeout=timeout,
+        build_memory=int(memory * 2**30),
+    )
+    folder = RunFolder.create(runs, program.stem if program.stem != "program" else program.resolve().parent.parent.name)
+    folder.record(prompt=chosen.prompt if chosen else None, program=str(program), params=settings.params)
+    if chosen:
+        (folder.path / "plan.json").write_text(chosen.model_dump_json(indent=2) + "\n", encoding="utf-8")
+    with ConsoleProgress() as progress:
+        verdict = run_program(program, folder.iteration(1), chosen, settings, progress)
+    if verdict.status == "accepted":
+        folder.accept(folder.iteration(1))
+    folder.record(status=verdict.status, summary=verdict.summary)
+    show_verdict(verdict, folder.path, write_report(folder.path))
+    raise typer.Exit(EXIT_CODES[verdict.status])
+
+
+def find_program(target: Path, plan: Path | None) -> tuple[Path, Path | None]:
+    """The program that a target means, and the plan that goes with it.
+
+    Raises:
+        UserError: If there is no program.
+    """
+    if target.is_dir():
+        run = RunFolder.open(target)
+        accepted = run.path / "accepted" / "program.py"
+        own = run.path / "plan.json"
+        program = accepted if accepted.is_file() else run.last_iteration() / "program.py"
+        return program, plan or (own if own.is_file() else None)
+    if not target.is_file():
+        raise UserError(f"{target} does not exist; give a program.py or the folder of a run")
+    if target.suffix != ".py":
+        raise UserError(f"{target} is not a Python program; give a .py file or the folder of a run")
+    return target, plan
+
+
+def register(app: typer.Typer) -> None:
+    """Add the verb."""
+    app.command()(run)

@@ -1,0 +1,101 @@
+"""What the terminal shows: progress with time left, a plan, a verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from wsim.judge.verdict import Finding, Verdict
+    from wsim.plan.schema import Plan
+
+console = Console(highlight=False)
+STATUS_STYLE = {"accepted": "bold green", "rejected": "bold red", "blocked": "bold yellow"}
+
+
+class ConsoleProgress:
+    """A bar with the time left for each stage of a run; a `wsim.progress.Progress`.
+
+    Where the output is no terminal, each stage is one line when it ends.
+    """
+
+    def __init__(self) -> None:
+        self._bars = Progress(
+            SpinnerColumn(finished_text="✓"),
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=24),
+            TextColumn("{task.percentage:>3.0f}%"),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            console=console,
+            disable=not console.is_terminal,
+        )
+        self._tasks: dict[str, TaskID] = {}
+        self._finished: set[str] = set()
+
+    def __enter__(self) -> ConsoleProgress:
+        """Show the bars."""
+        self._bars.__enter__()
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        """Leave the finished bars on the screen."""
+        self._bars.__exit__(*error)
+
+    def __call__(self, stage: str, done: float, total: float) -> None:
+        """Move the stage's bar."""
+        if stage not in self._tasks:
+            self._tasks[stage] = self._bars.add_task(stage, total=total)
+            if not console.is_terminal:
+                console.print(f"{stage} …")
+        self._bars.update(self._tasks[stage], completed=done, total=total)
+
+
+def show_plan(plan: Plan) -> None:
+    """Print a plan: objects, what must happen, and what was assumed."""
+    table = Table(title=plan.title, title_justify="left", show_edge=False)
+    for column in ("object", "what", "material", "size [m]", "place [m]"):
+        table.add_column(column)
+    for item in plan.objects:
+        place = "" if item.pose is None else ", ".join(f"{x:.3g}" for x in item.pose.position)
+        size = " × ".join(f"{x:.3g}" for x in item.size)
+        table.add_row(item.name, item.primitive, item.material.name if item.material else "", size, place)
+    console.print(table)
+    for objective in plan.objectives:
+        console.print(f"  must: {objective.sentence or objective.kind}", markup=False)
+    for assumption in plan.assumptions:
+        console.print(f"  assumed: {assumption.subject}: {assumption.choice} ({assumption.why})", style="dim", markup=False)
+
+
+def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> None:
+    """Print a verdict: each finding with its measured value and its limit; failures in full."""
+    table = Table(show_edge=False, pad_edge=False)
+    for column in ("", "check", "prim", "value", "limit", "unit", "time [s]"):
+        table.add_column(column, justify="right" if column in ("value", "limit", "time [s]") else "left")
+    for finding in verdict.findings:
+        table.add_row(*_row(finding))
+    if verdict.findings:
+        console.print(table)
+    for finding in verdict.failures:
+        where = f" [{finding.line}]" if finding.line else ""
+        console.print(Text(f"✗ {finding.check}{where}: {finding.message}", style="red"))
+    console.print(Text(verdict.status, style=STATUS_STYLE[verdict.status]), Text(f" {verdict.summary}"))
+    console.print(f"run:    {folder}", soft_wrap=True)
+    if report:
+        console.print(f"report: {report}", soft_wrap=True)
+
+
+def _row(finding: Finding) -> list[Text]:
+    def number(x: float | None) -> str:
+        return "" if x is None else f"{x:.4g}"
+
+    style = "" if finding.passed else "red"
+    cells = ["✓" if finding.passed else "✗", finding.check, finding.prim or ""]
+    cells += [number(finding.value), number(finding.limit), finding.unit, number(finding.time)]
+    return [Text(cell, style=style) for cell in cells]

@@ -1,0 +1,177 @@
+"""One pass over a program: build its stage, check it, simulate it, judge what happened."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wsim.errors import UserError
+from wsim.judge.verdict import Finding, Verdict
+from wsim.progress import Progress, silent
+from wsim.runs import RunFolder, write_json, write_whole
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan
+    from wsim.program.sandbox import BuildResult, Limits
+    from wsim.scene import Scene
+    from wsim.sim.simulation import SimulationResult
+
+
+@dataclass
+class Settings:
+    """How a program is run."""
+
+    device: str = "auto"
+    params: dict[str, float] = field(default_factory=dict)
+    isolation: str = "auto"
+    pictures: bool = True
+    time_step: float | None = None  # [s]
+    build_timeout: float = 30.0  # [s]
+    build_memory: int = 4 * 2**30  # [bytes]
+
+    def limits(self) -> Limits:
+        """The sandbox's limits."""
+        from wsim.program.sandbox import Limits
+
+        return Limits(wall_seconds=self.build_timeout, memory_bytes=self.build_memory)
+
+
+def run_program(
+    program: Path, folder: Path, plan: Plan | None = None, settings: Settings | None = None, progress: Progress = silent
+) -> Verdict:
+    """Program → stage → recording → verdict, each a file in `folder`.
+
+    Args:
+        program: The Python file; it is copied to `folder/program.py`.
+        folder: An iteration's folder.
+        plan: What the judge holds the world to; without one, only the checks that hold for any world.
+        settings: Device, parameters, limits.
+        progress: Told how far it is.
+
+    Returns:
+        The verdict. A program that fails is a rejected one; a broken environment raises.
+    """
+    settings = settings or Settings()
+    copy = folder / "program.py"
+    if program.resolve() != copy.resolve():
+        shutil.copyfile(program, copy)
+    seconds: dict[str, float] = {}
+    built = _timed(seconds, "build", lambda: build_stage(copy, folder / "stage.usda", settings, progress))
+    write_json(folder / "checks.json", {"build": asdict(built), "seconds": seconds})
+    if not built.ok:
+        return conclude(folder, reject_build(built))
+    return simulate_and_judge(folder, copy, plan, settings, progress, seconds, asdict(built))
+
+
+def simulate_and_judge(
+    folder: Path,
+    program: Path | None,
+    plan: Plan | None,
+    settings: Settings,
+    progress: Progress,
+    seconds: dict[str, float],
+    build: dict[str, Any] | None = None,
+) -> Verdict:
+    """Stage → recording → verdict, in `folder`, where the stage is."""
+    result = _timed(seconds, "simulate", lambda: simulate(folder, program, settings, progress))
+    verdict = _timed(seconds, "judge", lambda: judge_recording(folder / "recording.rrd", plan, progress))
+    write_json(
+        folder / "checks.json",
+        {"build": build, "simulation": {**asdict(result), "stills": [p.name for p in result.stills]}, "seconds": seconds},
+    )
+    return conclude(folder, verdict)
+
+
+def build_stage(program: Path, stage: Path, settings: Settings, progress: Progress = silent) -> BuildResult:
+    """Run the program's `build` in the sandbox."""
+    from wsim.program.sandbox import build
+
+    progress("building the stage", 0, 1)
+    built = build(program, stage, settings.params, settings.limits(), isolation=settings.isolation)
+    progress("building the stage", 1, 1)
+    return built
+
+
+def simulate(folder: Path, program: Path | None, settings: Settings, progress: Progress = silent) -> SimulationResult:
+    """Simulate `folder/stage.usda` into `folder/recording.rrd`, with video and stills."""
+    from wsim.sim import Simulation
+    from wsim.sim.control import controller_of
+
+    stage = folder / "stage.usda"
+    with controller_of(program, stage, settings.limits(), settings.isolation) as controller:
+        simulation = Simulation(
+            stage, device=settings.device, time_step=settings.time_step, controller=controller, progress=progress
+        )
+        return simulation.run(
+            folder / "recording.rrd",
+            video=folder / "video.mp4" if settings.pictures else None,
+            frames_dir=folder / "frames" if settings.pictures else None,
+            review=folder / "review.json" if settings.pictures else None,
+            metadata={"program": program.name if program else None, "params": settings.params},
+            progress=progress,
+        )
+
+
+def judge_recording(recording: Path, plan: Plan | None, progress: Progress = silent) -> Verdict:
+    """Read a recording back and judge it."""
+    from wsim.judge import judge
+    from wsim.recording import read
+
+    progress("judging", 0, 2)
+    evidence = read(recording)
+    progress("judging", 1, 2)
+    verdict = judge(evidence, plan)
+    progress("judging", 2, 2)
+    return verdict
+
+
+def reject_build(built: BuildResult) -> Verdict:
+    """The verdict on a program that made no stage."""
+    finding = Finding(**built.finding())
+    return Verdict(status="rejected", summary=f"The program made no world ({built.kind}).", findings=[finding])
+
+
+def conclude(folder: Path, verdict: Verdict) -> Verdict:
+    """Write the verdict beside its evidence."""
+    write_whole(folder / "verdict.json", verdict.model_dump_json(indent=2) + "\n")
+    return verdict
+
+
+def _timed(seconds: dict[str, float], name: str, work: Callable[[], Any]) -> Any:
+    started = time.perf_counter()
+    try:
+        return work()
+    finally:
+        seconds[name] = round(time.perf_counter() - started, 3)
+
+
+def run_in_process(build: Callable[[Scene], None]) -> Verdict:
+    """`python program.py`: both halves in this process, with a person's own program.
+
+    Leaves a run folder under ./runs, prints the verdict, and exits with 1 if it is not accepted.
+    """
+    from wsim.cli.show import ConsoleProgress, show_verdict
+    from wsim.report import write as write_report
+    from wsim.scene import Scene
+
+    program = Path(sys.modules[build.__module__].__file__ or "program.py")
+    run = RunFolder.create("runs", program.stem)
+    run.record(prompt=None, program=str(program), in_process=True)
+    folder = run.iteration(1)
+    shutil.copyfile(program, folder / "program.py")
+    scene = Scene()
+    try:
+        build(scene)
+        scene.save(folder / "stage.usda")
+        with ConsoleProgress() as progress:
+            verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress, {})
+    except UserError as error:
+        raise SystemExit(f"{program.name}: {error}") from None
+    run.record(status=verdict.status)
+    show_verdict(verdict, run.path, write_report(run.path))
+    raise SystemExit(0 if verdict.status == "accepted" else 1)

@@ -1,0 +1,124 @@
+"""The folder of a run: what lies where, and files that are whole or not there."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from wsim.errors import UserError
+
+SLUG_LENGTH = 40
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a text file under a side name, then rename it: a reader never sees half of it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(path)
+
+
+def write_json(path: Path, data: Any) -> None:
+    """Write JSON that a person can read; whole or not at all."""
+    write_whole(path, json.dumps(data, indent=2, ensure_ascii=False) + "\n")
+
+
+def slug(text: str) -> str:
+    """A short folder name made of a text's first words."""
+    words = re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")
+    if len(words) > SLUG_LENGTH:
+        words = words[:SLUG_LENGTH].rsplit("-", 1)[0]
+    return words or "run"
+
+
+class RunFolder:
+    """runs/<time>-<slug>/ with run.json, plan.json, transcript.jsonl, report.html, iterations/NN/ and accepted/.
+
+    Args:
+        path: An existing folder of a run.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+
+    @classmethod
+    def create(cls, base: str | Path, title: str) -> RunFolder:
+        """Make a new folder under `base`; never one that exists."""
+        stem = f"{datetime.now():%Y%m%d-%H%M%S}-{slug(title)}"
+        for k in range(1, 1000):
+            path = Path(base) / (stem if k == 1 else f"{stem}-{k}")
+            try:
+                path.mkdir(parents=True)
+            except FileExistsError:
+                continue
+            except OSError as error:
+                raise UserError(f"cannot make a run folder at {path}: {error.strerror}; choose another with --runs") from error
+            return cls(path)
+        raise UserError(f"{base} already holds a thousand runs of this second; choose another folder with --runs")
+
+    @classmethod
+    def open(cls, path: str | Path) -> RunFolder:
+        """The run that a path belongs to: its folder, or anything inside it.
+
+        Raises:
+            UserError: If there is no run there.
+        """
+        start = Path(path)
+        if not start.exists():
+            raise UserError(f"{path} does not exist; `ls runs` shows the runs of this folder")
+        for folder in (start, *start.resolve().parents):
+            if (folder / "run.json").is_file() or (folder / "iterations").is_dir():
+                return cls(folder)
+        raise UserError(f"{path} is not in a run's folder (no run.json beside it or above it)")
+
+    def iteration(self, number: int) -> Path:
+        """Folder of an iteration, counted from 1; made if it is not there."""
+        path = self.path / "iterations" / f"{number:02d}"
+        path.mkdir(parents=True, exist_ok=True)
+        return path
+
+    def last_iteration(self) -> Path:
+        """Folder of the newest iteration.
+
+        Raises:
+            UserError: If the run has none.
+        """
+        found = sorted((self.path / "iterations").glob("[0-9][0-9]*"))
+        if not found:
+            raise UserError(f"{self.path} has no iterations: the run ended before its program was built")
+        return found[-1]
+
+    def record(self, **facts: Any) -> None:
+        """Add facts to run.json."""
+        path = self.path / "run.json"
+        known = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        write_json(path, {**known, **facts})
+
+    def facts(self) -> dict[str, Any]:
+        """What run.json holds."""
+        path = self.path / "run.json"
+        return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+    def say(self, role: str, model: str, request: Any, reply: Any) -> None:
+        """Append an exchange to transcript.jsonl."""
+        line = {"role": role, "model": model, "request": request, "reply": reply}
+        with (self.path / "transcript.jsonl").open("a", encoding="utf-8") as transcript:
+            transcript.write(json.dumps(line, ensure_ascii=False) + "\n")
+
+    def accept(self, iteration: Path) -> Path:
+        """Copy an iteration's program and stage to accepted/, with their checksums."""
+        target, partial = self.path / "accepted", self.path / "accepted.partial"
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir()
+        sums = []
+        for name in ("program.py", "stage.usda"):
+            shutil.copyfile(iteration / name, partial / name)
+            sums.append(f"{hashlib.sha256((partial / name).read_bytes()).hexdigest()}  {name}\n")
+        write_whole(partial / "SHA256SUMS", "".join(sums))
+        partial.rename(target)
+        return target

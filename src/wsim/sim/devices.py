@@ -1,0 +1,47 @@
+"""Warp's devices, started without chatter."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+from wsim.errors import UserError
+
+
+def start_warp() -> None:
+    """Initialise Warp silently; later calls do nothing.
+
+    On a machine without a CUDA driver its C code writes a warning straight to standard error, which no setting of
+    Warp's stops, so the descriptor points elsewhere for that moment.
+    """
+    import warp as wp
+
+    wp.config.log_level = wp.LOG_WARNING
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 2)
+        try:
+            wp.init()
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+
+
+def pick_device(name: str) -> str:
+    """The Warp device that a name means; "auto" is the first CUDA device, or the CPU.
+
+    Raises:
+        UserError: If there is no such device.
+    """
+    import warp as wp
+
+    start_warp()
+    known = [str(device) for device in wp.get_devices()]
+    if name == "auto":
+        return next((device for device in known if device.startswith("cuda")), "cpu")
+    if name == "cuda":
+        name = "cuda:0"
+    if name not in known:
+        raise UserError(f"device {name!r} is not here; this machine has {', '.join(known)}")
+    return name

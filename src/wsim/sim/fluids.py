@@ -1,0 +1,139 @@
+"""Boxes of fluid → particles at rest on a lattice."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsim.errors import UserError
+from wsim.scene.world import Body, Fluid, World
+from wsim.solvers.sampling import box_lattice
+from wsim.solvers.shapes import OpenBox, rotate
+
+Array = np.ndarray
+TAIT_EXPONENT = 7.0
+
+
+@dataclass(frozen=True)
+class Seeded:
+    """The particles of one fluid: positions [m] (n, 3), masses [kg] (n,), densities [kg/m^3] (n,)."""
+
+    prim: str
+    position: Array
+    mass: Array
+    density: Array
+
+
+def containers_of(world: World) -> tuple[OpenBox, ...]:
+    """The tanks of a world, with the labels of the wall shapes that each stands for."""
+    walls = {static.prim: frozenset(shape.prim for shape in static.shapes) for static in world.statics}
+    return tuple(
+        OpenBox(c.inner_center, c.inner_size, c.rotation, walls.get(c.prim, frozenset())) for c in world.containers
+    )
+
+
+def common_fluid(world: World) -> Fluid:
+    """The fluid whose density, viscosity and spacing all fluids of the world share.
+
+    Raises:
+        UserError: If two fluids differ: the solver has one rest density, viscosity and spacing.
+    """
+    first = world.fluids[0]
+    for other in world.fluids[1:]:
+        for name in ("density", "viscosity", "spacing"):
+            if not math.isclose(getattr(first, name), getattr(other, name)):
+                raise UserError(
+                    f"{other.prim}: {name} = {getattr(other, name)} differs from {first.prim}'s {getattr(first, name)}; "
+                    "all fluids of a world must share it"
+                )
+    return first
+
+
+def expected_speed(world: World) -> float:
+    """Largest speed that the fluid should see [m/s]: gravity waves or a collapse, and bodies that fall in."""
+    g = float(np.linalg.norm(world.gravity))
+    speeds = [0.1]
+    for fluid in world.fluids:
+        # A fluid that fills its container from wall to wall can only slosh, at the shallow-water wave's speed;
+        # a free column falls by its height.
+        speeds.append(math.sqrt((1.0 if _fills(fluid, world) else 2.0) * g * fluid.size[2]))
+    for body in world.bodies:
+        bottom = body.position[2] - min((_half_height(shape.kind, shape.size) for shape in body.shapes), default=0.0)
+        drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
+        speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
+    return max(speeds)
+
+
+def _half_height(kind: str, size: tuple[float, ...]) -> float:
+    """Least distance from a shape's centre to its surface [m]."""
+    return size[0] if kind in ("sphere", "capsule") else 0.5 * min(size, default=0.0)
+
+
+def _fills(fluid: Fluid, world: World) -> bool:
+    box = next((c for c in world.containers if c.prim == fluid.container), None)
+    return box is not None and all(
+        math.isclose(fluid.size[k], box.inner_size[k], abs_tol=fluid.spacing) for k in (0, 1)
+    )
+
+
+def seed(fluid: Fluid, world: World, speed_of_sound: float) -> Seeded:
+    """Particles of a box of fluid at rest under its own weight, without those where a body already is.
+
+    The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
+    The density follows the hydrostatic pressure through Tait's equation.
+
+    Args:
+        fluid: The box.
+        world: For gravity, and for the bodies that stand in the fluid.
+        speed_of_sound: The solver's [m/s].
+    """
+    cells = box_lattice(np.array(fluid.size), fluid.spacing)
+    rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
+    position = rotate(np.array(rotation), cells.position) + np.array(fluid.center)
+    free = np.ones(len(position), dtype=bool)
+    for body in world.bodies:
+        free &= ~_inside(body, position, margin=0.4 * fluid.spacing)
+    position = position[free]
+    if len(position) == 0:
+        raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
+    stiffness = fluid.density * speed_of_sound**2 / TAIT_EXPONENT
+    depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
+    pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
+    return Seeded(
+        prim=fluid.prim,
+        position=position,
+        mass=fluid.density * cells.volume[free],
+        density=fluid.density * (pressure / stiffness + 1.0) ** (1.0 / TAIT_EXPONENT),
+    )
+
+
+def _inside(body: Body, points: Array, margin: float) -> Array:
+    """Which points lie in a body's shapes, or within `margin` [m] of them."""
+    local = rotate(_conjugate(body.rotation), points - np.array(body.position))
+    inside = np.zeros(len(points), dtype=bool)
+    for shape in body.shapes:
+        if not shape.collides:
+            continue
+        p = rotate(_conjugate(shape.rotation), local - np.array(shape.position))
+        inside |= _shape_distance(shape.kind, shape.size, p) < margin
+    return inside
+
+
+def _conjugate(q: tuple[float, float, float, float]) -> Array:
+    return np.array([-q[0], -q[1], -q[2], q[3]])
+
+
+def _shape_distance(kind: str, size: tuple[float, ...], p: Array) -> Any:
+    """Signed distance [m] to a primitive; a mesh counts as its bounding box."""
+    if kind == "sphere":
+        return np.linalg.norm(p, axis=1) - size[0]
+    if kind == "capsule":
+        above = np.maximum(np.abs(p[:, 2]) - 0.5 * size[1], 0.0)
+        return np.sqrt(p[:, 0] ** 2 + p[:, 1] ** 2 + above**2) - size[0]
+    if kind == "cylinder":
+        radial, axial = np.hypot(p[:, 0], p[:, 1]) - size[0], np.abs(p[:, 2]) - 0.5 * size[1]
+        return np.maximum(radial, axial)
+    return (np.abs(p) - 0.5 * np.array(size)).max(axis=1)

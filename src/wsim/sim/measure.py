@@ -1,0 +1,77 @@
+"""What is measured of a state for the recording."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from wsim.recording import FluidFrame, Frame
+from wsim.sim.model import Built
+from wsim.sim.rigid import RigidBodies
+from wsim.solvers.shapes import rotate
+
+Array = np.ndarray
+
+
+def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
+    """Poses, velocities, contact forces, fluid, energies and errors of the first world.
+
+    Energies [J] are relative to z = 0. The fluid's density error is relative to its rest density.
+    """
+    scalars: dict[str, float] = {}
+    fluids = _fluids(built, state, scalars)
+    count = len(built.bodies)
+    body_q, body_qd, force = np.zeros((0, 7)), np.zeros((0, 6)), np.zeros((0, 3))
+    if count:
+        body_q = state.body_q.numpy()[built.bodies]
+        body_qd = state.body_qd.numpy()[built.bodies]
+        force, deepest = rigid.contacts_of_first_world() if rigid else (np.zeros((count, 3)), 0.0)
+        force = force[built.bodies]
+        scalars["contact/penetration"] = deepest
+        scalars.update(_body_energy(built, body_q, body_qd))
+    scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
+    scalars["energy/potential"] = scalars.get("energy/potential_bodies", 0.0) + scalars.get(
+        "energy/potential_fluid", 0.0
+    )
+    return Frame(
+        body_q=body_q.astype(np.float32),
+        body_qd=body_qd.astype(np.float32),
+        contact_force=force.astype(np.float32),
+        fluids=fluids,
+        scalars=scalars,
+    )
+
+
+def _fluids(built: Built, state: Any, scalars: dict[str, float]) -> dict[str, FluidFrame]:
+    if not built.fluids:
+        return {}
+    position, velocity = state.particle_q.numpy(), state.particle_qd.numpy()
+    density, mass = state.sph.density.numpy(), built.model.particle_mass.numpy()
+    frames = {
+        prim: FluidFrame(position[part].copy(), velocity[part].copy(), density[part].copy())
+        for prim, part in built.fluids.items()
+    }
+    part = slice(0, max(s.stop for s in built.fluids.values()))
+    error = np.abs(density[part] / built.sph.rest_density - 1.0)
+    speed2 = np.einsum("ij,ij->i", velocity[part].astype(np.float64), velocity[part].astype(np.float64))
+    scalars["fluid/density_error_mean"] = float(error.mean())
+    scalars["fluid/density_error_max"] = float(error.max())
+    scalars["fluid/speed_max"] = float(np.sqrt(speed2.max()))
+    scalars["energy/kinetic_fluid"] = float(0.5 * (mass[part] * speed2).sum())
+    scalars["energy/potential_fluid"] = float(-(mass[part] * (position[part] @ np.array(built.world.gravity))).sum())
+    return frames
+
+
+def _body_energy(built: Built, body_q: Array, body_qd: Array) -> dict[str, float]:
+    mass = built.model.body_mass.numpy()[built.bodies].astype(np.float64)
+    inertia = built.model.body_inertia.numpy()[built.bodies].astype(np.float64)
+    com = built.model.body_com.numpy()[built.bodies].astype(np.float64)
+    kinetic, potential = 0.0, 0.0
+    for k in range(len(mass)):
+        pose, twist = body_q[k].astype(np.float64), body_qd[k].astype(np.float64)
+        center = pose[:3] + rotate(pose[3:], com[k : k + 1])[0]
+        spin = rotate(np.array([*(-pose[3:6]), pose[6]]), twist[None, 3:])[0]
+        kinetic += 0.5 * mass[k] * float(twist[:3] @ twist[:3]) + 0.5 * float(spin @ inertia[k] @ spin)
+        potential -= mass[k] * float(center @ np.array(built.world.gravity))
+    return {"energy/kinetic_bodies": kinetic, "energy/potential_bodies": potential}

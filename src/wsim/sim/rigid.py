@@ -1,0 +1,142 @@
+"""The rigid-body half of a step: MuJoCo in C on a CPU, MuJoCo Warp where worlds are batched."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from wsim.kernels.overflow import accumulate_overflow
+
+CONTACTS_A_PAIR = 8  # box on box gives up to eight points
+ROWS_A_CONTACT = 6  # pyramidal friction: four, elliptic and torsional up to six
+SMALLEST_CONTACTS = 64
+
+
+def contact_capacity(model: Any) -> int:
+    """Contacts that one world can have at once, from the shapes that may collide.
+
+    Every moving shape may touch its neighbours; counting all pairs is safe and small for few shapes, and beyond that a
+    body has no room for more than about a dozen neighbours (the kissing number of equal spheres).
+    """
+    from newton import ShapeFlags
+
+    collides = (model.shape_flags.numpy() & int(ShapeFlags.COLLIDE_SHAPES)) != 0
+    worlds = max(1, model.world_count)
+    moving = int((collides & (model.shape_body.numpy() >= 0)).sum()) // worlds
+    fixed = int((collides & (model.shape_body.numpy() < 0)).sum())
+    pairs = moving * (moving - 1) // 2 + moving * fixed
+    return max(SMALLEST_CONTACTS, CONTACTS_A_PAIR * min(pairs, 12 * moving))
+
+
+class RigidBodies:
+    """Steps the bodies of a model, and tells about contacts and overflows.
+
+    Args:
+        model: The Newton model.
+    """
+
+    def __init__(self, model: Any) -> None:
+        import newton
+
+        self.model = model
+        self.on_c = not model.device.is_cuda and model.world_count <= 1
+        capacity = contact_capacity(model)
+        if self.on_c:
+            self.solver = newton.solvers.SolverMuJoCo(model, use_mujoco_cpu=True, use_mujoco_contacts=True)
+            self.observables = None
+        else:
+            self.solver = newton.solvers.SolverMuJoCo(
+                model, use_mujoco_contacts=True, nconmax=capacity, njmax=ROWS_A_CONTACT * capacity + 64
+            )
+            kinds = {self.solver.ObservableKind.OVERFLOW}
+            self.observables = self.solver.observables(kinds)
+            self.overflow_seen = wp.zeros(max(1, model.world_count), dtype=wp.int32, device=model.device)
+
+    def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
+        """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
+        self.solver.step(state_in, state_out, control, None, dt, observables=self.observables)
+        if not self.on_c:
+            wp.launch(
+                accumulate_overflow,
+                dim=len(self.overflow_seen),
+                inputs=[self.observables.overflow],
+                outputs=[self.overflow_seen],
+                device=self.model.device,
+            )
+
+    def reset(self, state: Any) -> None:
+        """Forget the steps taken so far; `state` is where the next one starts."""
+        self.solver.reset(state)
+        if not self.on_c:
+            self.overflow_seen.zero_()
+
+    def problems(self) -> list[str]:
+        """What the solver warned of since the start: each fails the run."""
+        if not self.on_c:
+            worlds = np.flatnonzero(self.overflow_seen.numpy())
+            return [f"contact buffers overflowed in worlds {worlds[:8].tolist()}"] if len(worlds) else []
+        mujoco = self.solver.import_mujoco()[0]
+        found = []
+        for kind in range(len(self.solver.mj_data.warning)):
+            warning = self.solver.mj_data.warning[kind]
+            if warning.number:
+                found.append(f"MuJoCo: {mujoco.mjtWarning(kind).name} {warning.number} times, last {warning.lastinfo}")
+        return found
+
+    def contacts_of_first_world(self) -> tuple[np.ndarray, float]:
+        """Net contact force on each body of the first world [N], shape (bodies, 3), and the deepest penetration [m]."""
+        return self._contacts_c() if self.on_c else self._contacts_warp()
+
+    def _contacts_c(self) -> tuple[np.ndarray, float]:
+        mujoco = self.solver.import_mujoco()[0]
+        mj_model, mj_data = self.solver.mj_model, self.solver.mj_data
+        force = np.zeros((self.model.body_count, 3))
+        deepest, wrench = 0.0, np.zeros(6)
+        shapes, bodies = self._geom_shapes(), self._shape_bodies()
+        for k in range(mj_data.ncon):
+            contact = mj_data.contact[k]
+            deepest = max(deepest, -float(contact.dist))
+            mujoco.mj_contactForce(mj_model, mj_data, k, wrench)
+            # The frame's rows are the axes; its first points from the first geom to the second, which is pushed along it.
+            push = np.asarray(contact.frame).reshape(3, 3).T @ wrench[:3]
+            for geom, sign in ((contact.geom[0], -1.0), (contact.geom[1], 1.0)):
+                body = bodies[shapes[geom]]
+                if body >= 0:
+                    force[body] += sign * push
+        return force, deepest
+
+    def _contacts_warp(self) -> tuple[np.ndarray, float]:
+        """Forces from the rows of MuJoCo Warp's constraint solver; pyramidal edges add up to the normal force."""
+        data = self.solver.mjw_data
+        count = int(data.nacon.numpy()[0])
+        force = np.zeros((self.model.body_count, 3))
+        if count == 0:
+            return force, 0.0
+        contact = data.contact
+        here = contact.worldid.numpy()[:count] == 0
+        distance = contact.dist.numpy()[:count][here]
+        frames = contact.frame.numpy()[:count][here].reshape(-1, 3, 3)
+        geoms, rows = contact.geom.numpy()[:count][here], contact.efc_address.numpy()[:count][here]
+        friction, rows_force = contact.friction.numpy()[:count][here], data.efc.force.numpy()[0]
+        shapes, bodies = self._geom_shapes(), self._shape_bodies()
+        for k in range(len(distance)):
+            if rows[k, 0] < 0:
+                continue
+            edges = rows_force[rows[k, :4]]
+            local = np.array(
+                [edges.sum(), friction[k, 0] * (edges[0] - edges[1]), friction[k, 1] * (edges[2] - edges[3])]
+            )
+            push = frames[k].T @ local
+            for geom, sign in ((geoms[k, 0], -1.0), (geoms[k, 1], 1.0)):
+                body = bodies[shapes[geom]]
+                if body >= 0:
+                    force[body] += sign * push
+        return force, max(0.0, -float(distance.min(initial=0.0)))
+
+    def _geom_shapes(self) -> np.ndarray:
+        return self.solver.mjc_geom_to_newton_shape.numpy()[0]
+
+    def _shape_bodies(self) -> np.ndarray:
+        return np.append(self.model.shape_body.numpy(), -1)

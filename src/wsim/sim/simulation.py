@@ -1,0 +1,290 @@
+"""A stage, simulated: rigid bodies and fluid stepped together, frame by frame, and recorded."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from wsim.progress import Progress, silent
+from wsim.scene.world import World
+
+STILLS = 6
+
+
+class Controller(Protocol):
+    """What drives joints and pushes bodies: called once a control step."""
+
+    def __call__(self, t: float, simulation: Simulation) -> None:
+        """Read the state, and set `simulation.control` and `simulation.control_force`."""
+
+
+@dataclass
+class SimulationResult:
+    """How a run went. `problems` are what makes it fail; empty means that it can be judged."""
+
+    problems: list[str]
+    frames: int
+    steps: int
+    dt: float  # [s]
+    wall_seconds: float
+    particles: int
+    boundary_particles: int
+    device: str
+    stills: list[Path] = field(default_factory=list)
+
+
+class Simulation:
+    """Newton simulation of a stage.
+
+    Args:
+        stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else.
+        device: "cpu", "cuda:0", or "auto": CUDA where there is any.
+        world_count: Copies simulated at once.
+        time_step: Upper bound of the step [s]; chosen from the stage by default.
+        controller: Called every `control_interval` seconds.
+        control_interval: Time between calls [s]; rounded to whole steps.
+        progress: Told about compilation.
+
+    Attributes:
+        world: What the stage states.
+        model: The Newton model.
+        state: The present state.
+        control: Joint targets and forces.
+        time: Simulated time [s].
+    """
+
+    def __init__(
+        self,
+        stage: str | Path,
+        device: str = "auto",
+        world_count: int = 1,
+        time_step: float | None = None,
+        controller: Controller | None = None,
+        control_interval: float = 0.01,
+        progress: Progress = silent,
+    ) -> None:
+        import warp as wp
+
+        from wsim.scene.describe import describe
+        from wsim.sim.devices import pick_device
+        from wsim.sim.model import build_model
+        from wsim.sim.rigid import RigidBodies
+        from wsim.solvers.solver_sph import SolverSPH
+
+        progress("compiling kernels", 0, 3)
+        self.stage = Path(stage)
+        self.device = wp.get_device(pick_device(device))
+        self.world: World = describe(self.stage)
+        self.built = build_model(self.stage, self.world, self.device, world_count, time_step)
+        self.model = self.built.model
+        self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps
+        self.time, self.step_count = 0.0, 0
+        progress("compiling kernels", 1, 3)
+        self.rigid = RigidBodies(self.model) if self.model.body_count else None
+        self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
+        self.state, self.control = self.model.state(), self.model.control()
+        import newton
+
+        newton.eval_fk(self.model, self.model.joint_q, self.model.joint_qd, self.state)
+        self.control_force = wp.zeros(self.model.body_count, dtype=wp.spatial_vector, device=self.device)
+        self._controller = controller
+        self._control_every = max(1, round(control_interval / self.dt))
+        self._graph: Any = None
+        self._warm_up()
+        progress("compiling kernels", 3, 3)
+
+    def _warm_up(self) -> None:
+        """Compile every kernel of a step, on a state that is thrown away."""
+        import warp as wp
+
+        kept, self.state = self.state, self.model.state()
+        self.state.assign(kept)
+        self.step()
+        self.state, self.time, self.step_count = kept, 0.0, 0
+        if self.rigid:
+            self.rigid.reset(self.state)
+        if self.fluid:
+            self.fluid.lists_stale = True
+        wp.synchronize_device(self.device)
+
+    def step(self) -> None:
+        """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
+        import warp as wp
+
+        self.state.clear_forces()
+        if self._controller is not None:
+            if self.step_count % self._control_every == 0:
+                self._controller(self.time, self)
+            wp.copy(self.state.body_f, self.control_force)
+        if self.fluid:
+            self.fluid.step(self.state, self.state, self.control, None, self.dt)
+        if self.rigid:
+            self.rigid.step(self.state, self.state, self.control, self.dt)
+        self.step_count += 1
+        self.time = self.step_count * self.dt
+
+    def advance_frame(self) -> None:
+        """Advance by one recorded frame; on CUDA its steps are captured in a graph once and replayed."""
+        import warp as wp
+
+        if not self.device.is_cuda or self._controller is not None:
+            for _ in range(self.substeps):
+                self.step()
+            return
+        if self._graph is None:
+            before = self.step_count
+            with wp.ScopedCapture(self.device) as capture:
+                for _ in range(self.substeps):
+                    self.step()
+            self._graph, self.step_count = capture.graph, before
+        wp.capture_launch(self._graph)
+        self.step_count += self.substeps
+        self.time = self.step_count * self.dt
+
+    def problems(self) -> list[str]:
+        """What went wrong so far: non-finite states, buffer overflows, solver warnings."""
+        found = self.rigid.problems() if self.rigid else []
+        if self.fluid:
+            try:
+                self.fluid.check()
+            except RuntimeError as error:
+                found.append(str(error))
+        arrays = {"body_q": self.state.body_q, "body_qd": self.state.body_qd, "particle_q": self.state.particle_q}
+        for name, array in arrays.items():
+            if array is not None and not np.isfinite(array.numpy()).all():
+                found.append(f"{name} is not finite")
+        return found
+
+    def run(
+        self,
+        recording: str | Path,
+        video: str | Path | None = None,
+        frames_dir: str | Path | None = None,
+        metadata: dict[str, Any] | None = None,
+        progress: Progress = silent,
+    ) -> SimulationResult:
+        """Simulate the stage's duration and record it.
+
+        A run that breaks ends early; what happened until then is recorded, and the problems are in its log.
+
+        Args:
+            recording: Path of the `.rrd`.
+            video: Path of an MP4 of the first camera; None renders nothing.
+            frames_dir: Folder for a few still pictures of every camera.
+            metadata: Kept in the recording beside the simulator's own.
+            progress: Told after each frame.
+        """
+        from wsim.recording import RecordingWriter
+        from wsim.sim.measure import measure
+
+        started = time.perf_counter()
+        frames = round(self.world.duration * self.world.frame_rate)
+        problems: list[str] = []
+        with ExitStack() as stack:
+            writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
+            pictures = Pictures(self, writer, video, frames_dir, frames, progress) if video else None
+            if pictures:
+                stack.enter_context(pictures)
+            writer.log(0.0, "INFO", self._summary())
+            for frame in range(frames + 1):
+                if frame:
+                    self.advance_frame()
+                problems = self.problems()
+                writer.frame(self.time, measure(self.built, self.state, self.rigid))
+                if pictures and not problems:
+                    pictures.take(frame)
+                progress("simulating", frame, frames)
+                for problem in problems:
+                    writer.log(self.time, "ERROR", problem)
+                if problems:
+                    break
+            if problems:
+                writer.close(complete=False, error="; ".join(problems))
+        return SimulationResult(
+            problems=problems,
+            frames=frame + 1,
+            steps=self.step_count,
+            dt=self.dt,
+            wall_seconds=time.perf_counter() - started,
+            particles=self.model.particle_count,
+            boundary_particles=self.fluid.boundary_count if self.fluid else 0,
+            device=str(self.device),
+            stills=pictures.stills if pictures else [],
+        )
+
+    def facts(self) -> dict[str, Any]:
+        """Numbers of the run that the recording keeps."""
+        from importlib.metadata import version
+
+        return {
+            "device": str(self.device),
+            "world_count": max(1, self.model.world_count),
+            "time_step": self.dt,
+            "time_step_reason": self.built.time_step.reason,
+            "particles": self.model.particle_count,
+            "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
+            "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},
+        }
+
+    def _summary(self) -> str:
+        return (
+            f"{len(self.world.bodies)} bodies, {self.model.particle_count} fluid particles, "
+            f"{self.substeps} steps of {self.dt * 1e3:.3f} ms a frame (limited by {self.built.time_step.reason}), "
+            f"on {self.device}"
+        )
+
+
+class Pictures:
+    """Camera frames of a run: the first camera's video, the recording's images, and stills of every camera."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        writer: Any,
+        video: str | Path,
+        frames_dir: str | Path | None,
+        frames: int,
+        progress: Progress,
+    ) -> None:
+        from wsim.recording.video import VideoWriter
+        from wsim.sim.cameras import CameraRenderer
+
+        self.simulation, self.writer, self.frames_dir = simulation, writer, Path(frames_dir) if frames_dir else None
+        self.renderer = CameraRenderer(simulation.model, simulation.world, progress=progress)
+        self.video = VideoWriter(video, fps=simulation.world.frame_rate)
+        self.still_frames = {round(k * frames / (STILLS - 1)) for k in range(STILLS)}
+        self.stills: list[Path] = []
+
+    def __enter__(self) -> Pictures:
+        """Open the video."""
+        self.video.__enter__()
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        """Finish the video."""
+        self.video.__exit__(*error)
+
+    def take(self, frame: int) -> None:
+        """Render the present state."""
+        import cv2
+
+        simulation = self.simulation
+        position = simulation.state.particle_q.numpy() if simulation.fluid else None
+        fluids = {prim: position[part] for prim, part in simulation.built.fluids.items()} if position is not None else {}
+        images = self.renderer.render(simulation.state, fluids)
+        for k, (camera, image) in enumerate(images.items()):
+            if k == 0:
+                self.video.write(image.rgb)
+            if any(c.prim == camera for c in simulation.world.cameras):
+                self.writer.image(simulation.time, camera, image.rgb)
+            if self.frames_dir and frame in self.still_frames:
+                self.frames_dir.mkdir(parents=True, exist_ok=True)
+                path = self.frames_dir / f"{camera.rsplit('/', 1)[-1]}_{simulation.time:06.3f}s.png"
+                cv2.imwrite(str(path), image.rgb[:, :, ::-1])
+                self.stills.append(path)
