@@ -1,0 +1,119 @@
+import math
+import re
+from collections.abc import Callable
+
+import pytest
+
+from wsim.scene import Drive, Scene, SceneError
+
+NAN, INF = math.nan, math.inf
+UNIT = (1.0, 1.0, 1.0)
+
+CASES: list[tuple[Callable[[Scene], object], str]] = [
+    (lambda s: s.box("block_0", size=(0.1, -0.3, 0.2)), 'box("block_0"): size[1] = -0.3 must be > 0 m'),
+    (lambda s: s.box("b", size=(0.1, 0.0, 0.2)), 'box("b"): size[1] = 0 must be > 0 m'),
+    (lambda s: s.box("b", size=(0.1, 0.2)), "has 2 numbers; it must be 3"),
+    (lambda s: s.box("b", size=0.1), "must be 3 numbers"),
+    (lambda s: s.box("b", size=(1e5, 1, 1)), "size[0] = 100000 must be <= 1000 m"),
+    (lambda s: s.box("b", size=(1e-9, 1, 1)), "size[0] = 1e-09 must be >= 0.0001 m"),
+    (lambda s: s.box("b", size=("wide", 1, 1)), 'size[0] = "wide" must be a number in m'),
+    (lambda s: s.box("b", size=UNIT, position=(0, NAN, 0)), "position[1] = nan must be finite"),
+    (lambda s: s.box("b", size=UNIT, position=(0, 0, INF)), "position[2] = inf must be finite"),
+    (lambda s: s.box("b", size=UNIT, position=(0, 0, 1e6)), "position[2] = 1e+06 must be <= 10000 m"),
+    (lambda s: s.box("b", size=UNIT, density=0), "density = 0 must be > 0 kg/m^3"),
+    (lambda s: s.box("b", size=UNIT, density=1e9), "density = 1e+09 must be <= 100000 kg/m^3"),
+    (lambda s: s.box("b", size=UNIT, mass=-1), "mass = -1 must be > 0 kg"),
+    (lambda s: s.box("b", size=UNIT, mass=1, density=1), "both given; give one"),
+    (lambda s: s.box("b", size=UNIT, friction=-0.1), "friction = -0.1 must be >= 0"),
+    (lambda s: s.box("b", size=UNIT, restitution=2), "restitution = 2 must be <= 1"),
+    (lambda s: s.box("b", size=UNIT, color=(255, 0, 0)), "color[0] = 255 must be <= 1"),
+    (lambda s: s.box("b", size=UNIT, velocity=(0, 0, 1e6)), "velocity[2] = 1e+06"),
+    (lambda s: s.box("b", size=UNIT, static=True, velocity=(1, 0, 0)), "static object"),
+    (lambda s: s.box("b", size=UNIT, static=True, kinematic=True), "static = True and kinematic = True"),
+    (lambda s: s.box("b", size=UNIT, material="wod"), 'did you mean "wood"?'),
+    (lambda s: s.box("block", size=UNIT), 'name "block" is already used'.replace('"', "'")),
+    (lambda s: s.box("2fast", size=UNIT), 'name "2fast" is not a prim name'),
+    (lambda s: s.box("a b", size=UNIT), "is not a prim name"),
+    (lambda s: s.box("../x", size=UNIT), "is not a prim name"),
+    (lambda s: s.box("", size=UNIT), "is not a prim name"),
+    (lambda s: s.box(7, size=UNIT), "name 7 is not a prim name"),  # type: ignore[arg-type]
+    (lambda s: s.box("Looks", size=UNIT), "is reserved"),
+    (lambda s: s.sphere("b", radius=True), "radius = True must be a number"),
+    (lambda s: s.cylinder("b", radius=1, height=-1), "height = -1 must be > 0 m"),
+    (lambda s: s.capsule("b", radius=1, height=1, axis="W"), 'axis = "W" must be "X", "Y" or "Z"'),
+    (lambda s: s.mesh("b", file="missing.obj"), 'file = "missing.obj" is not there'),
+    (lambda s: s.mesh("b", file="model.docx"), "must end in one of .obj"),
+    (lambda s: s.tank("t", inner_size=(1, 1, 0)), 'tank("t"): inner_size[2] = 0 must be > 0 m'),
+    (lambda s: s.tank("t", inner_size=UNIT, wall=-0.1), "wall = -0.1 must be > 0 m"),
+    (lambda s: s.fluid("w", fills="tank", level=1.5, spacing=0.1), 'level = 1.5 m is above the rim of tank "tank"'),
+    (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=2), "spacing = 2 m is wider than tank"),
+    (lambda s: s.fluid("w", fills="tank", level=0.05, spacing=0.1), "must hold at least one particle"),
+    (lambda s: s.fluid("w", fills="tank", level=0.5, spacing=0.001), "5e+08 particles"),
+    (lambda s: s.fluid("w", fills="tank", spacing=0.1), "fills is given without level"),
+    (lambda s: s.fluid("w", fills="block", level=0.5, spacing=0.1), '"block" is not a tank; known: tank'),
+    (lambda s: s.fluid("w", fills="tnk", level=0.5, spacing=0.1), 'did you mean "tank"?'),
+    (lambda s: s.fluid("w", spacing=0.1), "give fills= and level="),
+    (lambda s: s.fluid("w", size=UNIT, position=(0, 0, 9), spacing=NAN), "spacing = nan must be finite"),
+    (lambda s: s.fluid("w", size=UNIT, position=(0, 0, 9), spacing=0.1, density=0), "density = 0 must be > 0"),
+    (lambda s: s.fluid("w", size=UNIT, position=(0, 0, 9), spacing=0.1, viscosity=-1), "viscosity = -1 must be >= 0"),
+    (
+        lambda s: s.fluid("w", size=UNIT, position=(0.5, 0, 0.52), spacing=0.1, container="tank"),
+        "outside the hollow of",
+    ),
+    (lambda s: s.material("m", density=0), "density = 0 must be > 0"),
+    (lambda s: s.material("wood"), "already used"),
+    (lambda s: s.material("m", opacity=1.5), "opacity = 1.5 must be <= 1"),
+    (lambda s: s.joint_fixed("j", "nobody", "block"), 'parent = "nobody" is not in the scene'),
+    (lambda s: s.joint_fixed("j", "block", "block"), "a joint needs two bodies"),
+    (lambda s: s.joint_fixed("j", None, "tank"), 'child = "tank" is static'),
+    (lambda s: s.joint_fixed("j", None, "cam"), 'child = "cam" is not a body'),
+    (lambda s: s.joint_fixed("j", None, None), "child = None must be what a call returned"),  # type: ignore[arg-type]
+    (lambda s: s.joint_revolute("j", None, "block", axis=(0, 0, 0)), "has no length"),
+    (lambda s: s.joint_revolute("j", None, "block", limits_deg=(30, -30)), "low limit must not lie above"),
+    (lambda s: s.joint_revolute("j", None, "block", limits_deg=(10, 30)), "must hold 0"),
+    (lambda s: s.joint_revolute("j", None, "block", drive=Drive()), "would do nothing"),
+    (lambda s: s.joint_revolute("j", None, "block", drive=Drive(stiffness=NAN)), "drive.stiffness = nan"),
+    (lambda s: s.joint_prismatic("j", None, "block", drive=Drive(velocity=1, stiffness=1)), "needs drive.damping > 0"),
+    (lambda s: s.joint_prismatic("j", None, "block", anchor=(0, NAN, 0)), "anchor[1] = nan"),
+    (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 1)), "the camera looks at itself"),
+    (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), fov=180), "fov = 180 must be <= 170 deg"),
+    (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), width=0), "width = 0 must be >= 16 pixel"),
+    (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), width=99.5), "width = 99.5 must be a whole number"),
+    (lambda s: s.light("l", "laser"), 'kind = "laser" must be one of distant, dome, sphere'),
+    (lambda s: s.light("l", direction=(0, 0, 0)), "has no length"),
+    (lambda s: s.param("p", NAN), "default = nan must be finite"),
+    (lambda s: s.param("p", 5, low=10), "default = 5 lies outside"),
+    (lambda s: s.param("p", 5, low=10, high=1), "low = 10 is above high = 1"),
+    (lambda s: s.simulation(duration=0), "duration = 0 must be > 0 s"),
+    (lambda s: s.simulation(time_step=-1), "time_step = -1 must be >= 0 s"),
+    (lambda s: s.simulation(seed=-1), "seed = -1 must be >= 0"),
+    (lambda s: Scene(params={"p": INF}), "inf must be finite"),
+    (lambda s: s.save("world.txt"), "must end in .usda"),
+]
+
+
+@pytest.fixture
+def scene() -> Scene:
+    scene = Scene()
+    scene.material("wood", density=600)
+    scene.box("block", size=(0.1, 0.1, 0.1), position=(0, 0, 5), material="wood")
+    scene.tank("tank", inner_size=(1, 1, 1))
+    scene.camera("cam", eye=(0, -3, 1), target=(0, 0, 0))
+    return scene
+
+
+@pytest.mark.parametrize(("call", "message"), CASES, ids=[message for _, message in CASES])
+def test_bad_input_is_named(scene: Scene, call: Callable[[Scene], object], message: str) -> None:
+    before = {str(prim.GetPath()) for prim in scene.stage.Traverse()}
+    with pytest.raises(SceneError, match=re.escape(message)) as error:
+        call(scene)
+    assert "\n" not in str(error.value)
+    after = {str(prim.GetPath()) for prim in scene.stage.Traverse()}
+    assert after == before
+
+
+def test_overlapping_fluids_are_refused(scene: Scene) -> None:
+    scene.fluid("w", fills="tank", level=0.5, spacing=0.1)
+    with pytest.raises(SceneError, match='overlaps "w"'):
+        scene.fluid("v", size=(0.5, 0.5, 0.5), position=(0, 0, 0.3), spacing=0.1)
+    scene.fluid("above", size=(0.5, 0.5, 0.3), position=(0, 0, 0.67), spacing=0.1)
