@@ -21,7 +21,7 @@ def thread_count() -> int:
 
 @functools.cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(max_workers=thread_count() - 1, thread_name_prefix="wsim")
+    return ThreadPoolExecutor(max_workers=max(1, thread_count() - 1), thread_name_prefix="wsim")
 
 
 def launch_shared(kernel: wp.Kernel, dim: int, inputs: list[Any], outputs: list[Any]) -> None:

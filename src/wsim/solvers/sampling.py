@@ -31,7 +31,7 @@ def box_lattice(size: Array, spacing: float) -> Samples:
     return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
 
 
-def _inside_lattice(half_extent: Array, spacing: float, inside: Array, volume: float, points: Array) -> Samples:
+def _keep(points: Array, inside: Array, volume: float) -> Samples:
     """The lattice points that are inside, sharing the shape's exact volume; one at the centre if none is."""
     kept = points[inside]
     if len(kept) == 0:
@@ -43,7 +43,7 @@ def sphere_lattice(radius: float, spacing: float) -> Samples:
     """Lattice points inside a sphere of `radius` [m]; the volumes add up to the sphere's."""
     points = box_lattice(np.full(3, 2.0 * radius), spacing).position
     inside = np.linalg.norm(points, axis=1) <= radius
-    return _inside_lattice(np.full(3, radius), spacing, inside, 4.0 / 3.0 * np.pi * radius**3, points)
+    return _keep(points, inside, 4.0 / 3.0 * np.pi * radius**3)
 
 
 def cylinder_lattice(radius: float, half_height: float, spacing: float) -> Samples:
@@ -51,7 +51,7 @@ def cylinder_lattice(radius: float, half_height: float, spacing: float) -> Sampl
     half = np.array([radius, radius, half_height])
     points = box_lattice(2.0 * half, spacing).position
     inside = np.hypot(points[:, 0], points[:, 1]) <= radius
-    return _inside_lattice(half, spacing, inside, 2.0 * np.pi * radius**2 * half_height, points)
+    return _keep(points, inside, 2.0 * np.pi * radius**2 * half_height)
 
 
 def capsule_lattice(radius: float, half_height: float, spacing: float) -> Samples:
@@ -61,7 +61,7 @@ def capsule_lattice(radius: float, half_height: float, spacing: float) -> Sample
     above = np.maximum(np.abs(points[:, 2]) - half_height, 0.0)
     inside = np.sqrt(points[:, 0] ** 2 + points[:, 1] ** 2 + above**2) <= radius
     volume = 2.0 * np.pi * radius**2 * half_height + 4.0 / 3.0 * np.pi * radius**3
-    return _inside_lattice(half, spacing, inside, volume, points)
+    return _keep(points, inside, volume)
 
 
 def mesh_lattice(vertices: Array, triangles: Array, spacing: float, convex: bool) -> Samples:
@@ -74,17 +74,35 @@ def mesh_lattice(vertices: Array, triangles: Array, spacing: float, convex: bool
         convex: Fill the convex hull.
     """
     import trimesh
-    from scipy.spatial import Delaunay
 
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
     solid = mesh.convex_hull if convex or not mesh.is_watertight else mesh
     low, high = solid.bounds
     points = box_lattice(high - low, spacing).position + 0.5 * (low + high)
-    if convex or not mesh.is_watertight:
-        inside = Delaunay(solid.vertices).find_simplex(points) >= 0
-    else:
-        inside = solid.contains(points)
-    return _inside_lattice(0.5 * (high - low), spacing, inside, abs(float(solid.volume)), points)
+    inside = _inside_mesh(np.asarray(solid.vertices), np.asarray(solid.faces), points)
+    return _keep(points, inside, abs(float(solid.volume)))
+
+
+def _inside_mesh(vertices: Array, triangles: Array, points: Array) -> Array:
+    import warp as wp
+
+    from wsim.kernels.inside import mark_inside
+
+    mesh = wp.Mesh(
+        wp.array(vertices, dtype=wp.vec3, device="cpu"),
+        wp.array(triangles.reshape(-1), dtype=wp.int32, device="cpu"),
+        support_winding_number=True,
+    )
+    reach = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
+    inside = wp.zeros(len(points), dtype=wp.bool, device="cpu")
+    wp.launch(
+        mark_inside,
+        dim=len(points),
+        inputs=[mesh.id, wp.array(points, dtype=wp.vec3, device="cpu"), reach],
+        outputs=[inside],
+        device="cpu",
+    )
+    return inside.numpy()
 
 
 def container_walls(inner_size: Array, spacing: float, support: float) -> Samples:

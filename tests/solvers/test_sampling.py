@@ -1,0 +1,67 @@
+"""Lattices against the volumes they stand for."""
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+
+from wsim.solvers.sampling import (
+    box_lattice,
+    capsule_lattice,
+    container_walls,
+    cylinder_lattice,
+    mesh_lattice,
+    plane_patch,
+    sphere_lattice,
+)
+
+
+@pytest.mark.parametrize(
+    ("samples", "volume"),
+    [
+        (box_lattice(np.array([0.2, 0.3, 0.05]), 0.03), 0.2 * 0.3 * 0.05),
+        (sphere_lattice(0.1, 0.03), 4.0 / 3.0 * math.pi * 0.1**3),
+        (cylinder_lattice(0.1, 0.2, 0.03), math.pi * 0.1**2 * 0.4),
+        (capsule_lattice(0.1, 0.2, 0.03), math.pi * 0.1**2 * 0.4 + 4.0 / 3.0 * math.pi * 0.1**3),
+        (sphere_lattice(0.01, 0.03), 4.0 / 3.0 * math.pi * 0.01**3),  # smaller than a cell: one particle
+    ],
+    ids=["box", "sphere", "cylinder", "capsule", "tiny sphere"],
+)
+def test_volumes_add_up_to_the_shape(samples, volume):
+    assert samples.volume.sum() == pytest.approx(volume, rel=1e-9)
+    assert np.abs(samples.position.mean(axis=0)).max() < 1e-9
+
+
+def test_particles_lie_inside():
+    points = capsule_lattice(0.1, 0.2, 0.02).position
+    above = np.maximum(np.abs(points[:, 2]) - 0.2, 0.0)
+    assert np.sqrt(points[:, 0] ** 2 + points[:, 1] ** 2 + above**2).max() <= 0.1 + 1e-12
+
+
+@pytest.mark.parametrize("convex", [True, False])
+def test_mesh_fills_its_inside(convex):
+    torus = trimesh.creation.torus(major_radius=0.2, minor_radius=0.06)
+    samples = mesh_lattice(np.asarray(torus.vertices), np.asarray(torus.faces), 0.02, convex)
+    solid = torus.convex_hull if convex else torus
+    assert samples.volume.sum() == pytest.approx(solid.volume, rel=1e-6)
+    in_hole = np.hypot(samples.position[:, 0], samples.position[:, 1]) < 0.1
+    assert in_hole.any() == convex  # the hull closes the hole, the mesh does not
+
+
+def test_container_walls_carry_on_the_fluids_lattice():
+    inner, spacing = np.array([0.3, 0.2, 0.1]), 0.05
+    walls = container_walls(inner, spacing, support=0.13)
+    outside = (np.abs(walls.position) > 0.5 * inner).any(axis=1)
+    assert outside.all()
+    # Two layers on each of five sides around 6 x 4 x 2 cells, none above the rim.
+    assert len(walls.position) == 10 * 8 * 4 - 6 * 4 * 2
+    assert walls.position[:, 2].max() < 0.05
+    nearest = np.abs(walls.position[:, 0]).min()
+    assert nearest == pytest.approx(0.025)
+
+
+def test_plane_patch_is_below_the_plane():
+    patch = plane_patch(np.array([-0.2, -0.1]), np.array([0.2, 0.3]), 0.05, support=0.13)
+    assert patch.position[:, 2].max() == pytest.approx(-0.025)
+    assert len(patch.position) == 8 * 8 * 2
