@@ -46,12 +46,12 @@ class CameraImage:
 class Style:
     """Light and sky; colours are linear RGB."""
 
-    sun_color: Color = (0.78, 0.74, 0.68)
+    sun_color: Color = (0.80, 0.75, 0.66)
     sun_direction: Color = (-0.45, 0.55, -0.85)  # from the sun into the scene; a distant light of the world goes first
-    ambient_up: Color = (0.42, 0.46, 0.52)  # on faces that look up
-    ambient_down: Color = (0.16, 0.15, 0.14)  # on faces that look down
-    zenith: Color = (0.16, 0.34, 0.66)
-    horizon: Color = (0.70, 0.78, 0.85)
+    ambient_up: Color = (0.24, 0.28, 0.34)  # on faces that look up
+    ambient_down: Color = (0.12, 0.11, 0.10)  # on faces that look down
+    zenith: Color = (0.13, 0.30, 0.62)
+    horizon: Color = (0.62, 0.71, 0.80)
     checker_contrast: float = 0.10  # of the ground's pattern; 0 is plain
     reflection: float = 1.0  # 0 is none, 1 is Fresnel's
     scatter: float = 1.0  # 0: water and glass only absorb
@@ -118,8 +118,8 @@ class CameraRenderer:
             KeyError: `fluids` names a fluid that the world does not have.
             ValueError: positions of a wrong shape.
         """
-        self._fluid_mesh.update(fluids or {})
         self.model.bvh_refit_shapes(state)
+        self._fluid_mesh.update(fluids or {})
         return {view.camera.prim: self._draw(view, state) for view in self._views}
 
     def _init_shapes(self, world_index: int) -> None:
@@ -133,11 +133,13 @@ class CameraRenderer:
 
     def _init_fluids(self) -> None:
         fluids = self.world.fluids
-        self._fluid_mesh = FluidMesh(self.world, self._device)
+        self._fluid_mesh = FluidMesh(self.model, self.world)
         extinction = [tuple(render_materials.extinction_of_fluid(f)) for f in fluids]
         self._fluid_extinction = wp.array(extinction or [(0.0, 0.0, 0.0)], dtype=wp.vec3f, device=self._device)
         colors = [f.color for f in fluids] or [(0.0, 0.0, 0.0)]
         self._fluid_color = wp.array(colors, dtype=wp.vec3f, device=self._device)
+        gaps = [1.6 * f.spacing for f in fluids] or [0.0]
+        self._fluid_gap = wp.array(gaps, dtype=wp.float32, device=self._device)
 
     def _init_sensor(self) -> None:
         from newton.sensors import SensorCamera
@@ -236,6 +238,7 @@ class CameraRenderer:
                 mesh.fluid_of_vertex,
                 self._fluid_extinction,
                 self._fluid_color,
+                self._fluid_gap,
                 view.look,
             ],
             outputs=[view.color, view.depth, view.shape],

@@ -12,10 +12,13 @@ import warp as wp
 from wsim.sim.render_views import is_ground
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from wsim.scene.world import Fluid, Shape, World
 
 OPAQUE = 0.995  # opacity from which a shape is drawn opaque
-CLARITY = 0.35  # how much of a fluid's depth of colour shows across its largest edge
+GLASS_GLOW = 0.35  # share of its colour that a thick piece of glass shows of itself: its edges read dark
+CLARITY = 1.2  # how much of a fluid's depth of colour shows across its largest edge
 
 
 def extinction_of_fluid(fluid: Fluid) -> np.ndarray:
@@ -30,8 +33,8 @@ def extinction_of_fluid(fluid: Fluid) -> np.ndarray:
 
 def extinction_of_glass(shape: Shape, thickness: float) -> np.ndarray:
     """Beer-Lambert coefficients of a glass shape [1/m], (3,): its tint is met straight across its thinnest side."""
-    # The square keeps a usual opacity of 0.25 clear through the four panes of a tank, and 1 opaque.
-    cover = min(shape.opacity, 0.999) ** 2
+    # The power keeps a usual opacity of 0.25 clear through the four panes of a tank, and 1 opaque.
+    cover = min(shape.opacity, 0.999) ** 2.5
     tint = 1.0 - shape.opacity * (1.0 - np.clip(np.asarray(shape.color), 0.0, 1.0)) * 0.5
     return -np.log(np.clip((1.0 - cover) * tint, 1e-4, 1.0)) / max(thickness, 1e-6)
 
@@ -52,7 +55,7 @@ class Pane:
         import newton
 
         is_box = int(model.shape_type.numpy()[index]) == int(newton.GeoType.BOX)
-        mesh = None if is_box else _mesh_of(model, index)
+        mesh = None if is_box else mesh_of(model, index)
         half = model.shape_scale.numpy()[index] if mesh is None else 0.5 * np.ptp(mesh.points.numpy(), axis=0)
         extinction = extinction_of_glass(shape, 2.0 * float(min(half)))
         return cls(index, tuple(float(h) for h in half), mesh, extinction, shape.color)
@@ -70,7 +73,7 @@ class Glass:
         ids = [0 if p.mesh is None else int(p.mesh.id) for p in panes]
         self.mesh = wp.array(ids, dtype=wp.uint64, device=device)
         self.extinction = wp.array([tuple(p.extinction) for p in panes], dtype=wp.vec3f, device=device)
-        self.color = wp.array([p.color for p in panes], dtype=wp.vec3f, device=device)
+        self.color = wp.array([tuple(GLASS_GLOW * c for c in p.color) for p in panes], dtype=wp.vec3f, device=device)
 
 
 @dataclass
@@ -85,31 +88,37 @@ class ShapeLooks:
 
 def shape_looks(model: Any, world: World, world_index: int) -> ShapeLooks:
     """Match the model's shapes with the world's by prim path."""
-    described = {s.prim: (s, static) for static, s in _shapes(world)}
+    labels = [str(label) for label in model.shape_label]
     fluids = tuple(f"{f.prim}/" for f in world.fluids)
-    labels = list(model.shape_label)
-    worlds = model.shape_world.numpy() if model.shape_world is not None else np.full(len(labels), -1)
     looks = ShapeLooks(
         panes=[],
-        hidden=[],
+        hidden=[i for i, label in enumerate(labels) if any(prim in f"{label}/" for prim in fluids)],
         ground=np.zeros(max(len(labels), 1), dtype=np.int32),
-        color=model.shape_color.numpy().copy() if len(labels) else np.zeros((0, 3)),
+        color=model.shape_color.numpy().copy() if labels else np.zeros((0, 3)),
     )
-    for index, label in enumerate(labels):
-        if fluids and any(f"{label}/".startswith(p) or f"/{label}/".find(p) >= 0 for p in fluids):
-            looks.hidden.append(index)
-            continue
-        found = _described(described, label)
-        if found is None:
-            continue
-        shape, static = found
+    worlds = model.shape_world.numpy() if labels else []
+    for index, shape, ground in shapes_by_label(model, world):
         looks.color[index] = [_to_srgb(c) for c in shape.color]
-        looks.ground[index] = int(static and is_ground(shape))
-        if shape.opacity < OPAQUE:
+        looks.ground[index] = int(ground)
+        if shape.opacity < OPAQUE and index not in looks.hidden:
             looks.hidden.append(index)
             if worlds[index] in (-1, world_index):
                 looks.panes.append(Pane.of(model, index, shape))
     return looks
+
+
+def shapes_by_label(model: Any, world: World) -> Iterator[tuple[int, Shape, bool]]:
+    """Index in the model, the world's description, and whether it is ground, of each shape that the world knows."""
+    described = {shape.prim: (shape, is_ground(shape)) for static in world.statics for shape in static.shapes}
+    described |= {shape.prim: (shape, False) for body in world.bodies for shape in body.shapes}
+    for index, label in enumerate(model.shape_label):
+        path = str(label)
+        # A batched world's label has a prefix; a decomposed mesh's parts lie below its prim.
+        path = path[max(path.find("/World/"), 0) :]
+        while path and path not in described:
+            path = path.rpartition("/")[0]
+        if path:
+            yield index, *described[path]
 
 
 def hide(model: Any, state: Any, hidden: list[int]) -> None:
@@ -126,23 +135,7 @@ def hide(model: Any, state: Any, hidden: list[int]) -> None:
     model.shape_flags.assign(flags)
 
 
-def _shapes(world: World) -> list[tuple[bool, Shape]]:
-    statics = [(True, shape) for static in world.statics for shape in static.shapes]
-    return statics + [(False, shape) for body in world.bodies for shape in body.shapes]
-
-
-def _described(described: dict[str, tuple[Shape, bool]], label: str) -> tuple[Shape, bool] | None:
-    """The world's shape of a label, which may have a batched world's prefix or name a part of a decomposed mesh."""
-    at = label.find("/World/")
-    path = label[at:] if at > 0 else label
-    while path:
-        if path in described:
-            return described[path]
-        path = path.rpartition("/")[0]
-    return None
-
-
-def _mesh_of(model: Any, index: int) -> wp.Mesh:
+def mesh_of(model: Any, index: int) -> wp.Mesh:
     """A closed mesh of any shape that is not a box, in the shape's frame."""
     import newton
 
@@ -151,17 +144,18 @@ def _mesh_of(model: Any, index: int) -> wp.Mesh:
     if kind == newton.GeoType.SPHERE:
         mesh = newton.Mesh.create_sphere(size[0])
     elif kind == newton.GeoType.CAPSULE:
-        mesh = newton.Mesh.create_capsule(size[0], size[1])
+        mesh = newton.Mesh.create_capsule(size[0], size[1], up_axis=newton.Axis.Z)
     elif kind == newton.GeoType.CYLINDER:
-        mesh = newton.Mesh.create_cylinder(size[0], size[1])
+        mesh = newton.Mesh.create_cylinder(size[0], size[1], up_axis=newton.Axis.Z)
     elif kind in (newton.GeoType.MESH, newton.GeoType.CONVEX_MESH):
         source = model.shape_source[index]
         mesh = newton.Mesh(np.asarray(source.vertices) * size, source.indices, compute_inertia=False)
     else:
-        raise ValueError(f"shape {model.shape_label[index]}: a {kind.name.lower()} cannot be drawn as glass")
+        raise ValueError(f"shape {model.shape_label[index]}: a {kind.name.lower()} is not drawn as glass or in fluid")
     return wp.Mesh(
         points=wp.array(np.asarray(mesh.vertices), dtype=wp.vec3f, device=model.device),
         indices=wp.array(np.asarray(mesh.indices).reshape(-1), dtype=wp.int32, device=model.device),
+        support_winding_number=True,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.render import surface as kernels
+from wsim.sim.render_fill import SolidFill
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,14 +28,16 @@ class FluidSurface:
     Args:
         fluid: The fluid as the stage states it.
         container: The container it fills; its surface is brought up to the walls.
+        fill: Points inside what floats in it.
         device: Warp device.
     """
 
-    def __init__(self, fluid: Fluid, container: Container | None, device: wp.Device) -> None:
+    def __init__(self, fluid: Fluid, container: Container | None, fill: SolidFill, device: wp.Device) -> None:
         from newton.geometry import ParticleSurface
 
         self.fluid = fluid
         self._container = container
+        self._fill = fill
         self._device = device
         self._extractor = ParticleSurface(
             voxel_size=VOXEL * fluid.spacing,
@@ -58,10 +61,11 @@ class FluidSurface:
         count = given.shape[0]
         if count == 0:
             return None
-        if self._positions.shape[0] != count:
-            self._positions = wp.empty(count, dtype=wp.vec3f, device=self._device)
-            self._flags = wp.empty(count, dtype=wp.int32, device=self._device)
-            self._radii = wp.full(count, 0.5 * self.fluid.spacing, dtype=wp.float32, device=self._device)
+        total = count + self._fill.count
+        if self._positions.shape[0] != total:
+            self._positions = wp.empty(total, dtype=wp.vec3f, device=self._device)
+            self._flags = wp.empty(total, dtype=wp.int32, device=self._device)
+            self._radii = wp.full(total, 0.5 * self.fluid.spacing, dtype=wp.float32, device=self._device)
         wp.launch(
             kernels.keep_finite,
             dim=count,
@@ -69,6 +73,7 @@ class FluidSurface:
             outputs=[self._positions, self._flags],
             device=self._device,
         )
+        self._fill.write(self._positions, self._flags, count, FARTHEST)
         mesh = self._extractor.extract(self._positions, self._radii, particle_flags=self._flags)
         vertices, indices, normals = mesh.to_arrays()
         if vertices is None or indices is None or normals is None:
@@ -99,10 +104,13 @@ class FluidSurface:
 class FluidMesh:
     """The surfaces of all fluids as one mesh that rays can be cast at."""
 
-    def __init__(self, world: World, device: wp.Device) -> None:
+    def __init__(self, model: Any, world: World) -> None:
         containers = {c.prim: c for c in world.containers}
-        self._device = device
-        self._surfaces = {f.prim: FluidSurface(f, containers.get(f.container or ""), device) for f in world.fluids}
+        self._device = device = model.device
+        fills = {f.spacing: SolidFill(model, world, f.spacing) for f in world.fluids}
+        self._surfaces = {
+            f.prim: FluidSurface(f, containers.get(f.container or ""), fills[f.spacing], device) for f in world.fluids
+        }
         self._order = {prim: i for i, prim in enumerate(self._surfaces)}
         self._mesh: wp.Mesh | None = None
         self.normals = wp.empty(0, dtype=wp.vec3f, device=device)
@@ -113,8 +121,15 @@ class FluidMesh:
         """Warp's handle of the mesh; 0 where no fluid is to be seen."""
         return int(self._mesh.id) if self._mesh is not None else 0
 
+    def points(self) -> np.ndarray:
+        """The mesh's vertices [m], (V, 3)."""
+        return self._mesh.points.numpy() if self._mesh is not None else np.zeros((0, 3), dtype=np.float32)
+
     def update(self, fluids: Mapping[str, Any]) -> None:
-        """Rebuild from particle positions by fluid prim; KeyError naming the known fluids."""
+        """Rebuild from particle positions by fluid prim; KeyError naming the known fluids.
+
+        The shapes' poses (`model.bvh_refit_shapes`) must be up to date.
+        """
         parts = []
         for prim, positions in fluids.items():
             if prim not in self._surfaces:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import Shape, World
 
 DEFAULT_CAMERA = "/World/default_camera"
+FILLED = 0.86  # share of the frame that a default view fills
 GROUND_EDGE = 20.0  # [m]: a box at least this long in x and y is taken for ground
 
 
@@ -73,18 +74,26 @@ def bounds(world: World) -> tuple[np.ndarray, np.ndarray]:
 def default_camera(world: World, width: int = 640, height: int = 360) -> Camera:
     """A three-quarter view from the front left, a little from above, that has everything in frame."""
     low, high = bounds(world)
-    center = 0.5 * (low + high)
-    radius = max(0.5 * float(np.linalg.norm(high - low)), 1e-3)
-    fov = 45.0
-    camera = Camera(prim=DEFAULT_CAMERA, eye=(1, 0, 0), target=(0, 0, 0), fov=fov, width=width, height=height)
-    narrow = min(math.radians(fov), vertical_fov(camera))
-    distance = 1.08 * radius / math.sin(0.5 * narrow)
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * (high - low) + low
+    camera = Camera(prim=DEFAULT_CAMERA, eye=(1, 0, 0), target=(0, 0, 0), fov=45.0, width=width, height=height)
     azimuth, elevation = math.radians(-62.0), math.radians(20.0)
-    toward = np.array(
+    back = np.array(
         (math.cos(azimuth) * math.cos(elevation), math.sin(azimuth) * math.cos(elevation), math.sin(elevation))
     )
-    eye = center + distance * toward
-    return camera.model_copy(update={"eye": tuple(float(v) for v in eye), "target": tuple(float(v) for v in center)})
+    right = np.array((-math.sin(azimuth), math.cos(azimuth), 0.0))
+    up = np.cross(back, right)
+    half_width = FILLED * math.tan(0.5 * math.radians(camera.fov))
+    half_height = FILLED * math.tan(0.5 * vertical_fov(camera))
+    # Seen along `back`, a corner is in frame if its offset across is at most its distance times the frame's slope.
+    across, above, toward = corners @ right, corners @ up, corners @ back
+    x = 0.5 * (across.min() + across.max())
+    y = 0.5 * (above.min() + above.max())
+    eye_at = max(
+        float((toward + np.abs(across - x) / half_width).max()), float((toward + np.abs(above - y) / half_height).max())
+    )
+    target_at = 0.5 * float(toward.min() + toward.max())
+    eye, target = (x * right + y * up + at * back for at in (max(eye_at, target_at + 1e-3), target_at))
+    return camera.model_copy(update={"eye": tuple(float(v) for v in eye), "target": tuple(float(v) for v in target)})
 
 
 def _corners(world: World) -> Iterator[np.ndarray]:

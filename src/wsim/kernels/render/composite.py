@@ -16,6 +16,8 @@ IOR_GLASS = wp.constant(1.5)
 FAR = wp.constant(1.0e6)  # [m]: farther than anything
 MAX_FACES = wp.constant(32)  # faces that one ray may cross
 NO_SHAPE = wp.constant(wp.uint32(0xFFFFFFF0))  # shape indices from here on are the camera's marks, not shapes
+BEVEL = wp.constant(0.15)  # width of a glass edge's bevel over half the pane's thickness
+EDGE_SHINE = wp.constant(0.3)  # share of the sky's light that an edge shows
 MAX_BOXES = wp.constant(16)  # glass boxes that one ray may meet
 
 Floats = wp.types.vector(length=16, dtype=wp.float32)
@@ -120,6 +122,18 @@ def normal_of_box(half: wp.vec3, to_world: wp.transform, point: wp.vec3) -> wp.v
 
 
 @wp.func
+def edge_of_box(half: wp.vec3, to_world: wp.transform, point: wp.vec3, width: float) -> float:
+    """1 on an edge of a box falling to 0 at `width` [m] from it, for a point on its boundary."""
+    p = wp.transform_point(wp.transform_inverse(to_world), point)
+    x = half[0] - wp.abs(p[0])
+    y = half[1] - wp.abs(p[1])
+    z = half[2] - wp.abs(p[2])
+    # The face's own distance is about 0; the next smallest is the distance to the nearest edge.
+    distance = wp.max(wp.min(x, y), wp.max(wp.min(y, z), wp.min(x, z)))
+    return wp.clamp(1.0 - distance / width, 0.0, 1.0)
+
+
+@wp.func
 def face_of_mesh(mesh: wp.uint64, origin: wp.vec3, direction: wp.vec3, t: float) -> Face:
     """The first face of a closed mesh after `t`."""
     face = Face()
@@ -154,6 +168,37 @@ def face_of_fluid(
         smooth = wp.normalize(normals[i] * query.u + normals[j] * query.v + normals[k] * (1.0 - query.u - query.v))
         face.normal = wp.where(wp.dot(smooth, query.normal) > 0.2, smooth, query.normal)
         face.medium = fluid_of_vertex[i]
+    return face
+
+
+@wp.func
+def exit_of_fluid(
+    entry: Face,
+    mesh: wp.uint64,
+    normals: wp.array(dtype=wp.vec3f),
+    fluid_of_vertex: wp.array(dtype=wp.int32),
+    origin: wp.vec3,
+    direction: wp.vec3,
+    t_end: float,
+    gap: float,
+) -> Face:
+    """The face where a ray that runs inside a fluid leaves it for good, given the first face it meets.
+
+    Gaps of air shorter than `gap` are no gaps: particles keep that far off a body's skin and off each other.
+    """
+    face = entry
+    for _gap in range(4):
+        if face.t >= t_end or not face.inside:
+            break
+        if t_end - face.t < gap:
+            face.t = FAR
+            break
+        start = face.t + 2.0e-5 * (1.0 + face.t)
+        again = face_of_fluid(mesh, normals, fluid_of_vertex, origin, direction, start)
+        if again.inside or again.t - face.t > gap:
+            break
+        start = again.t + 2.0e-5 * (1.0 + again.t)
+        face = face_of_fluid(mesh, normals, fluid_of_vertex, origin, direction, start)
     return face
 
 
@@ -204,6 +249,7 @@ def composite(
     fluid_of_vertex: wp.array(dtype=wp.int32),
     fluid_extinction: wp.array(dtype=wp.vec3f),  # [1/m]
     fluid_color: wp.array(dtype=wp.vec3f),
+    fluid_gap: wp.array(dtype=float),  # [m]: thinner sheets of air in a fluid are not drawn
     look: Look,
     # Data out:
     out_color: wp.array2d(dtype=wp.vec3f),  # linear
@@ -251,6 +297,8 @@ def composite(
     t = wp.float32(0.0)
     ior_before = wp.float32(0.0)  # 0: not known yet
     normal_before = wp.vec3(0.0)
+    edge_before = wp.float32(0.0)
+    wet = wp.bool(False)
     fluid_face = Face()
     fluid_face.t = -1.0
 
@@ -267,6 +315,11 @@ def composite(
         if fluid_mesh != wp.uint64(0):
             if fluid_face.t < start:
                 fluid_face = face_of_fluid(fluid_mesh, fluid_normals, fluid_of_vertex, origin, direction, start)
+                if fluid_face.inside:
+                    gap = fluid_gap[fluid_face.medium]
+                    fluid_face = exit_of_fluid(
+                        fluid_face, fluid_mesh, fluid_normals, fluid_of_vertex, origin, direction, t_end, gap
+                    )
             if fluid_face.t < t_next:
                 t_next = fluid_face.t
                 normal_next = fluid_face.normal
@@ -302,18 +355,23 @@ def composite(
                 ior = IOR_GLASS
                 extinction = glass_extinction[glass]
                 own = glass_color[glass]
+        edge_next = wp.float32(0.0)
         if box_next >= 0:
-            normal_next = normal_of_box(
-                glass_half[box_next], shape_pose[glass_shape[box_next]], origin + direction * t_next
-            )
+            box_pose = shape_pose[glass_shape[box_next]]
+            point = origin + direction * t_next
+            normal_next = normal_of_box(glass_half[box_next], box_pose, point)
+            edge_width = 1.4 * look.pixel_angle * t_next + BEVEL * wp.min(glass_half[box_next])
+            edge_next = edge_of_box(glass_half[box_next], box_pose, point, edge_width)
 
         # The face at t parts the medium before it from the one now known.
         if ior_before > 0.0 and ior != ior_before:
-            share = look.reflection * fresnel(wp.abs(wp.dot(direction, normal_before)), ior_before, ior)
+            share = fresnel(wp.abs(wp.dot(direction, normal_before)), ior_before, ior)
+            # Polished edges catch the light from all sides.
+            share = look.reflection * wp.max(share, EDGE_SHINE * edge_before)
             mirrored = direction - normal_before * (2.0 * wp.dot(direction, normal_before))
             reflected = sky(mirrored, look)
-            if ior_before == IOR_WATER:
-                # From within, a face mirrors the water and not the sky.
+            if wet:
+                # From within, and in hollows of the fluid, a face mirrors the fluid and not the sky.
                 reflected = wp.cw_mul(fluid_color[fluid_face.medium], day)
             seen += wp.cw_mul(through, reflected) * share
             through = through * (1.0 - share)
@@ -330,7 +388,9 @@ def composite(
         if t_next >= t_last:
             break
         ior_before = ior
+        wet = wet or ior == IOR_WATER
         normal_before = normal_next
+        edge_before = edge_next
         t = t_next
 
     out_color[row, column] = seen + wp.cw_mul(through, behind)

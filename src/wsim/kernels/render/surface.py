@@ -63,3 +63,41 @@ def fit_container(
     if z < 0.0:
         z = _reach_wall(z, half[2], near, overlap)
     vertices[i] = center + wp.quat_rotate(rotation, wp.vec3f(x, y, z))
+
+
+@wp.kernel(enable_backward=False)
+def depth_in_mesh(
+    # Data in:
+    mesh: wp.uint64,
+    points: wp.array(dtype=wp.vec3f),
+    farthest: float,  # [m]
+    # Data out:
+    out_depth: wp.array(dtype=float),  # [m], how deep a point lies inside; negative outside
+):
+    """Distance of points to a closed mesh, positive within."""
+    i = wp.tid()
+    out_depth[i] = -farthest
+    query = wp.mesh_query_point_sign_winding_number(mesh, points[i], farthest)
+    if query.result:
+        nearest = wp.mesh_eval_position(mesh, query.face, query.u, query.v)
+        out_depth[i] = -query.sign * wp.length(points[i] - nearest)
+
+
+@wp.kernel(enable_backward=False)
+def place_points(
+    # Data in:
+    points: wp.array(dtype=wp.vec3f),  # in their shapes' frames
+    shape_of_point: wp.array(dtype=wp.int32),
+    shape_pose: wp.array(dtype=wp.transformf),
+    limit: float,  # [m], from the origin
+    start: int,
+    # Data out:
+    out_positions: wp.array(dtype=wp.vec3f),
+    out_flags: wp.array(dtype=wp.int32),
+):
+    """Bring points that ride on shapes into the world, behind the first `start` positions."""
+    i = wp.tid()
+    p = wp.transform_point(shape_pose[shape_of_point[i]], points[i])
+    inside = wp.abs(p[0]) < limit and wp.abs(p[1]) < limit and wp.abs(p[2]) < limit
+    out_positions[start + i] = wp.where(inside, p, wp.vec3f(0.0))
+    out_flags[start + i] = wp.where(inside, 1, 0)
