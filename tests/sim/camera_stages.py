@@ -35,13 +35,17 @@ def _body(builder: newton.ModelBuilder, body: Body) -> None:
 
 
 def model_of(world: World) -> newton.Model:
+    return builder_of(world).finalize(device="cpu")
+
+
+def builder_of(world: World) -> newton.ModelBuilder:
     builder = newton.ModelBuilder()
     for static in world.statics:
         for shape in static.shapes:
             _static(builder, shape)
     for body in world.bodies:
         _body(builder, body)
-    return builder.finalize(device="cpu")
+    return builder
 
 
 def body(name: str, shape: Shape, position: tuple, rotation: tuple = (0.0, 0.0, 0.0, 1.0)) -> Body:

@@ -6,6 +6,7 @@ import importlib.util
 import math
 from pathlib import Path
 
+import newton
 import numpy as np
 import pytest
 
@@ -267,6 +268,25 @@ def test_moving_body_moves_in_the_picture() -> None:
     after = renderer.render(state)["/World/down"].shape_index
     assert (before == 0).sum() == pytest.approx((after == 0).sum(), rel=0.1)
     assert np.nonzero(after == 0)[1].mean() > np.nonzero(before == 0)[1].mean() + 3
+
+
+def test_each_world_of_a_batch_is_drawn_as_if_alone() -> None:
+    world, fluids = stages.aquarium()
+    alone = draw(world, fluids, style=Style(), width=96)
+    batch = newton.ModelBuilder()
+    batch.replicate(stages.builder_of(world), 3)
+    model = batch.finalize(device="cpu")
+    state = model.state()
+    pose = state.body_q.numpy()
+    pose[2::3, 2] += 1.0  # every world's third body is the ball: in the others it is lifted
+    pose[5, 2] -= 1.0
+    state.body_q.assign(pose)
+    image = CameraRenderer(model, world, width=96, world_index=1).render(state, fluids)["/World/side"]
+    assert np.abs(image.rgb.astype(int) - alone.rgb.astype(int)).max() <= 2
+    labels = [model.shape_label[i] for i in np.unique(image.shape_index) if i >= 0]
+    assert any(str(label).endswith("/World/ball/geometry") for label in labels)
+    with pytest.raises(ValueError, match="world_index 3"):
+        CameraRenderer(model, world, width=96, world_index=3)
 
 
 def test_progress_is_told() -> None:

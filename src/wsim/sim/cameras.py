@@ -99,7 +99,7 @@ class CameraRenderer:
         self._device = model.device
         self._world_indices = wp.array([world_index], dtype=wp.int32, device=self._device)
         self._init_shapes(world_index)
-        self._init_fluids()
+        self._init_fluids(world_index)
         self._init_sensor()
         self._views = [self._view(camera) for camera in self.cameras]
         self._compile(progress)
@@ -131,9 +131,9 @@ class CameraRenderer:
         self._glass = render_materials.Glass(looks.panes, self._device)
         self._shape_is_ground = wp.array(looks.ground, dtype=wp.int32, device=self._device)
 
-    def _init_fluids(self) -> None:
+    def _init_fluids(self, world_index: int) -> None:
         fluids = self.world.fluids
-        self._fluid_mesh = FluidMesh(self.model, self.world)
+        self._fluid_mesh = FluidMesh(self.model, self.world, world_index)
         extinction = [tuple(render_materials.extinction_of_fluid(f)) for f in fluids]
         self._fluid_extinction = wp.array(extinction or [(0.0, 0.0, 0.0)], dtype=wp.vec3f, device=self._device)
         colors = [f.color for f in fluids] or [(0.0, 0.0, 0.0)]

@@ -30,11 +30,15 @@ class SolidFill:
         model: Newton model.
         world: What the stage says.
         spacing: Particle spacing of the fluid [m].
+        world_index: Which of the model's worlds is drawn.
     """
 
-    def __init__(self, model: Any, world: World, spacing: float) -> None:
+    def __init__(self, model: Any, world: World, spacing: float, world_index: int) -> None:
         points, owners = [np.zeros((0, 3))], [np.zeros(0, dtype=np.int32)]
+        worlds = model.shape_world.numpy() if model.shape_count else []
         for index, shape, is_ground in shapes_by_label(model, world):
+            if worlds[index] not in (-1, world_index):
+                continue
             if is_ground or shape.opacity < OPAQUE or not shape.collides or shape.kind == "plane":
                 continue
             inner = _points_inside(model, index, spacing)

@@ -58,7 +58,8 @@ class Pane:
         mesh = None if is_box else mesh_of(model, index)
         half = model.shape_scale.numpy()[index] if mesh is None else 0.5 * np.ptp(mesh.points.numpy(), axis=0)
         extinction = extinction_of_glass(shape, 2.0 * float(min(half)))
-        return cls(index, tuple(float(h) for h in half), mesh, extinction, shape.color)
+        x, y, z = (float(h) for h in half)
+        return cls(index, (x, y, z), mesh, extinction, shape.color)
 
 
 class Glass:

@@ -104,10 +104,10 @@ class FluidSurface:
 class FluidMesh:
     """The surfaces of all fluids as one mesh that rays can be cast at."""
 
-    def __init__(self, model: Any, world: World) -> None:
+    def __init__(self, model: Any, world: World, world_index: int = 0) -> None:
         containers = {c.prim: c for c in world.containers}
         self._device = device = model.device
-        fills = {f.spacing: SolidFill(model, world, f.spacing) for f in world.fluids}
+        fills = {f.spacing: SolidFill(model, world, f.spacing, world_index) for f in world.fluids}
         self._surfaces = {
             f.prim: FluidSurface(f, containers.get(f.container or ""), fills[f.spacing], device) for f in world.fluids
         }
