@@ -4,7 +4,7 @@ import av
 import numpy as np
 import pytest
 
-from wsim.recording.video import write_video
+from wsim.recording.video import VideoWriter, write_video
 
 
 def pictures(count: int, height: int = 120, width: int = 160) -> list[np.ndarray]:
@@ -70,3 +70,22 @@ def test_a_failure_leaves_what_was_there(tmp_path):
         write_video(tmp_path / "v.mp4", pictures(2), 0)
     assert (tmp_path / "v.mp4").read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["v.mp4"]
+
+
+def test_frame_by_frame(tmp_path):
+    with VideoWriter(tmp_path / "v.mp4", fps=30) as video:
+        for picture in pictures(6):
+            video.write(picture)
+        assert not (tmp_path / "v.mp4").exists()
+    assert video.frame_count == 6
+    assert video.close() == 6
+    assert len(decode(tmp_path / "v.mp4")) == 6
+    with pytest.raises(ValueError, match="closed"):
+        video.write(pictures(1)[0])
+
+
+def test_a_video_without_frames_leaves_no_file(tmp_path):
+    with VideoWriter(tmp_path / "v.mp4", fps=30) as video:
+        pass
+    assert video.frame_count == 0
+    assert list(tmp_path.iterdir()) == []

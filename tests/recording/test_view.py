@@ -5,10 +5,12 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
+import numpy as np
 import pytest
+from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
-from wsim.recording import RecordingWriter
+from wsim.recording import RecordingWriter, read
 from wsim.recording.view import has_display, open_native, rerun_binary, serve_web, view_command
 
 linux_only = pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's table of sockets")
@@ -76,16 +78,22 @@ def test_the_command_opens_the_recording(path):
     assert "0.41" in version
 
 
-def test_a_time_and_a_prim_open_a_view_of_their_own(path):
-    blueprint = view_command(path, time=0.05, entity="/World/block")[2]
-    assert blueprint.endswith(".rbl")
-    shown = subprocess.run(
-        [rerun_binary(), "rrd", "print", "-vvv", blueprint], capture_output=True, text=True, check=True
-    )
-    assert "/World/block" in shown.stdout
-    assert "TimePanelBlueprint" in shown.stdout
+def test_a_time_and_a_prim_open_a_copy_that_begins_there(path):
+    copy = view_command(path, time=0.05, entity="/World/block")[1]
+    assert copy != str(path)
+    whole, part = read(path), read(copy)
+    assert part.time.tolist() == [1 / 30, 2 / 30]
+    assert part.world == whole.world
+    np.testing.assert_array_equal(part.body_q, whole.body_q[1:])
+    np.testing.assert_array_equal(part.fluids["/World/water"].position, whole.fluids["/World/water"].position[1:])
+    assert part.log == []  # it came before
+    shown = subprocess.run([rerun_binary(), "rrd", "print", "-vvv", copy], capture_output=True, text=True, check=True)
+    assert "EyeControls3D:tracking_entity" in shown.stdout
+    assert len(RrdReader(copy).blueprints()) == 1
     with pytest.raises(UserError, match=r"no prim '/World/blok'.*/World/block"):
         view_command(path, entity="/World/blok")
+    with pytest.raises(UserError, match="no frame at or before -1"):
+        view_command(path, time=-1.0)
 
 
 def test_without_a_display_no_window_is_tried(path, monkeypatch):

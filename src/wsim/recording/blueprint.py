@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
-from wsim.recording.columns import HEIGHT_ROOT, LOG_ENTITY, SCALAR_ROOT, TIMELINE, entity_path, nanoseconds
+import numpy as np
+
+from wsim.recording.columns import HEIGHT_ROOT, LOG_ENTITY, SCALAR_ROOT, TIMELINE, entity_path
+from wsim.recording.shapes import rotate
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
 
+BACKGROUND = (225, 232, 240)  # glass and water show on it
+EYE_TURN = 35.0  # [deg] about Z
+EYE_DISTANCE = 0.85  # of the first camera's
 
-def make_blueprint(world: World, time: float | None = None, entity: str | None = None) -> Any:
+
+def make_blueprint(world: World, *, paused: bool = False, entity: str | None = None) -> Any:
     """The layout for a world's recording.
 
     Args:
         world: What was recorded.
-        time: Where playback is to start [s]; None leaves it to the viewer.
+        paused: Whether the viewer is to stand still at the beginning.
         entity: A prim for the 3D view to look at and follow.
     """
     import rerun.blueprint as rrb
@@ -24,7 +32,7 @@ def make_blueprint(world: World, time: float | None = None, entity: str | None =
         name="Scene",
         origin="/",
         contents=["/World/**"],
-        background=rrb.Background(kind=rrb.BackgroundKind.GradientBright),
+        background=BACKGROUND,
         line_grid=False,
         eye_controls=_eye(world, entity),
     )
@@ -37,10 +45,12 @@ def make_blueprint(world: World, time: float | None = None, entity: str | None =
         views.append(rrb.Horizontal(*cameras) if len(cameras) <= 3 else rrb.Tabs(*cameras))
     left = rrb.Vertical(*views, row_shares=[2, 1][: len(views)])
     return rrb.Blueprint(
-        rrb.Horizontal(left, rrb.Vertical(*_plots(world), _log(world)), column_shares=[2, 1]),
+        rrb.Horizontal(left, rrb.Vertical(*_plots(world), _log()), column_shares=[2, 1]),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
-        _time_panel(world, time),
+        rrb.TimePanel(
+            state="collapsed", timeline=TIMELINE, loop_mode="all", play_state="paused" if paused else "playing"
+        ),
     )
 
 
@@ -55,38 +65,27 @@ def _plots(world: World) -> list[Any]:
     return plots
 
 
-def _log(world: World) -> Any:
+def _log() -> Any:
     import rerun.blueprint as rrb
 
     return rrb.TextLogView(name="Log", origin="/", contents=[f"{LOG_ENTITY}/**", "/World/**"])
 
 
 def _eye(world: World, entity: str | None) -> Any | None:
-    """The first camera's view, so that the scene opens as the program's author framed it."""
+    """Near the first camera, turned aside: from its very place its own picture would hide the scene."""
     import rerun.blueprint as rrb
 
     tracked = entity_path(entity) if entity is not None else None
     if not world.cameras:
         return rrb.EyeControls3D(tracking_entity=tracked) if tracked is not None else None
     camera = world.cameras[0]
+    half = 0.5 * math.radians(EYE_TURN)
+    turn = (0.0, 0.0, math.sin(half), math.cos(half))
+    offset = rotate(turn, np.subtract(camera.eye, camera.target)) * EYE_DISTANCE
     return rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital,
-        position=camera.eye,
+        position=np.add(camera.target, offset),
         look_target=camera.target,
-        eye_up=camera.up,
+        eye_up=(0.0, 0.0, 1.0),
         tracking_entity=tracked,
     )
-
-
-def _time_panel(world: World, time: float | None) -> Any:
-    import rerun as rr
-    import rerun.blueprint as rrb
-
-    if time is None:
-        return rrb.TimePanel(state="collapsed", timeline=TIMELINE, loop_mode="all")
-    # A blueprint has no time cursor; playing inside a selection that starts at `time` puts it there.
-    end = max(world.duration, time + 1.0 / world.frame_rate)
-    selection = rr.encodings.AbsoluteTimeRange(
-        rr.encodings.TimeInt(nanos=nanoseconds(time)), rr.encodings.TimeInt(nanos=nanoseconds(end))
-    )
-    return rrb.TimePanel(timeline=TIMELINE, loop_mode="selection", time_selection=selection, play_state="playing")

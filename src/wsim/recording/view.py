@@ -55,11 +55,11 @@ def has_display() -> bool:
 def view_command(path: str | Path, time: float | None = None, entity: str | None = None) -> list[str]:
     """The command that opens a recording in the viewer's window.
 
-    With a time or an entity a small blueprint is written to the temporary folder and opened with it: the viewer then
-    plays from that time [s], and its 3D view follows that prim.
+    With a time [s] or an entity a copy goes to the temporary folder and is opened instead: one that begins at that
+    time, and whose 3D view follows that prim.
 
     Raises:
-        UserError: There is no recording, or no viewer, or the recording knows no such prim.
+        UserError: There is no recording, or no viewer, or the recording knows no such prim or time.
     """
     return [rerun_binary(), *_files(Path(path), time, entity), "--bind", LOCALHOST, "--port", "auto"]
 
@@ -133,7 +133,7 @@ def serve_web(
         path: The recording.
         port: Of the page; 0 takes a free one.
         data_port: Of the stream; 0 takes a free one.
-        time: Where playback starts [s].
+        time: Where it begins [s]; a copy is served then.
         entity: The prim that the 3D view follows.
         open_browser: Whether to open the page in the user's browser.
 
@@ -166,17 +166,10 @@ def _files(path: Path, time: float | None, entity: str | None) -> list[str]:
         raise UserError(f"no recording at {path}")
     if time is None and entity is None:
         return [str(path)]
-    from wsim.recording.blueprint import make_blueprint
-    from wsim.recording.columns import APPLICATION
-    from wsim.recording.reader import read_world
+    from wsim.recording.excerpt import write_excerpt
 
-    world = read_world(path)
-    known = [item.prim for group in (world.bodies, world.statics, world.fluids, world.cameras) for item in group]
-    if entity is not None and not any(entity == prim or entity.startswith(prim + "/") for prim in known):
-        raise UserError(f"the recording has no prim {entity!r}; it has {', '.join(known)}")
-    blueprint = Path(tempfile.mkdtemp(prefix="wsim-view-")) / "view.rbl"
-    make_blueprint(world, time, entity).save(APPLICATION, str(blueprint))
-    return [str(path), str(blueprint)]
+    copy = Path(tempfile.mkdtemp(prefix="wsim-view-")) / path.name
+    return [str(write_excerpt(path, copy, time, entity))]
 
 
 def _free_ports(*wanted: int) -> list[int]:
