@@ -15,6 +15,7 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
+from wsim.scene.errors import one_line
 from wsim.scene.limits import (
     MAX_BYTES,
     MAX_COUNT,
@@ -65,17 +66,13 @@ def check_stage(path: str | Path, roots: Sequence[str | Path]) -> list[str]:
         return problems[:_MAX_PROBLEMS]
     try:
         stage = Usd.Stage.Open(str(path))
+        stage.Reload()
     except Tf.ErrorException as error:
-        return [f"{path.name}: does not open: {_last_line(error)}"]
+        return [f"{path.name}: does not open: {one_line(error)}"]
     try:
         return list(islice(_stage_problems(stage), _MAX_PROBLEMS))
     except Exception as error:  # noqa: BLE001 - a stage that no reader foresaw is refused, not a crash
-        return [f"{path.name}: cannot be checked: {type(error).__name__}: {_last_line(error)}"]
-
-
-def _last_line(error: Exception) -> str:
-    lines = str(error).strip().splitlines()
-    return lines[-1].strip() if lines else ""
+        return [f"{path.name}: cannot be checked: {type(error).__name__}: {one_line(error)}"]
 
 
 def _file_problems(path: Path) -> list[str]:

@@ -10,6 +10,8 @@ from pathlib import Path
 
 from pxr import Sdf, Tf, UsdUtils
 
+from wsim.scene.errors import one_line
+
 LAYER_SUFFIXES = (".usd", ".usda", ".usdc")
 _MAX_LAYERS = 1000
 
@@ -29,18 +31,21 @@ def check_assets(path: Path, roots: Sequence[Path]) -> list[str]:
         if len(seen) > _MAX_LAYERS:
             return [*problems, f"{path.name}: more than {_MAX_LAYERS} layers"]
         try:
-            layer = Sdf.Layer.FindOrOpen(str(layer_path))
+            layer = Sdf.Layer.OpenAsAnonymous(str(layer_path))  # as it is on disk, whatever is open elsewhere
         except Tf.ErrorException as error:
-            return [*problems, f"{layer_path.name}: not a USD layer: {_last_line(error)}"]
+            return [*problems, f"{layer_path.name}: not a USD layer: {one_line(error)}"]
         if layer is None:
             return [*problems, f"{layer_path.name}: not a USD layer"]
         problems += [f"{layer_path.name}: {problem}" for problem in _forbidden(layer)]
+        composed = set(layer.GetCompositionAssetDependencies())
         for asset in sorted(_asset_paths(layer)):
             found = _locate(asset, layer_path)
             if isinstance(found, str):
                 problems.append(f"{layer_path.name}: @{asset}@ {found}")
             elif not any(found.is_relative_to(root) for root in allowed):
                 problems.append(f"{layer_path.name}: @{asset}@ lies outside the folders that a stage may read")
+            elif asset in composed and found.suffix.lower() not in LAYER_SUFFIXES:
+                problems.append(f"{layer_path.name}: @{asset}@ must end in one of {', '.join(LAYER_SUFFIXES)}")
             elif not found.is_file():
                 problems.append(f"{layer_path.name}: @{asset}@ is not there")
             elif found.suffix.lower() in LAYER_SUFFIXES and found not in seen:
@@ -57,9 +62,7 @@ def _asset_paths(layer: Sdf.Layer) -> set[str]:
         found.add(asset)
         return asset
 
-    copy = Sdf.Layer.CreateAnonymous(".usda")
-    copy.TransferContent(layer)
-    UsdUtils.ModifyAssetPaths(copy, note)
+    UsdUtils.ModifyAssetPaths(layer, note)
     found.update(layer.GetCompositionAssetDependencies())
     found.discard("")
     return found
@@ -90,7 +93,3 @@ def _forbidden(layer: Sdf.Layer) -> Iterator[str]:
 
     layer.Traverse(Sdf.Path.absoluteRootPath, visit)
     yield from found
-
-
-def _last_line(error: Exception) -> str:
-    return str(error).strip().splitlines()[-1].strip()

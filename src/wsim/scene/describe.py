@@ -10,11 +10,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pxr import Gf, Usd, UsdGeom, UsdLux, UsdPhysics
+from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
 
 from wsim.errors import UserError
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
+from wsim.scene.errors import one_line
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
 from wsim.scene.world import (
@@ -71,14 +72,12 @@ def describe(stage: Usd.Stage | str | Path) -> World:
 
 
 def _open(path: Path) -> Usd.Stage:
-    from pxr import Tf
-
     if not path.is_file():
         raise UserError(f"{path}: no such stage")
     try:
         return Usd.Stage.Open(str(path))
     except Tf.ErrorException as error:
-        raise UserError(f"{path}: not a USD stage: {str(error).strip().splitlines()[-1].strip()}") from error
+        raise UserError(f"{path}: not a USD stage: {one_line(error)}") from error
 
 
 def _check_units(stage: Usd.Stage) -> None:

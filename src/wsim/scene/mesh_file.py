@@ -11,6 +11,7 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics, Vt
 
 from wsim.scene.bodies import MassProperties
+from wsim.scene.errors import one_line
 from wsim.scene.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
 from wsim.scene.validate import Call, shown
 
@@ -39,17 +40,17 @@ class MeshFile:
         try:
             mesh = trimesh.load(path, force="mesh", process=False)
         except Exception as error:  # noqa: BLE001 - each of trimesh's readers raises its own kinds
-            call.fail(f"file = {shown(str(file))} cannot be read as a mesh: {error}")
+            call.fail(f"file = {shown(path.name)} cannot be read as a mesh: {one_line(error)}")
         if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
-            call.fail(f"file = {shown(str(file))} holds no triangles")
+            call.fail(f"file = {shown(path.name)} holds no triangles")
         if len(mesh.vertices) > MAX_POINTS:
-            call.fail(f"file = {shown(str(file))} has {len(mesh.vertices)} vertices; at most {MAX_POINTS}")
+            call.fail(f"file = {shown(path.name)} has {len(mesh.vertices)} vertices; at most {MAX_POINTS}")
         mesh.merge_vertices()
         vertices = np.asarray(mesh.vertices) * factors
         if up == "Y":
             vertices = vertices[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
         if not np.isfinite(vertices).all():
-            call.fail(f"file = {shown(str(file))} holds vertices that are not finite")
+            call.fail(f"file = {shown(path.name)} holds vertices that are not finite")
         longest = float(np.ptp(vertices, axis=0).max())
         if not MIN_SIZE <= longest <= MAX_SIZE:
             call.fail(
