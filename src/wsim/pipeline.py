@@ -82,7 +82,11 @@ def simulate_and_judge(
     verdict = _timed(seconds, "judge", lambda: judge_recording(folder / "recording.rrd", plan, progress))
     write_json(
         folder / "checks.json",
-        {"build": build, "simulation": {**asdict(result), "stills": [p.name for p in result.stills]}, "seconds": seconds},
+        {
+            "build": build,
+            "simulation": {**asdict(result), "stills": [p.name for p in result.stills]},
+            "seconds": seconds,
+        },
     )
     return conclude(folder, verdict)
 

@@ -36,7 +36,9 @@ def generate(
     from wsim.plan.store import load
 
     if not prompt and plan is None:
-        raise UserError('give a sentence, such as wsim generate "A cork ball floats in a tank of water.", or --plan FILE')
+        raise UserError(
+            'give a sentence, such as wsim generate "A cork ball floats in a tank of water.", or --plan FILE'
+        )
     chosen: Plan = load(plan) if plan else make_plan(prompt)
     show_plan(chosen)
     if not yes and not typer.confirm("Build this world?", default=True):

@@ -19,7 +19,8 @@ Isolation = Annotated[
 ]
 Pictures = Annotated[bool, typer.Option("--pictures/--no-pictures", help="Render camera frames and the video.")]
 TimeStep = Annotated[
-    float | None, typer.Option("--time-step", min=1e-7, max=0.1, help="Upper bound of the time step [s]; default: chosen.")
+    float | None,
+    typer.Option("--time-step", min=1e-7, max=0.1, help="Upper bound of the time step [s]; default: chosen."),
 ]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the program.")]
 

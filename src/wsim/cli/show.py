@@ -70,7 +70,9 @@ def show_plan(plan: Plan) -> None:
     for objective in plan.objectives:
         console.print(f"  must: {objective.sentence or objective.kind}", markup=False)
     for assumption in plan.assumptions:
-        console.print(f"  assumed: {assumption.subject}: {assumption.choice} ({assumption.why})", style="dim", markup=False)
+        console.print(
+            f"  assumed: {assumption.subject}: {assumption.choice} ({assumption.why})", style="dim", markup=False
+        )
 
 
 def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> None:

@@ -46,8 +46,8 @@ def common_fluid(world: World) -> Fluid:
         for name in ("density", "viscosity", "spacing"):
             if not math.isclose(getattr(first, name), getattr(other, name)):
                 raise UserError(
-                    f"{other.prim}: {name} = {getattr(other, name)} differs from {first.prim}'s {getattr(first, name)}; "
-                    "all fluids of a world must share it"
+                    f"{other.prim}: {name} = {getattr(other, name)} differs from the {getattr(first, name)} of "
+                    f"{first.prim}; all fluids of a world must share it"
                 )
     return first
 

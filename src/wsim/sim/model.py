@@ -29,7 +29,7 @@ class Built:
     world: World
     bodies: np.ndarray
     fluids: dict[str, slice]
-    sph: Any | None  # SolverSPH.Config
+    sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
     time_step: TimeStep
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -92,7 +91,7 @@ class Simulation:
         import newton
 
         newton.eval_fk(self.model, self.model.joint_q, self.model.joint_qd, self.state)
-        self.control_force = wp.zeros(self.model.body_count, dtype=wp.spatial_vector, device=self.device)
+        self.control_force: Any = wp.zeros(int(self.model.body_count), dtype=wp.spatial_vector, device=self.device)
         self._controller = controller
         self._control_every = max(1, round(control_interval / self.dt))
         self._graph: Any = None
@@ -276,7 +275,9 @@ class Pictures:
 
         simulation = self.simulation
         position = simulation.state.particle_q.numpy() if simulation.fluid else None
-        fluids = {prim: position[part] for prim, part in simulation.built.fluids.items()} if position is not None else {}
+        fluids = (
+            {prim: position[part] for prim, part in simulation.built.fluids.items()} if position is not None else {}
+        )
         images = self.renderer.render(simulation.state, fluids)
         for k, (camera, image) in enumerate(images.items()):
             if k == 0:

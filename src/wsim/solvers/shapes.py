@@ -43,8 +43,8 @@ class OpenBox:
 class Boundary:
     """Boundary particles of all worlds, those of one body next to each other, fixed ones first.
 
-    `local` is in the owner's frame (the world's where owner is -1) [m]; `body_first[b]` is the first particle of body b,
-    and `body_first[-1]` the number of particles.
+    `local` is in the owner's frame (the world's where owner is -1) [m]; `body_first[b]` is the first particle of
+    body b, and `body_first[-1]` the number of particles.
     """
 
     local: Array  # (n, 3)

@@ -150,8 +150,9 @@ class SolverSPH(SolverBase):
         low, high = fluid.min(axis=0), fluid.max(axis=0)
         if containers:
             for box in containers:
-                reach = 0.5 * float(np.linalg.norm(box.size)) if box.rotation[3] < 1.0 else 0.5 * np.array(box.size)
-                low, high = np.minimum(low, box.center - reach), np.maximum(high, box.center + reach)
+                diagonal = np.full(3, float(np.linalg.norm(box.size)))
+                half = 0.5 * (np.array(box.size) if box.rotation[3] == 1.0 else diagonal)
+                low, high = np.minimum(low, np.array(box.center) - half), np.maximum(high, np.array(box.center) + half)
         else:
             room = np.full(3, float((high - low).max()))
             low, high = low - room, high + room

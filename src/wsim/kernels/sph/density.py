@@ -45,10 +45,12 @@ def continuity(
 ):
     """Advance the density of each fluid particle by dt, in sorted order.
 
-    d rho_i/dt = rho_i sum V_j (v_i - v_j).grad W  +  delta h c sum 2 (rho_j - rho_i - rho^H_ij) V_j (x_j - x_i).grad W / r^2
+    d rho_i/dt = rho_i sum V_j (v_i - v_j).grad W
+               + 2 delta h c sum V_j (rho_j - rho_i - rho^H_ij) (x_j - x_i).grad W / r^2
 
     The second sum is the density diffusion of Fourtakas et al. (2019, Computers & Fluids 190): the hydrostatic part
-    rho^H_ij of the difference is left out of Molteni & Colagrossi's (2009) term, so that a tank at rest keeps its pressure.
+    rho^H_ij of the difference is left out of Molteni & Colagrossi's (2009) term, so that a tank at rest keeps its
+    pressure.
     """
     s = first + wp.tid()
     m = motion[s]
@@ -63,8 +65,8 @@ def continuity(
     # Linearised: rho^H_j - rho^H_i = rho_0 g.(x_j - x_i) / c^2, exact to the 1 % that the fluid is compressed.
     hydrostatic = rest_density / (speed_of_sound * speed_of_sound) * gravity[world]
     support2 = 4.0 * h * h
-    divergence = float(0.0)
-    smoothing = float(0.0)
+    divergence = 0.0
+    smoothing = 0.0
     base = s * stride[0]
     for k in range(neighbor_count[s]):
         entry = neighbor[base + k * stride[1]]

@@ -27,7 +27,7 @@ def pair_force(
     """
     slope = wendland_slope(wp.sqrt(r2), h, norm)
     approach = wp.dot(dv, d)
-    damping = float(0.0)
+    damping = 0.0
     if approach < 0.0:
         mu = h * approach / (r2 + 0.01 * h * h)
         damping = -2.0 * artificial_viscosity * speed_of_sound * mu / (rho_i + rho_j)
@@ -59,7 +59,7 @@ def momentum(
     acceleration: wp.array(dtype=wp.vec3),
     boundary_force: wp.array(dtype=wp.vec3),
 ):
-    """Acceleration of each fluid particle, and the fluid's force on each particle of a moving body, in original order."""
+    """Acceleration of each fluid particle, and the fluid's force on each particle of a body, in original order."""
     s = first + wp.tid()
     owner = kind[s]
     if owner == 1:
