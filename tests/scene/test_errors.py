@@ -112,6 +112,15 @@ def test_bad_input_is_named(scene: Scene, call: Callable[[Scene], object], messa
     assert after == before
 
 
+def test_body_hung_on_two_chains_is_refused(scene: Scene) -> None:
+    arm = scene.box("arm", size=(0.1, 0.1, 0.1), position=(1, 0, 5))
+    scene.joint_fixed("hook", None, "block")
+    with pytest.raises(SceneError, match=r'child = "block" already hangs on .*swap them: parent="block", child="arm"'):
+        scene.joint_fixed("second", arm, "block")
+    scene.joint_fixed("swapped", "block", arm)
+    scene.joint_fixed("loop", None, arm)
+
+
 def test_overlapping_fluids_are_refused(scene: Scene) -> None:
     scene.fluid("w", fills="tank", level=0.5, spacing=0.1)
     with pytest.raises(SceneError, match='overlaps "w"'):

@@ -28,6 +28,18 @@ def mark_articulations(stage: Usd.Stage) -> None:
         UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(path))
 
 
+def second_parent(stage: Usd.Stage, parent: Sdf.Path, child: Sdf.Path) -> Sdf.Path | None:
+    """What `child` already hangs on, where hanging it on `parent` too would join two chains and close no loop.
+
+    Newton's importer cannot take such a joint. A joint that closes a loop it takes as a constraint.
+    """
+    tree = _Forest()
+    for prim in stage.Traverse():
+        if prim.IsA(UsdPhysics.Joint):
+            tree.add(*joint_ends(UsdPhysics.Joint(prim)), prim.GetPath())
+    return tree.holder(child) if tree.root(parent) != tree.root(child) else None
+
+
 def joint_ends(joint: UsdPhysics.Joint) -> tuple[Sdf.Path, Sdf.Path]:
     """Paths of a joint's parent and child as authored; the world's is `WORLD_END`, and the world is never the child."""
     ends = []
@@ -57,6 +69,15 @@ class _Forest:
             if path != WORLD_END:
                 self._bodies[path] = None
         return True
+
+    def holder(self, path: Sdf.Path) -> Sdf.Path | None:
+        """The parent of a body; None if it has none."""
+        return self._parent.get(path)
+
+    def root(self, path: Sdf.Path) -> Sdf.Path:
+        """What a body's tree stands on: the world, or the topmost body."""
+        top = self._top(path)
+        return WORLD_END if top in self._anchor else top
 
     def roots(self) -> list[Sdf.Path]:
         """The prim that roots each tree: a joint to the world, or the topmost body."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
-from wsim.scene.articulation import mark_articulations
+from wsim.scene.articulation import WORLD_END, mark_articulations, second_parent
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.limits import MAX_POSITION
 from wsim.scene.validate import Call, shown
@@ -125,6 +125,7 @@ class Joints(Author):
             call.fail(f"parent = child = {shown(child_prim.GetName())}: a joint needs two bodies, or parent=None")
         if parent_prim is not None and not parent_prim.HasAPI(UsdPhysics.RigidBodyAPI):
             parent_prim = None  # what never moves is the world
+        self._check_one_parent(call, parent_prim, child_prim)
         position, turn = world_pose(child_prim)
         point = position if anchor is None else Gf.Vec3d(*call.position("anchor", anchor))
         token, frame = _axis(call, axis)
@@ -143,6 +144,20 @@ class Joints(Author):
             joint.CreateAxisAttr(token)
         mark_articulations(self._stage)
         return Handle(name=joint.GetPrim().GetName(), path=path, kind="joint")
+
+    def _check_one_parent(self, call: Call, parent: Usd.Prim | None, child: Usd.Prim) -> None:
+        """A chain grows from its root: what already hangs on one thing cannot be hung on a second chain."""
+        above, below = (WORLD_END if prim is None else prim.GetPath() for prim in (parent, child))
+        other = second_parent(self._stage, above, below)
+        if other is None:
+            return
+        name = shown(child.GetName())
+        holder = "the world" if other == WORLD_END else shown(other.name)
+        if parent is None:
+            call.fail(f"child = {name} already hangs on {holder}; make {name} the parent in that joint")
+        call.fail(
+            f"child = {name} already hangs on {holder}; swap them: parent={name}, child={shown(parent.GetName())}"
+        )
 
     def _body(self, call: Call, field: str, what: Handle | str) -> Usd.Prim:
         prim = self._find(call, field, what)
