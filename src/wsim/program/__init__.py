@@ -1,1 +1,1 @@
-"""TODO."""
+"""The program: composed from a plan, and run where it can do no harm."""

@@ -1,0 +1,327 @@
+"""A plan becomes a program: the text of `program.py`, as a person would write it."""
+
+from __future__ import annotations
+
+import keyword
+import math
+import re
+import textwrap
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from wsim.errors import UserError
+from wsim.plan.schema import CameraPlan, Material, Plan, PlanObject
+
+_WIDTH = 88  # columns; a call that does not fit has one argument a line, which any formatter's settings keep
+_AXES = "xyz"
+_DEFAULT_FRAME_RATE = 30.0
+_PARTICLES = 8000  # of a fluid whose spacing the plan leaves open
+
+
+def compose(plan: Plan) -> str:
+    """Write the program that builds a plan.
+
+    The same plan gives the same text. Free text of the plan (title, words, assumptions) appears in the docstring and
+    in comments only, where it cannot end them.
+
+    Args:
+        plan: A laid-out plan: every solid object has a pose.
+
+    Raises:
+        UserError: If an object that takes up space has no pose.
+    """
+    return _Composer(plan).text()
+
+
+@dataclass
+class _Composer:
+    plan: Plan
+    names: set[str] = field(default_factory=lambda: {"scene", "build", "Scene", "run", "i", *_AXES, "position"})
+    materials: dict[str, str] = field(default_factory=dict)  # a material as JSON: its variable
+    handles: dict[str, str] = field(default_factory=dict)  # an object's name: its variable
+
+    def text(self) -> str:
+        """The whole program."""
+        body = [
+            *self._assumptions(),
+            *self._materials(),
+            *self._objects(),
+            *self._cameras(),
+            *self._simulation(),
+        ]
+        lines = [
+            *self._docstring(),
+            "",
+            "from wsim.scene import Scene",
+            "",
+            "",
+            "def build(scene: Scene) -> None:",
+            '    """Author the world."""',
+            *body,
+            "",
+            "",
+            'if __name__ == "__main__":',
+            "    from wsim import run",
+            "",
+            "    run(build)",
+        ]
+        return "\n".join(lines) + "\n"
+
+    def _docstring(self) -> list[str]:
+        title = _prose(self.plan.title).rstrip(".") or "A world"
+        title = title[:1].upper() + title[1:]
+        first, *rest = textwrap.wrap(title + ".", _WIDTH - 6)
+        paragraphs = [rest] if rest else []
+        prompt = _prose(self.plan.prompt)
+        if prompt and prompt.rstrip(".").lower() != title.lower():
+            paragraphs.append(textwrap.wrap(f"Asked for: {prompt}", _WIDTH))
+        sentences = [sentence for sentence in (_prose(o.sentence) for o in self.plan.objectives) if sentence]
+        if sentences:
+            items = [
+                line
+                for sentence in dict.fromkeys(sentences)
+                for line in textwrap.wrap(sentence, _WIDTH, initial_indent="- ", subsequent_indent="  ")
+            ]
+            paragraphs.append(["What must happen:", *items])
+        if not paragraphs:
+            return [f'"""{first}"""']
+        return [f'"""{first}', *(line for lines in paragraphs for line in ("", *lines)), '"""']
+
+    def _assumptions(self) -> list[str]:
+        lines = []
+        for item in self.plan.assumptions:
+            why = _prose(item.why)
+            text = f"Assumed: {_prose(item.subject)}: {_prose(item.choice)}" + (f" ({why})" if why else "")
+            lines += _comment(text)
+        return [*lines, ""] if lines else []
+
+    def _materials(self) -> list[str]:
+        lines: list[str] = []
+        for item in self.plan.objects:
+            material = item.material
+            if material is None or item.primitive == "fluid" or material.model_dump_json() in self.materials:
+                continue
+            variable = self._variable(material.name)
+            self.materials[material.model_dump_json()] = variable
+            moving = any(o.material == material and o.state == "dynamic" for o in self.plan.objects)
+            lines += self._material(material, variable, moving=moving)
+        return [*lines, ""] if lines else []
+
+    def _material(self, material: Material, variable: str, *, moving: bool) -> list[str]:
+        density = _number(material.density)
+        lines = []
+        if moving:
+            bounds = [f"low={_number(0.5 * material.density)}", f"high={_number(1.5 * material.density)}"]
+            name = self._variable(f"{variable}_density")
+            lines += _call(f"{name} = scene.param", [f'"{name}"', density, *bounds, 'unit="kg/m^3"'])
+            density = name
+        arguments = [f'"{variable}"', *([f"density={density}"] if moving else [])]
+        arguments.append(f"friction={_number(material.friction)}")
+        if material.restitution:
+            arguments.append(f"restitution={_number(material.restitution)}")
+        arguments.append(f"color={_tuple(material.color)}")
+        if material.opacity != 1.0:
+            arguments.append(f"opacity={_number(material.opacity)}")
+        return lines + _call(f"{variable} = scene.material", arguments)
+
+    def _objects(self) -> list[str]:
+        lines: list[str] = []
+        containers = {_container(item) for item in self.plan.objects if item.primitive == "fluid"}
+        for group in _groups(_ordered(self.plan.objects)):
+            if len(group) > 1:
+                lines += self._loop(group)
+                continue
+            item = group[0]
+            target = "scene." + item.primitive
+            if item.name in containers:
+                self.handles[item.name] = self._variable(item.name)
+                target = f"{self.handles[item.name]} = {target}"
+            lines += _call(target, [f'"{item.name}"', *self._arguments(item)])
+        return lines
+
+    def _loop(self, group: Sequence[PlanObject]) -> list[str]:
+        """Objects that differ in position and number only."""
+        positions = [[_number(value) for value in _position(item)] for item in group]
+        differing = [axis for axis in range(3) if len({position[axis] for position in positions}) > 1]
+        if len(differing) == 1:
+            variable = _AXES[differing[0]]
+            values = [position[differing[0]] for position in positions]
+        else:
+            variable = f"({', '.join(_AXES[axis] for axis in differing)})"
+            values = [f"({', '.join(position[axis] for axis in differing)})" for position in positions]
+        where = [_AXES[axis] if axis in differing else positions[0][axis] for axis in range(3)]
+        prefix = group[0].name.rsplit("_", 1)[0]
+        first = int(group[0].name.rsplit("_", 1)[1])
+        start = ["start=1"] if first == 1 else []
+        counted = ", ".join(["(" + ", ".join(values) + ")", *start])
+        head = f"for i, {variable} in enumerate({counted}):"
+        if len(head) + 4 > _WIDTH:
+            lines = [f"for i, {variable} in enumerate(", "    ("]
+            lines += [*(f"        {value}," for value in values), "    )" + "," * bool(start)]
+            lines += [*(f"    {argument}," for argument in start), "):"]
+        else:
+            lines = [head]
+        arguments = self._arguments(group[0], position=f"({', '.join(where)})")
+        indented = ["    " + line for line in lines]
+        return indented + _call(f"scene.{group[0].primitive}", [f'f"{prefix}_{{i}}"', *arguments], depth=2)
+
+    def _arguments(self, item: PlanObject, position: str | None = None) -> list[str]:
+        if item.primitive == "fluid":
+            return self._fluid(item)
+        arguments = _size(item)
+        if item.primitive == "ground":
+            if item.pose is not None and item.pose.position[2]:
+                arguments.append(f"height={_number(item.pose.position[2])}")
+        elif item.primitive != "tank" or any(_position(item)):
+            arguments.append(f"position={position or _tuple(_position(item))}")
+        if item.pose is not None and any(item.pose.rotation_deg) and item.primitive not in ("ground", "tank"):
+            arguments.append(f"rotation_deg={_tuple(item.pose.rotation_deg)}")
+        if any(item.velocity) and item.state == "dynamic":
+            arguments.append(f"velocity={_tuple(item.velocity)}")
+        if item.state == "static" and item.primitive not in ("ground", "tank"):
+            arguments.append("static=True")
+        if item.material is not None:
+            arguments.append(f"material={self.materials[item.material.model_dump_json()]}")
+        return arguments
+
+    def _fluid(self, item: PlanObject) -> list[str]:
+        container = _container(item)
+        level = item.relation("FREE-SURFACE-AT")
+        if container is not None and level is not None and level.value is not None:
+            tank = self.plan.object(container)
+            volume = (*tank.size[:2], level.value)
+            arguments = [f"fills={self.handles[container]}", f"level={_number(level.value)}"]
+        else:
+            volume = item.size
+            arguments = [f"size={_tuple(item.size)}", f"position={_tuple(_position(item))}"]
+        spacing = self.plan.simulation.spacing or _spacing(volume)
+        arguments.append(f"spacing={_number(spacing)}")
+        if item.material is not None:
+            arguments.append(f"density={_number(item.material.density)}")
+            arguments.append(f"color={_tuple(item.material.color)}")
+        return arguments
+
+    def _cameras(self) -> list[str]:
+        def arguments(camera: CameraPlan) -> list[str]:
+            return [f'"{camera.name}"', f"eye={_tuple(camera.eye)}", f"target={_tuple(camera.target)}"]
+
+        return [line for camera in self.plan.cameras for line in _call("scene.camera", arguments(camera))]
+
+    def _simulation(self) -> list[str]:
+        simulation = self.plan.simulation
+        arguments = [f"duration={_number(simulation.duration)}"]
+        if simulation.frame_rate != _DEFAULT_FRAME_RATE:
+            arguments.append(f"frame_rate={_number(simulation.frame_rate)}")
+        if simulation.time_step:
+            arguments.append(f"time_step={_number(simulation.time_step)}")
+        if simulation.seed:
+            arguments.append(f"seed={simulation.seed}")
+        return _call("scene.simulation", arguments)
+
+    def _variable(self, text: str) -> str:
+        """A free variable name like the text."""
+        plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+        base = re.sub(r"\W+", "_", plain).strip("_").lower() or "thing"
+        if base[0].isdigit() or keyword.iskeyword(base) or keyword.issoftkeyword(base):
+            base = f"the_{base}"
+        name, count = base, 2
+        while name in self.names:
+            name, count = f"{base}_{count}", count + 1
+        self.names.add(name)
+        return name
+
+
+def _ordered(objects: Sequence[PlanObject]) -> list[PlanObject]:
+    """In the plan's order, but a fluid straight after the tank that it fills."""
+    filling = [item for item in objects if item.primitive == "fluid" and _container(item) is not None]
+    ordered = []
+    for item in objects:
+        if item not in filling:
+            ordered += [item, *(fluid for fluid in filling if _container(fluid) == item.name)]
+    return ordered
+
+
+def _groups(objects: Sequence[PlanObject]) -> list[list[PlanObject]]:
+    """Runs of three or more neighbours named x_0, x_1, ... or x_1, x_2, ... that are alike in all but position."""
+    groups: list[list[PlanObject]] = []
+    for item in objects:
+        if groups and _continues(groups[-1], item):
+            groups[-1].append(item)
+        else:
+            groups.append([item])
+    return [part for group in groups for part in ([group] if len(group) != 2 else [[group[0]], [group[1]]])]
+
+
+def _continues(group: list[PlanObject], item: PlanObject) -> bool:
+    first = group[0]
+    prefix, _, number = first.name.rpartition("_")
+    if (
+        number not in ("0", "1")
+        or item.name != f"{prefix}_{int(number) + len(group)}"
+        or item.primitive in ("tank", "fluid", "ground")
+    ):
+        return False
+    return _alike(first) == _alike(item) and _position(first) != _position(item)
+
+
+def _alike(item: PlanObject) -> object:
+    rotation = item.pose.rotation_deg if item.pose is not None else None
+    return (item.primitive, item.size, item.material, item.state, item.velocity, rotation)
+
+
+def _position(item: PlanObject) -> tuple[float, float, float]:
+    if item.pose is None:
+        raise UserError(f"{item.name} has no pose; lay the plan out before composing its program")
+    return item.pose.position
+
+
+def _container(item: PlanObject) -> str | None:
+    relation = item.relation("PLACE-IN")
+    return relation.ref if relation is not None else None
+
+
+def _size(item: PlanObject) -> list[str]:
+    size = item.size
+    if item.primitive == "box":
+        return [f"size={_tuple(size)}"]
+    if item.primitive == "tank":
+        return [f"inner_size={_tuple(size)}"]
+    if item.primitive == "sphere":
+        return [f"radius={_number(size[0])}"]
+    if item.primitive in ("cylinder", "capsule"):
+        return [f"radius={_number(size[0])}", f"height={_number(size[1])}"]
+    return []
+
+
+def _spacing(size: Sequence[float]) -> float:
+    """A spacing that gives some thousand particles, at least four of them across the least edge [m]."""
+    return float(f"{min((math.prod(size) / _PARTICLES) ** (1 / 3), min(size) / 4):.2g}")
+
+
+def _number(value: float) -> str:
+    """A float as a person writes it: to a micrometre, or to four figures where it is small."""
+    rounded = round(float(value), 6) if abs(value) >= 1e-3 else float(f"{value:.4g}")
+    return repr(rounded + 0.0)
+
+
+def _tuple(values: Sequence[float]) -> str:
+    return f"({', '.join(_number(value) for value in values)})"
+
+
+def _call(target: str, arguments: Sequence[str], depth: int = 1) -> list[str]:
+    indent = "    " * depth
+    line = f"{indent}{target}({', '.join(arguments)})"
+    if len(line) <= _WIDTH:
+        return [line]
+    return [f"{indent}{target}(", *(f"{indent}    {argument}," for argument in arguments), f"{indent})"]
+
+
+def _comment(text: str) -> list[str]:
+    return textwrap.wrap(text, _WIDTH, initial_indent="    # ", subsequent_indent="    #   ")
+
+
+def _prose(text: str) -> str:
+    """Free text for a docstring or a comment: one line, without what could end either or hide in it."""
+    plain = "".join(" " if c.isspace() else c for c in text if c.isspace() or c.isprintable())
+    return " ".join(plain.replace("\\", "/").replace('"', "'").split())

@@ -1,0 +1,1 @@
+"""What runs inside the sandbox, beside the generated program. Standard library only, until the program needs more."""

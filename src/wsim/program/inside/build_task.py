@@ -1,0 +1,57 @@
+"""Call a program's `build` and hand the stage to the parent."""
+
+from __future__ import annotations
+
+import os
+import stat
+import traceback
+from typing import Any
+
+from wsim.program.inside.load import ProgramError, explain, function, load
+
+_CHUNK = 1 << 20
+
+
+def run(job: dict[str, Any]) -> dict[str, Any]:
+    """Run the program's `build` and copy the stage that it authored to the parent's descriptor."""
+    program = job["program"]
+    try:
+        _author(job, program)
+    except BaseException as error:  # noqa: BLE001 - whatever a program raises is a finding
+        # What the program piled up hangs on its frames; without it there is memory to write the report with.
+        traceback.clear_frames(error.__traceback__)
+        return explain(error, program)
+    return {"outcome": "ok"}
+
+
+def _author(job: dict[str, Any], program: str) -> None:
+    from pxr import Work
+
+    from wsim.scene import Scene
+
+    Work.SetConcurrencyLimit(1)  # one address space is shared by all threads, and a large machine would start many
+    module = load(program)
+    call = function(module, "build", "scene")
+    scene = Scene(params=job["params"], seed=job["seed"])
+    before = {str(prim.GetPath()) for prim in scene.stage.TraverseAll()}
+    call(scene)
+    made = {str(prim.GetPath()) for prim in scene.stage.TraverseAll()} - before
+    if not any(not path.startswith(("/World/PhysicsScene", "/World/Parameters", "/World/Looks")) for path in made):
+        raise ProgramError(
+            "build(scene) returned without making an object; call scene.ground(...), scene.box(...) or another"
+        )
+    path = os.path.join(job["scratch"], "stage.usda")  # noqa: PTH118
+    scene.save(path)
+    _copy(path, job["stage_fd"])
+
+
+def _copy(path: str, target: int) -> None:
+    source = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    if not stat.S_ISREG(os.fstat(source).st_mode):
+        raise OSError(f"{path} is not a file")
+    os.ftruncate(target, 0)
+    os.lseek(target, 0, os.SEEK_SET)
+    while chunk := os.read(source, _CHUNK):
+        view = memoryview(chunk)
+        while view:
+            view = view[os.write(target, view) :]

@@ -1,0 +1,175 @@
+"""A seccomp filter: the system calls that a program which authors a stage never needs, refused by the kernel.
+
+It is what keeps the program to one process and off the network, and what covers the calls that Landlock does not
+(signals on old kernels, chmod and its kin, memory that no rlimit counts). Numbers are of x86-64 and of the generic
+table that arm64 uses; see seccomp(2) and linux/audit.h.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import platform
+import struct
+from collections.abc import Callable
+
+_AUDIT_ARCH = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
+_X32 = 0x40000000
+
+# name: (x86-64, arm64); None where the table has no such call
+_CALLS: dict[str, tuple[int | None, int | None]] = {
+    "fork": (57, None), "vfork": (58, None), "execve": (59, 221), "execveat": (322, 281),
+    "clone": (56, 220), "clone3": (435, 435), "unshare": (272, 97), "setns": (308, 268),
+    "socket": (41, 198), "connect": (42, 203), "bind": (49, 200), "listen": (50, 201), "accept": (43, 202),
+    "ptrace": (101, 117), "process_vm_readv": (310, 270), "process_vm_writev": (311, 271), "kcmp": (312, 272),
+    "pidfd_open": (434, 434), "pidfd_getfd": (438, 438), "pidfd_send_signal": (424, 424),
+    "process_madvise": (440, 440), "process_mrelease": (448, 448), "move_pages": (279, 239),
+    "migrate_pages": (256, 238), "tkill": (200, 130), "rt_sigqueueinfo": (129, 138), "rt_tgsigqueueinfo": (297, 240),
+    "kill": (62, 129), "tgkill": (234, 131), "prlimit64": (302, 261), "prctl": (157, 167), "fcntl": (72, 25),
+    "ioctl": (16, 29), "open": (2, None), "openat": (257, 56), "openat2": (437, 437),
+    "setpriority": (141, 140), "ioprio_set": (251, 30), "sched_setaffinity": (203, 122),
+    "sched_setscheduler": (144, 119), "sched_setparam": (142, 118), "sched_setattr": (314, 274),
+    "shmget": (29, 194), "msgget": (68, 186), "semget": (64, 190), "mq_open": (240, 180),
+    "memfd_create": (319, 279), "memfd_secret": (447, 447), "userfaultfd": (323, 282),
+    "io_uring_setup": (425, 425), "io_uring_enter": (426, 426), "io_uring_register": (427, 427),
+    "bpf": (321, 280), "perf_event_open": (298, 241), "keyctl": (250, 219), "add_key": (248, 217),
+    "request_key": (249, 218), "mount": (165, 40), "umount2": (166, 39), "pivot_root": (155, 41), "chroot": (161, 51),
+    "open_tree": (428, 428), "move_mount": (429, 429), "fsopen": (430, 430), "fsmount": (432, 432),
+    "mount_setattr": (442, 442), "name_to_handle_at": (303, 264), "open_by_handle_at": (304, 265),
+    "fanotify_init": (300, 262), "inotify_init1": (294, 26), "inotify_init": (253, None),
+    "quotactl": (179, 60), "syslog": (103, 116), "acct": (163, 89), "swapon": (167, 224), "swapoff": (168, 225),
+    "reboot": (169, 142), "init_module": (175, 105), "finit_module": (313, 273), "delete_module": (176, 106),
+    "kexec_load": (246, 104), "settimeofday": (164, 170), "clock_settime": (227, 112), "adjtimex": (159, 171),
+    "truncate": (76, 45),
+    "chmod": (90, None), "fchmod": (91, 52), "fchmodat": (268, 53), "fchmodat2": (452, 452),
+    "chown": (92, None), "lchown": (94, None), "fchown": (93, 55), "fchownat": (260, 54),
+    "utime": (132, None), "utimes": (235, None), "futimesat": (261, None), "utimensat": (280, 88),
+    "setxattr": (188, 5), "lsetxattr": (189, 6), "fsetxattr": (190, 7), "setxattrat": (463, 463),
+    "removexattr": (197, 14), "lremovexattr": (198, 15), "fremovexattr": (199, 16), "removexattrat": (466, 466),
+    "file_setattr": (469, 469),
+}  # fmt: skip
+
+_ARGUED = ("clone", "clone3", "kill", "tgkill", "prlimit64", "prctl", "fcntl", "ioctl", "open", "openat", "openat2")
+# Landlock does not govern a file's metadata. There these calls do nothing and say that they did it: libraries that
+# tidy the mode of a file they have just written carry on.
+_METADATA = (
+    "chmod", "fchmod", "fchmodat", "fchmodat2", "chown", "lchown", "fchown", "fchownat", "utime", "utimes",
+    "futimesat", "utimensat", "setxattr", "lsetxattr", "fsetxattr", "setxattrat", "removexattr", "lremovexattr",
+    "fremovexattr", "removexattrat", "file_setattr",
+)  # fmt: skip
+_LANDLOCK_ONLY = ("truncate", *_METADATA)
+
+_CLONE_THREAD = 0x00010000
+_SETOWN = (8, 15)  # F_SETOWN, F_SETOWN_EX: who gets a descriptor's signals, another way to signal a process
+_IOCTLS = (0x8901, 0x8902, 0x5412, 0x541C)  # FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCLINUX
+_PR_SET_PDEATHSIG = 1
+_O_TRUNC = 0o1000
+
+_LOAD, _EQUAL, _AT_LEAST, _AND, _RETURN = 0x20, 0x15, 0x35, 0x54, 0x06
+_ALLOW, _ERRNO, _KILL = 0x7FFF0000, 0x00050000, 0x80000000
+_NUMBER, _ARCH = 0, 4
+
+
+def available() -> bool:
+    """Whether this machine and kernel take the filter."""
+    if platform.machine() not in _AUDIT_ARCH or struct.calcsize("P") != 8:
+        return False
+    libc = ctypes.CDLL(None, use_errno=True)
+    return libc.prctl(21, 0, 0, 0, 0) in (0, 2)  # PR_GET_SECCOMP
+
+
+def install(*, landlock: bool) -> None:
+    """Put the filter on this process for good. `no_new_privs` must be set.
+
+    Args:
+        landlock: The file system is guarded by Landlock and not by a mount namespace: refuse what it does not govern.
+
+    Raises:
+        OSError: If the kernel does not take it.
+    """
+    code = _program(platform.machine(), os.getpid(), landlock=landlock)
+    buffer = ctypes.create_string_buffer(code, len(code))
+
+    class Program(ctypes.Structure):
+        _fields_ = [("len", ctypes.c_ushort), ("filter", ctypes.c_void_p)]
+
+    program = Program(len(code) // 8, ctypes.addressof(buffer))
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.prctl(22, 2, ctypes.byref(program), 0, 0) != 0:  # PR_SET_SECCOMP, SECCOMP_MODE_FILTER
+        raise OSError(ctypes.get_errno(), "the kernel refused the seccomp filter")
+
+
+def _op(code: int, value: int, yes: int = 0, no: int = 0) -> bytes:
+    return struct.pack("HBBI", code, yes, no, value)
+
+
+def _refuse(error: int) -> bytes:
+    return _op(_RETURN, _ERRNO | error)
+
+
+def _argument(index: int) -> bytes:
+    return _op(_LOAD, 16 + 8 * index)  # the low half: both tables are little endian
+
+
+def _program(machine: str, pid: int, *, landlock: bool) -> bytes:
+    column = 0 if machine == "x86_64" else 1
+
+    def number(name: str) -> int | None:
+        return _CALLS[name][column]
+
+    parts = [_op(_LOAD, _ARCH), _op(_EQUAL, _AUDIT_ARCH[machine], 1, 0), _op(_RETURN, _KILL), _op(_LOAD, _NUMBER)]
+    if machine == "x86_64":
+        parts += [_op(_AT_LEAST, _X32, 0, 1), _refuse(errno.ENOSYS)]
+    for name in _CALLS:
+        call = number(name)
+        if call is None or name in _ARGUED or (name in _LANDLOCK_ONLY and not landlock):
+            continue
+        parts += [_op(_EQUAL, call, 0, 1), _refuse(0 if name in _METADATA else errno.EPERM)]
+    for name, rule in _rules(pid, landlock=landlock).items():
+        call = number(name)
+        if call is None:
+            continue
+        body = rule()
+        # Back to the call's number for the rules that follow.
+        parts += [_op(_EQUAL, call, 0, len(body) // 8 + 1), body, _op(_LOAD, _NUMBER)]
+    parts.append(_op(_RETURN, _ALLOW))
+    return b"".join(parts)
+
+
+def _rules(pid: int, *, landlock: bool) -> dict[str, Callable[[], bytes]]:
+    """Calls that are refused for some of their arguments only."""
+    deny = _refuse(errno.EPERM)
+
+    def only_own_pid() -> bytes:
+        return _argument(0) + _op(_EQUAL, pid, 1, 0) + deny
+
+    def own_limits() -> bytes:
+        return _argument(0) + _op(_EQUAL, 0, 2, 0) + _op(_EQUAL, pid, 1, 0) + deny
+
+    def one_of(index: int, *values: int) -> bytes:
+        return _argument(index) + b"".join(_op(_EQUAL, value, 0, 1) + deny for value in values)
+
+    def threads_only() -> bytes:
+        return _argument(0) + _op(_AND, _CLONE_THREAD) + _op(_EQUAL, 0, 0, 1) + deny
+
+    def truncating_reads(index: int) -> bytes:
+        # Landlock before ABI 3 lets a file that may be read be emptied by opening it O_RDONLY | O_TRUNC.
+        return _argument(index) + _op(_AND, _O_TRUNC | 3) + _op(_EQUAL, _O_TRUNC, 0, 1) + deny
+
+    rules: dict[str, Callable[[], bytes]] = {
+        "kill": only_own_pid,
+        "tgkill": only_own_pid,
+        "prlimit64": own_limits,
+        "prctl": lambda: one_of(0, _PR_SET_PDEATHSIG),
+        "fcntl": lambda: one_of(1, *_SETOWN),
+        "ioctl": lambda: one_of(1, *_IOCTLS),
+        "clone": threads_only,
+        # Its flags lie in memory, where a filter cannot look; libc then falls back to clone.
+        "clone3": lambda: _refuse(errno.ENOSYS),
+        "openat2": lambda: _refuse(errno.ENOSYS),
+    }
+    if landlock:
+        rules["open"] = lambda: truncating_reads(1)
+        rules["openat"] = lambda: truncating_reads(2)
+    return rules
