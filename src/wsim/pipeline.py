@@ -104,7 +104,6 @@ def build_stage(program: Path, stage: Path, settings: Settings, progress: Progre
 def simulate(folder: Path, program: Path | None, settings: Settings, progress: Progress = silent) -> SimulationResult:
     """Simulate `folder/stage.usda` into `folder/recording.rrd`, with video and stills."""
     from wsim.sim import Simulation
-    from wsim.sim.control import controller_of
 
     stage = folder / "stage.usda"
     with controller_of(program, stage, settings.limits(), settings.isolation) as controller:

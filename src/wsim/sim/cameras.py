@@ -18,7 +18,7 @@ from wsim.sim import render_materials, render_views
 from wsim.sim.render_surface import FluidMesh
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from wsim.progress import Progress
     from wsim.scene.world import Camera, World
@@ -104,12 +104,15 @@ class CameraRenderer:
         self._views = [self._view(camera) for camera in self.cameras]
         self._compile(progress)
 
-    def render(self, state: Any, fluids: Mapping[str, Any] | None = None) -> dict[str, CameraImage]:
+    def render(
+        self, state: Any, fluids: Mapping[str, Any] | None = None, cameras: Sequence[str] | None = None
+    ) -> dict[str, CameraImage]:
         """Draw the world as it stands in `state`.
 
         Args:
             state: Newton state of the model.
             fluids: Particle centres [m] by fluid prim: (N, 3) numbers, or a Warp array of vec3.
+            cameras: Prims of the cameras to draw; all by default.
 
         Returns:
             One picture for each camera, by camera prim.
@@ -120,7 +123,8 @@ class CameraRenderer:
         """
         self.model.bvh_refit_shapes(state)
         self._fluid_mesh.update(fluids or {})
-        return {view.camera.prim: self._draw(view, state) for view in self._views}
+        wanted = [v for v in self._views if cameras is None or v.camera.prim in cameras]
+        return {view.camera.prim: self._draw(view, state) for view in wanted}
 
     def _init_shapes(self, world_index: int) -> None:
         model = self.model

@@ -13,8 +13,6 @@ import numpy as np
 from wsim.progress import Progress, silent
 from wsim.scene.world import World
 
-STILLS = 6
-
 
 class Controller(Protocol):
     """What drives joints and pushes bodies: called once a control step."""
@@ -91,7 +89,7 @@ class Simulation:
         import newton
 
         newton.eval_fk(self.model, self.model.joint_q, self.model.joint_qd, self.state)
-        self.control_force: Any = wp.zeros(int(self.model.body_count), dtype=wp.spatial_vector, device=self.device)
+        self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         self._controller = controller
         self._control_every = max(1, round(control_interval / self.dt))
         self._graph: Any = None
@@ -120,7 +118,8 @@ class Simulation:
         if self._controller is not None:
             if self.step_count % self._control_every == 0:
                 self._controller(self.time, self)
-            wp.copy(self.state.body_f, self.control_force)
+            if self.control_force is not None:
+                wp.copy(self.state.body_f, self.control_force)
         if self.fluid:
             self.fluid.step(self.state, self.state, self.control, None, self.dt)
         if self.rigid:
@@ -165,6 +164,7 @@ class Simulation:
         recording: str | Path,
         video: str | Path | None = None,
         frames_dir: str | Path | None = None,
+        review: str | Path | None = None,
         metadata: dict[str, Any] | None = None,
         progress: Progress = silent,
     ) -> SimulationResult:
@@ -176,18 +176,20 @@ class Simulation:
             recording: Path of the `.rrd`.
             video: Path of an MP4 of the first camera; None renders nothing.
             frames_dir: Folder for a few still pictures of every camera.
+            review: JSON file of what those pictures show: each object's share of them.
             metadata: Kept in the recording beside the simulator's own.
             progress: Told after each frame.
         """
         from wsim.recording import RecordingWriter
         from wsim.sim.measure import measure
+        from wsim.sim.pictures import Pictures
 
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
         problems: list[str] = []
         with ExitStack() as stack:
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
-            pictures = Pictures(self, writer, video, frames_dir, frames, progress) if video else None
+            pictures = Pictures(self, writer, video, frames_dir, review, frames, progress) if video else None
             if pictures:
                 stack.enter_context(pictures)
             writer.log(0.0, "INFO", self._summary())
@@ -237,55 +239,3 @@ class Simulation:
             f"{self.substeps} steps of {self.dt * 1e3:.3f} ms a frame (limited by {self.built.time_step.reason}), "
             f"on {self.device}"
         )
-
-
-class Pictures:
-    """Camera frames of a run: the first camera's video, the recording's images, and stills of every camera."""
-
-    def __init__(
-        self,
-        simulation: Simulation,
-        writer: Any,
-        video: str | Path,
-        frames_dir: str | Path | None,
-        frames: int,
-        progress: Progress,
-    ) -> None:
-        from wsim.recording.video import VideoWriter
-        from wsim.sim.cameras import CameraRenderer
-
-        self.simulation, self.writer, self.frames_dir = simulation, writer, Path(frames_dir) if frames_dir else None
-        self.renderer = CameraRenderer(simulation.model, simulation.world, progress=progress)
-        self.video = VideoWriter(video, fps=simulation.world.frame_rate)
-        self.still_frames = {round(k * frames / (STILLS - 1)) for k in range(STILLS)}
-        self.stills: list[Path] = []
-
-    def __enter__(self) -> Pictures:
-        """Open the video."""
-        self.video.__enter__()
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        """Finish the video."""
-        self.video.__exit__(*error)
-
-    def take(self, frame: int) -> None:
-        """Render the present state."""
-        import cv2
-
-        simulation = self.simulation
-        position = simulation.state.particle_q.numpy() if simulation.fluid else None
-        fluids = (
-            {prim: position[part] for prim, part in simulation.built.fluids.items()} if position is not None else {}
-        )
-        images = self.renderer.render(simulation.state, fluids)
-        for k, (camera, image) in enumerate(images.items()):
-            if k == 0:
-                self.video.write(image.rgb)
-            if any(c.prim == camera for c in simulation.world.cameras):
-                self.writer.image(simulation.time, camera, image.rgb)
-            if self.frames_dir and frame in self.still_frames:
-                self.frames_dir.mkdir(parents=True, exist_ok=True)
-                path = self.frames_dir / f"{camera.rsplit('/', 1)[-1]}_{simulation.time:06.3f}s.png"
-                cv2.imwrite(str(path), image.rgb[:, :, ::-1])
-                self.stills.append(path)

@@ -62,8 +62,8 @@ def extrapolate_pressure(
     p = point[s]
     x = wp.vec3(p[0], p[1], p[2])
     support2 = 4.0 * h * h
-    weight = 0.0
-    total = 0.0
+    weight = float(0.0)
+    total = float(0.0)
     base = s * stride[0]
     for k in range(neighbor_count[s]):
         j = neighbor[base + k * stride[1]]
@@ -75,7 +75,7 @@ def extrapolate_pressure(
             rho = motion[j][3]
             weight += w
             total += w * (q[3] * rho * rho + rho * wp.dot(g, d))
-    pressure = 0.0
+    pressure = float(0.0)
     if weight > 0.0:
         pressure = wp.max(total / weight, 0.0)
     rho = tait_density(pressure, rest_density, speed_of_sound)

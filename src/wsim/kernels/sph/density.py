@@ -65,8 +65,8 @@ def continuity(
     # Linearised: rho^H_j - rho^H_i = rho_0 g.(x_j - x_i) / c^2, exact to the 1 % that the fluid is compressed.
     hydrostatic = rest_density / (speed_of_sound * speed_of_sound) * gravity[world]
     support2 = 4.0 * h * h
-    divergence = 0.0
-    smoothing = 0.0
+    divergence = float(0.0)
+    smoothing = float(0.0)
     base = s * stride[0]
     for k in range(neighbor_count[s]):
         entry = neighbor[base + k * stride[1]]

@@ -52,8 +52,8 @@ def row_span(grid: Grid, cell_start: wp.array(dtype=int), world: int, x: wp.vec3
     if iy < 0 or iz < 0 or iy >= grid.ny or iz >= grid.nz:
         return wp.vec2i(0, 0)
     # A rim cell also holds what lies beyond it, so it is never trimmed away.
-    dy = 0.0
-    dz = 0.0
+    dy = float(0.0)
+    dz = float(0.0)
     if iy > 0 and iy < grid.ny - 1:
         dy = gap_to_row(x[1], grid.origin[1] + float(iy) * grid.cell, grid.cell)
     if iz > 0 and iz < grid.nz - 1:
@@ -85,7 +85,7 @@ def assign_cells(
     """Cell of each particle, and how many particles each cell has."""
     i = wp.tid()
     x = wp.vec3(0.0, 0.0, 0.0)
-    if i < fluid_count:  # noqa: SIM108  (Warp's conditional expression would read both arrays)
+    if i < fluid_count:
         x = fluid_position[i]
     else:
         x = boundary_position[i - fluid_count]

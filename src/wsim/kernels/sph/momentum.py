@@ -27,7 +27,7 @@ def pair_force(
     """
     slope = wendland_slope(wp.sqrt(r2), h, norm)
     approach = wp.dot(dv, d)
-    damping = 0.0
+    damping = float(0.0)
     if approach < 0.0:
         mu = h * approach / (r2 + 0.01 * h * h)
         damping = -2.0 * artificial_viscosity * speed_of_sound * mu / (rho_i + rho_j)

@@ -35,7 +35,7 @@ def find_neighbors(
     world = particle_world[order[s]]
     radius2 = grid.support * grid.support
     base = s * stride[0]
-    count = 0
+    count = int(0)
     for row in range(row_count(grid)):
         span = row_span(grid, cell_start, world, x, row)
         for j in range(span[0], span[1]):
