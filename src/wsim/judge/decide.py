@@ -1,0 +1,91 @@
+"""All checks and objectives, and the verdict that follows from their findings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wsim.judge.checks_physics import (
+    CheckDensity,
+    CheckExplosion,
+    CheckFluidContained,
+    CheckPenetration,
+    CheckWaterLevel,
+)
+from wsim.judge.checks_run import CheckComplete, CheckFinite, CheckLog, CheckPlanObjects
+from wsim.judge.evidence import Evidence
+from wsim.judge.objectives_fluid import ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
+from wsim.judge.objectives_solid import (
+    CheckSettled,
+    ObjectiveRestsOn,
+    ObjectiveSettles,
+    ObjectiveStaysOn,
+    ObjectiveTopples,
+)
+from wsim.judge.verdict import Finding, Verdict
+
+if TYPE_CHECKING:
+    from wsim.judge.check import Check
+    from wsim.judge.objective import ObjectiveCheck
+    from wsim.plan.schema import Plan
+    from wsim.recording.reader import Recording
+
+OBJECTIVES: dict[str, type[ObjectiveCheck]] = {
+    "floats": ObjectiveFloats,
+    "rests_on": ObjectiveRestsOn,
+    "submerged": ObjectiveSubmerged,
+    "stays_on": ObjectiveStaysOn,
+    "topples": ObjectiveTopples,
+    "stays_inside": ObjectiveStaysInside,
+    "settles": ObjectiveSettles,
+}
+
+
+def run_checks() -> list[Check]:
+    """The checks that need no finite numbers."""
+    return [CheckFinite(), CheckComplete(), CheckLog(), CheckPlanObjects()]
+
+
+def physics_checks() -> list[Check]:
+    """The checks of what the numbers say."""
+    return [
+        CheckExplosion(),
+        CheckPenetration(),
+        CheckFluidContained(),
+        CheckDensity(),
+        CheckWaterLevel(),
+        CheckSettled(),
+    ]
+
+
+def decide(recording: Recording, plan: Plan | None) -> Verdict:
+    """The verdict on a recording, and on a plan if there is one."""
+    evidence = Evidence(recording, plan)
+    if len(evidence.time) == 0:
+        finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
+        return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
+    findings = [finding for check in run_checks() for finding in check.run(evidence)]
+    broken = next((f for f in findings if f.check == "CheckFinite" and not f.passed), None)
+    if broken is None:
+        findings += [finding for check in physics_checks() for finding in check.run(evidence)]
+    for objective in plan.objectives if plan is not None else []:
+        check = OBJECTIVES[objective.kind](objective)
+        if broken is None:
+            findings += check.run(evidence)
+        else:
+            prim = evidence.prim(objective.object)
+            message = f"{prim}: cannot be measured: {broken.message}"
+            findings.append(
+                check.failed(message, objective=check.sentence, prim=prim, time=broken.time, line=evidence.line(prim))
+            )
+    return conclude(findings)
+
+
+def conclude(findings: list[Finding]) -> Verdict:
+    """Accepted if every finding passed; one sentence says why not."""
+    failures = [finding for finding in findings if not finding.passed]
+    if not failures:
+        return Verdict(status="accepted", summary=f"Accepted: all {len(findings)} findings pass.", findings=findings)
+    # An objective says more to a person than the check that a broken world fails besides.
+    first = next((finding for finding in failures if finding.objective is not None), failures[0])
+    summary = f"Rejected: {len(failures)} of {len(findings)} findings fail; {first.message.rstrip('.')}."
+    return Verdict(status="rejected", summary=summary, findings=findings)
