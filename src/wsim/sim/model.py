@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.scene.world import World
+from wsim.sim.articulations import complete_articulations
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.shapes import OpenBox
@@ -54,8 +55,9 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     single = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
     SolverSPH.register_custom_attributes(single)
-    ignore = [f"{fluid.prim}(/.*)?" for fluid in world.fluids]
+    ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
     single.add_usd(str(stage), ignore_paths=ignore, apply_up_axis_from_stage=True)
+    complete_articulations(single)
     config = _sph_config(world)
     fluids = _add_fluids(single, world, config) if config else {}
     step = choose_time_step(world, config.max_time_step if config else None, time_step or world.time_step or None)

@@ -89,12 +89,30 @@ class Simulation:
         import newton
 
         newton.eval_fk(self.model, self.model.joint_q, self.model.joint_qd, self.state)
+        self._give_jointed_bodies_their_velocity()
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         self._controller = controller
         self._control_every = max(1, round(control_interval / self.dt))
         self._graph: Any = None
         self._warm_up()
         progress("compiling kernels", 3, 3)
+
+    def _give_jointed_bodies_their_velocity(self) -> None:
+        """Newton's importer keeps the initial velocity of loose bodies only; joint velocities follow from the others."""
+        import newton
+
+        if not self.world.joints:
+            return
+        twist = self.state.body_qd.numpy()
+        count = len(self.world.bodies)
+        per_world = self.model.body_count // max(1, self.model.world_count)
+        for k, index in enumerate(self.built.bodies):
+            body = self.world.bodies[k]
+            twist[index::per_world] = [*body.velocity, *body.angular_velocity]
+        if count:
+            self.state.body_qd.assign(twist)
+            newton.eval_ik(self.model, self.state, self.state.joint_q, self.state.joint_qd)
+            newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
 
     def _warm_up(self) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""
