@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import shutil
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wsim.errors import UserError
 from wsim.judge.verdict import Finding, Verdict
 from wsim.progress import Progress, silent
-from wsim.runs import RunFolder, write_json, write_whole
+from wsim.runs import write_json, write_whole
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
     from wsim.program.sandbox import BuildResult, Limits
-    from wsim.scene import Scene
     from wsim.sim.simulation import SimulationResult
 
 
@@ -151,30 +148,3 @@ def _timed(seconds: dict[str, float], name: str, work: Callable[[], Any]) -> Any
         return work()
     finally:
         seconds[name] = round(time.perf_counter() - started, 3)
-
-
-def run_in_process(build: Callable[[Scene], None]) -> Verdict:
-    """`python program.py`: both halves in this process, with a person's own program.
-
-    Leaves a run folder under ./runs, prints the verdict, and exits with 1 if it is not accepted.
-    """
-    from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.report import write as write_report
-    from wsim.scene import Scene
-
-    program = Path(sys.modules[build.__module__].__file__ or "program.py")
-    run = RunFolder.create("runs", program.stem)
-    run.record(prompt=None, program=str(program), in_process=True)
-    folder = run.iteration(1)
-    shutil.copyfile(program, folder / "program.py")
-    scene = Scene()
-    try:
-        build(scene)
-        scene.save(folder / "stage.usda")
-        with ConsoleProgress() as progress:
-            verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress, {})
-    except UserError as error:
-        raise SystemExit(f"{program.name}: {error}") from None
-    run.record(status=verdict.status)
-    show_verdict(verdict, run.path, write_report(run.path))
-    raise SystemExit(0 if verdict.status == "accepted" else 1)

@@ -57,7 +57,9 @@ class RunFolder:
             except FileExistsError:
                 continue
             except OSError as error:
-                raise UserError(f"cannot make a run folder at {path}: {error.strerror}; choose another with --runs") from error
+                raise UserError(
+                    f"cannot make a run folder at {path}: {error.strerror}; choose another with --runs"
+                ) from error
             return cls(path)
         raise UserError(f"{base} already holds a thousand runs of this second; choose another folder with --runs")
 

@@ -99,8 +99,8 @@ class ObjectiveFloats(ObjectiveCheck):
         depth = a.level.height - a.level.floor
         went = f"sinks: it went under at {under:.3f} s, and its" if under is not None else "cannot float: its"
         message = (
-            f"{body.prim} {went} lowest point is {a.draft:.4g} m below the surface. With {density:.4g} kg/m^3 in a fluid "
-            f"of {a.fluid.density:g} kg/m^3 Archimedes has it on the floor, {depth:.4g} m deep"
+            f"{body.prim} {went} lowest point is {a.draft:.4g} m below the surface. With {density:.4g} kg/m^3 in "
+            f"fluid of {a.fluid.density:g} kg/m^3 Archimedes has it on the floor, {depth:.4g} m deep"
             + self._as_planned(evidence, a)
         )
         # It fails whatever the depth: at or above the limit it would float against physics.

@@ -59,7 +59,7 @@ class CheckSettled(Check):
             prim=body.prim,
             time=float(evidence.time[-1]) - self.seconds,
             line=body.line,
-            limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L or so",
+            limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L",
         )
 
 

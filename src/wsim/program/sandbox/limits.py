@@ -14,7 +14,7 @@ class Limits(BaseModel):
 
     wall_seconds: float = Field(30.0, gt=0.0, le=3600.0)  # [s]
     cpu_seconds: float | None = Field(60.0, ge=1.0)  # [s], over all threads; None: not limited
-    memory_bytes: int = Field(4096 * _MIB, ge=256 * _MIB)  # address space [B]
+    memory_bytes: int = Field(4096 * _MIB, ge=2048 * _MIB)  # address space [B]; Python and USD alone take 1300 MiB
     scratch_bytes: int = Field(256 * _MIB, ge=_MIB)  # all files of the scratch folder together [B]
     file_bytes: int = Field(128 * _MIB, ge=_MIB)  # any one file, the stage too [B]
     log_bytes: int = Field(_MIB, ge=1024)  # what it may print [B]
