@@ -1,0 +1,152 @@
+"""What a run left in its folder, as far as it got."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from wsim.errors import UserError
+from wsim.judge.verdict import Verdict
+from wsim.plan.schema import Plan
+from wsim.runs import RunFolder
+
+if TYPE_CHECKING:
+    from wsim.recording import Recording
+
+T = TypeVar("T")
+LONGEST_NOTE = 400
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One pass over a program."""
+
+    folder: Path
+    verdict: Verdict | None
+    checks: dict[str, Any]
+    program: str | None
+
+    @property
+    def number(self) -> str:
+        """The folder's name: 01, 02, …"""
+        return self.folder.name
+
+    def build(self) -> dict[str, Any]:
+        """What checks.json says of the build, empty if nothing."""
+        return _section(self.checks, "build")
+
+    def simulation(self) -> dict[str, Any]:
+        """What checks.json says of the simulation, empty if nothing."""
+        return _section(self.checks, "simulation")
+
+    def seconds(self) -> dict[str, Any]:
+        """Wall time [s] by stage."""
+        return _section(self.checks, "seconds")
+
+
+@dataclass(frozen=True)
+class RunContents:
+    """A run's files, read. What is missing is None; what is there but cannot be read is in `notes`."""
+
+    run: RunFolder
+    facts: dict[str, Any]
+    plan: Plan | None
+    iterations: list[Iteration]
+    recording: Recording | None
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def last(self) -> Iteration | None:
+        """The newest iteration: the one that is reported."""
+        return self.iterations[-1] if self.iterations else None
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The newest iteration's verdict."""
+        return self.last.verdict if self.last else None
+
+
+def gather(run_dir: Path) -> RunContents:
+    """Read a run's folder.
+
+    Raises:
+        UserError: There is no such folder.
+    """
+    if not run_dir.is_dir():
+        raise UserError(f"{run_dir} is not a folder; give the folder of a run")
+    notes: list[str] = []
+    folders = sorted(path for path in (run_dir / "iterations").glob("[0-9]*") if path.is_dir())
+    recording = None
+    if folders:
+        recording = _read(folders[-1] / "recording.rrd", _recording, notes)
+        if recording is not None and not recording.complete:
+            error = recording.metadata.get("error") or "the run ended early"
+            notes.append(f"The recording is incomplete: {_short(error)}")
+    return RunContents(
+        run=RunFolder(run_dir),
+        facts=_read(run_dir / "run.json", _object, notes) or {},
+        plan=_read(run_dir / "plan.json", _plan, notes),
+        iterations=[_iteration(folder, notes) for folder in folders],
+        recording=recording,
+        notes=notes,
+    )
+
+
+def _iteration(folder: Path, notes: list[str]) -> Iteration:
+    return Iteration(
+        folder=folder,
+        verdict=_read(folder / "verdict.json", _verdict, notes),
+        checks=_read(folder / "checks.json", _object, notes) or {},
+        program=_read(folder / "program.py", _text, notes),
+    )
+
+
+def _read(path: Path, load: Callable[[Path], T], notes: list[str]) -> T | None:
+    """A file's content; None if it is not there, or cannot be read, which is then noted."""
+    if not path.is_file():
+        return None
+    try:
+        return load(path)
+    except (OSError, ValueError, UserError) as error:
+        notes.append(f"{path.name} of {path.parent.name} cannot be read: {_short(error)}")
+        return None
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8", errors="replace")
+
+
+def _object(path: Path) -> dict[str, Any]:
+    data = json.loads(_text(path))
+    if not isinstance(data, dict):
+        raise ValueError(f"a JSON object was expected, not {type(data).__name__}")
+    return data
+
+
+def _verdict(path: Path) -> Verdict:
+    return Verdict.model_validate_json(_text(path))
+
+
+def _plan(path: Path) -> Plan:
+    from wsim.plan.store import load
+
+    return load(path)
+
+
+def _recording(path: Path) -> Recording:
+    from wsim.recording import read
+
+    return read(path)
+
+
+def _section(checks: dict[str, Any], name: str) -> dict[str, Any]:
+    part = checks.get(name)
+    return part if isinstance(part, dict) else {}
+
+
+def _short(error: object) -> str:
+    text = str(error)
+    return text if len(text) <= LONGEST_NOTE else text[:LONGEST_NOTE] + " …"

@@ -1,0 +1,165 @@
+"""From what a run left to one HTML file."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup
+
+from wsim.judge.verdict import Finding
+from wsim.report import text
+from wsim.report.chart import Chart
+from wsim.report.contents import RunContents, gather
+from wsim.report.facts import make_facts, make_parameters
+from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moments, find_stills, find_video
+from wsim.report.source import SourceLine, source_lines
+from wsim.runs import write_whole
+
+STATUS_WORDS = {"accepted": "Accepted", "rejected": "Rejected", "blocked": "Blocked"}
+MOST_CARDS = 8
+
+
+@dataclass(frozen=True)
+class Row:
+    """A finding as the page shows it."""
+
+    index: int  # as `wsim view --finding` counts
+    finding: Finding
+    numbers: dict[str, str]
+    measures: list[tuple[str, str]]
+    prim: str
+    line: int | None  # of the shown program
+    code: str  # that line
+    moment: Picture | None = None
+
+
+def write_page(run_dir: Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path:
+    """Write a run's report.html; raises as `wsim.report.write`."""
+    contents = gather(run_dir)
+    html = render(context(contents, most_video_bytes))
+    path = run_dir / "report.html"
+    # A lone surrogate in some program's message has no bytes.
+    write_whole(path, html.encode("utf-8", "replace").decode("utf-8"))
+    return path
+
+
+def render(values: dict[str, Any]) -> str:
+    """The template with its values."""
+    from jinja2 import Environment, StrictUndefined
+
+    package = files("wsim.report")
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    template = environment.from_string(package.joinpath("template.html").read_text(encoding="utf-8"))
+    style = Markup(package.joinpath("style.css").read_text(encoding="utf-8"))
+    return template.render(style=style, text=text, **values)
+
+
+def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
+    """What the template is given."""
+    last, verdict, recording = contents.last, contents.verdict, contents.recording
+    rows = make_rows(contents)
+    failed = [row for row in rows if not row.finding.passed]
+    charts: list[Chart] = []
+    if recording is not None:
+        from wsim.report.plots import make_charts
+
+        charts = make_charts(recording, [row.finding for row in rows])
+    status = verdict.status if verdict else str(contents.facts.get("status") or "unfinished")
+    return {
+        "title": _title(contents),
+        "status": status,
+        "badge": STATUS_WORDS.get(status, status.capitalize()),
+        "summary": verdict.summary if verdict else _unjudged(contents, status),
+        "prompt": str(contents.facts.get("prompt") or (contents.plan.prompt if contents.plan else "")),
+        "notes": contents.notes,
+        "rows": [*failed, *(row for row in rows if row.finding.passed)],
+        "cards": failed[:MOST_CARDS],
+        "more_failed": len(failed) - MOST_CARDS,
+        "video": find_video(last.folder, contents.run.path, most_video_bytes) if last else None,
+        "stills": find_stills(last.folder) if last else [],
+        "charts": charts,
+        "plan": contents.plan,
+        "objectives": _objectives(contents),
+        "source": _source(contents, failed),
+        "output": str(last.build().get("log") or "") if last else "",
+        "log": [line for line in recording.log if line.level not in ("TRACE", "DEBUG")] if recording else [],
+        "facts": make_facts(contents),
+        "parameters": make_parameters(contents),
+        "iterations": contents.iterations,
+        "shown": last.number if last else "",
+        "view": f"wsim view {shlex.quote(str(contents.run.path))}" if recording is not None else "",
+        "folder": contents.run.path.resolve().name,
+    }
+
+
+def make_rows(contents: RunContents) -> list[Row]:
+    """The findings of the newest verdict, in its order."""
+    if contents.verdict is None:
+        return []
+    findings = contents.verdict.findings
+    failures = contents.verdict.failures
+    moments = find_moments(contents.recording, failures) if contents.recording is not None else [None] * len(failures)
+    pictures = dict(zip(map(id, failures), moments, strict=True))
+    program = (contents.last.program or "") if contents.last else ""
+    code = program.splitlines()
+    # A program that ran in its author's process keeps its own name.
+    names = {"program.py", Path(str(contents.facts.get("program") or "program.py")).name}
+    rows = []
+    for index, finding in enumerate(findings, start=1):
+        line = text.program_line(finding, names, len(code))
+        rows.append(
+            Row(
+                index=index,
+                finding=finding,
+                numbers=text.table_numbers(finding),
+                measures=text.measures(finding),
+                prim=text.prim_name(finding.prim or ""),
+                line=line,
+                code=code[line - 1].strip() if line else "",
+                moment=pictures.get(id(finding)),
+            )
+        )
+    return rows
+
+
+def _source(contents: RunContents, failed: list[Row]) -> list[SourceLine]:
+    if contents.last is None or contents.last.program is None:
+        return []
+    named: dict[int, list[int]] = {}
+    for row in failed:
+        if row.line is not None:
+            named.setdefault(row.line, []).append(row.index)
+    return source_lines(contents.last.program, named)
+
+
+def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
+    """(sentence, passed) of each objective of the plan; None where no finding answers it."""
+    if contents.plan is None:
+        return []
+    findings = contents.verdict.findings if contents.verdict else []
+    rows: list[tuple[str, bool | None]] = []
+    for item in contents.plan.objectives:
+        sentence = item.sentence or f"{item.object} {item.kind.replace('_', ' ')} {item.ref or ''}".strip()
+        answers = [f.passed for f in findings if f.objective and f.objective == item.sentence]
+        rows.append((sentence, all(answers) if answers else None))
+    return rows
+
+
+def _title(contents: RunContents) -> str:
+    title = contents.facts.get("title") or (contents.plan.title if contents.plan else None)
+    program = contents.facts.get("program")
+    return str(title or (Path(str(program)).name if program else None) or contents.run.path.resolve().name)
+
+
+def _unjudged(contents: RunContents, status: str) -> str:
+    if status == "not approved":
+        return "The plan was not approved: nothing was built."
+    if contents.last is None:
+        return "The run ended before its program was written."
+    if contents.recording is None:
+        return "The run ended before its world was simulated and judged."
+    return "The run ended before its world was judged."

@@ -1,0 +1,125 @@
+"""Short texts about findings, plans and facts."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from wsim.report.numbers import digits_to_tell_apart, nice_unit, number, quantity
+
+if TYPE_CHECKING:
+    from wsim.judge.verdict import Finding
+    from wsim.plan.schema import PlanObject, Relation
+
+RELATIONS = {
+    "PLACE-ON-BASE": "on the base",
+    "PLACE-ON": "on {ref}",
+    "PLACE-IN": "in {ref}",
+    "LEFT-OF": "left of {ref}",
+    "RIGHT-OF": "right of {ref}",
+    "FRONT-OF": "in front of {ref}",
+    "BACK-OF": "behind {ref}",
+    "FREE-SURFACE-AT": "its surface at {value}",
+    "FLOATS-AT-SURFACE": "at the surface of {ref}",
+    "SUBMERGED": "{value} under the surface of {ref}",
+    "SPAWNED-ABOVE": "{value} above {ref}",
+    "LIES-ALONG-X": "lies along X",
+    "LIES-ALONG-Y": "lies along Y",
+}
+LINE = re.compile(r"(?P<file>[^:]+\.py):(?P<line>[0-9]{1,7})")
+
+
+def prim_name(prim: str) -> str:
+    """The name of a prim without the path that all share."""
+    return prim.removeprefix("/World/") or prim
+
+
+def program_line(finding: Finding, names: set[str], count: int) -> int | None:
+    """The line of the shown program that a finding names, if it is one of its `count` lines."""
+    match = LINE.fullmatch(finding.line or "")
+    if match is None or match["file"] not in names:
+        return None
+    line = int(match["line"])
+    return line if 1 <= line <= count else None
+
+
+def measures(finding: Finding) -> list[tuple[str, str]]:
+    """(label, text) of a finding's numbers, as many as it has, with digits enough to tell them apart."""
+    digits = digits_to_tell_apart([finding.value, finding.expected, finding.limit])
+    rows = [
+        ("measured", quantity(finding.value, finding.unit, digits)),
+        ("expected", quantity(finding.expected, finding.unit, digits)),
+        (limit_word(finding), quantity(finding.limit, finding.unit, digits)),
+        ("margin", quantity(finding.margin, finding.unit, sign=True)),
+        ("time", quantity(finding.time, "s")),
+    ]
+    return [(label, text) for label, text in rows if text]
+
+
+def table_numbers(finding: Finding) -> dict[str, str]:
+    """A finding's numbers for its row; its unit has a column of its own."""
+    digits = digits_to_tell_apart([finding.value, finding.expected, finding.limit])
+    limit = number(finding.limit, digits)
+    sign = {"at most": "≤ ", "at least": "≥ ", "off by at most": "± "}.get(limit_word(finding), "")
+    return {
+        "value": number(finding.value, digits),
+        "expected": number(finding.expected, digits),
+        "limit": sign + limit if limit else "",
+        "margin": number(finding.margin, sign=True),
+        "unit": nice_unit(finding.unit),
+        "time": number(finding.time),
+    }
+
+
+def limit_word(finding: Finding) -> str:
+    """How the limit bounds the value, as the margin tells it: "at most", "at least", "off by at most", else "limit"."""
+    value, limit, margin, expected = finding.value, finding.limit, finding.margin, finding.expected
+    if value is None or limit is None or margin is None or not all(map(math.isfinite, (value, limit, margin))):
+        return "limit"
+    bounds = {"at most": limit - value, "at least": value - limit}
+    if expected is not None and math.isfinite(expected):
+        bounds["off by at most"] = limit - abs(value - expected)
+    scale = 1e-6 * max(abs(value), abs(limit), 1e-12)
+    words = [word for word, bound in bounds.items() if abs(bound - margin) <= scale]
+    return words[0] if len(words) == 1 else "limit"
+
+
+def describe_size(item: PlanObject) -> str:
+    """An object's size in words, e.g. "0.2 × 0.2 × 0.14 m" or "radius 0.06 m"."""
+    size = [number(x) for x in item.size]
+    if item.primitive == "sphere" and len(size) == 1:
+        return f"radius {size[0]} m"
+    if item.primitive in ("cylinder", "capsule") and len(size) == 2:
+        return f"radius {size[0]} m, height {size[1]} m"
+    return " × ".join(size) + " m" if size else ""
+
+
+def describe_relation(relation: Relation) -> str:
+    """A relation in words, e.g. "in front of block, gap 0.1 m"."""
+    phrase = RELATIONS.get(relation.predicate, relation.predicate.replace("-", " ").lower())
+    words = phrase.format(ref=relation.ref or "the base", value=quantity(relation.value, "m"))
+    return f"{words}, gap {quantity(relation.gap, 'm')}" if relation.gap else words
+
+
+def duration(seconds: float | None) -> str:
+    """Wall time as a person says it."""
+    if seconds is None or not math.isfinite(seconds):
+        return ""
+    if seconds < 120:
+        return quantity(seconds, "s")
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}\N{NO-BREAK SPACE}min {rest:02d}\N{NO-BREAK SPACE}s"
+
+
+def plain(value: object) -> str:
+    """A fact of unknown kind as text."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return number(value, 4)
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {plain(item)}" for key, item in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(plain(item) for item in value)
+    return "" if value is None else str(value)

@@ -1,0 +1,227 @@
+from __future__ import annotations
+
+import importlib.util
+import re
+import time
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wsim.errors import UserError
+from wsim.judge.verdict import Finding, Verdict
+from wsim.recording import Frame, RecordingWriter
+from wsim.report import write
+from wsim.report.page import write_page
+from wsim.runs import RunFolder
+from wsim.scene.world import Body, Shape, World
+
+_spec = importlib.util.spec_from_file_location("report_probe", Path(__file__).parent / "probe.py")
+assert _spec is not None and _spec.loader is not None
+browser = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(browser)
+
+needs_chromium = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium to open the page with")
+BLOCK_LINE, BALL_LINE = 11, 12
+HOSTILE = "</blockquote><script>document.title = 'owned'</script><img src=x onerror=alert(1)>"
+
+
+class Elements(HTMLParser):
+    """Every element's tag and attributes, and the page's text."""
+
+    def __init__(self, page: Path) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.data: list[str] = []
+        self.html = page.read_text(encoding="utf-8")
+        self.feed(self.html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.data.append(data)
+
+    @property
+    def text(self) -> str:
+        """All text as it stands in the page."""
+        return "".join(self.data)
+
+    @property
+    def words(self) -> str:
+        """All text, elements and words one space apart."""
+        return " ".join(" ".join(self.data).split())
+
+    def all(self, tag: str, **wanted: str) -> list[dict[str, str | None]]:
+        """Attributes of the elements of a tag whose attributes contain these words."""
+        return [
+            attrs
+            for name, attrs in self.found
+            if name == tag and all(word in (attrs.get(key.rstrip("_")) or "").split() for key, word in wanted.items())
+        ]
+
+    def links(self) -> list[str]:
+        return [attrs[key] or "" for _, attrs in self.found for key in ("src", "href", "poster") if key in attrs]
+
+
+def test_the_reason_comes_first(rejected: Path) -> None:
+    page = Elements(write(rejected))
+    text = page.words
+    reason = text.index("The ball lies 31 mm above the tank's floor")
+    for word in ("Rejected", "1 of 2 findings failed"):
+        assert text.index(word, text.index("wsim · run")) < reason
+    card = text[reason : text.index("What must happen")]
+    for words in ("measured 0.031 m", "at most 0.01 m", "margin −0.021 m", "time 2.5 s", "twice the contact margin"):
+        assert words in card, card
+    assert "scene.sphere(" in card
+    rows = page.all("tbody", class_="finding")
+    assert [("fail" in (row["class"] or "").split()) for row in rows] == [True, False]
+    assert "wsim view " in text and "--finding 2" in text and "--finding 1" not in text
+
+
+def test_findings_link_to_their_lines(rejected: Path) -> None:
+    page = Elements(write(rejected))
+    assert [line["id"] for line in page.all("span", class_="failed")] == [f"L{BALL_LINE}"]
+    targets = {attrs["id"] for _, attrs in page.found if "id" in attrs}
+    anchors = [link for link in page.links() if link.startswith("#")]
+    assert {f"#L{BALL_LINE}", f"#L{BLOCK_LINE}", "#failed-2"} <= set(anchors)
+    assert {anchor[1:] for anchor in anchors} <= targets
+
+
+def test_one_file_that_needs_no_other(rejected: Path) -> None:
+    started = time.perf_counter()
+    path = write(rejected)
+    assert time.perf_counter() - started < 3.0
+    assert path == rejected / "report.html" and 20_000 < path.stat().st_size < 2_000_000
+    page = Elements(path)
+    assert all(link.startswith(("#", "data:")) for link in page.links())
+    assert not re.search(r"https?://|url\(|@import", page.html)
+    assert not page.all("script") and not page.all("link")
+    assert not list(rejected.glob("*.partial"))
+
+
+def test_all_that_the_run_left_is_there(accepted: Path) -> None:
+    page = Elements(write(accepted))
+    text = page.words
+    assert len(page.all("video")) == 1 and len(page.all("img")) == 6  # no failed finding, so the stills alone
+    for title in ("Depth of the lowest point", "Energy of the fluid", "Density error of the fluid", "Deepest contact"):
+        assert title in text
+    assert "0.09 m expected" in text
+    for words in ("wooden_block", "7850 kg/m³", "the prompt gives no size", "at the surface of water, gap 0.005 m"):
+        assert words in text, words
+    for words in ("device cpu", "time step 0.417 ms (the fluid's sound)", "fluid particles 1200", "newton 1.8.0"):
+        assert words in text, words
+    for words in ("simulate 61.8 s", "whole run 64.2 s", "wood_density 600 kg/m³ 300 … 900"):
+        assert words in text, words
+
+
+def test_markup_in_texts_is_text(make_run) -> None:
+    finding = Finding(check="CheckLog", passed=False, message=HOSTILE, prim="/World/<b>", line=f'"><i>:{BALL_LINE}')
+    verdict = Verdict(status="rejected", summary=HOSTILE, findings=[finding])
+    program = f'"""{HOSTILE}"""\nx = "{HOSTILE}"  # {HOSTILE}\n'
+    page = Elements(write(make_run(verdict, program=program, prompt=HOSTILE)))
+    assert page.text.count(HOSTILE) == 8  # title, heading, summary, card, table, and three in the program
+    assert not page.all("script") and not page.all("i", onerror="") and not page.all("b", onerror="alert(1)")
+    assert all(attrs["src"].startswith("data:") for attrs in page.all("img"))
+
+
+def test_code_that_would_read_otherwise_than_it_runs_is_marked(make_run) -> None:
+    verdict = Verdict(status="accepted", summary="fine")
+    page = Elements(write(make_run(verdict, program='x = "a\u202eb"\n')))
+    assert "\u202e" not in page.html and "U+202E" in page.text
+
+
+def test_a_failed_build_shows_its_error_and_its_line(failed_build: Path) -> None:
+    page = Elements(write(failed_build))
+    assert "SceneError: param 'wood density': a name is letters, digits and _" in page.text
+    assert [line["id"] for line in page.all("span", class_="failed")] == ["L10"]
+    assert "building …" in page.text
+    assert not page.all("video") and not page.all("svg") and "wsim view" not in page.text
+
+
+def test_a_run_that_has_only_begun(tmp_path: Path) -> None:
+    run = RunFolder(tmp_path)
+    assert "The run ended before its program was written." in Elements(write(tmp_path)).text
+    run.record(prompt="a tank", status="not approved")
+    assert "The plan was not approved" in Elements(write(tmp_path)).text
+    (run.iteration(1) / "program.py").write_text("def build(scene):\n    pass\n", encoding="utf-8")
+    assert "def build(scene)" in Elements(write(tmp_path)).text
+
+
+def test_files_that_cannot_be_read_are_named(make_run) -> None:
+    run = make_run(Verdict(status="accepted", summary="fine"))
+    iteration = run / "iterations" / "01"
+    (iteration / "recording.rrd").unlink()
+    for path in (iteration / "recording.rrd", iteration / "verdict.json", run / "plan.json"):
+        path.write_text("[1, 2", encoding="utf-8")
+    (iteration / "program.py").write_bytes(b"x = '\xff\xfe'\n  y = (\n")
+    text = Elements(write(run)).text
+    for name in ("recording.rrd", "verdict.json", "plan.json"):
+        assert f"{name} of" in text and "cannot be read" in text
+    assert "y = (" in text
+
+
+def test_no_folder_is_a_users_mistake(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="give the folder of a run"):
+        write(tmp_path / "missing")
+
+
+def test_a_run_that_blew_up_is_still_drawn(tmp_path: Path) -> None:
+    """A recording that ends early in NaN, without fluid, scalars or pictures."""
+    box = Shape(prim="/World/box/geometry", kind="box", size=(0.2, 0.2, 0.2))
+    start = {"position": (0.0, 0.0, 1.0), "rotation": (0.0, 0.0, 0.0, 1.0)}
+    body = Body(prim="/World/box", mass=1.0, volume=0.008, inertia=(1, 0, 0, 0, 1, 0, 0, 0, 1), shapes=[box], **start)
+    folder = RunFolder(tmp_path).iteration(1)
+    with RecordingWriter(folder / "recording.rrd", World(bodies=[body])) as writer:
+        for k, z in enumerate((1.0, 0.9, np.nan, np.nan)):
+            q = np.array([[0, 0, z, 0, 0, 0, 1]], np.float32)
+            writer.frame(k / 30, Frame(q, np.zeros((1, 6), np.float32), np.zeros((1, 3), np.float32)))
+        writer.log(0.1, "ERROR", "body_q is not finite")
+        writer.close(complete=False, error="body_q is not finite")
+    page = Elements(write(tmp_path))
+    assert "The recording is incomplete: body_q is not finite" in page.text
+    lines = [attrs for attrs in page.all("polyline") if "line" in (attrs["class"] or "")]
+    assert len(lines) == 1 and len((lines[0]["points"] or "").split()) == 2 and "nan" not in (lines[0]["points"] or "")
+
+
+def test_the_newest_iteration_is_the_one_that_is_shown(make_run) -> None:
+    run = make_run(Verdict(status="rejected", summary="the first try"))
+    second = RunFolder(run).iteration(2)
+    (second / "program.py").write_text("# the second try\n", encoding="utf-8")
+    verdict = Verdict(status="blocked", summary="no evidence")
+    (second / "verdict.json").write_text(verdict.model_dump_json(), encoding="utf-8")
+    page = Elements(write(run))
+    assert "Blocked" in page.text and "# the second try" in page.text
+    assert "the first try" in page.text and "02 (shown)" in page.text
+
+
+@needs_chromium
+@pytest.mark.parametrize("width", [1280, 500])
+def test_a_browser_shows_it(rejected: Path, tmp_path: Path, width: int) -> None:
+    shown = browser.probe(write(rejected), tmp_path / "profile", width)
+    assert shown["scrollWidth"] <= shown["width"] == width
+    assert len(shown["rows"]) == 2 and "The ball lies 31 mm above" in shown["rows"][0]
+    assert shown["card"]["bottom"] < 900  # the reason is on the first screen
+    assert shown["images"] == 7 and shown["broken"] == 0 and shown["charts"] == 6
+    assert shown["video"]["error"] is None and shown["video"]["state"] >= 2 and shown["video"]["width"] == 320
+    assert shown["video"]["duration"] == pytest.approx(91 / 30, abs=0.05)
+    assert shown["video"]["muted"] and shown["video"]["loop"]
+
+
+@needs_chromium
+def test_a_large_video_is_linked_and_plays(accepted: Path, tmp_path: Path) -> None:
+    path = write_page(accepted, most_video_bytes=1000)
+    page = Elements(path)
+    assert [video["src"] for video in page.all("video")] == ["iterations/01/video.mp4"]
+    shown = browser.probe(path, tmp_path / "profile")
+    assert shown["video"]["error"] is None and shown["video"]["state"] >= 1 and shown["video"]["duration"] > 3.0
+
+
+@needs_chromium
+def test_hostile_text_does_not_run(make_run, tmp_path: Path) -> None:
+    finding = Finding(check="CheckLog", passed=False, message=HOSTILE, line=f"program.py:{1}")
+    verdict = Verdict(status="rejected", summary="bad", findings=[finding])
+    shown = browser.probe(write(make_run(verdict, program=f"# {HOSTILE}\n", prompt=HOSTILE)), tmp_path / "profile")
+    assert shown["title"].startswith("Rejected: ") and shown["broken"] == 0
+    assert shown["page"].count(HOSTILE) == 5  # heading, card, its line of code, table, program
