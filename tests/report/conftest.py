@@ -31,6 +31,7 @@ def build(scene: Scene) -> None:
 BLOCK_LINE, BALL_LINE = 11, 12
 FLOOR, LEVEL, SPACING = 0.02, 0.3, 0.05
 DRAUGHT = 0.09  # [m], of the block by Archimedes
+RISE = (0.0036 + 0.0009) / 0.5  # [m], of the water by what block and ball displace
 FRAMES, RATE, DURATION = 91, 30.0, 3.0
 INERTIA = (0.01, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.01)
 
@@ -76,7 +77,7 @@ def make_world() -> World:
 
 def heights(t: float) -> tuple[float, float]:
     """Centres of block and ball [m]: the block bobs and comes to rest, the ball falls to the floor."""
-    rest = FLOOR + LEVEL - DRAUGHT + 0.075
+    rest = FLOOR + LEVEL + RISE - DRAUGHT + 0.075
     block = rest + 0.11 * np.exp(-1.6 * t) * np.cos(6.0 * t)
     return float(block), float(max(FLOOR + 0.06, 0.58 - 1.2 * t * t))
 

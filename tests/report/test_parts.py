@@ -92,7 +92,7 @@ def test_a_chart_draws_gaps_expected_values_and_moments() -> None:
     value = 0.1 * time
     value[10] = np.nan
     series = Series("<b>", time, value, 0, expected=0.15)
-    svg = str(Chart("depth", "m", [series], [Mark("#3", 1.5, 0.3)], downwards=True).svg)
+    svg = str(Chart("depth", "m", [series], [Mark("#3", 1.5, (2.0, 0.3))], downwards=True).svg)
     assert svg.count("<polyline") == 2 and svg.count('class="expected') == 1
     assert svg.count("<circle") == 1 and "#3" in svg and "<b>" not in svg and "nan" not in svg
     points = [tuple(map(float, point.split(","))) for point in svg.split('points="')[1].split('"')[0].split()]

@@ -44,11 +44,11 @@ class Series:
 
 @dataclass(frozen=True)
 class Mark:
-    """A moment that a failed finding names; with a value if it is one of the chart's."""
+    """A moment that a failed finding names; with (time, value) of what was measured if it lies in the chart."""
 
     label: str
     time: float
-    value: float | None = None
+    measured: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,11 @@ class Chart:
         return rows
 
     @property
+    def heading(self) -> str:
+        """Title and unit."""
+        return f"{self.title} [{nice_unit(self.unit)}]"
+
+    @property
     def svg(self) -> Markup:
         """The drawing."""
         frame = _Frame.around(self)
@@ -83,11 +88,12 @@ class Chart:
         for line in sorted(self.series, key=lambda line: -line.color):
             parts += _line(line, frame, self.unit)
         for mark in self.marks:
-            if mark.value is not None and math.isfinite(mark.value):
+            if mark.measured is not None:
+                t, value = mark.measured
                 dot = '<circle class="measured" cx="{}" cy="{}" r="4"><title>{}</title></circle>'
-                title = f"finding {mark.label}: {quantity(mark.value, self.unit)} at {quantity(mark.time, 's')}"
-                parts.append(Markup(dot).format(_px(frame.x(mark.time)), _px(frame.y(mark.value)), title))
-        label = f"{self.title}, {', '.join(line.label for line in self.series)}"
+                title = f"finding {mark.label}: {quantity(value, self.unit)} measured"
+                parts.append(Markup(dot).format(_px(frame.x(t)), _px(frame.y(value)), title))
+        label = f"{self.heading}, {', '.join(line.label for line in self.series)}"
         opening = Markup('<svg viewBox="0 0 {} {}" role="img" aria-label="{}">').format(WIDTH, HEIGHT, label)
         return opening + Markup("").join(parts) + Markup("</svg>")
 
@@ -105,7 +111,7 @@ class _Frame:
     def around(cls, chart: Chart) -> _Frame:
         times = _finite([line.time for line in chart.series])
         values = _finite([line.value for line in chart.series])
-        extra = [line.expected for line in chart.series] + [mark.value for mark in chart.marks]
+        extra = [line.expected for line in chart.series] + [mark.measured[1] for mark in chart.marks if mark.measured]
         known = [x for x in extra if x is not None and math.isfinite(x)] + ([0.0] if chart.zero else [])
         values = np.concatenate([values, known])
         low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
@@ -149,7 +155,6 @@ def _axes(chart: Chart, frame: _Frame) -> list[Markup]:
         text = '<text class="tick mid" x="{}" y="{}">{}</text>'
         parts.append(Markup(text).format(_px(frame.x(t)), HEIGHT - BOTTOM + 17, _tick(t, columns)))
     parts.append(Markup('<text class="tick mid" x="{}" y="{}">time [s]</text>').format((LEFT + WIDTH) // 2, HEIGHT - 3))
-    parts.append(Markup('<text class="tick" x="2" y="{}">{}</text>').format(TOP - 3, f"[{nice_unit(chart.unit)}]"))
     return parts
 
 

@@ -62,7 +62,11 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
     """What the template is given."""
     last, verdict, recording = contents.last, contents.verdict, contents.recording
     rows = make_rows(contents)
-    failed = [row for row in rows if not row.finding.passed]
+    # A measured objective says more to a person than a check that fails beside it.
+    failed = sorted(
+        (row for row in rows if not row.finding.passed),
+        key=lambda row: row.finding.objective is None or row.finding.value is None,
+    )
     charts: list[Chart] = []
     if recording is not None:
         from wsim.report.plots import make_charts
@@ -143,8 +147,9 @@ def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
     findings = contents.verdict.findings if contents.verdict else []
     rows: list[tuple[str, bool | None]] = []
     for item in contents.plan.objectives:
-        sentence = item.sentence or f"{item.object} {item.kind.replace('_', ' ')} {item.ref or ''}".strip()
-        answers = [f.passed for f in findings if f.objective and f.objective == item.sentence]
+        # As the judge names an objective that has no sentence.
+        sentence = item.sentence or " ".join(word for word in (item.object, item.kind, item.ref) if word)
+        answers = [finding.passed for finding in findings if finding.objective == sentence]
         rows.append((sentence, all(answers) if answers else None))
     return rows
 

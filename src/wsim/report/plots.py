@@ -36,7 +36,8 @@ def make_charts(recording: Recording, findings: list[Finding]) -> list[Chart]:
 
 
 def _body_charts(recording: Recording, findings: list[Finding]) -> list[Chart]:
-    depths = _depths(recording)
+    evidence = Evidence(recording)
+    depths = _depths(evidence)
     heights = {
         body.prim: recording.position(body.prim)[:, 2].astype(np.float64)
         for body in recording.world.bodies
@@ -44,19 +45,18 @@ def _body_charts(recording: Recording, findings: list[Finding]) -> list[Chart]:
     }
     charts = []
     if depths:
-        series, marks, note = _body_lines(depths, recording, findings)
+        series, marks, note = _body_lines(depths, evidence, findings)
         note = "; ".join(part for part in ("below the surface as it stands at the end", note) if part)
         charts.append(Chart("Depth of the lowest point", "m", series, marks, note, downwards=True, zero="surface"))
     if heights:
-        charts.append(Chart("Height of the origin", "m", *_body_lines(heights, recording, findings)))
+        charts.append(Chart("Height of the origin", "m", *_body_lines(heights, evidence, findings)))
     return charts
 
 
-def _depths(recording: Recording) -> dict[str, Values]:
+def _depths(evidence: Evidence) -> dict[str, Values]:
     """Depth (T,) [m] of the lowest point of every body that was in a fluid, by prim, as the judge measures it."""
-    evidence = Evidence(recording)
     depths: dict[str, Values] = {}
-    for fluid in recording.world.fluids:
+    for fluid in evidence.world.fluids:
         try:
             depths = {**_depths_in(fluid, evidence), **depths}
         except (LookupError, ValueError, ArithmeticError):
@@ -81,7 +81,7 @@ def _depths_in(fluid: Fluid, evidence: Evidence) -> dict[str, Values]:
 
 
 def _body_lines(
-    values: dict[str, Values], recording: Recording, findings: list[Finding]
+    values: dict[str, Values], evidence: Evidence, findings: list[Finding]
 ) -> tuple[list[Series], list[Mark], str]:
     """A line for each body, those of failed findings first; marks of those findings; what is left out."""
     failed = {finding.prim for finding in findings if not finding.passed}
@@ -94,25 +94,32 @@ def _body_lines(
         for k, finding in enumerate(findings, start=1):
             if finding.prim != prim:
                 continue
-            # Only a length that this line passes through is this chart's: a finding may measure another one.
-            measured = finding.value if _on_line(finding, recording.time, values[prim]) else None
+            measured = _measured(finding, evidence, values[prim])
             if measured is not None and finding.expected is not None:
                 expected = finding.expected
             if not finding.passed and finding.time is not None:
                 marks.append(Mark(f"#{k}", finding.time, measured))
         color = i if i < COLORS else MUTED
-        series.append(Series(prim_name(prim), recording.time, values[prim], color, expected))
+        series.append(Series(prim_name(prim), evidence.time, values[prim], color, expected))
     left = len(order) - len(series)
     return series, marks[:MOST_MARKS], f"{left} more bodies are not drawn" if left else ""
 
 
-def _on_line(finding: Finding, time: Values, value: Values) -> bool:
-    """Whether a finding's value is what the line shows at that time, to a tenth of the line's range."""
-    if finding.value is None or finding.unit != "m" or not np.isfinite(value).any():
-        return False
-    shown = value[-1] if finding.time is None else np.interp(finding.time, time, value)
-    scale = max(float(np.nanmax(value) - np.nanmin(value)), 2.0 * abs(finding.value))
-    return bool(abs(shown - finding.value) <= 0.1 * scale)
+def _measured(finding: Finding, evidence: Evidence, values: Values) -> tuple[float, float] | None:
+    """(time, value) of a finding's length on a body's line: at the finding's time, or its mean at the run's end.
+
+    None if the line does not pass there, to a tenth of its range: the finding measured another length.
+    """
+    if finding.value is None or finding.unit != "m" or not np.isfinite(values).any():
+        return None
+    reach = 0.1 * max(float(np.nanmax(values) - np.nanmin(values)), 2.0 * abs(finding.value))
+    at_end = float(np.mean(values[evidence.window]))
+    if abs(at_end - finding.value) <= reach:
+        return float(evidence.time[-1]), finding.value
+    if finding.time is None:
+        return None
+    then = float(np.interp(finding.time, evidence.time, values))
+    return (finding.time, finding.value) if abs(then - finding.value) <= reach else None
 
 
 def _marks(findings: list[Finding], word: str) -> list[Mark]:
