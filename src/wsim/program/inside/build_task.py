@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import traceback
@@ -41,7 +42,14 @@ def _author(job: dict[str, Any], program: str) -> None:
             "build(scene) returned without making an object; call scene.ground(...), scene.box(...) or another"
         )
     path = os.path.join(job["scratch"], "stage.usda")  # noqa: PTH118
-    scene.save(path)
+    try:
+        scene.save(path)
+    except Exception as error:
+        text = str(error)
+        if os.strerror(errno.EFBIG) in text or os.strerror(errno.ENOSPC) in text:
+            limit = job["limits"]["file_bytes"]
+            raise OSError(errno.EFBIG, f"the stage has more than the {limit} bytes that are allowed") from None
+        raise
     _copy(path, job["stage_fd"])
 
 

@@ -55,12 +55,14 @@ def _limit(limits: dict[str, Any]) -> None:
         resource.RLIMIT_MSGQUEUE: 0,
         resource.RLIMIT_MEMLOCK: 1 << 20,
     }
-    if limits["cpu_seconds"] is not None:
-        wanted[resource.RLIMIT_CPU] = int(limits["cpu_seconds"])
     for which, value in wanted.items():
         hard = resource.getrlimit(which)[1]
         value = value if hard == resource.RLIM_INFINITY else min(value, hard)
         resource.setrlimit(which, (value, value))
+    if limits["cpu_seconds"] is not None:
+        seconds = int(limits["cpu_seconds"])
+        # A second between the signal that says why and the one that cannot be ignored.
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
 
 
 def _drop_capabilities(libc: ctypes.CDLL) -> None:

@@ -20,6 +20,7 @@ from wsim.program.sandbox.process import SandboxProcess
 from wsim.program.sandbox.result import BuildResult, Kind, Report, ending, printable, read_report
 
 _PROGRAM_BYTES = 1 << 20
+_MESSAGE = 800  # characters
 _NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EMFILE)
 _HEADER = b"#usda 1.0"
 
@@ -69,6 +70,7 @@ def build(
                 ) as process,
                 SandboxProcess(check, limits=limits, isolation=chosen, readable=[Path(folder), *roots]) as checker,
             ):
+                process.send()  # nobody answers a program that asks
                 process.wait(limits.wall_seconds)
                 kind, message, line = _judge(process, limits, program.name)
                 log = printable(process.log)
@@ -124,7 +126,9 @@ def _judge(process: SandboxProcess, limits: Limits, name: str) -> tuple[Kind, st
 
 def _told(report: Report) -> str:
     text = ": ".join(part for part in (report.type, report.message) if part)
-    return printable(text)
+    # One line: USD's errors are pages long, and the log has them whole.
+    line = " ".join(printable(text).split())
+    return line if len(line) <= _MESSAGE else line[:_MESSAGE] + " ..."
 
 
 def _stopped(process: SandboxProcess, limits: Limits) -> tuple[Kind, str] | None:

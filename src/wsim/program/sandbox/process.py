@@ -118,12 +118,13 @@ class SandboxProcess:
         """Whether it still runs."""
         return self.code is None and self._process.poll() is None
 
-    def send(self, data: bytes) -> None:
-        """Write to its standard input; nothing if it is gone."""
+    def send(self, data: bytes = b"") -> None:
+        """Write all that its standard input will hold, and end it; nothing if it is gone."""
         assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):
-            self._process.stdin.write(data)
-            self._process.stdin.flush()
+        if self._process.stdin.closed:
+            return
+        with contextlib.suppress(BrokenPipeError), self._process.stdin as stream:
+            stream.write(data)
 
     def wait(self, seconds: float) -> None:
         """Wait until it ends, and end it when its time is up or it uses more than it may. Sets `stopped` and `code`."""
@@ -171,9 +172,7 @@ class SandboxProcess:
     def close(self) -> None:
         """End it and remove its files."""
         self.kill()
-        assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):
-            self._process.stdin.close()
+        self.send()
         self._clean()
 
     def _clean(self) -> None:

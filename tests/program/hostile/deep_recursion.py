@@ -1,0 +1,2 @@
+def build(scene):
+    build(scene)

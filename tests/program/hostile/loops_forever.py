@@ -1,0 +1,3 @@
+def build(scene):
+    while True:
+        pass

@@ -1,0 +1,2 @@
+def build(scene):
+    scene.param("unused", 1.0)

@@ -1,0 +1,3 @@
+def build(scene):
+    while True:
+        print("x" * 10_000)

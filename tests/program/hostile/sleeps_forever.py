@@ -1,0 +1,5 @@
+import time
+
+
+def build(scene):
+    time.sleep(1000)

@@ -1,0 +1,3 @@
+def build(scene):
+    scene.ground()
+    scene.stage.GetRootLayer().subLayerPaths.append("/etc/passwd")
