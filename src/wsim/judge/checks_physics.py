@@ -11,14 +11,14 @@ import numpy as np
 from wsim.judge.check import Check
 from wsim.judge.contact import overlaps
 from wsim.judge.evidence import MissingError
-from wsim.judge.geometry import smallest_extent
+from wsim.judge.geometry import reach, smallest_extent
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.scene.world import Fluid
+    from wsim.scene.world import Fluid, Shape
 
     Floats = NDArray[np.float64]
 
@@ -46,8 +46,7 @@ class CheckExplosion(Check):
         world = evidence.world
         tops = [float(evidence.ends(i)[1][0]) for i in range(len(world.bodies))]
         tops += [fluid.center[2] + fluid.size[2] / 2 for fluid in world.fluids]
-        lows = [shape.position[2] - (0.0 if shape.kind == "plane" else max(shape.size) / 2)
-                for static in world.statics for shape in static.shapes]  # fmt: skip
+        lows = [_lowest(shape) for static in world.statics for shape in static.shapes]
         if not lows:  # nothing to land on: they fall for as long as the run lasts
             lows = [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
             lows += [float(evidence.track(fluid).position[:, :, 2].min()) for fluid in world.fluids]
@@ -103,6 +102,14 @@ class CheckExplosion(Check):
     @staticmethod
     def _first(time: Floats, wrong: NDArray[np.bool_], otherwise: float) -> float:
         return float(time[np.argmax(wrong)]) if wrong.any() else otherwise
+
+
+def _lowest(shape: Shape) -> float:
+    """Height of a static shape's lowest point; a plane's own height [m]."""
+    if shape.kind == "plane":
+        return shape.position[2]
+    low, _ = reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))
+    return float(low[0])
 
 
 @dataclass

@@ -238,6 +238,8 @@ class _Reader:
             )
         if other.count > 1 and not other.group:
             raise NotUnderstood([other.words], "cannot tell which of them this is")
+        if any(one is not thing and one.support is other for one in self.cast.things):
+            raise UserError(f"{other.words!r}: the builtin planner puts one thing, or a stack, on another, not two")
         thing.support = other
         self._put(thing, "ground")
         self._put(other, "ground")
@@ -332,6 +334,9 @@ class _Reader:
                 raise NotUnderstood([action.words], "cannot let a thing roll there:")
         if action.verb in ("hit", "knock") and not targets:
             raise NotUnderstood([action.words], "needs to be told what is hit:")
+        if action.verb == "roll" and not targets:
+            self._put(thing, "ground")
+            self._do(thing, "roll")
         for phrase in targets:
             self._aim(thing, phrase, action)
 
