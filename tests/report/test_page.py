@@ -80,6 +80,18 @@ def test_the_reason_comes_first(rejected: Path) -> None:
     assert "wsim view " in text and "--finding 2" in text and "--finding 1" not in text
 
 
+def test_the_summary_says_nothing_twice(make_run) -> None:
+    findings = [
+        Finding(check="CheckComplete", passed=False, message="It ends early."),
+        Finding(check="ObjectiveFloats", passed=False, message="It sinks.", objective="It floats.", value=2.0),
+    ]
+    verdict = Verdict(status="rejected", summary="Rejected: 2 of 2 findings fail; It sinks.", findings=findings)
+    words = Elements(write(make_run(verdict))).words
+    assert "2 of 2 findings fail. " in words
+    first, second = words.index("It sinks."), words.index("It ends early.")
+    assert words.index("2 of 2") < first < second
+
+
 def test_findings_link_to_their_lines(rejected: Path) -> None:
     page = Elements(write(rejected))
     assert [line["id"] for line in page.all("span", class_="failed")] == [f"L{BALL_LINE}"]

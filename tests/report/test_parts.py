@@ -38,7 +38,7 @@ def test_numbers_have_three_digits(x: float | None, text: str) -> None:
 
 def test_a_sign_and_a_unit() -> None:
     assert quantity(0.01, "kg/m^3", sign=True) == "+0.01\u00a0kg/m³"
-    assert quantity(None, "m") == ""
+    assert quantity(None, "m") == "" and quantity(2.0, "1") == "2"
 
 
 def test_a_value_just_over_its_limit_does_not_look_equal_to_it() -> None:
@@ -54,6 +54,7 @@ def test_a_value_just_over_its_limit_does_not_look_equal_to_it() -> None:
         ({"value": 0.2, "limit": 0.1, "margin": -0.1}, "at most"),
         ({"value": 0.2, "limit": 0.1, "margin": 0.1}, "at least"),
         ({"value": 0.2, "limit": 0.01, "expected": 0.205, "margin": 0.005}, "off by at most"),
+        ({"value": 0.0, "limit": 0.01, "expected": 0.0, "margin": 0.01}, "at most"),
         ({"value": 0.1, "limit": 0.1, "margin": 0.0}, "limit"),
         ({"value": 0.2, "limit": 0.1}, "limit"),
         ({"value": 0.2, "limit": 0.1, "margin": 7.0}, "limit"),

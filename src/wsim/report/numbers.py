@@ -35,11 +35,14 @@ def number(x: float | None, digits: int = 3, sign: bool = False) -> str:
 def quantity(x: float | None, unit: str = "", digits: int = 3, sign: bool = False) -> str:
     """A number with its unit."""
     text = number(x, digits, sign)
-    return f"{text}\N{NO-BREAK SPACE}{nice_unit(unit)}" if text and unit else text
+    unit = nice_unit(unit)
+    return f"{text}\N{NO-BREAK SPACE}{unit}" if text and unit else text
 
 
 def nice_unit(unit: str) -> str:
-    """kg/m^3 → kg/m³."""
+    """kg/m^3 → kg/m³; a plain number's unit, 1, is not shown."""
+    if unit == "1":
+        return ""
     for power, sup in (("^-1", "⁻¹"), ("^-2", "⁻²"), ("^2", "²"), ("^3", "³")):
         unit = unit.replace(power, sup)
     return unit.replace("*", "·")

@@ -10,7 +10,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from wsim.judge.verdict import Finding
+from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
 from wsim.report.chart import Chart
 from wsim.report.contents import RunContents, gather
@@ -77,7 +77,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "title": _title(contents),
         "status": status,
         "badge": STATUS_WORDS.get(status, status.capitalize()),
-        "summary": verdict.summary if verdict else _unjudged(contents, status),
+        "summary": _summary(verdict, failed) if verdict else _unjudged(contents, status),
         "prompt": str(contents.facts.get("prompt") or (contents.plan.prompt if contents.plan else "")),
         "notes": contents.notes,
         "rows": [*failed, *(row for row in rows if row.finding.passed)],
@@ -158,6 +158,14 @@ def _title(contents: RunContents) -> str:
     title = contents.facts.get("title") or (contents.plan.title if contents.plan else None)
     program = contents.facts.get("program")
     return str(title or (Path(str(program)).name if program else None) or contents.run.path.resolve().name)
+
+
+def _summary(verdict: Verdict, cards: list[Row]) -> str:
+    """The verdict's sentence without what stands beside it: the status, and the message of the first card."""
+    text = verdict.summary.removeprefix(f"{STATUS_WORDS[verdict.status]}: ")
+    if cards:
+        text = text.replace(f"; {cards[0].finding.message.rstrip('.')}", "")
+    return text[:1].upper() + text[1:]
 
 
 def _unjudged(contents: RunContents, status: str) -> str:

@@ -85,8 +85,7 @@ def _body_lines(
 ) -> tuple[list[Series], list[Mark], str]:
     """A line for each body, those of failed findings first; marks of those findings; what is left out."""
     failed = {finding.prim for finding in findings if not finding.passed}
-    named = {finding.prim for finding in findings}
-    order = sorted(values, key=lambda prim: (prim not in failed, prim not in named))
+    order = sorted(values, key=lambda prim: prim not in failed)
     series: list[Series] = []
     marks: list[Mark] = []
     for i, prim in enumerate(order[:MOST_LINES]):

@@ -46,7 +46,7 @@ def program_line(finding: Finding, names: set[str], count: int) -> int | None:
 
 def measures(finding: Finding) -> list[tuple[str, str]]:
     """(label, text) of a finding's numbers, as many as it has, with digits enough to tell them apart."""
-    digits = digits_to_tell_apart([finding.value, finding.expected, finding.limit])
+    digits = digits_to_tell_apart([finding.value, finding.limit])
     rows = [
         ("measured", quantity(finding.value, finding.unit, digits)),
         ("expected", quantity(finding.expected, finding.unit, digits)),
@@ -59,7 +59,7 @@ def measures(finding: Finding) -> list[tuple[str, str]]:
 
 def table_numbers(finding: Finding) -> dict[str, str]:
     """A finding's numbers for its row; its unit has a column of its own."""
-    digits = digits_to_tell_apart([finding.value, finding.expected, finding.limit])
+    digits = digits_to_tell_apart([finding.value, finding.limit])
     limit = number(finding.limit, digits)
     sign = {"at most": "≤ ", "at least": "≥ ", "off by at most": "± "}.get(limit_word(finding), "")
     return {
@@ -77,12 +77,16 @@ def limit_word(finding: Finding) -> str:
     value, limit, margin, expected = finding.value, finding.limit, finding.margin, finding.expected
     if value is None or limit is None or margin is None or not all(map(math.isfinite, (value, limit, margin))):
         return "limit"
-    bounds = {"at most": limit - value, "at least": value - limit}
-    if expected is not None and math.isfinite(expected):
-        bounds["off by at most"] = limit - abs(value - expected)
     scale = 1e-6 * max(abs(value), abs(limit), 1e-12)
-    words = [word for word, bound in bounds.items() if abs(bound - margin) <= scale]
-    return words[0] if len(words) == 1 else "limit"
+
+    def tells(bound: float) -> bool:
+        return abs(bound - margin) <= scale
+
+    at_most, at_least = tells(limit - value), tells(value - limit)
+    if at_most or at_least:
+        return "limit" if at_most and at_least else "at most" if at_most else "at least"
+    around = expected is not None and math.isfinite(expected) and tells(limit - abs(value - expected))
+    return "off by at most" if around else "limit"
 
 
 def describe_size(item: PlanObject) -> str:
