@@ -300,9 +300,11 @@ def _spacing(size: Sequence[float]) -> float:
 
 
 def _number(value: float) -> str:
-    """A float as a person writes it: to a micrometre, or to four figures where it is small."""
+    """A float as a person writes it: to a micrometre, or to four figures where it is small; rounding's dust is 0."""
+    if abs(value) < 1e-9:
+        return "0.0"
     rounded = round(float(value), 6) if abs(value) >= 1e-3 else float(f"{value:.4g}")
-    return repr(rounded + 0.0)
+    return repr(rounded)
 
 
 def _tuple(values: Sequence[float]) -> str:

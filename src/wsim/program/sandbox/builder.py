@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import math
 import os
 import shutil
-import signal
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
@@ -16,12 +14,11 @@ from pathlib import Path
 from wsim.errors import UserError
 from wsim.program.sandbox.isolation import choose
 from wsim.program.sandbox.limits import Limits
+from wsim.program.sandbox.outcome import judge
 from wsim.program.sandbox.process import SandboxProcess
-from wsim.program.sandbox.result import BuildResult, Kind, Report, ending, printable, read_report
+from wsim.program.sandbox.result import BuildResult, Kind, ending, printable, read_report
 
 _PROGRAM_BYTES = 1 << 20
-_MESSAGE = 800  # characters
-_NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EMFILE)
 _HEADER = b"#usda 1.0"
 
 
@@ -72,7 +69,7 @@ def build(
             ):
                 process.send()  # nobody answers a program that asks
                 process.wait(limits.wall_seconds)
-                kind, message, line = _judge(process, limits, program.name)
+                kind, message, line = judge(process, limits, program.name, "build(scene)")
                 log = printable(process.log)
                 problems: list[str] = []
                 if kind == "ok":
@@ -103,57 +100,6 @@ def _numbers(params: Mapping[str, float]) -> dict[str, float]:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
             raise UserError(f"parameter {name} = {value!r} must be a finite number")
     return {str(name): float(value) for name, value in params.items()}
-
-
-def _judge(process: SandboxProcess, limits: Limits, name: str) -> tuple[Kind, str, str | None]:
-    """Kind, message and line of what became of the process."""
-    stopped = _stopped(process, limits)
-    if stopped is not None:
-        return (*stopped, None)
-    report = read_report(process.report()) if process.code == 0 else None
-    if report is None:
-        return (*_died(process), None)
-    line = f"{name}:{report.line}" if report.line else None
-    if report.outcome == "ok":
-        return "ok", "built", None
-    kind: Kind = "exception"
-    if report.no_memory or report.type == "MemoryError":
-        return "memory", f"the program ran out of its {limits.memory_bytes >> 20} MiB of memory", line
-    if report.errno in _NO_ROOM:
-        kind = "output"
-    return kind, _told(report), line
-
-
-def _told(report: Report) -> str:
-    text = ": ".join(part for part in (report.type, report.message) if part)
-    # One line: USD's errors are pages long, and the log has them whole.
-    line = " ".join(printable(text).split())
-    return line if len(line) <= _MESSAGE else line[:_MESSAGE] + " ..."
-
-
-def _stopped(process: SandboxProcess, limits: Limits) -> tuple[Kind, str] | None:
-    if process.stopped == "timeout":
-        return "timeout", f"build(scene) did not end within {limits.wall_seconds:g} s and was stopped"
-    if process.code in (-signal.SIGXCPU, 128 + signal.SIGXCPU):
-        return "timeout", f"build(scene) used more than {limits.cpu_seconds:g} s of CPU time and was stopped"
-    if process.stopped == "log":
-        return "output", f"the program printed more than {limits.log_bytes} bytes and was stopped"
-    if process.stopped == "scratch":
-        return "output", f"the program wrote more than {limits.scratch_bytes} bytes of files and was stopped"
-    if process.stopped == "threads":
-        return "crash", f"the program started more than {limits.threads} threads and was stopped"
-    return None
-
-
-def _died(process: SandboxProcess) -> tuple[Kind, str]:
-    """A process that ended without a report."""
-    assert process.code is not None
-    log = process.log
-    if "std::bad_alloc" in log[-4000:] or "MemoryError" in log[-400:]:
-        return "memory", "the program ran out of memory"
-    if process.code == 0:
-        return "crash", "the program ended its process before build(scene) returned"
-    return "crash", f"the program {ending(process.code)} before build(scene) returned"
 
 
 def _look(target: int, limits: Limits) -> tuple[Kind, str]:

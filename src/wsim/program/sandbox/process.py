@@ -128,6 +128,8 @@ class SandboxProcess:
 
     def wait(self, seconds: float) -> None:
         """Wait until it ends, and end it when its time is up or it uses more than it may. Sets `stopped` and `code`."""
+        if self.code is not None:
+            return
         deadline = time.monotonic() + seconds
         ended = os.pidfd_open(self._process.pid)
         try:

@@ -1,0 +1,185 @@
+"""What `control(world, t)` is given: the state of all worlds as arrays, and where to put what it decides.
+
+    def control(world, t):
+        hinge = world.joint("hinge")
+        hinge.target = 0.5 * np.sin(t)
+        world.apply_force("block", (0.0, 0.0, 2.0))
+
+Imported in the sandbox beside the program: NumPy alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float32]
+
+_ALIGN = 64
+INPUTS = ("body_q", "body_qd", "joint_q", "joint_qd")
+OUTPUTS = ("joint_target", "joint_force", "body_force")
+
+
+@dataclass(frozen=True)
+class ControlLayout:
+    """Names and counts: the shapes of the arrays that the simulator and `control` share.
+
+    Attributes:
+        bodies: Prim paths of the bodies, in the order of `body_q`.
+        joints: Prim paths of the joints with one degree of freedom, in the order of `joint_q`.
+        world_count: Worlds that run side by side: the leading axis of every array.
+    """
+
+    bodies: list[str]
+    joints: list[str] = field(default_factory=list)
+    world_count: int = 1
+
+    def shapes(self) -> dict[str, tuple[int, ...]]:
+        """The shape of each array by name; all are float32, but for `t`, float64."""
+        w, b, j = self.world_count, len(self.bodies), len(self.joints)
+        return {
+            "t": (1,),
+            "body_q": (w, b, 7),
+            "body_qd": (w, b, 6),
+            "joint_q": (w, j),
+            "joint_qd": (w, j),
+            "joint_target": (w, j),
+            "joint_force": (w, j),
+            "body_force": (w, b, 6),
+        }
+
+    @property
+    def size(self) -> int:
+        """Bytes of all arrays together."""
+        return max(_ALIGN, sum(_padded(name, shape) for name, shape in self.shapes().items()))
+
+    def views(self, buffer: Any) -> dict[str, NDArray[Any]]:
+        """The arrays in a buffer of `size` bytes."""
+        arrays, offset = {}, 0
+        for name, shape in self.shapes().items():
+            arrays[name] = np.ndarray(shape, _dtype(name), buffer, offset)
+            offset += _padded(name, shape)
+        return arrays
+
+
+def _dtype(name: str) -> type[np.floating[Any]]:
+    return np.float64 if name == "t" else np.float32
+
+
+def _padded(name: str, shape: tuple[int, ...]) -> int:
+    count = int(np.prod(shape)) * np.dtype(_dtype(name)).itemsize
+    return -(-count // _ALIGN) * _ALIGN
+
+
+@dataclass(frozen=True)
+class ControlBody:
+    """The state of one body in all worlds, W of them; the arrays are for reading.
+
+    Attributes:
+        position: (W, 3) of its origin, world frame [m].
+        rotation: (W, 4) quaternion xyzw.
+        velocity: (W, 3) of its centre of mass [m/s].
+        angular_velocity: (W, 3), world frame [rad/s].
+    """
+
+    position: Floats
+    rotation: Floats
+    velocity: Floats
+    angular_velocity: Floats
+
+
+class ControlJoint:
+    """The state of one joint in all worlds, W of them, and what is asked of it.
+
+    Attributes:
+        position: (W,) angle [rad] or travel [m]; for reading.
+        velocity: (W,) [rad/s] or [m/s]; for reading.
+    """
+
+    def __init__(self, position: Floats, velocity: Floats, target: Floats, force: Floats) -> None:
+        self.position = position
+        self.velocity = velocity
+        self._target = target
+        self._force = force
+
+    @property
+    def target(self) -> Floats:
+        """(W,) what its drive aims at [rad] or [m]; stays until it is set again. One number sets all worlds."""
+        return self._target
+
+    @target.setter
+    def target(self, value: ArrayLike) -> None:
+        self._target[...] = value
+
+    @property
+    def force(self) -> Floats:
+        """(W,) torque [N m] or force [N] on it; zero at the start of every call."""
+        return self._force
+
+    @force.setter
+    def force(self, value: ArrayLike) -> None:
+        self._force[...] = value
+
+
+class ControlWorld:
+    """All worlds at one time. Names are prim names or prim paths."""
+
+    def __init__(self, layout: ControlLayout, arrays: dict[str, NDArray[Any]]) -> None:
+        self.world_count = layout.world_count
+        self._bodies, self._joints = _names(layout.bodies), _names(layout.joints)
+        self._arrays = dict(arrays)
+        for name in INPUTS:
+            self._arrays[name] = arrays[name].view()
+            self._arrays[name].flags.writeable = False
+
+    @property
+    def bodies(self) -> list[str]:
+        """Prim paths of the bodies."""
+        return [name for name in self._bodies if name.startswith("/")]
+
+    @property
+    def joints(self) -> list[str]:
+        """Prim paths of the joints."""
+        return [name for name in self._joints if name.startswith("/")]
+
+    def body(self, name: str) -> ControlBody:
+        """The state of a body; LookupError if there is none of that name."""
+        i = _find(self._bodies, name, "body")
+        pose, motion = self._arrays["body_q"][:, i], self._arrays["body_qd"][:, i]
+        return ControlBody(pose[:, :3], pose[:, 3:], motion[:, :3], motion[:, 3:])
+
+    def joint(self, name: str) -> ControlJoint:
+        """The state of a joint; LookupError if there is none of that name."""
+        i = _find(self._joints, name, "joint")
+        a = self._arrays
+        return ControlJoint(a["joint_q"][:, i], a["joint_qd"][:, i], a["joint_target"][:, i], a["joint_force"][:, i])
+
+    def apply_force(self, name: str, force: ArrayLike, torque: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """Push a body until the next call, on top of what was applied in this one.
+
+        Args:
+            name: The body.
+            force: (3,) for all worlds or (W, 3), at its centre of mass, world frame [N].
+            torque: (3,) or (W, 3), world frame [N m].
+        """
+        push = self._arrays["body_force"][:, _find(self._bodies, name, "body")]
+        push[:, :3] += np.asarray(force, np.float32)
+        push[:, 3:] += np.asarray(torque, np.float32)
+
+
+def _names(paths: Sequence[str]) -> dict[str, int]:
+    """Index by path, and by name where one prim alone has it."""
+    names = [path.rsplit("/", 1)[-1] for path in paths]
+    known = {name: i for i, name in enumerate(names) if names.count(name) == 1}
+    return known | {path: i for i, path in enumerate(paths)}
+
+
+def _find(known: dict[str, int], name: str, kind: str) -> int:
+    index = known.get(name)
+    if index is None:
+        raise LookupError(f"no {kind} {name!r}; known: {', '.join(known) or 'none'}")
+    return index

@@ -1,0 +1,262 @@
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from wsim.errors import UserError
+from wsim.plan.schema import (
+    Assumption,
+    CameraPlan,
+    Material,
+    Objective,
+    Plan,
+    PlanObject,
+    Pose,
+    Relation,
+    SimulationPlan,
+)
+from wsim.program.compose import compose
+from wsim.program.sandbox import build
+from wsim.scene.describe import describe
+
+WOOD = Material(name="wood", density=600.0, friction=0.4, restitution=0.1, color=(0.5, 0.27, 0.11))
+PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
+
+
+def _tank_plan(**changes: object) -> Plan:
+    blocks = [
+        PlanObject(
+            name=f"block_{i}",
+            role="rigid_body",
+            primitive="box",
+            size=(0.3, 0.3, 0.2),
+            material=WOOD,
+            pose=Pose(position=(x, 0.0, 0.75)),
+        )
+        for i, x in enumerate((-0.5, 0.1 + 0.2 - 0.3, 0.5))
+    ]
+    water = PlanObject(
+        name="water",
+        role="fluid",
+        primitive="fluid",
+        state="fluid",
+        relations=[
+            Relation(predicate="PLACE-IN", ref="tank"),
+            Relation(predicate="FREE-SURFACE-AT", ref="tank", value=0.6),
+        ],
+    )
+    tank = PlanObject(
+        name="tank",
+        role="container",
+        primitive="tank",
+        size=(2.0, 1.0, 1.0),
+        state="static",
+        pose=Pose(position=(0.0, 0.0, 0.0)),
+    )
+    values: dict[str, object] = {
+        "title": "Three wooden blocks float in a glass tank",
+        "prompt": "three wooden blocks float in a glass tank",
+        "objects": [water, *blocks, tank],
+        "cameras": [CameraPlan(name="side", eye=(0.0, -4.0, 1.5), target=(0.0, 0.0, 0.5))],
+        "simulation": SimulationPlan(duration=4.0, spacing=0.05),
+        **changes,
+    }
+    return Plan.model_validate(values)
+
+
+EXPECTED = '''"""Three wooden blocks float in a glass tank."""
+
+from wsim.scene import Scene
+
+
+def build(scene: Scene) -> None:
+    """Author the world."""
+    wood_density = scene.param(
+        "wood_density",
+        600.0,
+        low=300.0,
+        high=900.0,
+        unit="kg/m^3",
+    )
+    wood = scene.material(
+        "wood",
+        density=wood_density,
+        friction=0.4,
+        restitution=0.1,
+        color=(0.5, 0.27, 0.11),
+    )
+
+    for i, x in enumerate((-0.5, 0.0, 0.5)):
+        scene.box(
+            f"block_{i}",
+            size=(0.3, 0.3, 0.2),
+            position=(x, 0.0, 0.75),
+            material=wood,
+        )
+    tank = scene.tank("tank", inner_size=(2.0, 1.0, 1.0))
+    scene.fluid("water", fills=tank, level=0.6, spacing=0.05)
+    scene.camera("side", eye=(0.0, -4.0, 1.5), target=(0.0, 0.0, 0.5))
+    scene.simulation(duration=4.0)
+
+
+if __name__ == "__main__":
+    from wsim import run
+
+    run(build)
+'''
+
+
+def test_it_reads_as_a_person_would_write_it() -> None:
+    assert compose(_tank_plan()) == EXPECTED
+
+
+def test_the_same_plan_gives_the_same_text() -> None:
+    assert compose(_tank_plan()) == compose(Plan.model_validate_json(_tank_plan().model_dump_json()))
+
+
+def _solids() -> list[PlanObject]:
+    """One object of every kind, with names that Python keeps for itself."""
+    steel, paint = Material(name="Stahl (ä)", density=7850.0), Material(name="2 coats", density=1.0, opacity=0.5)
+    turned = Pose(position=(0.0, 2.0, 1.0), rotation_deg=(0.0, 90.0, 0.0))
+    return [
+        PlanObject(name="ground", role="terrain", primitive="ground", state="static", material=paint),
+        PlanObject(
+            name="scene",
+            role="rigid_body",
+            primitive="sphere",
+            size=(0.1,),
+            material=steel,
+            velocity=(1.0, 0.0, 0.00015),
+            pose=Pose(position=(0.0, 0.0, 1.0)),
+        ),
+        PlanObject(name="class", role="rigid_body", primitive="cylinder", size=(0.1, 0.3), material=WOOD, pose=turned),
+        PlanObject(
+            name="i",
+            role="rigid_body",
+            primitive="capsule",
+            size=(0.1, 0.3),
+            material=WOOD.model_copy(update={"color": (1.0, 0.0, 0.0)}),
+            pose=Pose(position=(1 / 3, 4.0, 1.0)),
+        ),
+        PlanObject(
+            name="step",
+            role="terrain",
+            primitive="box",
+            size=(1.0, 1.0, 0.1),
+            state="static",
+            pose=Pose(position=(5.0, 0.0, 0.05)),
+        ),
+        PlanObject(
+            name="drop",
+            role="fluid",
+            primitive="fluid",
+            size=(0.2, 0.2, 0.2),
+            state="fluid",
+            pose=Pose(position=(8.0, 0.0, 0.5)),
+            material=Material(name="oil", density=900.0),
+        ),
+        *(
+            PlanObject(
+                name=f"ball_{i + 1}",
+                role="rigid_body",
+                primitive="sphere",
+                size=(0.05,),
+                material=steel,
+                pose=Pose(position=(0.2 * (i % 5), 10.0 + 0.2 * (i // 5), 0.05)),
+            )
+            for i in range(20)
+        ),
+    ]
+
+
+def _world(text: str, folder: Path):
+    program = folder / "program.py"
+    program.write_text(text)
+    result = build(program, folder / "stage.usda", isolation="none")
+    assert result.ok, f"{result.message}\n{result.log}\n{text}"
+    return describe(folder / "stage.usda")
+
+
+def test_what_it_builds_is_what_was_planned(tmp_path: Path) -> None:
+    plan = Plan(title="All", prompt="", objects=_solids(), simulation=SimulationPlan(duration=2.5, frame_rate=60.0))
+    world = _world(compose(plan), tmp_path)
+    bodies = {body.prim.rsplit("/", 1)[-1]: body for body in world.bodies}
+    dynamic = [item for item in plan.objects if item.state == "dynamic"]
+    assert sorted(bodies) == sorted(item.name for item in dynamic)
+    for item in dynamic:
+        assert item.pose is not None
+        assert item.material is not None
+        body = bodies[item.name]
+        assert body.position == pytest.approx(item.pose.position, abs=1e-6)
+        assert body.mass == pytest.approx(item.material.density * body.volume, rel=1e-6)
+        assert body.shapes[0].kind == item.primitive
+        assert body.shapes[0].color == pytest.approx(item.material.color)
+        assert body.velocity == pytest.approx(item.velocity)
+    assert {static.prim for static in world.statics} == {"/World/ground", "/World/step"}
+    assert world.fluids[0].density == 900.0
+    assert (world.duration, world.frame_rate) == (2.5, 60.0)
+    assert [parameter.default for parameter in world.parameters] == [7850.0, 600.0, 600.0]
+
+
+HARMFUL = [
+    'ends """ here\nimport os; os._exit(7)\n"""',
+    "back\\slash \\N{BULLET} \\x41 \\",
+    'a quote at the end"',
+    "'''\n{__import__('os')._exit(7)}",
+    "new\nline\r\nand \u2028 \u2029 \x0b \x0c \x85 separators",
+    "\x00 nul, \u202e turned round, \ufeff",
+    '"""',
+    "",
+    "# " + "long " * 200,
+    "x" * 500,
+    "\ud800",
+]
+
+
+@pytest.mark.parametrize("text", HARMFUL)
+def test_text_of_the_plan_does_nothing(text: str, tmp_path: Path) -> None:
+    words = [Assumption(subject=text, choice=text, why=text)]
+    objectives = [Objective(kind="settles", object="block_0", sentence=text)]
+    plan = _tank_plan().model_copy(
+        update={"title": text, "prompt": text, "assumptions": words, "objectives": objectives}
+    )
+    plan.objects[1].words = text
+    source = compose(plan)
+    source.encode()
+    tree, plain = ast.parse(source), ast.parse(EXPECTED)
+    # The same but for the docstring, which `body[0]` is.
+    assert [ast.dump(node) for node in tree.body[1:]] == [ast.dump(node) for node in plain.body[1:]]
+    assert isinstance(ast.get_docstring(tree), str)
+    if text.isprintable() or "\n" in text:
+        _formatted(source, tmp_path)
+
+
+@pytest.mark.parametrize("settings", [["--isolated"], ["--config", str(PYPROJECT)]])
+def test_it_is_formatted_and_clean(settings: list[str], tmp_path: Path) -> None:
+    plan = Plan(title="All", prompt="every kind of thing", objects=_solids())
+    for source in (compose(_tank_plan()), compose(plan)):
+        _formatted(source, tmp_path, settings)
+
+
+def _formatted(source: str, folder: Path, settings: list[str] | None = None) -> None:
+    program = folder / "program.py"
+    program.write_text(source)
+    for command in (["format", "--check", "--diff"], ["check", "--no-cache"]):
+        done = subprocess.run(
+            [sys.executable, "-m", "ruff", *command, *(settings or ["--isolated"]), str(program)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr + source
+
+
+def test_an_object_without_a_pose_is_a_users_mistake() -> None:
+    plan = _tank_plan()
+    plan.objects[1].pose = None
+    with pytest.raises(UserError, match="block_0 has no pose"):
+        compose(plan)
