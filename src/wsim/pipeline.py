@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ from wsim.runs import write_json, write_whole
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
     from wsim.program.sandbox import BuildResult, Limits
+    from wsim.sim.control import ArrayController
     from wsim.sim.simulation import SimulationResult
 
 
@@ -61,13 +63,13 @@ def run_program(
     built = _timed(seconds, "build", lambda: build_stage(copy, folder / "stage.usda", settings, progress))
     write_json(folder / "checks.json", {"build": asdict(built), "seconds": seconds})
     if not built.ok:
-        return conclude(folder, reject_build(built))
+        return conclude(folder, reject(Finding(**built.finding()), f"The program made no world ({built.kind})."))
     return simulate_and_judge(folder, copy, plan, settings, progress, seconds, asdict(built))
 
 
 def simulate_and_judge(
     folder: Path,
-    program: Path | None,
+    program: Path,
     plan: Plan | None,
     settings: Settings,
     progress: Progress,
@@ -75,16 +77,16 @@ def simulate_and_judge(
     build: dict[str, Any] | None = None,
 ) -> Verdict:
     """Stage → recording → verdict, in `folder`, where the stage is."""
-    result = _timed(seconds, "simulate", lambda: simulate(folder, program, settings, progress))
+    from wsim.program.control import ControlError
+
+    try:
+        result = _timed(seconds, "simulate", lambda: simulate(folder, program, settings, progress))
+    except ControlError as error:
+        write_json(folder / "checks.json", {"build": build, "simulation": {"error": str(error)}, "seconds": seconds})
+        return conclude(folder, reject(Finding(**error.finding()), f"The program's control failed ({error.kind})."))
     verdict = _timed(seconds, "judge", lambda: judge_recording(folder / "recording.rrd", plan, progress))
-    write_json(
-        folder / "checks.json",
-        {
-            "build": build,
-            "simulation": {**asdict(result), "stills": [p.name for p in result.stills]},
-            "seconds": seconds,
-        },
-    )
+    simulation = {**asdict(result), "stills": [path.name for path in result.stills]}
+    write_json(folder / "checks.json", {"build": build, "simulation": simulation, "seconds": seconds})
     return conclude(folder, verdict)
 
 
@@ -98,23 +100,48 @@ def build_stage(program: Path, stage: Path, settings: Settings, progress: Progre
     return built
 
 
-def simulate(folder: Path, program: Path | None, settings: Settings, progress: Progress = silent) -> SimulationResult:
-    """Simulate `folder/stage.usda` into `folder/recording.rrd`, with video and stills."""
+def simulate(folder: Path, program: Path, settings: Settings, progress: Progress = silent) -> SimulationResult:
+    """Simulate `folder/stage.usda` into `folder/recording.rrd`, with video and stills.
+
+    Raises:
+        ControlError: If the program's own `control` fails.
+    """
     from wsim.sim import Simulation
 
-    stage = folder / "stage.usda"
-    with controller_of(program, stage, settings.limits(), settings.isolation) as controller:
+    pictures = settings.pictures
+    with _controller(program, folder / "stage.usda", settings) as controller:
         simulation = Simulation(
-            stage, device=settings.device, time_step=settings.time_step, controller=controller, progress=progress
+            folder / "stage.usda",
+            device=settings.device,
+            time_step=settings.time_step,
+            controller=controller,
+            progress=progress,
         )
         return simulation.run(
             folder / "recording.rrd",
-            video=folder / "video.mp4" if settings.pictures else None,
-            frames_dir=folder / "frames" if settings.pictures else None,
-            review=folder / "review.json" if settings.pictures else None,
-            metadata={"program": program.name if program else None, "params": settings.params},
+            video=folder / "video.mp4" if pictures else None,
+            frames_dir=folder / "frames" if pictures else None,
+            review=folder / "review.json" if pictures else None,
+            metadata={"program": program.name, "params": settings.params},
             progress=progress,
         )
+
+
+@contextlib.contextmanager
+def _controller(program: Path, stage: Path, settings: Settings) -> Iterator[ArrayController | None]:
+    """The program's `control`, if it has one, running in the sandbox."""
+    from wsim.program.control import ControlLayout, ControlProcess, has_control
+
+    if not has_control(program.read_text(encoding="utf-8", errors="replace")):
+        yield None
+        return
+    from wsim.scene.describe import describe
+    from wsim.sim.control import ArrayController, driven_joints
+
+    world = describe(stage)
+    layout = ControlLayout([body.prim for body in world.bodies], driven_joints(world))
+    with ControlProcess(program, layout, settings.limits(), settings.isolation) as process:
+        yield ArrayController(process.step)
 
 
 def judge_recording(recording: Path, plan: Plan | None, progress: Progress = silent) -> Verdict:
@@ -130,10 +157,9 @@ def judge_recording(recording: Path, plan: Plan | None, progress: Progress = sil
     return verdict
 
 
-def reject_build(built: BuildResult) -> Verdict:
-    """The verdict on a program that made no stage."""
-    finding = Finding(**built.finding())
-    return Verdict(status="rejected", summary=f"The program made no world ({built.kind}).", findings=[finding])
+def reject(finding: Finding, summary: str) -> Verdict:
+    """The verdict on a program that made no world, or broke it."""
+    return Verdict(status="rejected", summary=summary, findings=[finding])
 
 
 def conclude(folder: Path, verdict: Verdict) -> Verdict:

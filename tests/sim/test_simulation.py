@@ -77,6 +77,25 @@ def test_block_slides_to_rest_and_its_contact_force_is_its_weight(tmp_path):
     assert recording.scalars["contact/penetration"].max() < 2e-3
 
 
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 0.8])
+def test_ball_bounces_to_the_height_of_its_restitution(tmp_path, restitution):
+    """h' = e^2 h, between shapes of the same restitution."""
+
+    def build(scene):
+        scene.simulation(duration=1.2, frame_rate=100.0)
+        scene.ground(restitution=restitution)
+        scene.sphere("ball", radius=0.1, density=1000.0, position=(0.0, 0.0, 1.1), restitution=restitution)
+
+    simulation = Simulation(stage_of(tmp_path, build), device="cpu")
+    simulation.run(tmp_path / "r.rrd")
+    recording = read(tmp_path / "r.rrd")
+    height = recording.position("/World/ball")[:, 2] - 0.1
+    landed = int(np.argmax(height < 0.01))
+    assert height[landed:].max() == pytest.approx(restitution**2, abs=0.03)
+    speed, frequency = math.sqrt(2.0 * G), 1.0 / (6.0 * simulation.dt)
+    assert recording.scalars["contact/penetration"].max() < speed / frequency  # the spring alone, undamped
+
+
 def tank(scene):
     scene.simulation(duration=0.2, frame_rate=20.0)
     tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.3))
@@ -130,7 +149,12 @@ def test_worlds_side_by_side_do_not_touch(tmp_path):
 
 
 def test_time_step_is_chosen_from_the_stage(tmp_path):
-    water = Simulation(stage_of(tmp_path, tank), device="cpu")
+    def fine(scene):
+        tank = scene.tank("tank", inner_size=(0.2, 0.2, 0.2))
+        scene.fluid("water", fills=tank, level=0.1, spacing=0.015)
+        scene.simulation(duration=0.2, frame_rate=20.0)
+
+    water = Simulation(stage_of(tmp_path, fine), device="cpu")
     assert water.built.time_step.reason == "sound in the fluid"
     assert water.dt <= water.built.sph.max_time_step
     assert water.substeps * water.dt == pytest.approx(1.0 / 20.0)

@@ -10,6 +10,7 @@ PACKAGES = ("newton", "warp-lang", "mujoco", "mujoco-warp", "usd-core", "rerun-s
 def doctor() -> None:
     """List devices, versions, isolation and the models configured. Exit code 1 if wsim cannot run here."""
     from rich.table import Table
+    from rich.text import Text
 
     from wsim.cli.show import console
 
@@ -17,7 +18,7 @@ def doctor() -> None:
     table.add_column(style="bold")
     table.add_column()
     for name, text in (*_versions(), *_devices(), *_isolation(), *_rest()):
-        table.add_row(name, text)
+        table.add_row(name, Text(text))
     console.print(table)
     if any("missing" in text and name != "torch" for name, text in _versions()):
         raise typer.Exit(1)

@@ -98,7 +98,7 @@ class Simulation:
         progress("compiling kernels", 3, 3)
 
     def _give_jointed_bodies_their_velocity(self) -> None:
-        """Newton's importer keeps the initial velocity of loose bodies only; joint velocities follow from the others."""
+        """Newton's importer keeps the initial velocity of loose bodies only; joints get theirs from the bodies."""
         import newton
 
         if not self.world.joints:

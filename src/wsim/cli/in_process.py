@@ -1,0 +1,45 @@
+"""`python program.py`: both halves in one process, with a person's own program."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from wsim.errors import UserError
+
+if TYPE_CHECKING:
+    from wsim.scene import Scene
+
+
+def run_in_process(build: Callable[[Scene], None]) -> None:
+    """Build, simulate and judge the calling program; leaves a run folder under ./runs, prints the verdict.
+
+    Exits like `wsim run`: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in the program's calls.
+    """
+    from wsim.cli.options import EXIT_CODES
+    from wsim.cli.show import ConsoleProgress, show_verdict
+    from wsim.pipeline import Settings, simulate_and_judge
+    from wsim.report import write as write_report
+    from wsim.runs import RunFolder
+    from wsim.scene import Scene, SceneError
+
+    program = Path(sys.modules[build.__module__].__file__ or "program.py")
+    run = RunFolder.create("runs", program.stem)
+    run.record(prompt=None, program=str(program), in_process=True)
+    folder = run.iteration(1)
+    shutil.copyfile(program, folder / "program.py")
+    scene = Scene()
+    try:
+        build(scene)
+        scene.save(folder / "stage.usda")
+        with ConsoleProgress() as progress:
+            verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress, {})
+    except (UserError, SceneError) as error:
+        print(f"{program.name}: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
+    run.record(status=verdict.status)
+    show_verdict(verdict, run.path, write_report(run.path))
+    raise SystemExit(EXIT_CODES[verdict.status])

@@ -1,0 +1,79 @@
+"""Drives a simulation by arrays with a leading world axis: the seam for a program's `control(world, t)`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.scene.world import World
+
+if TYPE_CHECKING:
+    from wsim.sim.simulation import Simulation
+
+Arrays = Mapping[str, np.ndarray]
+ONE_DOF = ("revolute", "prismatic")
+
+
+def driven_joints(world: World) -> list[str]:
+    """Prim paths of the joints with one degree of freedom, in the order of the arrays."""
+    return [joint.prim for joint in world.joints if joint.kind in ONE_DOF]
+
+
+class ArrayController:
+    """Calls `exchange(t, state)` once a control step, and applies what it answers.
+
+    Args:
+        exchange: Takes `body_q` (W, B, 7), `body_qd` (W, B, 6), `joint_q`, `joint_qd` and `joint_target` (W, J);
+            answers `joint_target` (W, J) [rad or m], `joint_force` (W, J) [N m or N] and `body_force` (W, B, 6) (force [N] and
+            torque [N m] at the centre of mass, world frame). B follows the world's bodies, J `driven_joints`.
+    """
+
+    def __init__(self, exchange: Callable[[float, Arrays], Arrays]) -> None:
+        self.exchange = exchange
+
+    def __call__(self, t: float, simulation: Simulation) -> None:
+        """Read the state, ask, and set the simulation's control."""
+        model, state, control = simulation.model, simulation.state, simulation.control
+        worlds = max(1, model.world_count)
+        bodies = _in_every_world(simulation.built.bodies, worlds, model.body_count)
+        coordinate, dof, target = _joint_indices(simulation, worlds)
+        targets = control.joint_target_q.numpy()
+        answer = self.exchange(
+            t,
+            {
+                "body_q": state.body_q.numpy()[bodies],
+                "body_qd": state.body_qd.numpy()[bodies],
+                "joint_q": state.joint_q.numpy()[coordinate],
+                "joint_qd": state.joint_qd.numpy()[dof],
+                "joint_target": targets[target],
+            },
+        )
+        targets[target] = answer["joint_target"]
+        control.joint_target_q.assign(targets)
+        forces = control.joint_f.numpy()
+        forces[dof] = answer["joint_force"]
+        control.joint_f.assign(forces)
+        if simulation.control_force is not None:
+            wrench = simulation.control_force.numpy()
+            wrench[bodies] = answer["body_force"]
+            simulation.control_force.assign(wrench)
+
+
+def _in_every_world(first: np.ndarray, worlds: int, total: int) -> np.ndarray:
+    """Indices (W, n) of the first world's things in all worlds, which follow each other."""
+    return first[None, :] + (total // worlds) * np.arange(worlds)[:, None]
+
+
+def _joint_indices(simulation: Simulation, worlds: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where the driven joints' coordinates, degrees of freedom and targets are, each (W, J)."""
+    model = simulation.model
+    first: dict[str, int] = {}
+    for k, label in enumerate(model.joint_label):
+        first.setdefault(str(label), k)
+    joints = np.array([first[prim] for prim in driven_joints(simulation.world)], dtype=np.int64)
+    every = _in_every_world(joints, worlds, model.joint_count)
+    starts = (model.joint_q_start, model.joint_qd_start, model.joint_target_q_start)
+    coordinate, dof, target = (start.numpy()[every] for start in starts)
+    return coordinate, dof, target
