@@ -27,6 +27,17 @@ def test_a_plan_survives_its_file(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["plan.json"]
 
 
+def test_a_plan_without_poses_is_laid_out(tmp_path, data):
+    for item in data["objects"]:
+        item["pose"] = None
+    (tmp_path / "plan.json").write_text(json.dumps(data))
+    assert load(tmp_path / "plan.json") == plan(PROMPT)
+    of(data, "steel_ball")["relations"][1]["predicate"] = "BACK-OF"
+    (tmp_path / "plan.json").write_text(json.dumps(data))
+    with pytest.raises(UserError, match=r"plan.json: .* overlap"):
+        load(tmp_path / "plan.json")
+
+
 def break_size(data):
     of(data, "steel_ball")["size"] = [0.1, 0.1]
 

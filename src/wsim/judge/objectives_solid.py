@@ -117,26 +117,45 @@ class ObjectiveRestsOn(ObjectiveCheck):
             return None
         body = evidence.world.bodies[i]
         weight = body.mass * evidence.gravity
-        buoyancy = 0.0
-        if support.fluid is not None:
-            position, rotation = evidence.resting_pose(i)
-            level = evidence.level(support.fluid).height
-            under = evidence.solid(i).volume_below(rotation, float(position[2]), level)
-            buoyancy = support.fluid.density * evidence.gravity * under
+        buoyancy, film = self._by_fluid(evidence, i, support)
         expected, value = weight - buoyancy, float(force.mean())
-        tolerance = self.force * weight
         above = value > expected
-        carried = "less buoyancy" if buoyancy else "alone"
+        limit = expected + self.force * weight + film if above else expected - self.force * weight
+        source = f"{self.force:g} of its weight about weight less buoyancy, as a mean over the final window"
+        if above and film > 0.0:
+            source += f", and {film:.3g} N for the fluid that particles cannot bring under it"
         return self.measured(
-            f"{body.prim} is carried with {value:.4g} N; its weight {carried} is {expected:.4g} N",
+            f"{body.prim} is carried with {value:.4g} N; its weight {'less buoyancy' if buoyancy else 'alone'} is "
+            f"{expected:.4g} N",
             value,
-            expected + tolerance if above else expected - tolerance,
+            limit,
             "N",
             at_most=above,
             expected=expected,
             time=evidence.window_start,
-            limit_from=f"{self.force:g} of its weight about weight less buoyancy, as a mean over the final window",
+            limit_from=source,
         )
+
+    @staticmethod
+    def _by_fluid(evidence: Evidence, i: int, support: Support) -> tuple[float, float]:
+        """Buoyancy, and the lift that is lost where no particle fits between body and floor [N].
+
+        Nothing presses up on the part of the body's underside that is within a spacing of the floor: at the most the
+        still fluid's pressure there, times the body's section a spacing above its lowest point.
+        """
+        fluid = support.fluid
+        if fluid is None:
+            return 0.0, 0.0
+        solid = evidence.solid(i)
+        position, rotation = evidence.resting_pose(i)
+        z, level = float(position[2]), evidence.level(fluid).height
+        bottom = float(evidence.ends(i)[0][evidence.window].mean())
+        specific = fluid.density * evidence.gravity
+        thin = 0.05 * fluid.spacing
+        height = bottom + min(fluid.spacing, solid.smallest / 2)
+        slab = solid.volume_below(rotation, z, height + thin) - solid.volume_below(rotation, z, height - thin)
+        film = specific * max(0.0, level - bottom) * slab / (2 * thin)
+        return specific * solid.volume_below(rotation, z, level), film
 
 
 @dataclass

@@ -8,14 +8,16 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from wsim.errors import UserError
+from wsim.plan.layout import LayoutError, layout
 from wsim.plan.schema import Plan, explain
 
 
 def load(path: str | Path) -> Plan:
-    """Read and validate a plan.
+    """Read and validate a plan; where an object that takes up space lacks its pose, lay the plan out.
 
     Raises:
-        UserError: the file cannot be read, is not JSON, or is not a plan; one line that names the place in the file.
+        UserError: the file cannot be read, is not JSON, is not a plan, or cannot be laid out; one line that names the
+            place in the file.
     """
     path = Path(path)
     try:
@@ -27,9 +29,15 @@ def load(path: str | Path) -> Plan:
     except json.JSONDecodeError as error:
         raise UserError(f"{path}: not JSON: {error.msg} at line {error.lineno}, column {error.colno}") from error
     try:
-        return Plan.model_validate(data)
+        plan = Plan.model_validate(data)
     except ValidationError as error:
         raise UserError(f"{path}: not a plan: {explain(error)}") from error
+    if all(item.pose is not None or item.primitive in ("ground", "fluid") for item in plan.objects):
+        return plan
+    try:
+        return layout(plan)
+    except LayoutError as error:
+        raise UserError(f"{path}: {error}") from error
 
 
 def save(plan: Plan, path: str | Path) -> None:
