@@ -11,7 +11,7 @@ from wsim.plan.schema import Material, Objective, PlanObject, Relation, Vec3
 from wsim.plan.sizes import PRIMITIVES, material_of, names, size_of
 
 if TYPE_CHECKING:
-    from wsim.plan.meaning import Cast, Thing
+    from wsim.plan.cast import Cast, Thing
 
 GROUND_LOOK = Material(name="ground", density=2000.0, friction=0.7, color=(0.32, 0.32, 0.32))
 GAP = 0.15  # between neighbours [m]

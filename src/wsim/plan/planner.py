@@ -10,10 +10,11 @@ beforehand that it will not. A prompt that contradicts itself ("a ball floats an
 
 from __future__ import annotations
 
+from wsim.plan.cast import Cast
 from wsim.plan.grammar import NotUnderstood, parse
 from wsim.plan.ground_scene import build_ground, ground_object
 from wsim.plan.layout import layout
-from wsim.plan.meaning import Cast, understand
+from wsim.plan.meaning import understand
 from wsim.plan.schema import Objective, Plan, PlanObject, SimulationPlan
 from wsim.plan.tank_scene import build_tank
 from wsim.plan.views import cameras

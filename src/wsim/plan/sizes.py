@@ -10,7 +10,7 @@ from wsim.plan.materials import COLORS, MATERIALS
 from wsim.plan.schema import Material, PlanObject
 
 if TYPE_CHECKING:
-    from wsim.plan.meaning import Cast, Thing
+    from wsim.plan.cast import Cast, Thing
 
 # Default sizes [m]. In water: flat enough to float level, as a block of wood with equal edges would not.
 _IN_WATER: dict[str, tuple[float, ...]] = {

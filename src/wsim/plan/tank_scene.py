@@ -13,7 +13,7 @@ from wsim.plan.schema import Material, Objective, PlanObject, Relation
 from wsim.plan.sizes import PRIMITIVES, material_of, names, size_of, thickness, volume
 
 if TYPE_CHECKING:
-    from wsim.plan.meaning import Cast, Thing
+    from wsim.plan.cast import Cast, Thing
 
 WATER = Material(name="water", density=WATER_DENSITY, friction=0.0, color=(0.15, 0.4, 0.6), opacity=0.6)
 GLASS_LOOK = Material(name="tank_glass", density=2500.0, friction=0.3, color=(0.75, 0.88, 0.9), opacity=0.25)
