@@ -245,7 +245,7 @@ def test_it_is_formatted_and_clean(settings: list[str], tmp_path: Path) -> None:
 def _formatted(source: str, folder: Path, settings: list[str] | None = None) -> None:
     program = folder / "program.py"
     program.write_text(source)
-    for command in (["format", "--check", "--diff"], ["check", "--no-cache"]):
+    for command in (["format", "--check", "--diff", "--no-cache"], ["check", "--no-cache"]):
         done = subprocess.run(
             [sys.executable, "-m", "ruff", *command, *(settings or ["--isolated"]), str(program)],
             capture_output=True,

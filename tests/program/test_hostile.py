@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -129,9 +130,30 @@ def test_is_stopped_when_its_cpu_time_is_up(run) -> None:
     assert "CPU" in result.message
 
 
-def test_many_files_do_not_fill_the_disk(run) -> None:
-    result = run("fills_scratch_many_files")
+@pytest.mark.parametrize("name", ["fills_scratch_many_files", "fills_scratch_empty_files", "fills_scratch_unseen"])
+def test_many_files_do_not_fill_the_disk(run, name: str) -> None:
+    result = run(name)
     assert result.kind == "output", result.message
+
+
+def test_dies_with_the_process_that_asked(isolation: str, tmp_path: Path) -> None:
+    program = tmp_path / "sleeps_forever.py"
+    shutil.copyfile(HOSTILE / "sleeps_forever.py", program)
+    asking = (
+        "import sys, pathlib; from wsim.program.sandbox import build; "
+        "build(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[1] + '.usda'), isolation=sys.argv[2])"
+    )
+    with subprocess.Popen([sys.executable, "-c", asking, str(program), isolation]) as parent:
+        deadline = time.monotonic() + 20.0
+        while not any("pathlib" not in line for line in _processes(str(program))) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.5)  # until it is confined
+        assert any("pathlib" not in line for line in _processes(str(program)))
+        parent.kill()
+    deadline = time.monotonic() + 5.0
+    while _processes(str(program)) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert _processes(str(program)) == []
 
 
 def test_many_threads_are_stopped(run) -> None:

@@ -19,13 +19,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 from wsim.program.sandbox import isolation as ways
+from wsim.program.sandbox import watch
 from wsim.program.sandbox.limits import Limits
 from wsim.program.sandbox.result import REPORT_BYTES
 
 Stopped = Literal["", "timeout", "log", "scratch", "threads"]
 _TICK = 0.05  # [s] between looks at a running process
 _DRAIN_SECONDS = 2.0
-_SCRATCH_FILES = 10_000
 _BOOT = (
     "import json, sys; job = json.loads(sys.argv.pop()); sys.path[:0] = job['path'][0]; "
     "sys.path += [p for p in job['path'][1] if p not in sys.path]; "
@@ -149,9 +149,15 @@ class SandboxProcess:
         """What it uses too much of, of that which no rlimit bounds."""
         if self.stopped:
             return self.stopped
-        if self._scratch is not None and _folder_bytes(self._scratch) > self._limits.scratch_bytes:
+        if self._watched is None:
+            self._watched = self._inner()
+        if self._scratch is not None:
+            used = watch.folder_bytes(self._scratch) + watch.deleted_bytes(self._watched)
+        else:  # its tmpfs has a size; only the number of its files has no bound
+            used = watch.many_files(self._watched, ways.SCRATCH)
+        if used > self._limits.scratch_bytes:
             return "scratch"
-        if self._threads() > self._limits.threads:
+        if watch.threads(self._watched) > self._limits.threads:
             return "threads"
         return ""
 
@@ -197,15 +203,6 @@ class SandboxProcess:
                     with contextlib.suppress(ProcessLookupError):
                         os.killpg(self._process.pid, signal.SIGKILL)
 
-    def _threads(self) -> int:
-        """The number of threads of the program's process; 0 where it cannot be told."""
-        if self._watched is None:
-            self._watched = self._inner()
-        with contextlib.suppress(OSError, ValueError, IndexError):
-            status = Path(f"/proc/{self._watched}/status").read_text()
-            return int(status.split("\nThreads:")[1].split()[0])
-        return 0
-
     def _inner(self) -> int | None:
         """The program's process, which is the one child of the first process in bubblewrap's name space."""
         if self._info is None or not select.select([self._info], [], [], 0.0)[0]:
@@ -228,18 +225,6 @@ def _start(command: Sequence[str], environment: dict[str, str], descriptors: Seq
         pass_fds=tuple(descriptors),
         start_new_session=True,
     )
-
-
-def _folder_bytes(folder: str) -> int:
-    """Bytes of the files of a flat folder; without end if there are too many to count."""
-    total = 0
-    with contextlib.suppress(OSError), os.scandir(folder) as entries:
-        for count, entry in enumerate(entries):
-            if count > _SCRATCH_FILES:
-                return sys.maxsize
-            with contextlib.suppress(OSError):
-                total += entry.stat(follow_symlinks=False).st_size
-    return total
 
 
 def _remove(folder: str) -> None:

@@ -1,0 +1,55 @@
+"""What a running process uses of that which no rlimit bounds, seen from outside through /proc.
+
+All of these give 0 for a process that is gone or cannot be seen.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import stat
+import sys
+from pathlib import Path
+
+_FILES = 10_000  # of a scratch folder; more are too many, whatever their size
+
+
+def threads(pid: int | None) -> int:
+    """The number of a process's threads."""
+    with contextlib.suppress(OSError, ValueError, IndexError):
+        status = Path(f"/proc/{pid}/status").read_text()
+        return int(status.split("\nThreads:")[1].split()[0])
+    return 0
+
+
+def folder_bytes(folder: str) -> int:
+    """Bytes of the files of a flat folder; without end if there are too many of them."""
+    total = 0
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for count, entry in enumerate(entries):
+            if count > _FILES:
+                return sys.maxsize
+            with contextlib.suppress(OSError):
+                total += entry.stat(follow_symlinks=False).st_size
+    return total
+
+
+def deleted_bytes(pid: int | None) -> int:
+    """Bytes of the files that a process holds open after deleting their last name."""
+    sizes = {}
+    with contextlib.suppress(OSError), os.scandir(f"/proc/{pid}/fd") as entries:
+        for entry in entries:
+            with contextlib.suppress(OSError):
+                found = entry.stat()
+                if stat.S_ISREG(found.st_mode) and found.st_nlink == 0:
+                    sizes[found.st_dev, found.st_ino] = found.st_size
+    return sum(sizes.values())
+
+
+def many_files(pid: int | None, mount: str) -> int:
+    """Without end if a file system of a process's own holds too many files, else 0."""
+    with contextlib.suppress(OSError):
+        found = os.statvfs(f"/proc/{pid}/root{mount}")
+        if found.f_files - found.f_ffree > _FILES:
+            return sys.maxsize
+    return 0
