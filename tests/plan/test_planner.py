@@ -23,7 +23,7 @@ def test_the_main_prompt():
     tank, water, ball = made.object("tank"), made.object("water"), made.object("steel_ball")
     assert tank.size == (1.2, 0.51, 0.45)
     assert water.relation("FREE-SURFACE-AT").value == 0.3
-    assert made.simulation.spacing == 0.03 and made.simulation.duration == 4.0
+    assert made.simulation.spacing == 0.03 and made.simulation.duration == 3.5
     assert ball.pose.position[2] - ball.size[0] == pytest.approx(0.02 + 0.3 + 0.15)
     assert ball.material.density == 7850.0
     for k in (1, 2, 3):

@@ -192,7 +192,7 @@ def test_result_does_not_depend_on_the_number_of_threads_and_repeats_bit_for_bit
         ({"spacing": math.nan}, "spacing"),
         ({"speed_of_sound": 0.0}, "speed_of_sound"),
         ({"viscosity": -1.0}, "viscosity"),
-        ({"cells_per_support": 0}, "cells_per_support"),
+        ({"cells_per_support": 9}, "cells_per_support"),
     ],
 )
 def test_settings_out_of_range_are_named(settings, name):

@@ -30,7 +30,7 @@ START_GAP = 0.005  # a floating thing starts this far above the water, so that i
 SINK_GAP = 0.01  # and one that sinks without being dropped [m]
 DROP_HEIGHT = 0.15  # [m]
 MOST_PARTICLES = 40_000
-DURATION = 4.0  # [s], for things 0.14 m tall
+DURATION = 3.5  # [s], for things 0.14 m tall
 
 
 @dataclass

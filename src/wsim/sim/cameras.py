@@ -16,6 +16,7 @@ from wsim.kernels.render import composite, display
 from wsim.progress import silent
 from wsim.sim import render_materials, render_views
 from wsim.sim.render_surface import FluidMesh
+from wsim.solvers.launch import launch_shared
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -220,7 +221,7 @@ class CameraRenderer:
 
     def _composite(self, view: _View) -> None:
         mesh, glass = self._fluid_mesh, self._glass
-        wp.launch(
+        launch_shared(
             composite.composite,
             dim=view.color.shape,
             inputs=[

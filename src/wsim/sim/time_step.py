@@ -9,7 +9,7 @@ import numpy as np
 
 from wsim.scene.world import Body, World
 
-LARGEST_RIGID_STEP = 1.0 / 1000.0  # [s]: contacts are as hard as the step allows
+LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
 SHARE_OF_SIZE = 0.25  # a body may cross this share of the thinnest thing in a step
 
 

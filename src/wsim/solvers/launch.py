@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -24,32 +25,37 @@ def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=max(1, thread_count() - 1), thread_name_prefix="wsim")
 
 
-def launch_shared(kernel: wp.Kernel, dim: int, inputs: list[Any], outputs: list[Any]) -> None:
+def launch_shared(
+    kernel: wp.Kernel,
+    dim: int | tuple[int, ...],
+    inputs: list[Any],
+    outputs: list[Any],
+    device: Any = None,
+) -> None:
     """Launch a kernel whose first argument is the index of its first thread, split over the cores of a CPU.
 
     Each index writes only its own entries, so the result does not depend on the number of threads. Warp releases the
     interpreter's lock while a CPU kernel runs.
 
     Args:
-        kernel: Takes `first: int` before `inputs`, and works on index `first + wp.tid()`.
-        dim: Number of indices.
+        kernel: Takes `first: int` before `inputs`, and works on index `first + wp.tid()`, along its first axis.
+        dim: Number of indices; the first axis is split.
         inputs: Arguments after `first`.
         outputs: Output arrays.
+        device: Warp device; the current one by default.
     """
-    shares = 1 if wp.get_device().is_cuda else min(thread_count(), max(1, dim // SMALLEST_SHARE))
-    if shares == 1:
-        wp.launch(kernel, dim=dim, inputs=[0, *inputs], outputs=outputs)
-        return
-    device = wp.get_device()
-    cuts = [dim * k // shares for k in range(shares + 1)]
+    device = wp.get_device(device)
+    rows, *rest = (dim,) if isinstance(dim, int) else dim
+    shares = 1 if device.is_cuda else min(thread_count(), max(1, rows * math.prod(rest) // SMALLEST_SHARE))
+    cuts = [rows * k // shares for k in range(shares + 1)]
 
     def part(k: int) -> None:
-        wp.launch(kernel, dim=cuts[k + 1] - cuts[k], inputs=[cuts[k], *inputs], outputs=outputs, device=device)
+        size = (cuts[k + 1] - cuts[k], *rest)
+        wp.launch(kernel, dim=size, inputs=[cuts[k], *inputs], outputs=outputs, device=device)
 
-    # The first launch compiles; it goes alone.
-    if not kernel.module.execs:
-        part(0)
-        list(_pool().map(part, range(1, shares)))
+    if shares == 1 or not kernel.module.execs:  # the first launch compiles; it goes alone
+        for k in range(shares):
+            part(k)
         return
     others = [_pool().submit(part, k) for k in range(1, shares)]
     part(0)

@@ -64,10 +64,11 @@ class SolverSPH(SolverBase):
         """Monaghan's alpha."""
         density_diffusion: float = 0.1
         """delta of the density diffusion term."""
-        cfl: float = 0.4
+        cfl: float = 0.5
         """Courant number: dt <= cfl * smoothing length / speed of sound."""
-        cells_per_support: int = 3
-        """Grid cells that the search radius spans: finer cells trim the search closer to the sphere."""
+        cells_per_support: int = 0
+        """Grid cells that the search radius spans; 0 takes 3 on a GPU, where finer cells trim the search closer to the
+        sphere, and 1 on a CPU, where looking up the rows costs more than that saves."""
         skin: float = 0.1
         """How much further than the support the neighbour lists reach, as a share of it. On a CPU the lists are kept
         until a particle has moved half the skin; on a GPU they are made anew each step, with no skin, so that the step
@@ -83,8 +84,8 @@ class SolverSPH(SolverBase):
                 value = getattr(self, name)
                 if not (math.isfinite(value) and value >= 0.0):
                     raise ValueError(f"SolverSPH.Config: {name} = {value} must be >= 0")
-            if not 1 <= self.cells_per_support <= 8:
-                raise ValueError(f"SolverSPH.Config: cells_per_support = {self.cells_per_support} must be in 1..8")
+            if not 0 <= self.cells_per_support <= 8:
+                raise ValueError(f"SolverSPH.Config: cells_per_support = {self.cells_per_support} must be in 0..8")
 
         @property
         def smoothing_length(self) -> float:
@@ -159,7 +160,7 @@ class SolverSPH(SolverBase):
         grid = grid_kernels.Grid()
         self.skin = 0.0 if self.model.device.is_cuda else self.config.skin * self.config.support
         grid.support = self.config.support + self.skin
-        grid.reach = self.config.cells_per_support
+        grid.reach = self.config.cells_per_support or (3 if self.model.device.is_cuda else 1)
         grid.cell = grid.support / grid.reach
         grid.inv_cell = 1.0 / grid.cell
         low, high = low - grid.support, high + grid.support

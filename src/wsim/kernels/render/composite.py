@@ -231,6 +231,7 @@ def opaque_color(
 @wp.kernel(enable_backward=False)
 def composite(
     # Data in:
+    first_row: int,
     camera_rays: wp.array4d(dtype=wp.vec3f),  # (height, width, 1, 2), camera frame: origin, direction
     camera_pose: wp.array(dtype=wp.transformf),
     opaque_depth: wp.array3d(dtype=float),  # (1, height, width) [m], along the ray
@@ -257,7 +258,8 @@ def composite(
     out_shape: wp.array2d(dtype=wp.int32),  # -1 where nothing is
 ):
     """Blend glass and fluids over the opaque picture, and give the opaque picture's depth and shapes."""
-    row, column = wp.tid()
+    local_row, column = wp.tid()
+    row = first_row + local_row
     pose = camera_pose[0]
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, -1.0))
     origin = wp.transform_point(pose, camera_rays[row, column, 0, 0])

@@ -61,7 +61,6 @@ def extrapolate_pressure(
     g = gravity[world]
     p = point[s]
     x = wp.vec3(p[0], p[1], p[2])
-    support2 = 4.0 * h * h
     weight = float(0.0)
     total = float(0.0)
     base = s * stride[0]
@@ -69,12 +68,10 @@ def extrapolate_pressure(
         j = neighbor[base + k * stride[1]]
         q = point[j]
         d = wp.vec3(x[0] - q[0], x[1] - q[1], x[2] - q[2])
-        r2 = wp.dot(d, d)
-        if r2 < support2:
-            w = wendland(wp.sqrt(r2), h, norm)
-            rho = motion[j][3]
-            weight += w
-            total += w * (q[3] * rho * rho + rho * wp.dot(g, d))
+        w = wendland(wp.length(d), h, norm)
+        rho = motion[j][3]
+        weight += w
+        total += w * (q[3] * rho * rho + rho * wp.dot(g, d))
     pressure = float(0.0)
     if weight > 0.0:
         pressure = wp.max(total / weight, 0.0)

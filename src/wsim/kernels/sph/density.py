@@ -64,7 +64,6 @@ def continuity(
     rho = m[3]
     # Linearised: rho^H_j - rho^H_i = rho_0 g.(x_j - x_i) / c^2, exact to the 1 % that the fluid is compressed.
     hydrostatic = rest_density / (speed_of_sound * speed_of_sound) * gravity[world]
-    support2 = 4.0 * h * h
     divergence = float(0.0)
     smoothing = float(0.0)
     base = s * stride[0]
@@ -73,14 +72,10 @@ def continuity(
         j = wp.where(entry < 0, ~entry, entry)
         q = point[j]
         d = wp.vec3(x[0] - q[0], x[1] - q[1], x[2] - q[2])
-        r2 = wp.dot(d, d)
-        if r2 < support2:
-            slope = wendland_slope(wp.sqrt(r2), h, norm)
-            n = motion[j]
-            term = mass[j] / n[3] * slope
-            divergence += term * wp.dot(v - wp.vec3(n[0], n[1], n[2]), d)
-            if entry >= 0:
-                smoothing -= term * (n[3] - rho + wp.dot(hydrostatic, d))
+        n = motion[j]
+        term = mass[j] / n[3] * wendland_slope(wp.length(d), h, norm)
+        divergence += term * wp.dot(v - wp.vec3(n[0], n[1], n[2]), d)
+        smoothing -= wp.where(entry < 0, 0.0, term) * (n[3] - rho + wp.dot(hydrostatic, d))
     rate = rho * divergence + 2.0 * diffusion * h * speed_of_sound * smoothing
     density[s] = rho + dt * rate
 

@@ -8,7 +8,6 @@ from wsim.kernels.sph.wendland import wendland_slope
 @wp.func
 def pair_force(
     d: wp.vec3,
-    r2: float,
     dv: wp.vec3,
     pressure_i: float,
     pressure_j: float,
@@ -25,14 +24,13 @@ def pair_force(
     Pressure as in Monaghan (1992); artificial viscosity of Monaghan (1992) with alpha; laminar viscosity of Morris,
     Fox & Zhu (1997). pressure_* = p/rho^2.
     """
+    r2 = wp.dot(d, d)
     slope = wendland_slope(wp.sqrt(r2), h, norm)
-    approach = wp.dot(dv, d)
-    damping = float(0.0)
-    if approach < 0.0:
-        mu = h * approach / (r2 + 0.01 * h * h)
-        damping = -2.0 * artificial_viscosity * speed_of_sound * mu / (rho_i + rho_j)
-    laminar = 2.0 * viscosity / (rho_i * rho_j) * slope * r2 / (r2 + 0.01 * h * h)
-    return -(pressure_i + pressure_j + damping) * slope * d + laminar * dv
+    spread = slope / (r2 + 0.01 * h * h)
+    approach = wp.min(wp.dot(dv, d), 0.0)
+    damping = 2.0 * artificial_viscosity * speed_of_sound * h / (rho_i + rho_j) * approach * spread
+    laminar = 2.0 * viscosity / (rho_i * rho_j) * r2 * spread
+    return (damping - (pressure_i + pressure_j) * slope) * d + laminar * dv
 
 
 @wp.kernel(enable_backward=False)
@@ -70,7 +68,6 @@ def momentum(
     m = motion[s]
     x = wp.vec3(p[0], p[1], p[2])
     v = wp.vec3(m[0], m[1], m[2])
-    support2 = 4.0 * h * h
     total = wp.vec3(0.0, 0.0, 0.0)
     base = s * stride[0]
     for k in range(neighbor_count[s]):
@@ -78,13 +75,11 @@ def momentum(
         j = wp.where(entry < 0, ~entry, entry)
         q = point[j]
         d = wp.vec3(x[0] - q[0], x[1] - q[1], x[2] - q[2])
-        r2 = wp.dot(d, d)
-        if r2 < support2:
-            n = motion[j]
-            dv = v - wp.vec3(n[0], n[1], n[2])
-            total += mass[j] * pair_force(
-                d, r2, dv, p[3], q[3], m[3], n[3], h, norm, speed_of_sound, artificial_viscosity, viscosity
-            )
+        n = motion[j]
+        dv = v - wp.vec3(n[0], n[1], n[2])
+        total += mass[j] * pair_force(
+            d, dv, p[3], q[3], m[3], n[3], h, norm, speed_of_sound, artificial_viscosity, viscosity
+        )
     if owner == 0:
         acceleration[i] = total + gravity[world]
     else:

@@ -1,5 +1,8 @@
 """Wendland's C2 kernel (Wendland 1995; for SPH: Dehnen & Aly 2012), with support 2h.
 
+Beyond the support both functions are zero without a branch: a sum over a list that reaches a little further needs no
+test, which on a CPU would be mispredicted a quarter of the time.
+
 `norm` is 21 / (16 pi h^3) in three dimensions and 7 / (4 pi h^2) in two.
 """
 
