@@ -38,7 +38,7 @@ def test_open_finds_the_run_from_inside_it(tmp_path):
     assert RunFolder.open(run.path).last_iteration().name == "01"
     with pytest.raises(UserError, match="does not exist"):
         RunFolder.open(tmp_path / "nothing")
-    with pytest.raises(UserError, match="run.json"):
+    with pytest.raises(UserError, match=r"run\.json"):
         RunFolder.open(tmp_path)
 
 

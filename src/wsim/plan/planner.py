@@ -22,7 +22,7 @@ from wsim.plan.words import GROUND
 
 __all__ = ["NotUnderstood", "plan"]
 
-FRAME_RATE = 25.0  # [1/s]: smooth to the eye, and a sixth fewer pictures than 30
+FRAME_RATE = 24.0  # [1/s]: the cinema's; a fifth fewer pictures than 30
 
 
 def plan(prompt: str) -> Plan:

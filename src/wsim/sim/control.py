@@ -26,8 +26,9 @@ class ArrayController:
 
     Args:
         exchange: Takes `body_q` (W, B, 7), `body_qd` (W, B, 6), `joint_q`, `joint_qd` and `joint_target` (W, J);
-            answers `joint_target` (W, J) [rad or m], `joint_force` (W, J) [N m or N] and `body_force` (W, B, 6) (force [N] and
-            torque [N m] at the centre of mass, world frame). B follows the world's bodies, J `driven_joints`.
+            answers `joint_target` (W, J) [rad or m], `joint_force` (W, J) [N m or N] and `body_force` (W, B, 6), the
+            force [N] and torque [N m] at the centre of mass in the world frame. B follows the world's bodies, J
+            `driven_joints`.
     """
 
     def __init__(self, exchange: Callable[[float, Arrays], Arrays]) -> None:
