@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from wsim.pipeline import Settings, run_program
+from wsim.pipeline import Settings, run_in_folder
 from wsim.progress import Progress, silent
 from wsim.runs import RunFolder, write_whole
 
@@ -53,7 +52,6 @@ def generate(
     from wsim.program.compose import compose
     from wsim.report import write as write_report
 
-    started = time.perf_counter()
     plan = plan or make_plan(prompt)
     run = RunFolder.create(runs, plan.title)
     run.record(prompt=prompt, title=plan.title, models={"planner": BUILTIN, "coder": BUILTIN})
@@ -68,10 +66,7 @@ def generate(
     run.say("coder", BUILTIN, "plan.json", program)
     write_whole(iteration / "program.py", program)
 
-    verdict = run_program(iteration / "program.py", iteration, plan, settings, progress)
-    if verdict.status == "accepted":
-        run.accept(iteration)
-    run.record(status=verdict.status, summary=verdict.summary, seconds=round(time.perf_counter() - started, 1))
+    verdict = run_in_folder(run, iteration / "program.py", plan, settings, progress)
     return Generated(run, plan, verdict, write_report(run.path))
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from wsim.judge.verdict import Finding, Verdict
 from wsim.progress import Progress, silent
-from wsim.runs import write_json, write_whole
+from wsim.runs import RunFolder, write_json, write_whole
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -38,6 +38,42 @@ class Settings:
         from wsim.program.sandbox import Limits
 
         return Limits(wall_seconds=self.build_timeout, memory_bytes=self.build_memory)
+
+    def check(self) -> None:
+        """Look whether the sandbox and the device asked for are here, before a run's folder is made.
+
+        Raises:
+            UserError: If one is not.
+        """
+        from wsim.program.sandbox.isolation import choose
+
+        choose(self.isolation)
+        if self.device not in ("auto", "cpu"):
+            from wsim.sim.devices import pick_device
+
+            pick_device(self.device)
+
+
+def run_in_folder(
+    run: RunFolder,
+    program: Path,
+    plan: Plan | None = None,
+    settings: Settings | None = None,
+    progress: Progress = silent,
+) -> Verdict:
+    """`run_program` as the first iteration of a run, whose run.json says how it ended, however it did."""
+    started = time.perf_counter()
+    iteration = run.iteration(1)
+    try:
+        verdict = run_program(program, iteration, plan, settings, progress)
+    except BaseException as error:
+        why = "interrupted" if isinstance(error, KeyboardInterrupt) else f"{type(error).__name__}: {error}"
+        run.record(status="stopped", summary=why, seconds=round(time.perf_counter() - started, 1))
+        raise
+    if verdict.status == "accepted":
+        run.accept(iteration)
+    run.record(status=verdict.status, summary=verdict.summary, seconds=round(time.perf_counter() - started, 1))
+    return verdict
 
 
 def run_program(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import _thread
 import sys
+import threading
 
 import typer
 
@@ -17,6 +19,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
+STOPPED = 130  # the exit code for Ctrl-C
 for verb in (generate, plan, run, judge, view, doctor):
     verb.register(app)
 
@@ -32,11 +35,28 @@ def _options(version: bool = typer.Option(False, "--version", help="Print the ve
 
 def main() -> None:
     """Run the command line; a user's mistake is one line and exit code 2."""
+    _keep_interrupts()
     try:
         app()
     except UserError as error:
         print(f"wsim: {error}", file=sys.stderr)
         sys.exit(2)
-    except KeyboardInterrupt:
-        print("wsim: stopped", file=sys.stderr)
-        sys.exit(130)
+    except SystemExit as end:
+        if end.code == STOPPED:
+            print("wsim: stopped", file=sys.stderr)
+        raise
+
+
+def _keep_interrupts() -> None:
+    """Raise a Ctrl-C again that came while an object was being deleted: Python drops what `__del__` raises."""
+    report = sys.unraisablehook
+
+    def again(dropped: sys.UnraisableHookArgs) -> None:
+        if dropped.exc_type is not KeyboardInterrupt:
+            report(dropped)
+            return
+        timer = threading.Timer(0.02, _thread.interrupt_main)
+        timer.daemon = True
+        timer.start()
+
+    sys.unraisablehook = again

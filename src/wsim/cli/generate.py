@@ -39,19 +39,29 @@ def generate(
         raise UserError(
             'give a sentence, such as wsim generate "A cork ball floats in a tank of water.", or --plan FILE'
         )
-    chosen: Plan = load(plan) if plan else make_plan(prompt)
-    show_plan(chosen)
-    if not yes and not typer.confirm("Build this world?", default=True):
-        console.print("nothing was built")
-        raise typer.Exit(0)
     settings = Settings(
         device=device, isolation=isolation, pictures=pictures, time_step=time_step, params=parse_params(params)
     )
+    settings.check()
+    chosen: Plan = load(plan) if plan else make_plan(prompt)
+    show_plan(chosen)
+    if not yes and not _agreed():
+        console.print("nothing was built")
+        raise typer.Exit(0)
     with ConsoleProgress() as progress:
         done = generate_world(prompt or chosen.prompt, runs, settings, plan=chosen, progress=progress)
     assert done.verdict is not None
     show_verdict(done.verdict, done.run.path, done.report)
     raise typer.Exit(EXIT_CODES[done.verdict.status])
+
+
+def _agreed() -> bool:
+    from wsim.errors import UserError
+
+    try:
+        return typer.confirm("Build this world?", default=True)
+    except typer.Abort:
+        raise UserError("nothing was built: there was no answer; --yes builds without asking") from None
 
 
 def register(app: typer.Typer) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,8 +39,18 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
         with ConsoleProgress() as progress:
             verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress, {})
     except (UserError, SceneError) as error:
-        print(f"{program.name}: {error}", file=sys.stderr)
+        run.record(status="stopped", summary=str(error))
+        print(f"{_place(error, program)}: {error}", file=sys.stderr)
         raise SystemExit(2) from None
-    run.record(status=verdict.status)
+    if verdict.status == "accepted":
+        run.accept(folder)
+    run.record(status=verdict.status, summary=verdict.summary)
     show_verdict(verdict, run.path, write_report(run.path))
     raise SystemExit(EXIT_CODES[verdict.status])
+
+
+def _place(error: Exception, program: Path) -> str:
+    """The program's name and, where the error came through it, the line."""
+    calls = traceback.extract_tb(error.__traceback__)
+    lines = [call.lineno for call in calls if Path(call.filename).resolve() == program.resolve()]
+    return f"{program.name}:{lines[-1]}" if lines else program.name

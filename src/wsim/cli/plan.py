@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from wsim.errors import UserError
+
 
 def plan(
     prompt: Annotated[str, typer.Argument(help="What the world must be, in a sentence.")],
@@ -25,7 +27,10 @@ def plan(
     else:
         show_plan(made)
     if output:
-        write_whole(output, text + "\n")
+        try:
+            write_whole(output, text + "\n")
+        except OSError as error:
+            raise UserError(f"cannot write the plan to {output}: {error.strerror}") from error
         console.print(f"plan: {output}")
 
 

@@ -9,7 +9,7 @@ import typer
 
 from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, parse_params
 from wsim.errors import UserError
-from wsim.runs import RunFolder
+from wsim.runs import RunFolder, write_whole
 
 
 def run(
@@ -21,8 +21,12 @@ def run(
     isolation: Isolation = "auto",
     pictures: Pictures = True,
     time_step: TimeStep = None,
-    timeout: Annotated[float, typer.Option("--timeout", min=0.5, help="Seconds that build may take.")] = 30.0,
-    memory: Annotated[float, typer.Option("--memory", min=0.25, help="Memory that build may use [GiB].")] = 4.0,
+    timeout: Annotated[
+        float, typer.Option("--timeout", min=0.5, max=3600.0, help="Seconds that build may take.")
+    ] = 30.0,
+    memory: Annotated[
+        float, typer.Option("--memory", min=2.0, max=1024.0, help="Memory that build may use [GiB].")
+    ] = 4.0,
 ) -> None:
     """Run a program: build its stage in the sandbox, simulate it, and judge it.
 
@@ -30,7 +34,7 @@ def run(
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """
     from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.pipeline import Settings, run_program
+    from wsim.pipeline import Settings, run_in_folder
     from wsim.plan.store import load
     from wsim.report import write as write_report
 
@@ -45,15 +49,13 @@ def run(
         build_timeout=timeout,
         build_memory=int(memory * 2**30),
     )
-    folder = RunFolder.create(runs, program.stem if program.stem != "program" else program.resolve().parent.parent.name)
+    settings.check()
+    folder = RunFolder.create(runs, chosen.title if chosen and target.is_dir() else program.stem)
     folder.record(prompt=chosen.prompt if chosen else None, program=str(program), params=settings.params)
     if chosen:
-        (folder.path / "plan.json").write_text(chosen.model_dump_json(indent=2) + "\n", encoding="utf-8")
+        write_whole(folder.path / "plan.json", chosen.model_dump_json(indent=2) + "\n")
     with ConsoleProgress() as progress:
-        verdict = run_program(program, folder.iteration(1), chosen, settings, progress)
-    if verdict.status == "accepted":
-        folder.accept(folder.iteration(1))
-    folder.record(status=verdict.status, summary=verdict.summary)
+        verdict = run_in_folder(folder, program, chosen, settings, progress)
     show_verdict(verdict, folder.path, write_report(folder.path))
     raise typer.Exit(EXIT_CODES[verdict.status])
 
@@ -66,9 +68,12 @@ def find_program(target: Path, plan: Path | None) -> tuple[Path, Path | None]:
     """
     if target.is_dir():
         run = RunFolder.open(target)
-        accepted = run.path / "accepted" / "program.py"
         own = run.path / "plan.json"
-        program = accepted if accepted.is_file() else run.last_iteration() / "program.py"
+        places = [target, run.path / "accepted"]
+        program = next((place / "program.py" for place in places if (place / "program.py").is_file()), None)
+        program = program or run.last_iteration() / "program.py"
+        if not program.is_file():
+            raise UserError(f"{program} does not exist: the run ended before its program was written")
         return program, plan or (own if own.is_file() else None)
     if not target.is_file():
         raise UserError(f"{target} does not exist; give a program.py or the folder of a run")

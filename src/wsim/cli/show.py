@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
     from wsim.judge.verdict import Finding, Verdict
     from wsim.plan.schema import Plan
 
-console = Console(highlight=False)
+PIPED_WIDTH = 1000  # a file or a pipe gets each finding on one line
+console = Console(highlight=False, width=None if sys.stdout.isatty() else PIPED_WIDTH)
 STATUS_STYLE = {"accepted": "bold green", "rejected": "bold red", "blocked": "bold yellow"}
 
 
@@ -79,7 +81,8 @@ def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> 
     """Print a verdict: each finding with its measured value and its limit; failures in full."""
     table = Table(show_edge=False, pad_edge=False)
     for column in ("", "check", "prim", "value", "limit", "unit", "time [s]"):
-        table.add_column(column, justify="right" if column in ("value", "limit", "time [s]") else "left")
+        justify: Literal["left", "right"] = "right" if column in ("value", "limit", "time [s]") else "left"
+        table.add_column(column, justify=justify, overflow="fold")
     for finding in verdict.findings:
         table.add_row(*_row(finding))
     if verdict.findings:

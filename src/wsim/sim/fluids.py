@@ -14,7 +14,6 @@ from wsim.solvers.sampling import box_lattice
 from wsim.solvers.shapes import OpenBox, rotate
 
 Array = np.ndarray
-TAIT_EXPONENT = 7.0
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ def seed(fluid: Fluid, world: World, speed_of_sound: float) -> Seeded:
     """Particles of a box of fluid at rest under its own weight, without those where a body already is.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
-    The density follows the hydrostatic pressure through Tait's equation.
+    The density follows the hydrostatic pressure through the equation of state.
 
     Args:
         fluid: The box.
@@ -99,14 +98,13 @@ def seed(fluid: Fluid, world: World, speed_of_sound: float) -> Seeded:
     position = position[free]
     if len(position) == 0:
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
-    stiffness = fluid.density * speed_of_sound**2 / TAIT_EXPONENT
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
     pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
     return Seeded(
         prim=fluid.prim,
         position=position,
         mass=fluid.density * cells.volume[free],
-        density=fluid.density * (pressure / stiffness + 1.0) ** (1.0 / TAIT_EXPONENT),
+        density=fluid.density + pressure / speed_of_sound**2,
     )
 
 

@@ -62,9 +62,9 @@ class Pictures:
         return self
 
     def __exit__(self, *error: Any) -> None:
-        """Finish the video, and write what the stills show."""
+        """Finish the video, and write what the stills show; of a run that was stopped there is neither."""
         self.video.__exit__(*error)
-        if self.review:
+        if self.review and error[0] is None:
             partial = self.review.with_name(self.review.name + ".partial")
             partial.write_text(json.dumps({"share_of_picture": self.seen}, indent=1) + "\n", encoding="utf-8")
             partial.replace(self.review)
@@ -101,7 +101,9 @@ class Pictures:
         if self.frames_dir:
             self.frames_dir.mkdir(parents=True, exist_ok=True)
             path = self.frames_dir / f"{camera.rsplit('/', 1)[-1]}_{time:06.3f}s.png"
-            cv2.imwrite(str(path), image.rgb[:, :, ::-1])
+            partial = path.with_name(path.name + ".partial")
+            partial.write_bytes(cv2.imencode(".png", image.rgb[:, :, ::-1])[1].tobytes())
+            partial.replace(path)
             self.stills.append(path)
 
 

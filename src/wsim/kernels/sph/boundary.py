@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from wsim.kernels.sph.density import tait_density
+from wsim.kernels.sph.density import density_at
 from wsim.kernels.sph.wendland import wendland
 
 
@@ -75,7 +75,7 @@ def extrapolate_pressure(
     pressure = float(0.0)
     if weight > 0.0:
         pressure = wp.max(total / weight, 0.0)
-    rho = tait_density(pressure, rest_density, speed_of_sound)
+    rho = density_at(pressure, rest_density, speed_of_sound)
     m = motion[s]
     point[s] = wp.vec4(p[0], p[1], p[2], pressure / (rho * rho))
     motion[s] = wp.vec4(m[0], m[1], m[2], rho)
