@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import _thread
+import signal
 import sys
 import threading
 
@@ -37,7 +37,7 @@ def main() -> None:
     """Run the command line; a user's mistake is one line and exit code 2."""
     _keep_interrupts()
     try:
-        app()
+        app(prog_name="wsim")
     except UserError as error:
         print(f"wsim: {error}", file=sys.stderr)
         sys.exit(2)
@@ -55,7 +55,7 @@ def _keep_interrupts() -> None:
         if dropped.exc_type is not KeyboardInterrupt:
             report(dropped)
             return
-        timer = threading.Timer(0.02, _thread.interrupt_main)
+        timer = threading.Timer(0.02, signal.pthread_kill, (threading.main_thread().ident, signal.SIGINT))
         timer.daemon = True
         timer.start()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 from pathlib import Path
 from typing import Annotated
@@ -28,7 +29,8 @@ def view(
     if web:
         with serve_web(recording, port, time=time, entity=prim) as server:
             print(f"serving {recording} on 127.0.0.1 only; Ctrl-C stops\n{server.url}", flush=True)
-            server.process.wait()
+            with contextlib.suppress(KeyboardInterrupt):  # the way it is meant to end
+                server.process.wait()
         return
     if has_display():
         open_native(recording, time, prim)

@@ -1,0 +1,145 @@
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from wsim.plan.planner import plan
+from wsim.program.sandbox import available
+
+ENVIRONMENT = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "COLUMNS")}
+
+
+@dataclass
+class Ended:
+    """A command that has ended."""
+
+    code: int
+    out: str
+    err: str
+    seconds: float
+    runs: Path
+
+    @property
+    def run(self) -> Path:
+        """The one run folder that it made."""
+        (path,) = self.runs.iterdir()
+        return path
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """What the run's only iteration came to."""
+        return json.loads((self.run / "iterations" / "01" / "verdict.json").read_text())
+
+    @property
+    def failure(self) -> dict[str, Any]:
+        """The one finding that did not pass."""
+        (failure,) = (finding for finding in self.verdict["findings"] if not finding["passed"])
+        return failure
+
+
+def start(command: list[str], folder: Path) -> subprocess.Popen[str]:
+    """Start a command in a folder, as the first of its own process group."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pipe = subprocess.PIPE
+    return subprocess.Popen(
+        command, cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=pipe, stderr=pipe, text=True
+    )
+
+
+def end(process: subprocess.Popen[str], folder: Path) -> Ended:
+    """Wait for a command, and see what no command may ever do: trace back."""
+    began = time.monotonic()
+    out, err = process.communicate(timeout=120)
+    assert "Traceback" not in out + err, err
+    return Ended(process.returncode, out, err, time.monotonic() - began, folder / "runs")
+
+
+def wsim_command(*arguments: object) -> list[str]:
+    return [sys.executable, "-m", "wsim.cli", *map(str, arguments)]
+
+
+@pytest.fixture
+def wsim(tmp_path: Path) -> Callable[..., Ended]:
+    """Run `wsim` in an empty folder."""
+    return lambda *arguments: end(start(wsim_command(*arguments), tmp_path), tmp_path)
+
+
+@pytest.fixture(scope="session")
+def require_isolation() -> Callable[[str], None]:
+    def check(name: str) -> None:
+        problem = available()[name]
+        if problem:
+            pytest.skip(f"{name}: {problem}")
+
+    return check
+
+
+@pytest.fixture(scope="session")
+def floating_plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The plan of a floating block in coarse water, small and short: 288 particles for 2 s."""
+    data = plan("A wooden block floats in a tank of water.").model_dump(mode="json")
+    things = {thing["name"]: thing for thing in data["objects"]}
+    level = 0.25
+    things["tank"]["size"] = [0.4, 0.4, 0.4]
+    (surface,) = (rule for rule in things["water"]["relations"] if rule["predicate"] == "FREE-SURFACE-AT")
+    surface["value"] = level
+    things["wooden_block"]["pose"]["position"] = [0.0, 0.0, 0.28]  # 0.06 m deep; at rest it is 0.084 m
+    data["simulation"] |= {"duration": 2.0, "spacing": 0.05, "frame_rate": 10.0}
+    path = tmp_path_factory.mktemp("plan") / "plan.json"
+    path.write_text(json.dumps(data))
+    return path
+
+
+@pytest.fixture(scope="session")
+def floating(floating_plan: Path, tmp_path_factory: pytest.TempPathFactory) -> Ended:
+    """That plan, generated without pictures."""
+    folder = tmp_path_factory.mktemp("floating")
+    options = ("--plan", floating_plan, "--yes", "--no-pictures", "--device", "cpu")
+    return end(start(wsim_command("generate", *options), folder), folder)
+
+
+@pytest.fixture(scope="session")
+def reruns(floating: Ended, tmp_path_factory: pytest.TempPathFactory) -> tuple[Ended, Ended]:
+    """That run run again: as it is, and with heavy wood."""
+    folders = [tmp_path_factory.mktemp("again"), tmp_path_factory.mktemp("heavy")]
+    command = wsim_command("run", floating.run, "--no-pictures", "--device", "cpu")
+    started = [start([*command, *more], folder) for more, folder in zip(([], HEAVY), folders, strict=True)]
+    again, heavy = (end(process, folder) for process, folder in zip(started, folders, strict=True))
+    return again, heavy
+
+
+HEAVY = ["--set", "wood_density=2500"]
+
+
+@pytest.fixture(scope="session")
+def pictured(floating_plan: Path, tmp_path_factory: pytest.TempPathFactory) -> Ended:
+    """Three frames of that plan, generated with pictures."""
+    folder = tmp_path_factory.mktemp("pictured")
+    data = json.loads(floating_plan.read_text())
+    data["simulation"] |= {"duration": 0.2}
+    (folder / "plan.json").write_text(json.dumps(data))
+    return end(start(wsim_command("generate", "--plan", "plan.json", "--yes", "--device", "cpu"), folder), folder)
+
+
+@pytest.fixture
+def launch(tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
+    """Start `wsim` in an empty folder, and see that it is gone afterwards."""
+    started: list[subprocess.Popen[str]] = []
+
+    def one(*arguments: object) -> subprocess.Popen[str]:
+        started.append(start(wsim_command(*arguments), tmp_path))
+        return started[-1]
+
+    yield one
+    for process in started:
+        process.kill()
+        process.communicate()

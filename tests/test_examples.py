@@ -1,0 +1,133 @@
+"""The examples: each simulated coarsely against what its scene must do; one run by itself, one by `wsim run`."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Usd
+
+from wsim.recording import Recording, read
+from wsim.scene import Scene
+from wsim.sim import Simulation
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+
+
+@pytest.fixture
+def simulate(tmp_path: Path) -> Callable[..., Recording]:
+    """Simulate an example's stage with other numbers: duration [s], frames a second, and spacing [m] of the water."""
+
+    def one(name: str, duration: float, frame_rate: float, spacing: float | None = None) -> Recording:
+        spec = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        scene = Scene()
+        module.build(scene)
+        scene.simulation(duration=duration, frame_rate=frame_rate)
+        if spacing:
+            scene.stage.GetPrimAtPath("/World/water").GetAttribute("wsim:spacing").Set(spacing)
+        stage = scene.save(tmp_path / "stage.usda")
+        assert Usd.Stage.Open(str(stage))
+        result = Simulation(stage, device="cpu").run(tmp_path / "recording.rrd")
+        assert result.problems == []
+        return read(tmp_path / "recording.rrd")
+
+    return one
+
+
+def run(command: list[str], folder: Path) -> tuple[str, Path]:
+    """Run a command in an empty folder; its output, and the folder of the one run that it made."""
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert ended.stderr == ""
+    (made,) = (folder / "runs").iterdir()
+    assert json.loads((made / "run.json").read_text())["status"] == "accepted"
+    assert {path.name for path in (made / "accepted").iterdir()} == {"program.py", "stage.usda", "SHA256SUMS"}
+    assert (made / "report.html").is_file()
+    return ended.stdout, made
+
+
+def test_double_pendulum_keeps_its_energy(simulate) -> None:
+    recording = simulate("double_pendulum", 5.0, 60.0)
+    potential = recording.scalars["energy/potential"]
+    energy = recording.scalars["energy/kinetic"] + potential
+    assert np.ptp(potential) > 5.0  # it swings: 5.4 kg m/s^2 a metre, twice
+    assert np.ptp(energy) < 1e-3 * np.ptp(potential)
+    upper, lower = recording.position("/World/upper"), recording.position("/World/lower")
+    assert np.hypot(upper[:, 0], upper[:, 2] - 1.6) == pytest.approx(0.25, abs=1e-3)  # the shoulder holds
+    assert np.linalg.norm(upper - lower, axis=1).max() < 0.5 + 1e-3  # so does the elbow
+    assert np.abs(lower[:, 1]).max() < 1e-3
+
+
+def test_dam_break_runs_forward_and_stays_in_its_tank(simulate) -> None:
+    recording = simulate("dam_break", 0.6, 20.0, spacing=0.05)
+    water = recording.fluids["/World/water"].position
+    front = np.quantile(water[:, :, 0], 0.99, axis=1)
+    assert front[0] == pytest.approx(-0.8 + 0.45, abs=0.05)
+    assert front[-1] > 0.2  # it has reached the obstacle
+    assert (np.diff(front[: np.argmax(front > 0.2)]) > 0.0).all()
+    assert water[-1, :, 2].mean() < 0.75 * water[0, :, 2].mean()
+    slack = 0.025  # half a spacing
+    for axis, (low, high) in enumerate([(-0.8, 0.8), (-0.2, 0.2), (0.02, np.inf)]):
+        assert water[:, :, axis].min() > low - slack
+        assert water[:, :, axis].max() < high + slack
+
+
+def test_blocks_float_and_the_ball_sinks(simulate) -> None:
+    recording = simulate("floating_blocks", 1.2, 10.0, spacing=0.05)
+    surface = 0.02 + 0.3
+    for i in range(3):
+        assert recording.position(f"/World/block_{i}")[:, 2].min() > surface - 0.15  # it never goes under
+        assert abs(recording.position(f"/World/block_{i}")[-1, 2] - surface) < 0.08
+    ball = recording.position("/World/ball")[:, 2]
+    assert ball[-1] < 0.02 + 0.06 + 0.02  # on the floor
+    assert ball[-1] > 0.02 + 0.06 - 0.01
+
+
+def test_stack_is_knocked_over_by_wsim_run(tmp_path: Path) -> None:
+    program = EXAMPLES / "stack_and_ball.py"
+    command = [sys.executable, "-m", "wsim.cli", "run", str(program), "--no-pictures", "--device", "cpu"]
+    _, made = run(command, tmp_path)
+    recording = read(made / "iterations" / "01" / "recording.rrd")
+    boxes = [recording.position(f"/World/box_{i}") for i in range(5)]
+    moved = [float(np.linalg.norm(box[-1] - box[0])) for box in boxes]
+    assert sum(distance > 0.3 for distance in moved) >= 2, moved
+    assert all(box[:, 2].min() > 0.09 for box in boxes)  # none sinks into the ground
+    assert (made / "accepted" / "program.py").read_text() == program.read_text()
+
+
+def test_a_program_runs_by_itself(tmp_path: Path) -> None:
+    text = (EXAMPLES / "double_pendulum.py").read_text()
+    assert "duration=5.0" in text
+    (tmp_path / "double_pendulum.py").write_text(text.replace("duration=5.0", "duration=0.2"))  # pictures take time
+    out, made = run([sys.executable, "double_pendulum.py"], tmp_path)
+    assert "accepted" in out
+    assert f"report: {made.relative_to(tmp_path)}/report.html" in out
+    iteration = made / "iterations" / "01"
+    found = {path.name for path in iteration.iterdir()}
+    assert found >= {"program.py", "stage.usda", "recording.rrd", "video.mp4", "frames", "review.json", "verdict.json"}
+    assert json.loads((made / "run.json").read_text())["in_process"] is True
+
+
+def test_a_bad_call_of_a_program_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "bad.py").write_text(
+        "def build(scene):\n"
+        "    scene.box('b', size=(1, -1, 1), density=500.0)\n\n"
+        "if __name__ == '__main__':\n"
+        "    from wsim import run\n"
+        "    run(build)\n"
+    )
+    ended = subprocess.run([sys.executable, "bad.py"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith('bad.py:2: box("b"): size[1] = -1 ')
+    assert ended.stderr.count("\n") == 1
+    (made,) = (tmp_path / "runs").iterdir()
+    assert json.loads((made / "run.json").read_text())["status"] == "stopped"
+    assert not (made / "accepted").exists()
