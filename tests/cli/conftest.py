@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,7 +24,6 @@ class Ended:
     code: int
     out: str
     err: str
-    seconds: float
     runs: Path
 
     @property
@@ -57,10 +55,9 @@ def start(command: list[str], folder: Path) -> subprocess.Popen[str]:
 
 def end(process: subprocess.Popen[str], folder: Path) -> Ended:
     """Wait for a command, and see what no command may ever do: trace back."""
-    began = time.monotonic()
     out, err = process.communicate(timeout=120)
     assert "Traceback" not in out + err, err
-    return Ended(process.returncode, out, err, time.monotonic() - began, folder / "runs")
+    return Ended(process.returncode, out, err, folder / "runs")
 
 
 def wsim_command(*arguments: object) -> list[str]:
@@ -100,11 +97,29 @@ def floating_plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def floating(floating_plan: Path, tmp_path_factory: pytest.TempPathFactory) -> Ended:
-    """That plan, generated without pictures."""
-    folder = tmp_path_factory.mktemp("floating")
-    options = ("--plan", floating_plan, "--yes", "--no-pictures", "--device", "cpu")
-    return end(start(wsim_command("generate", *options), folder), folder)
+def generated(floating_plan: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Ended, Ended]:
+    """That plan without pictures, and three frames of it with pictures, both generated at once."""
+    folders = [tmp_path_factory.mktemp("floating"), tmp_path_factory.mktemp("pictured")]
+    data = json.loads(floating_plan.read_text())
+    data["simulation"] |= {"duration": 0.2}
+    (folders[1] / "plan.json").write_text(json.dumps(data))
+    options = [("--plan", floating_plan, "--no-pictures"), ("--plan", "plan.json")]
+    command = wsim_command("generate", "--yes", "--device", "cpu")
+    started = [start([*command, *map(str, more)], folder) for more, folder in zip(options, folders, strict=True)]
+    floating, pictured = (end(process, folder) for process, folder in zip(started, folders, strict=True))
+    return floating, pictured
+
+
+@pytest.fixture(scope="session")
+def floating(generated: tuple[Ended, Ended]) -> Ended:
+    """The plan of a floating block, generated without pictures."""
+    return generated[0]
+
+
+@pytest.fixture(scope="session")
+def pictured(generated: tuple[Ended, Ended]) -> Ended:
+    """Three frames of it, generated with pictures."""
+    return generated[1]
 
 
 @pytest.fixture(scope="session")
@@ -118,16 +133,6 @@ def reruns(floating: Ended, tmp_path_factory: pytest.TempPathFactory) -> tuple[E
 
 
 HEAVY = ["--set", "wood_density=2500"]
-
-
-@pytest.fixture(scope="session")
-def pictured(floating_plan: Path, tmp_path_factory: pytest.TempPathFactory) -> Ended:
-    """Three frames of that plan, generated with pictures."""
-    folder = tmp_path_factory.mktemp("pictured")
-    data = json.loads(floating_plan.read_text())
-    data["simulation"] |= {"duration": 0.2}
-    (folder / "plan.json").write_text(json.dumps(data))
-    return end(start(wsim_command("generate", "--plan", "plan.json", "--yes", "--device", "cpu"), folder), folder)
 
 
 @pytest.fixture
