@@ -79,7 +79,7 @@ def test_block_slides_to_rest_and_its_contact_force_is_its_weight(tmp_path):
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.8])
 def test_ball_bounces_to_the_height_of_its_restitution(tmp_path, restitution):
-    """h' = e^2 h, between shapes of the same restitution."""
+    """h' = e^2 h between shapes of the same restitution; the step's place in the contact moves e by up to 0.04."""
 
     def build(scene):
         scene.simulation(duration=1.2, frame_rate=100.0)
@@ -91,7 +91,8 @@ def test_ball_bounces_to_the_height_of_its_restitution(tmp_path, restitution):
     recording = read(tmp_path / "r.rrd")
     height = recording.position("/World/ball")[:, 2] - 0.1
     landed = int(np.argmax(height < 0.01))
-    assert height[landed:].max() == pytest.approx(restitution**2, abs=0.03)
+    rebound = math.sqrt(height[landed:].max())
+    assert rebound == pytest.approx(restitution, abs=0.04 if restitution else 0.15)  # hard contacts keep up to exp(-2)
     speed, frequency = math.sqrt(2.0 * G), 1.0 / (6.0 * simulation.dt)
     assert recording.scalars["contact/penetration"].max() < speed / frequency  # the spring alone, undamped
 
