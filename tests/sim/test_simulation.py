@@ -182,6 +182,19 @@ def test_state_that_is_not_finite_ends_the_run_and_is_logged(tmp_path):
     assert any(line.level == "ERROR" for line in recording.log)
 
 
+def test_controller_is_called_once_a_control_step(tmp_path):
+    def build(scene):
+        scene.simulation(duration=0.05, frame_rate=100.0)
+        scene.sphere("ball", radius=0.1, density=1000.0, position=(0.0, 0.0, 5.0))
+
+    calls = []
+    simulation = Simulation(
+        stage_of(tmp_path, build), device="cpu", controller=lambda t, _: calls.append(t), control_interval=0.01
+    )
+    simulation.run(tmp_path / "r.rrd")
+    assert calls == pytest.approx([0.0, 0.01, 0.02, 0.03, 0.04], abs=1e-9)
+
+
 def test_unknown_device_is_named(tmp_path):
     with pytest.raises(UserError, match="cuda:7"):
         Simulation(stage_of(tmp_path, tank), device="cuda:7")

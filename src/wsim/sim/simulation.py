@@ -119,9 +119,11 @@ class Simulation:
         import warp as wp
 
         kept, self.state = self.state, self.model.state()
+        controller, self._controller = self._controller, None  # it may count its calls
         self.state.assign(kept)
         self.step()
         self.state, self.time, self.step_count = kept, 0.0, 0
+        self._controller = controller
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
