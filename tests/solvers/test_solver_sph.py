@@ -199,6 +199,22 @@ def test_settings_out_of_range_are_named(settings, name):
         SolverSPH.Config(**{"speed_of_sound": 10.0, **settings})
 
 
+def test_density_that_was_never_set_is_the_rest_density():
+    builder = make_builder()
+    cells = box_lattice(np.array([0.1, 0.1, 0.1]), 0.02)
+    count = len(cells.position)
+    builder.add_particles(
+        pos=cells.position.tolist(), vel=[(0.0, 0.0, 0.0)] * count, mass=(RHO * cells.volume).tolist()
+    )
+    model = builder.finalize(device="cpu")
+    solver = SolverSPH(model, SolverSPH.Config(spacing=0.02, speed_of_sound=10.0))
+    state = model.state()
+    advance(solver, state, 0.002)
+    assert state.sph.density.numpy() == pytest.approx(RHO, rel=1e-3)
+    fallen = state.particle_qd.numpy()[:, 2].mean()
+    assert fallen == pytest.approx(-G * 0.002, rel=0.01)
+
+
 def test_model_without_particles_is_refused():
     model = make_builder().finalize(device="cpu")
     with pytest.raises(ValueError, match="no particles"):

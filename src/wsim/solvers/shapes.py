@@ -88,7 +88,7 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float) -> Sample
 
 
 def near_fluid(position: Array, fluid: Array, support: float) -> Array:
-    """Which static samples can ever matter little: those far outside the fluid's column are dropped by the caller."""
+    """Which samples of a fixed shape the fluid may reach: those within one fluid's length of it, seen from above."""
     low, high = fluid.min(axis=0), fluid.max(axis=0)
     reach = max(float((high - low).max()), support)
     return ((position[:, :2] >= low[:2] - reach) & (position[:, :2] <= high[:2] + reach)).all(axis=1)

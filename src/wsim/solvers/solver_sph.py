@@ -210,12 +210,6 @@ class SolverSPH(SolverBase):
                 "use a smaller time step or a higher speed of sound"
             )
 
-    def initialize_density(self, state: newton.State) -> None:
-        """Set densities that are still 0 to the rest density, in place."""
-        density = state.sph.density.numpy()
-        density[density <= 0.0] = self.config.rest_density
-        state.sph.density.assign(density)
-
     def step(
         self,
         state_in: newton.State,

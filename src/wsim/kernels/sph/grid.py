@@ -113,14 +113,15 @@ def gather(
     point: wp.array(dtype=wp.vec4),
     motion: wp.array(dtype=wp.vec4),
 ):
-    """Copy what changes each step into sorted order."""
+    """Copy what changes each step into sorted order; a density that was never set is the rest density."""
     s = wp.tid()
     i = order[s]
     if i < fluid_count:
         x = fluid_position[i]
         v = fluid_velocity[i]
         point[s] = wp.vec4(x[0], x[1], x[2], 0.0)
-        motion[s] = wp.vec4(v[0], v[1], v[2], fluid_density[i])
+        rho = fluid_density[i]
+        motion[s] = wp.vec4(v[0], v[1], v[2], wp.where(rho > 0.0, rho, rest_density))
     else:
         b = i - fluid_count
         x = boundary_position[b]
