@@ -5,27 +5,25 @@ import warp as wp
 from wsim.kernels.sph.wendland import wendland_slope
 
 # Water that is pulled apart leaves a void; it does not stretch. Below this share of the rest density a particle is one
-# drop of spray, and its density says nothing more.
+# drop of spray, and its density says nothing more. Without the bound a few drops that hold each other in orbit by
+# tension stretch without end. To forbid tension altogether is worse: it opens voids in the bulk that slam shut.
 LOWEST_DENSITY = wp.constant(0.9)
 
 
 @wp.func
 def pressure_of(rho: float, rest_density: float, speed_of_sound: float) -> float:
-    """Pressure [Pa] of the linear equation of state, p = c^2 (rho - rho_0) (Antuono et al. 2010), never negative.
-
-    A free surface carries no tension. With tension a few drops of spray hold each other in orbit and stretch without
-    end, and water squeezed from under a landing body rebounds into a void.
+    """Pressure [Pa] of the linear equation of state, p = c^2 (rho - rho_0) (Antuono et al. 2010).
 
     Tait's equation with exponent 7 is the same to first order, but its sound quickens with compression: where a cavity
     closes over a sinking body the density rises by 15 %, the sound by half, and the step that was chosen for the
     still fluid is too long.
     """
-    return speed_of_sound * speed_of_sound * wp.max(rho - rest_density, 0.0)
+    return speed_of_sound * speed_of_sound * (rho - rest_density)
 
 
 @wp.func
 def density_at(pressure: float, rest_density: float, speed_of_sound: float) -> float:
-    """Density [kg/m^3] at a pressure >= 0: the inverse of `pressure_of`."""
+    """Density [kg/m^3] at a pressure: the inverse of `pressure_of`."""
     return rest_density + pressure / (speed_of_sound * speed_of_sound)
 
 
