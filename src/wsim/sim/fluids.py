@@ -18,12 +18,12 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class Seeded:
-    """The particles of one fluid: positions [m] (n, 3), masses [kg] (n,), densities [kg/m^3] (n,)."""
+    """The particles of one fluid: positions [m] (n, 3), masses [kg] (n,), pressures [Pa] (n,)."""
 
     prim: str
     position: Array
     mass: Array
-    density: Array
+    pressure: Array
 
 
 def containers_of(world: World) -> tuple[OpenBox, ...]:
@@ -78,16 +78,15 @@ def _fills(fluid: Fluid, world: World) -> bool:
     )
 
 
-def seed(fluid: Fluid, world: World, speed_of_sound: float) -> Seeded:
+def seed(fluid: Fluid, world: World) -> Seeded:
     """Particles of a box of fluid at rest under its own weight, without those where a body already is.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
-    The density follows the hydrostatic pressure through the equation of state.
+    The pressure is hydrostatic.
 
     Args:
         fluid: The box.
         world: For gravity, and for the bodies that stand in the fluid.
-        speed_of_sound: The solver's [m/s].
     """
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
@@ -99,12 +98,11 @@ def seed(fluid: Fluid, world: World, speed_of_sound: float) -> Seeded:
     if len(position) == 0:
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
     depth = 0.5 * fluid.size[2] + fluid.center[2] - position[:, 2]
-    pressure = fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0)
     return Seeded(
         prim=fluid.prim,
         position=position,
         mass=fluid.density * cells.volume[free],
-        density=fluid.density + pressure / speed_of_sound**2,
+        pressure=fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0),
     )
 
 

@@ -47,7 +47,8 @@ def _fluids(built: Built, state: Any, scalars: dict[str, float]) -> dict[str, Fl
     if not built.fluids:
         return {}
     position, velocity = state.particle_q.numpy(), state.particle_qd.numpy()
-    density, mass = state.sph.density.numpy(), built.model.particle_mass.numpy()
+    density = built.sph.rest_density + state.sph.pressure.numpy() / built.sph.speed_of_sound**2
+    mass = built.model.particle_mass.numpy()
     frames = {
         prim: FluidFrame(position[part].copy(), velocity[part].copy(), density[part].copy())
         for prim, part in built.fluids.items()

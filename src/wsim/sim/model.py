@@ -88,14 +88,14 @@ def _sph_config(world: World) -> Any | None:
 def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:
     slices = {}
     for fluid in world.fluids:
-        seeded: Seeded = seed(fluid, world, config.speed_of_sound)
+        seeded: Seeded = seed(fluid, world)
         first, count = builder.particle_count, len(seeded.position)
         builder.add_particles(
             pos=seeded.position.tolist(),
             vel=[(0.0, 0.0, 0.0)] * count,
             mass=seeded.mass.tolist(),
             radius=[0.5 * fluid.spacing] * count,
-            custom_attributes={"sph:density": seeded.density.tolist()},
+            custom_attributes={"sph:pressure": seeded.pressure.tolist()},
         )
         slices[fluid.prim] = slice(first, first + count)
     return slices

@@ -127,7 +127,7 @@ class Simulation:
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
-            self.fluid.lists_stale = True
+            self.fluid.reset_lists()
         wp.synchronize_device(self.device)
 
     def step(self) -> None:
@@ -170,7 +170,7 @@ class Simulation:
         found = self.rigid.problems() if self.rigid else []
         if self.fluid:
             try:
-                self.fluid.check()
+                self.fluid.check(self.state)
             except RuntimeError as error:
                 found.append(str(error))
         arrays = {"body_q": self.state.body_q, "body_qd": self.state.body_qd, "particle_q": self.state.particle_q}

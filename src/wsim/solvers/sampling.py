@@ -23,9 +23,14 @@ def lattice_axis(length: float, spacing: float) -> tuple[int, float]:
     return count, length / count
 
 
-def box_lattice(size: Array, spacing: float) -> Samples:
-    """Cell centres of a box of edge lengths `size` [m] about the origin; the volumes add up to the box's."""
+def box_lattice(size: Array, spacing: float, plane: bool = False) -> Samples:
+    """Cell centres of a box of edge lengths `size` [m] about the origin; the volumes add up to the box's.
+
+    With `plane` there is one cell along y, as deep as the box.
+    """
     axes = [lattice_axis(float(length), spacing) for length in size]
+    if plane:
+        axes[1] = (1, float(size[1]))
     ticks = [(np.arange(count) + 0.5) * edge - 0.5 * count * edge for count, edge in axes]
     position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
@@ -105,22 +110,26 @@ def _inside_mesh(vertices: Array, triangles: Array, points: Array) -> Array:
     return inside.numpy()
 
 
-def container_walls(inner_size: Array, spacing: float, support: float) -> Samples:
-    """Layers of particles behind the floor and four walls of an open box, as deep as a kernel's support reaches.
+def container_walls(inner_size: Array, spacing: float, support: float, sides: Array, plane: bool = False) -> Samples:
+    """Layers of particles behind the walls of a box, as deep as a kernel's support reaches.
 
     The layers carry on the lattice of a fluid that fills the box, whose first particles stand half a cell off the
-    wall, and go up to its rim. Positions [m] are relative to the centre of the hollow.
+    wall, and end at the rim of an open side. Positions [m] are relative to the centre of the hollow.
 
     Args:
         inner_size: Inner edge lengths [m].
         spacing: Particle spacing [m].
         support: Radius of the kernel's support [m].
+        sides: Which walls there are, shape (3, 2): lower and upper of each axis.
+        plane: One layer at y = 0 that stands for the box's whole depth.
     """
     axes = [lattice_axis(float(length), spacing) for length in inner_size]
+    if plane:
+        axes[1] = (1, float(inner_size[1]))
     ticks, outside = [], []
-    for axis, (count, edge) in enumerate(axes):
+    for (count, edge), (lower, upper) in zip(axes, sides, strict=True):
         layers = max(1, round(support / edge - 0.5))
-        index = np.arange(-layers, count + (layers if axis < 2 else 0))
+        index = np.arange(-layers if lower else 0, count + (layers if upper else 0))
         ticks.append((index + 0.5) * edge - 0.5 * count * edge)
         outside.append((index < 0) | (index >= count))
     position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -129,12 +138,14 @@ def container_walls(inner_size: Array, spacing: float, support: float) -> Sample
     return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
 
 
-def plane_patch(low: Array, high: Array, spacing: float, support: float) -> Samples:
-    """Layers below z = 0 over the rectangle from `low` to `high` [m], shape (2,) each."""
-    size = np.append(np.asarray(high) - np.asarray(low), 0.0)
-    axes = [lattice_axis(float(length), spacing) for length in size[:2]]
+def plane_patch(low: Array, high: Array, spacing: float, support: float, plane: bool = False) -> Samples:
+    """Layers below z = 0 over the rectangle from `low` to `high` [m], shape (2,) each; one metre deep if `plane`."""
+    size = np.asarray(high) - np.asarray(low)
+    axes = [lattice_axis(float(length), spacing) for length in size]
     layers = max(1, round(support / spacing - 0.5))
     ticks = [low[k] + (np.arange(count) + 0.5) * edge for k, (count, edge) in enumerate(axes)]
+    if plane:
+        axes[1], ticks[1] = (1, 1.0), np.zeros(1)
     ticks.append(-(np.arange(layers) + 0.5) * spacing)
     position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     return Samples(position, np.full(len(position), axes[0][1] * axes[1][1] * spacing))

@@ -17,13 +17,14 @@ from wsim.solvers.sampling import (
     plane_patch,
     sphere_lattice,
 )
+from wsim.solvers.sph_config import ConfigSPH
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True)
 class OpenBox:
-    """The hollow of an open tank, the same in every world.
+    """The hollow of a tank.
 
     Its walls are sampled outward as deep as the kernel reaches, however thin the glass is: a thin wall's own volume
     would leave the kernel of a particle beside it half empty, and the fluid would leak.
@@ -37,6 +38,10 @@ class OpenBox:
     """Orientation, xyzw."""
     shapes: frozenset[str] = frozenset()
     """Labels of the model's shapes that are its walls; they are not sampled again."""
+    closed: bool = False
+    """Whether it has a lid."""
+    world: int = -1
+    """The world that it stands in; -1 is every world."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,7 @@ def rotate(quaternion: Array, vectors: Array) -> Array:
     return vectors + w * cross + np.cross(np.broadcast_to(axis, vectors.shape), cross)
 
 
-def sample_shape(kind: int, scale: Array, source: Any, spacing: float) -> Samples | None:
+def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bool = False) -> Samples | None:
     """Fill one Newton shape with particles in its own frame; None for kinds that have no inside.
 
     Args:
@@ -69,11 +74,17 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float) -> Sample
         scale: Newton's shape scale: half extents of a box [m], radius and half height of a cylinder [m], …
         source: The `newton.Mesh` of a mesh.
         spacing: Particle spacing [m].
+        plane: One layer at y = 0, for a flow in the x-z plane.
+
+    Raises:
+        ValueError: If a shape other than a box is met in a plane.
     """
     from newton import GeoType
 
     if kind == GeoType.BOX:
-        return box_lattice(2.0 * scale, spacing)
+        return box_lattice(2.0 * scale, spacing, plane)
+    if plane:
+        raise ValueError(f"SolverSPH: a {GeoType(kind).name} in a flow of 2 dimensions; only boxes stand in a plane")
     if kind == GeoType.SPHERE:
         return sphere_lattice(float(scale[0]), spacing)
     if kind == GeoType.CYLINDER:
@@ -95,7 +106,7 @@ def near_fluid(position: Array, fluid: Array, support: float) -> Array:
 
 
 def sample_boundary(
-    model: Any, spacing: float, support: float, containers: tuple[OpenBox, ...], fluid: Array, fluid_world: Array
+    model: Any, config: ConfigSPH, containers: tuple[OpenBox, ...], fluid: Array, fluid_world: Array
 ) -> Boundary:
     """Sample every colliding shape of a model.
 
@@ -103,11 +114,13 @@ def sample_boundary(
 
     Args:
         model: The `newton.Model`.
-        spacing: Particle spacing [m].
-        support: Radius of the kernel's support [m].
-        containers: Tanks, in every world.
+        config: For the spacing, the kernel's support, dimensions and periodic axes.
+        containers: Tanks.
         fluid: Fluid positions [m], shape (n, 3).
         fluid_world: World of each fluid particle, shape (n,).
+
+    Raises:
+        ValueError: If a container is too narrow for the spacing.
     """
     from newton import GeoType, ShapeFlags
 
@@ -117,12 +130,12 @@ def sample_boundary(
     world_count = max(1, model.world_count)
     fixed: list[list[tuple[Array, Array]]] = [[] for _ in range(world_count)]
     moving: list[list[tuple[Array, Array]]] = [[] for _ in range(model.body_count)]
+    plane = config.dimensions == 2
 
-    for world in range(world_count):
-        for box in containers:
-            samples = container_walls(np.array(box.size), spacing, support)
-            position = rotate(np.array(box.rotation), samples.position) + np.array(box.center)
-            fixed[world].append((position, samples.volume))
+    for box in containers:
+        piece = _sample_container(box, config)
+        for world in range(world_count) if box.world < 0 else (box.world,):
+            fixed[world].append(piece)
 
     for shape in range(model.shape_count):
         if not flags[shape] & ShapeFlags.COLLIDE_SHAPES or model.shape_label[shape] in walls:
@@ -134,11 +147,11 @@ def sample_boundary(
                 if len(here) and not containers:
                     reach = float((here.max(axis=0) - here.min(axis=0)).max())
                     low, high = here.min(axis=0)[:2] - reach, here.max(axis=0)[:2] + reach
-                    samples = plane_patch(low, high, spacing, support)
+                    samples = plane_patch(low, high, config.spacing, config.support, plane)
                     height = np.array([0.0, 0.0, poses[shape][2]])
                     fixed[world].append((samples.position + height, samples.volume))
             continue
-        found = sample_shape(int(kinds[shape]), scales[shape], model.shape_source[shape], spacing)
+        found = sample_shape(int(kinds[shape]), scales[shape], model.shape_source[shape], config.spacing, plane)
         if found is None:
             continue
         position = rotate(poses[shape][3:], found.position) + poses[shape][:3]
@@ -148,9 +161,25 @@ def sample_boundary(
         for world in homes:
             here = fluid[fluid_world == world]
             if len(here):
-                keep = near_fluid(position, here, support)
+                keep = near_fluid(position, here, config.support)
                 fixed[world].append((position[keep], found.volume[keep]))
     return _join(fixed, moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+
+
+def _sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:
+    """Walls of one tank, none along periodic axes and none across a plane."""
+    plane = config.dimensions == 2
+    open_axes = np.array([ends is not None for ends in config.periodic]) | np.array([False, plane, False])
+    narrowest = min(length for axis, length in enumerate(box.size) if not open_axes[axis])
+    if narrowest < 4.0 * config.spacing:
+        raise ValueError(
+            f"SolverSPH: spacing = {config.spacing} m is too coarse for a container of inner size {box.size} m: its "
+            f"narrowest side holds {narrowest / config.spacing:.1f} particles and needs 4; "
+            f"use spacing <= {narrowest / 4.0:.4g}"
+        )
+    sides = np.array([[True, True], [True, True], [True, box.closed]]) & ~open_axes[:, None]
+    samples = container_walls(np.array(box.size), config.spacing, config.support, sides, plane)
+    return rotate(np.array(box.rotation), samples.position) + np.array(box.center), samples.volume
 
 
 def _join(fixed: list, moving: list, body_world: Array) -> Boundary:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import newton
@@ -14,13 +13,16 @@ from newton.solvers import SolverBase
 from wsim.kernels.sph import boundary as boundary_kernels
 from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
-from wsim.kernels.sph import momentum as momentum_kernels
 from wsim.kernels.sph import neighbors as neighbor_kernels
+from wsim.kernels.sph.programs import Programs
+from wsim.kernels.sph.status import inspect
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_boundary
+from wsim.solvers.sph_config import ConfigSPH
+from wsim.solvers.sph_domain import cells_of, domain_of, make_grid
 
 LANES = 32
-MAX_CELLS = 2**28
+MANY_NEIGHBORS = 1.6  # smoothing ratio from which a GPU does better to pass over what lies beyond the support
 
 
 class SolverSPH(SolverBase):
@@ -35,106 +37,95 @@ class SolverSPH(SolverBase):
         rigid.step(state, state, control, contacts, dt)
 
     Order of a step: density and pressure at the present positions and velocities, forces, then velocity, then position
-    with the new velocity. Call `register_custom_attributes` on the builder first; the state then has `sph.density`.
+    with the new velocity. Call `register_custom_attributes` on the builder first; the state then has `sph.pressure`.
 
     Args:
         model: The model to simulate; its particles are the fluid of every world.
         config: Settings of the method.
-        containers: Tanks that hold the fluid, in every world.
+        containers: Tanks that hold the fluid.
 
     Raises:
-        ValueError: If the model has no particles, or the settings are out of range.
+        ValueError: If the model has no particles, the settings are out of range, or a container is too narrow.
     """
 
-    @dataclass
-    class Config:
-        """Settings of `SolverSPH`."""
-
-        spacing: float = 0.02
-        """Distance between particles at rest [m]."""
-        smoothing_ratio: float = 1.3
-        """Smoothing length over spacing; the kernel's support is twice the smoothing length."""
-        rest_density: float = 1000.0
-        """Density at zero pressure [kg/m^3]."""
-        speed_of_sound: float = 0.0
-        """Numerical speed of sound [m/s]; ten times the largest expected speed keeps the density within 1 %."""
-        viscosity: float = 1.0e-3
-        """Dynamic viscosity [Pa s]."""
-        artificial_viscosity: float = 0.02
-        """Monaghan's alpha."""
-        density_diffusion: float = 0.1
-        """delta of the density diffusion term."""
-        cfl: float = 0.5
-        """Courant number: dt <= cfl * smoothing length / speed of sound."""
-        cells_per_support: int = 0
-        """Grid cells that the search radius spans; 0 takes 3 on a GPU, where finer cells trim the search closer to the
-        sphere, and 1 on a CPU, where looking up the rows costs more than that saves."""
-        skin: float = 0.1
-        """How much further than the support the neighbour lists reach, as a share of it. On a CPU the lists are kept
-        until a particle has moved half the skin; on a GPU they are made anew each step, with no skin, so that the step
-        has no branch and can be captured in a graph."""
-
-        def __post_init__(self) -> None:
-            """Reject settings that cannot work."""
-            for name in ("spacing", "smoothing_ratio", "rest_density", "speed_of_sound", "cfl"):
-                value = getattr(self, name)
-                if not (math.isfinite(value) and value > 0.0):
-                    raise ValueError(f"SolverSPH.Config: {name} = {value} must be > 0")
-            for name in ("viscosity", "artificial_viscosity", "density_diffusion", "skin"):
-                value = getattr(self, name)
-                if not (math.isfinite(value) and value >= 0.0):
-                    raise ValueError(f"SolverSPH.Config: {name} = {value} must be >= 0")
-            if not 0 <= self.cells_per_support <= 8:
-                raise ValueError(f"SolverSPH.Config: cells_per_support = {self.cells_per_support} must be in 0..8")
-
-        @property
-        def smoothing_length(self) -> float:
-            """Smoothing length h [m]."""
-            return self.smoothing_ratio * self.spacing
-
-        @property
-        def support(self) -> float:
-            """Radius of the kernel's support, 2h [m]."""
-            return 2.0 * self.smoothing_length
-
-        @property
-        def max_time_step(self) -> float:
-            """Largest stable step by the acoustic Courant condition [s]."""
-            return self.cfl * self.smoothing_length / self.speed_of_sound
+    Config = ConfigSPH
 
     @classmethod
     def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
-        """Register `sph:density` [kg/m^3], a state variable of each particle; 0 starts at the rest density."""
-        builder.add_custom_attribute(
-            newton.ModelBuilder.CustomAttribute(
-                name="density",
-                frequency=newton.Model.AttributeFrequency.PARTICLE,
-                assignment=newton.Model.AttributeAssignment.STATE,
-                dtype=wp.float32,
-                default=0.0,
-                namespace="sph",
-            )
-        )
+        """Register what the solver reads beside Newton's own particle arrays.
 
-    def __init__(self, model: newton.Model, config: Config, containers: tuple[OpenBox, ...] = ()) -> None:
+        `sph:pressure` [Pa] is a state variable of each particle, p = c^2 (rho - rho_0). `sph:rest_density` [kg/m^3]
+        and `sph:viscosity` [Pa s] belong to a world; 0 takes the `Config`'s.
+        """
+        frequency, assignment = newton.Model.AttributeFrequency, newton.Model.AttributeAssignment
+        for name, of, where in (
+            ("pressure", frequency.PARTICLE, assignment.STATE),
+            ("rest_density", frequency.WORLD, assignment.MODEL),
+            ("viscosity", frequency.WORLD, assignment.MODEL),
+        ):
+            builder.add_custom_attribute(
+                newton.ModelBuilder.CustomAttribute(
+                    name=name, frequency=of, assignment=where, dtype=wp.float32, default=0.0, namespace="sph"
+                )
+            )
+
+    def __init__(self, model: newton.Model, config: ConfigSPH, containers: tuple[OpenBox, ...] = ()) -> None:
         super().__init__(model)
         if model.particle_count == 0:
             raise ValueError("SolverSPH: the model has no particles; add the fluid to the builder first")
         self.config = config
-        h = config.smoothing_length
-        self.kernel_norm = 21.0 / (16.0 * math.pi * h**3)
         self.fluid_count = model.particle_count
+        self.world_count = max(1, model.world_count)
+        # A CPU keeps neighbour lists, with a skin; a GPU walks the cells in every sum.
+        self.skin = 0.0 if model.device.is_cuda else config.skin * config.support
         with wp.ScopedDevice(model.device):
+            self._read_worlds()
             self._sample_solids(containers)
-            self._lay_grid(containers)
+            low, high = domain_of(model.particle_q.numpy(), containers)
+            self.grid = make_grid(config, low, high, config.support + self.skin, model.device.is_cuda, self.world_count)
             self._allocate()
+            self.programs = Programs.make(
+                lists=not model.device.is_cuda,
+                periodic=tuple(map(bool, config.periodic)),
+                branch=model.device.is_cuda and config.smoothing_ratio > MANY_NEIGHBORS,
+            )
+            self.method = self._method()
+
+    def _method(self) -> density_kernels.Method:
+        c = self.config
+        method = density_kernels.Method()
+        h = c.smoothing_length
+        method.h, method.shape = h, wp.vec4(1.0 / c.support, -5.0 * c.kernel_norm / h**2, c.support**2, h)
+        method.speed_of_sound, method.diffusion = c.speed_of_sound, c.density_diffusion
+        method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, 2.0 * (c.dimensions + 2.0)
+        method.background_pressure = c.background_pressure
+        return method
+
+    def _read_worlds(self) -> None:
+        """Rest density and viscosity of each world."""
+        own = getattr(self.model, "sph", None)
+        for name in ("rest_density", "viscosity"):
+            values = np.full(self.world_count, getattr(self.config, name), dtype=np.float32)
+            given = getattr(own, name, None)
+            if given is not None and given.shape[0] == self.world_count:
+                given = given.numpy()
+                if not (np.isfinite(given).all() and (given >= 0.0).all()):
+                    raise ValueError(f"SolverSPH: sph:{name} = {given} must be finite and >= 0")
+                values = np.where(given > 0.0, given, values)
+            setattr(self, name, wp.array(values, dtype=float))
+
+    def notify_model_changed(self, flags: newton.ModelFlags | int) -> None:
+        """Read the worlds' densities and viscosities again; gravity and masses are read in every step."""
+        if flags & newton.ModelFlags.MODEL_PROPERTIES:
+            with wp.ScopedDevice(self.model.device):
+                self._read_worlds()
 
     def _sample_solids(self, containers: tuple[OpenBox, ...]) -> None:
         model = self.model
-        fluid = model.particle_q.numpy()
         world = np.maximum(model.particle_world.numpy(), 0)
-        solids = sample_boundary(model, self.config.spacing, self.config.support, containers, fluid, world)
+        solids = sample_boundary(model, self.config, containers, model.particle_q.numpy(), world)
         self.boundary_count = len(solids.local)
+        self.fixed_count = int(solids.body_first[0])
         self.count = self.fluid_count + self.boundary_count
         self.boundary_local = wp.array(solids.local, dtype=wp.vec3)
         self.boundary_position = wp.array(solids.local, dtype=wp.vec3)
@@ -142,73 +133,94 @@ class SolverSPH(SolverBase):
         self.boundary_volume = wp.array(solids.volume, dtype=float)
         self.boundary_owner = wp.array(solids.owner, dtype=int)
         self.body_first = wp.array(solids.body_first, dtype=int)
-        self.has_bodies = bool(solids.body_first[-1] > solids.body_first[0])
-        self.particle_world = wp.array(np.concatenate([world, solids.world]).astype(np.int32), dtype=int)
-
-    def _lay_grid(self, containers: tuple[OpenBox, ...]) -> None:
-        """Cells over the fluid and its tanks; a free fluid gets as much room again on each side."""
-        fluid = self.model.particle_q.numpy()
-        low, high = fluid.min(axis=0), fluid.max(axis=0)
-        if containers:
-            for box in containers:
-                diagonal = np.full(3, float(np.linalg.norm(box.size)))
-                half = 0.5 * (np.array(box.size) if box.rotation[3] == 1.0 else diagonal)
-                low, high = np.minimum(low, np.array(box.center) - half), np.maximum(high, np.array(box.center) + half)
-        else:
-            room = np.full(3, float((high - low).max()))
-            low, high = low - room, high + room
-        grid = grid_kernels.Grid()
-        self.skin = 0.0 if self.model.device.is_cuda else self.config.skin * self.config.support
-        grid.support = self.config.support + self.skin
-        grid.reach = self.config.cells_per_support or (3 if self.model.device.is_cuda else 1)
-        grid.cell = grid.support / grid.reach
-        grid.inv_cell = 1.0 / grid.cell
-        low, high = low - grid.support, high + grid.support
-        grid.origin = wp.vec3(*low.tolist())
-        grid.nx, grid.ny, grid.nz = (math.ceil(c) for c in ((high - low) / grid.cell).tolist())
-        self.grid = grid
-        self.cell_count = grid.nx * grid.ny * grid.nz * max(1, self.model.world_count)
-        if self.cell_count > MAX_CELLS:
-            raise ValueError(f"SolverSPH: {self.cell_count} grid cells; use a coarser spacing or a smaller domain")
+        self.has_bodies = self.boundary_count > self.fixed_count
+        everywhere = np.concatenate([world, solids.world]).astype(np.int32)
+        self.particle_world = wp.array(everywhere, dtype=int)
+        self.world_first = np.append(0, np.cumsum(np.bincount(everywhere, minlength=self.world_count))).tolist()
+        self.by_world = np.argsort(everywhere, kind="stable").astype(np.int32)
 
     def _allocate(self) -> None:
         n = self.count
+        self.cells_per_world = cells_of(self.grid)
+        self.key_bits = max(1, int(self.cells_per_world * self.world_count).bit_length())
         self.key = wp.empty(2 * n, dtype=int)
-        self.order = wp.empty(2 * n, dtype=int)
-        self.cell_histogram = wp.zeros(self.cell_count + 1, dtype=int)
-        self.cell_start = wp.zeros(self.cell_count + 1, dtype=int)
+        self.value = wp.empty(2 * n, dtype=int)
+        self.order = wp.array(self.by_world, dtype=int)
+        self.cell_count = wp.zeros(self.cells_per_world * self.world_count + 1, dtype=int)
+        self.cell_start = wp.zeros(self.cells_per_world * self.world_count + 1, dtype=int)
         self.point = wp.empty(n, dtype=wp.vec4)
         self.motion = wp.empty(n, dtype=wp.vec4)
-        self.mass = wp.empty(n, dtype=float)
-        self.kind = wp.empty(n, dtype=int)
-        self.sorted_density = wp.empty(n, dtype=float)
-        self.acceleration = wp.zeros(self.fluid_count, dtype=wp.vec3)
-        self.boundary_force = wp.zeros(self.boundary_count, dtype=wp.vec3)
+        self.pressure = wp.empty(n, dtype=float)
+        self.fluid_before = wp.zeros(n + 1 if self.model.device.is_cuda else 0, dtype=int)
+        self.boundary_force = wp.zeros(max(1, self.boundary_count - self.fixed_count), dtype=wp.vec3)
         self.lane_wrench = wp.zeros((self.model.body_count, LANES), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
-        self.point_at_build = wp.zeros(n, dtype=wp.vec4)
-        self.move2 = wp.zeros(1, dtype=float)
-        self.neighbor_capacity = self._list_capacity()
-        self.neighbor = wp.empty(n * self.neighbor_capacity, dtype=int)
-        self.neighbor_count = wp.zeros(n, dtype=int)
-        self.neighbor_overflow = wp.zeros(1, dtype=int)
-        self.stride = wp.vec2i(1, n) if self.model.device.is_cuda else wp.vec2i(self.neighbor_capacity, 1)
+        self.neighborhood = neighbor_kernels.Neighborhood()
+        self.neighborhood.grid = self.grid
+        self.neighborhood.cell_start = self.cell_start
+        self.neighborhood.order = self.order
+        self.neighborhood.particle_world = self.particle_world
+        self.neighborhood.fluid_count = self.fluid_count
+        self.neighborhood.fluid_before = self.fluid_before
+        self._allocate_lists(0 if self.model.device.is_cuda else n)
         self.lists_stale = True
-        self.key_bits = max(1, int(self.cell_count).bit_length())
 
-    def _list_capacity(self) -> int:
+    def _allocate_lists(self, n: int) -> None:
         """Room for half as many neighbours again as stand around a particle at rest."""
-        at_rest = 4.0 / 3.0 * math.pi * (self.grid.support / self.config.spacing) ** 3
-        return int(1.5 * at_rest) + 16
+        reach = self.grid.support / self.config.spacing
+        at_rest = 4.0 / 3.0 * math.pi * reach**3 if self.config.dimensions == 3 else math.pi * reach**2
+        self.neighborhood.capacity = int(1.5 * at_rest) + 16
+        self.neighborhood.entry = wp.empty(n * self.neighborhood.capacity, dtype=int)
+        self.neighborhood.entry_count = wp.zeros(n, dtype=int)
+        self.neighbor_overflow = wp.zeros(1, dtype=int)
+        self.point_at_build = wp.zeros(n, dtype=wp.vec4)
+        self.move2 = wp.zeros(self.world_count, dtype=float)
 
-    def check(self) -> None:
-        """Raise RuntimeError if a neighbour list has overflowed: the fluid was compressed beyond sense."""
+    def reset_lists(self) -> None:
+        """Forget the neighbour lists; for a state that did not come from the last step."""
+        self.lists_stale = True
+
+    def check(self, state: newton.State) -> int:
+        """Look for what makes the fluid's state worthless; call it once in a while, as often as once a frame.
+
+        Args:
+            state: The state after a step.
+
+        Returns:
+            How many particles have left the domain: spilled, or leaked.
+
+        Raises:
+            RuntimeError: If a value is not finite, a particle is faster than sound, or a neighbour list overflowed.
+        """
+        with wp.ScopedDevice(self.model.device):
+            broken = wp.full(1, self.fluid_count, dtype=int)
+            fastest2, outside = wp.zeros(1, dtype=float), wp.zeros(1, dtype=int)
+            wp.launch(
+                inspect,
+                dim=self.fluid_count,
+                inputs=[self.grid, state.particle_q, state.particle_qd, state.sph.pressure],
+                outputs=[broken, fastest2, outside],
+            )
+        particle, speed = int(broken.numpy()[0]), math.sqrt(float(fastest2.numpy()[0]))
+        if particle < self.fluid_count:
+            world = int(self.particle_world.numpy()[particle])
+            raise RuntimeError(
+                f"SolverSPH: fluid particle {particle} of world {world} is not finite; "
+                "use a smaller time step or a higher speed of sound"
+            )
+        if speed > self.config.speed_of_sound:
+            raise RuntimeError(
+                f"SolverSPH: a fluid particle moves at {speed:.4g} m/s, faster than sound at "
+                f"speed_of_sound = {self.config.speed_of_sound:.4g} m/s: the fluid is not nearly incompressible; "
+                "use a speed of sound ten times the largest expected speed"
+            )
         most = int(self.neighbor_overflow.numpy()[0])
         if most:
             raise RuntimeError(
-                f"SolverSPH: {most} neighbours where {self.neighbor_capacity} fit: the fluid has collapsed; "
+                f"SolverSPH: {most} neighbours where {self.neighborhood.capacity} fit: the fluid has collapsed; "
                 "use a smaller time step or a higher speed of sound"
             )
+        return int(outside.numpy()[0])
 
     def step(
         self,
@@ -222,7 +234,7 @@ class SolverSPH(SolverBase):
         """Advance the fluid by `dt` [s] and add its wrench on the bodies to `state_out.body_f`.
 
         Args:
-            state_in: Positions, velocities and densities of the fluid, poses and velocities of the bodies.
+            state_in: Positions, velocities and pressures of the fluid, poses and velocities of the bodies.
             state_out: Receives the fluid and the wrenches; may be `state_in`.
             control: Not used.
             contacts: Not used.
@@ -230,28 +242,91 @@ class SolverSPH(SolverBase):
         """
         with wp.ScopedDevice(self.model.device):
             self._move_solids(state_in)
-            self._gather(state_in)
-            if self._lists_are_stale():
-                self._sort(state_in)
-                self._find_neighbors()
-            self._update_density(state_out, dt)
-            self._push()
+            self._sort(state_in)
+            self._update_pressure(state_out, dt)
+            self._move_fluid(state_out, dt)
             self._return_wrenches(state_in, state_out)
-            self._advance(state_in, state_out, dt)
 
     def _move_solids(self, state: newton.State) -> None:
         if self.has_bodies:
             wp.launch(
                 boundary_kernels.move_boundary,
                 dim=self.boundary_count,
-                inputs=[self.boundary_local, self.boundary_owner, state.body_q, state.body_qd, self.model.body_com],
+                inputs=[
+                    self.grid,
+                    self.boundary_local,
+                    self.boundary_owner,
+                    state.body_q,
+                    state.body_qd,
+                    self.model.body_com,
+                ],
                 outputs=[self.boundary_position, self.boundary_velocity],
             )
 
+    def _sort(self, state: newton.State) -> None:
+        """Bring all particles into the order of their cells, and find their neighbours where lists are kept."""
+        if self.model.device.is_cuda:
+            self._sort_range(state, 0, self.world_count)
+            self._gather(state)
+            return
+        if not self.lists_stale:
+            self._gather(state)
+        stale = self._stale_worlds()
+        for world in stale:
+            self._sort_range(state, world, world + 1)
+        if stale:
+            self._gather(state)
+        for world in stale:
+            self._find_neighbors(world)
+        self.lists_stale = False
+
+    def _stale_worlds(self) -> list[int]:
+        """Worlds where a particle may have come within reach unseen: two that approach each other share the skin.
+
+        Each world is judged by its own particles, so that it goes the same way alone and in a batch.
+        """
+        if self.lists_stale or self.skin == 0.0:
+            return list(range(self.world_count))
+        self.move2.zero_()
+        wp.launch(
+            neighbor_kernels.largest_move,
+            dim=self.count,
+            inputs=[self.neighborhood, self.point, self.point_at_build],
+            outputs=[self.move2],
+        )
+        return np.flatnonzero(self.move2.numpy() >= (0.5 * self.skin) ** 2).tolist()
+
+    def _sort_range(self, state: newton.State, first_world: int, last_world: int) -> None:
+        """Sort the particles of some worlds by cell; the sort is stable, so that a run repeats bit for bit."""
+        first, last = self.world_first[first_world], self.world_first[last_world]
+        low, high = first_world * self.cells_per_world, last_world * self.cells_per_world
+        if first == last:
+            return
+        counted = self.cell_count[low : high + 1]
+        counted.zero_()
+        wp.launch(
+            grid_kernels.assign_cells,
+            dim=last - first,
+            inputs=[
+                first,
+                self.grid,
+                self.fluid_count,
+                self.order,
+                state.particle_q,
+                self.boundary_position,
+                self.particle_world,
+            ],
+            outputs=[self.key, self.value, self.cell_count],
+        )
+        start = self.cell_start[low : high + 1]
+        wp.utils.array_scan(counted, start, inclusive=False)
+        if first:
+            wp.launch(grid_kernels.shift, dim=high - low + 1, inputs=[first], outputs=[start])
+        wp.utils.radix_sort_pairs(self.key, self.value, last - first, 0, self.key_bits)
+        wp.copy(self.order, self.value, dest_offset=first, count=last - first)
+
     def _gather(self, state: newton.State) -> None:
-        """Bring positions, velocities and densities into sorted order."""
-        if self.lists_stale:
-            return  # There is no order yet.
+        """Copy what the sums need into sorted order."""
         wp.launch(
             grid_kernels.gather,
             dim=self.count,
@@ -260,142 +335,73 @@ class SolverSPH(SolverBase):
                 self.order,
                 state.particle_q,
                 state.particle_qd,
-                state.sph.density,
+                state.sph.pressure,
+                self.model.particle_mass,
                 self.boundary_position,
                 self.boundary_velocity,
-                self.config.rest_density,
-            ],
-            outputs=[self.point, self.motion],
-        )
-
-    def _lists_are_stale(self) -> bool:
-        """Whether a particle may have come within reach unseen: two that approach each other share the skin."""
-        if self.lists_stale or self.skin == 0.0:
-            return True
-        self.move2.zero_()
-        wp.launch(
-            neighbor_kernels.largest_move,
-            dim=self.count,
-            inputs=[self.point, self.point_at_build],
-            outputs=[self.move2],
-        )
-        # Written as "not less" so that a NaN, which compares false, also rebuilds.
-        return not float(self.move2.numpy()[0]) < (0.5 * self.skin) ** 2
-
-    def _sort(self, state: newton.State) -> None:
-        """Sort all particles by cell; the sort is stable, so that a run repeats bit for bit."""
-        self.cell_histogram.zero_()
-        wp.launch(
-            grid_kernels.assign_cells,
-            dim=self.count,
-            inputs=[self.grid, self.fluid_count, state.particle_q, self.boundary_position, self.particle_world],
-            outputs=[self.key, self.order, self.cell_histogram],
-        )
-        wp.utils.array_scan(self.cell_histogram, self.cell_start, inclusive=False)
-        wp.utils.radix_sort_pairs(self.key, self.order, self.count, 0, self.key_bits)
-        wp.launch(
-            grid_kernels.gather_constants,
-            dim=self.count,
-            inputs=[
-                self.fluid_count,
-                self.order,
-                self.model.particle_mass,
                 self.boundary_volume,
-                self.boundary_owner,
-                self.config.rest_density,
-            ],
-            outputs=[self.mass, self.kind],
-        )
-        self.lists_stale = False
-        self._gather(state)
-
-    def _find_neighbors(self) -> None:
-        launch_shared(
-            neighbor_kernels.find_neighbors,
-            dim=self.count,
-            inputs=[
-                self.grid,
-                self.cell_start,
-                self.order,
                 self.particle_world,
-                self.point,
-                self.kind,
-                self.neighbor_capacity,
-                self.stride,
+                self.rest_density,
+                self.config.speed_of_sound,
             ],
-            outputs=[self.neighbor, self.neighbor_count, self.neighbor_overflow],
+            outputs=[self.point, self.motion, self.fluid_before],
         )
-        if self.skin > 0.0:
-            wp.copy(self.point_at_build, self.point)
+        if self.fluid_before.size:
+            wp.utils.array_scan(self.fluid_before, self.fluid_before, inclusive=False)
 
-    def _neighborhood(self) -> list[Any]:
-        return [
-            self.neighbor,
-            self.neighbor_count,
-            self.stride,
-            self.order,
-            self.particle_world,
-            self.model.gravity,
-        ]
-
-    def _update_density(self, state_out: newton.State, dt: float) -> None:
-        c = self.config
-        fluid = [c.rest_density, c.speed_of_sound]
-        kernel = [c.smoothing_length, self.kernel_norm]
-        records = [self.point, self.motion]
+    def _find_neighbors(self, world: int) -> None:
+        first, last = self.world_first[world], self.world_first[world + 1]
+        nb = self.neighborhood
         launch_shared(
-            density_kernels.continuity,
+            self.programs.find_neighbors,
+            dim=last - first,
+            first=first,
+            inputs=[nb, self.point],
+            outputs=[nb.entry, nb.entry_count, self.neighbor_overflow],
+        )
+        wp.copy(self.point_at_build, self.point, dest_offset=first, src_offset=first, count=last - first)
+
+    def _update_pressure(self, state_out: newton.State, dt: float) -> None:
+        """Continuity and the equation of state; then the walls take over the fluid's pressure."""
+        fluid = [self.neighborhood, self.method, self.rest_density]
+        launch_shared(
+            self.programs.continuity,
             dim=self.count,
-            inputs=[
-                *self._neighborhood(),
-                *records,
-                self.mass,
-                self.kind,
-                *kernel,
-                *fluid,
-                c.density_diffusion,
-                dt,
-            ],
-            outputs=[self.sorted_density],
+            inputs=[*fluid, self.model.gravity, self.point, self.motion, dt],
+            outputs=[self.pressure],
         )
         wp.launch(
-            density_kernels.equation_of_state,
+            density_kernels.set_pressure,
             dim=self.count,
-            inputs=[self.kind, self.sorted_density, *fluid],
-            outputs=records,
+            inputs=[self.fluid_count, self.order, self.pressure],
+            outputs=[self.motion, state_out.sph.pressure],
         )
-        wp.launch(
-            momentum_kernels.scatter_density,
-            dim=self.count,
-            inputs=[self.fluid_count, self.order, self.sorted_density],
-            outputs=[state_out.sph.density],
-        )
+        if self.boundary_count:
+            launch_shared(
+                self.programs.extrapolate,
+                dim=self.count,
+                inputs=[*fluid, self.model.gravity, self.point],
+                outputs=[self.motion],
+            )
 
-    def _push(self) -> None:
-        c = self.config
-        kernel = [c.smoothing_length, self.kernel_norm]
+    def _move_fluid(self, state_out: newton.State, dt: float) -> None:
+        """Momentum: the fluid moves, and its push on the bodies is kept."""
         launch_shared(
-            boundary_kernels.extrapolate_pressure,
-            dim=self.count,
-            inputs=[*self._neighborhood(), self.kind, *kernel, c.rest_density, c.speed_of_sound],
-            outputs=[self.point, self.motion],
-        )
-        launch_shared(
-            momentum_kernels.momentum,
+            self.programs.momentum,
             dim=self.count,
             inputs=[
-                *self._neighborhood(),
+                self.neighborhood,
+                self.method,
+                self.rest_density,
+                self.viscosity,
+                self.model.gravity,
                 self.point,
                 self.motion,
-                self.mass,
-                self.kind,
-                self.fluid_count,
-                *kernel,
-                c.speed_of_sound,
-                c.artificial_viscosity,
-                c.viscosity,
+                self.model.particle_mass,
+                self.fixed_count,
+                dt,
             ],
-            outputs=[self.acceleration, self.boundary_force],
+            outputs=[state_out.particle_q, state_out.particle_qd, self.boundary_force],
         )
 
     def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
@@ -404,7 +410,7 @@ class SolverSPH(SolverBase):
         wp.launch(
             boundary_kernels.sum_body_lanes,
             dim=(self.model.body_count, LANES),
-            inputs=[self.body_first, self.boundary_force, self.boundary_position, state_in.body_q, self.model.body_com],
+            inputs=[self.body_first, self.boundary_force, self.boundary_local, state_in.body_q, self.model.body_com],
             outputs=[self.lane_wrench],
         )
         wp.launch(
@@ -412,12 +418,4 @@ class SolverSPH(SolverBase):
             dim=self.model.body_count,
             inputs=[self.lane_wrench],
             outputs=[self.body_wrench, state_out.body_f],
-        )
-
-    def _advance(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
-        wp.launch(
-            momentum_kernels.kick_drift,
-            dim=self.fluid_count,
-            inputs=[state_in.particle_q, state_in.particle_qd, self.acceleration, dt],
-            outputs=[state_out.particle_q, state_out.particle_qd],
         )

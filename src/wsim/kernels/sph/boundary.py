@@ -2,13 +2,17 @@
 
 import warp as wp
 
-from wsim.kernels.sph.density import density_at
-from wsim.kernels.sph.wendland import wendland
+from wsim.kernels.sph.density import Method
+from wsim.kernels.sph.grid import Grid, wrap
+from wsim.kernels.sph.neighbors import Neighborhood, Search
+from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.records import load_record
 
 
 @wp.kernel(enable_backward=False)
 def move_boundary(
     # Data in:
+    grid: Grid,
     local_position: wp.array(dtype=wp.vec3),
     owner: wp.array(dtype=int),
     body_q: wp.array(dtype=wp.transform),
@@ -27,58 +31,53 @@ def move_boundary(
     x = wp.transform_point(pose, local_position[b])
     twist = body_qd[body]
     arm = x - wp.transform_point(pose, body_com[body])
-    position[b] = x
+    position[b] = wrap(grid, x)
     velocity[b] = wp.spatial_top(twist) + wp.cross(wp.spatial_bottom(twist), arm)
 
 
-@wp.kernel(enable_backward=False)
-def extrapolate_pressure(
-    # Data in:
-    first: int,
-    neighbor: wp.array(dtype=int),
-    neighbor_count: wp.array(dtype=int),
-    stride: wp.vec2i,
-    order: wp.array(dtype=int),
-    particle_world: wp.array(dtype=int),
-    gravity: wp.array(dtype=wp.vec3),
-    kind: wp.array(dtype=int),
-    h: float,
-    norm: float,
-    rest_density: float,
-    speed_of_sound: float,
-    # Data in and out (boundary entries are written, fluid entries read):
-    point: wp.array(dtype=wp.vec4),
-    motion: wp.array(dtype=wp.vec4),
-):
-    """Pressure of each boundary particle from the fluid around it (Adami et al. 2012, eq. 27).
+def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
+    """The kernel that gives boundary particles the fluid's pressure and the opposite of its velocity."""
+    runs, span_of, sum_run = search.runs, search.fluid_span, sums.extrapolation
 
-    p_b = sum (p_f + rho_f g.(x_b - x_f)) W / sum W; never below zero, so that a wall does not hold the fluid back.
-    """
-    s = first + wp.tid()
-    if kind[s] == 0:
-        return
-    world = particle_world[order[s]]
-    g = gravity[world]
-    p = point[s]
-    x = wp.vec3(p[0], p[1], p[2])
-    weight = float(0.0)
-    total = float(0.0)
-    base = s * stride[0]
-    for k in range(neighbor_count[s]):
-        j = neighbor[base + k * stride[1]]
-        q = point[j]
-        d = wp.vec3(x[0] - q[0], x[1] - q[1], x[2] - q[2])
-        w = wendland(wp.length(d), h, norm)
-        rho = motion[j][3]
-        weight += w
-        total += w * (q[3] * rho * rho + rho * wp.dot(g, d))
-    pressure = float(0.0)
-    if weight > 0.0:
-        pressure = wp.max(total / weight, 0.0)
-    rho = density_at(pressure, rest_density, speed_of_sound)
-    m = motion[s]
-    point[s] = wp.vec4(p[0], p[1], p[2], pressure / (rho * rho))
-    motion[s] = wp.vec4(m[0], m[1], m[2], rho)
+    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    def extrapolate(
+        # Data in:
+        first: int,
+        nb: Neighborhood,
+        method: Method,
+        rest_density: wp.array(dtype=float),
+        gravity: wp.array(dtype=wp.vec3),
+        point: wp.array(dtype=wp.vec4),
+        # Data in and out (boundary entries are written, fluid entries read):
+        motion: wp.array(dtype=wp.vec4),
+    ):
+        """Pressure and velocity of each boundary particle from the fluid around it (Adami et al. 2012, eqs. 23, 27).
+
+        p_b = sum (p_f + rho_0 g.(x_b - x_f)) W / sum W, never below what the background pressure holds, so that a wall
+        does not hold the fluid back; v_b = 2 v_wall - sum v_f W / sum W, which puts the wall's own velocity on its
+        surface: no slip.
+        """
+        s = first + wp.tid()
+        p = load_record(point, s)
+        if p[3] > 0.0:
+            return
+        world = nb.particle_world[nb.order[s]]
+        weight_of_water = rest_density[world] * gravity[world]
+        x = wp.vec3(p[0], p[1], p[2])
+        period, inv_period = nb.grid.period, nb.grid.inv_period
+        total = wp.spatial_vector()
+        for run in range(runs(nb)):
+            span = span_of(nb, s, world, x, run)
+            total += sum_run(
+                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, weight_of_water
+            )
+        if total[0] > 0.0:
+            m = motion[s]
+            pressure = wp.max(total[1] / total[0], -method.background_pressure)
+            flow = wp.vec3(total[2], total[3], total[4]) / total[0]
+            motion[s] = wp.vec4(2.0 * m[0] - flow[0], 2.0 * m[1] - flow[1], 2.0 * m[2] - flow[2], pressure)
+
+    return extrapolate
 
 
 @wp.kernel(enable_backward=False)
@@ -86,7 +85,7 @@ def sum_body_lanes(
     # Data in:
     body_first: wp.array(dtype=int),
     boundary_force: wp.array(dtype=wp.vec3),
-    boundary_position: wp.array(dtype=wp.vec3),
+    local_position: wp.array(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
     body_com: wp.array(dtype=wp.vec3),
     # Data out:
@@ -94,13 +93,15 @@ def sum_body_lanes(
 ):
     """Each lane adds up every n-th particle of a body: in a fixed order, so that the sum is the same each time."""
     body, lane = wp.tid()
-    center = wp.transform_point(body_q[body], body_com[body])
+    pose = body_q[body]
     force = wp.vec3(0.0, 0.0, 0.0)
     torque = wp.vec3(0.0, 0.0, 0.0)
-    for b in range(body_first[body] + lane, body_first[body + 1], lane_wrench.shape[1]):
-        f = boundary_force[b]
+    first = body_first[body]
+    fixed = body_first[0]  # forces are kept for the particles of bodies alone
+    for b in range(first + lane, body_first[body + 1], lane_wrench.shape[1]):
+        f = boundary_force[b - fixed]
         force += f
-        torque += wp.cross(boundary_position[b] - center, f)
+        torque += wp.cross(wp.transform_vector(pose, local_position[b] - body_com[body]), f)
     lane_wrench[body, lane] = wp.spatial_vector(force, torque)
 
 

@@ -1,8 +1,11 @@
 """Uniform cell grid: particles sorted by cell, x fastest, so that a row of cells is one run of the sorted list.
 
 The cells are a fraction of the kernel's support. A neighbour search walks rows, each trimmed to the sphere around
-the particle. Particles outside the grid belong to its rim: clamping brings cells no further apart, so the search
-stays exact there and is only slower.
+the particle. Along an axis that is not periodic, particles outside the grid belong to its rim: clamping brings cells
+no further apart, so the search stays exact there and is only slower. Along a periodic axis the rows wrap.
+
+Cell k along an axis spans [k, k + 1) * cell, whatever the grid's extent: a world is cut into the same cells alone and
+in a batch, and its sums add up in the same order.
 """
 
 import warp as wp
@@ -12,90 +15,149 @@ import warp as wp
 class Grid:
     """Where the cells are. Every world has its own copy of the same cells."""
 
-    origin: wp.vec3
-    cell: float  # edge [m]
-    inv_cell: float  # [1/m]
-    reach: int  # cells that a support spans
-    nx: int
-    ny: int
-    nz: int
-    support: float  # [m]
+    first: wp.vec3i  # index of the first cell along each axis
+    count: wp.vec3i  # cells along each axis
+    reach: wp.vec3i  # cells that a support spans
+    cell: wp.vec3  # edges [m]
+    inv_cell: wp.vec3  # [1/m]
+    offset: wp.vec3  # where cell 0 begins [m]; not zero on periodic axes alone
+    period: wp.vec3  # length of a periodic axis [m]; 0 is open
+    inv_period: wp.vec3  # [1/m]; 0 is open
+    support: float  # radius of the search [m]
 
 
 @wp.func
-def grid_axis(x: float, origin: float, inv_cell: float, count: int) -> int:
+def grid_axis(grid: Grid, x: float, axis: int) -> int:
     """Cell index along one axis, clamped to the grid. The float is clamped first: casting a huge one is undefined."""
-    return int(wp.clamp(wp.floor((x - origin) * inv_cell), 0.0, float(count - 1)))
+    k = wp.floor((x - grid.offset[axis]) * grid.inv_cell[axis]) - float(grid.first[axis])
+    return int(wp.clamp(k, 0.0, float(grid.count[axis] - 1)))
+
+
+@wp.func
+def grid_cell(grid: Grid, world: int, x: wp.vec3) -> int:
+    """Cell of a position in a world's copy of the grid."""
+    ix = grid_axis(grid, x[0], 0)
+    iy = grid_axis(grid, x[1], 1)
+    iz = grid_axis(grid, x[2], 2)
+    return ((world * grid.count[2] + iz) * grid.count[1] + iy) * grid.count[0] + ix
 
 
 @wp.func
 def row_count(grid: Grid) -> int:
-    """Number of rows that a search visits."""
-    width = 2 * grid.reach + 1
-    return width * width
+    """Number of runs that a search visits; a row that may wrap around a periodic x is two."""
+    rows = (2 * grid.reach[1] + 1) * (2 * grid.reach[2] + 1)
+    return wp.where(grid.period[0] > 0.0, 2 * rows, rows)
 
 
 @wp.func
-def gap_to_row(x: float, low: float, cell: float) -> float:
-    """Distance from x to the interval [low, low + cell] [m]."""
-    return wp.max(wp.max(low - x, x - low - cell), 0.0)
+def gap_to_cell(grid: Grid, x: float, index: int, axis: int) -> float:
+    """Distance from x to a cell along one axis [m]; a rim cell also holds what lies beyond it, so it has none."""
+    gap = float(0.0)
+    if grid.period[axis] > 0.0 or (index > 0 and index < grid.count[axis] - 1):
+        low = grid.offset[axis] + float(index + grid.first[axis]) * grid.cell[axis]
+        gap = wp.max(wp.max(low - x, x - low - grid.cell[axis]), 0.0)
+    return gap
 
 
 @wp.func
 def row_span(grid: Grid, cell_start: wp.array(dtype=int), world: int, x: wp.vec3, row: int) -> wp.vec2i:
-    """First and past-the-last sorted index of the particles of one row that can lie within the support of x."""
-    width = 2 * grid.reach + 1
-    cy = grid_axis(x[1], grid.origin[1], grid.inv_cell, grid.ny)
-    cz = grid_axis(x[2], grid.origin[2], grid.inv_cell, grid.nz)
-    iy = cy + row % width - grid.reach
-    iz = cz + row / width - grid.reach
-    if iy < 0 or iz < 0 or iy >= grid.ny or iz >= grid.nz:
-        return wp.vec2i(0, 0)
-    # A rim cell also holds what lies beyond it, so it is never trimmed away.
-    dy = float(0.0)
-    dz = float(0.0)
-    if iy > 0 and iy < grid.ny - 1:
-        dy = gap_to_row(x[1], grid.origin[1] + float(iy) * grid.cell, grid.cell)
-    if iz > 0 and iz < grid.nz - 1:
-        dz = gap_to_row(x[2], grid.origin[2] + float(iz) * grid.cell, grid.cell)
+    """First and past-the-last sorted index of the particles of one run that can lie within the support of x."""
+    width = 2 * grid.reach[1] + 1
+    r = row
+    second = False
+    if grid.period[0] > 0.0:
+        r = row / 2
+        second = row % 2 == 1
+    iy = grid_axis(grid, x[1], 1) + r % width - grid.reach[1]
+    iz = grid_axis(grid, x[2], 2) + r / width - grid.reach[2]
+    dy = gap_to_cell(grid, x[1], iy, 1)
+    dz = gap_to_cell(grid, x[2], iz, 2)
     left = grid.support * grid.support - dy * dy - dz * dz
-    if left <= 0.0:
+    if grid.period[1] > 0.0:
+        iy = (iy + grid.count[1]) % grid.count[1]
+    if grid.period[2] > 0.0:
+        iz = (iz + grid.count[2]) % grid.count[2]
+    if left <= 0.0 or iy < 0 or iz < 0 or iy >= grid.count[1] or iz >= grid.count[2]:
         return wp.vec2i(0, 0)
     # A thousandth of a cell more, so that rounding never drops a neighbour at the edge of the support.
-    half = wp.sqrt(left) + 0.001 * grid.cell
-    first = grid_axis(x[0] - half, grid.origin[0], grid.inv_cell, grid.nx)
-    last = grid_axis(x[0] + half, grid.origin[0], grid.inv_cell, grid.nx)
-    base = ((world * grid.nz + iz) * grid.ny + iy) * grid.nx
-    return wp.vec2i(cell_start[base + first], cell_start[base + last + 1])
+    half = wp.sqrt(left) + 0.001 * grid.cell[0]
+    nx = grid.count[0]
+    base = ((world * grid.count[2] + iz) * grid.count[1] + iy) * nx
+    if grid.period[0] == 0.0:
+        first = grid_axis(grid, x[0] - half, 0)
+        last = grid_axis(grid, x[0] + half, 0)
+        return wp.vec2i(cell_start[base + first], cell_start[base + last + 1])
+    u = (x[0] - grid.offset[0]) * grid.inv_cell[0]
+    low = int(wp.floor(u - half * grid.inv_cell[0]))
+    high = int(wp.floor(u + half * grid.inv_cell[0]))
+    if second:
+        if low < 0:
+            return wp.vec2i(cell_start[base + low + nx], cell_start[base + nx])
+        if high >= nx:
+            return wp.vec2i(cell_start[base], cell_start[base + high - nx + 1])
+        return wp.vec2i(0, 0)
+    return wp.vec2i(cell_start[base + wp.max(low, 0)], cell_start[base + wp.min(high, nx - 1) + 1])
+
+
+@wp.func
+def nearest_image(d: wp.vec3, period: wp.vec3) -> wp.vec3:
+    """The shortest of a difference's periodic images."""
+    e = d
+    for axis in range(3):
+        if period[axis] > 0.0:
+            e[axis] = d[axis] - period[axis] * wp.rint(d[axis] / period[axis])
+    return e
+
+
+@wp.func
+def wrap(grid: Grid, x: wp.vec3) -> wp.vec3:
+    """Bring a position back into the periodic box."""
+    y = x
+    for axis in range(3):
+        if grid.period[axis] > 0.0:
+            y[axis] = x[axis] - grid.period[axis] * wp.floor((x[axis] - grid.offset[axis]) / grid.period[axis])
+    return y
 
 
 @wp.kernel(enable_backward=False)
 def assign_cells(
     # Data in:
+    first: int,
     grid: Grid,
     fluid_count: int,
+    order: wp.array(dtype=int),
     fluid_position: wp.array(dtype=wp.vec3),
     boundary_position: wp.array(dtype=wp.vec3),
     particle_world: wp.array(dtype=int),
     # Data out:
     key: wp.array(dtype=int),
-    order: wp.array(dtype=int),
+    value: wp.array(dtype=int),
     cell_count: wp.array(dtype=int),
 ):
-    """Cell of each particle, and how many particles each cell has."""
-    i = wp.tid()
+    """Cell of each particle, in the present order, and how many particles each cell has."""
+    k = wp.tid()
+    i = order[first + k]
     x = wp.vec3(0.0, 0.0, 0.0)
     if i < fluid_count:
         x = fluid_position[i]
     else:
         x = boundary_position[i - fluid_count]
-    ix = grid_axis(x[0], grid.origin[0], grid.inv_cell, grid.nx)
-    iy = grid_axis(x[1], grid.origin[1], grid.inv_cell, grid.ny)
-    iz = grid_axis(x[2], grid.origin[2], grid.inv_cell, grid.nz)
-    cell = ((particle_world[i] * grid.nz + iz) * grid.ny + iy) * grid.nx + ix
-    key[i] = cell
-    order[i] = i
+    cell = grid_cell(grid, particle_world[i], x)
+    key[k] = cell
+    value[k] = i
     wp.atomic_add(cell_count, cell, 1)
+
+
+@wp.kernel(enable_backward=False)
+def shift(
+    # Data in:
+    by: int,
+    # Data in and out:
+    cell_start: wp.array(dtype=int),
+):
+    """Move the beginnings of one world's cells to where its particles stand in the list of all."""
+    c = wp.tid()
+    cell_start[c] = cell_start[c] + by
 
 
 @wp.kernel(enable_backward=False)
@@ -105,51 +167,34 @@ def gather(
     order: wp.array(dtype=int),
     fluid_position: wp.array(dtype=wp.vec3),
     fluid_velocity: wp.array(dtype=wp.vec3),
-    fluid_density: wp.array(dtype=float),
+    fluid_pressure: wp.array(dtype=float),
+    fluid_mass: wp.array(dtype=float),
     boundary_position: wp.array(dtype=wp.vec3),
     boundary_velocity: wp.array(dtype=wp.vec3),
-    rest_density: float,
+    boundary_volume: wp.array(dtype=float),
+    particle_world: wp.array(dtype=int),
+    rest_density: wp.array(dtype=float),
+    speed_of_sound: float,
     # Data out:
     point: wp.array(dtype=wp.vec4),
     motion: wp.array(dtype=wp.vec4),
+    is_fluid: wp.array(dtype=int),
 ):
-    """Copy what changes each step into sorted order; a density that was never set is the rest density."""
+    """Copy positions, velocities, pressures and volumes into sorted order; `is_fluid` may be empty."""
     s = wp.tid()
     i = order[s]
+    if is_fluid.shape[0] > 0:
+        is_fluid[s] = wp.where(i < fluid_count, 1, 0)
     if i < fluid_count:
         x = fluid_position[i]
         v = fluid_velocity[i]
-        point[s] = wp.vec4(x[0], x[1], x[2], 0.0)
-        rho = fluid_density[i]
-        motion[s] = wp.vec4(v[0], v[1], v[2], wp.where(rho > 0.0, rho, rest_density))
+        p = fluid_pressure[i]
+        density = rest_density[particle_world[i]] + p / (speed_of_sound * speed_of_sound)
+        point[s] = wp.vec4(x[0], x[1], x[2], fluid_mass[i] / density)
+        motion[s] = wp.vec4(v[0], v[1], v[2], p)
     else:
         b = i - fluid_count
         x = boundary_position[b]
         v = boundary_velocity[b]
-        point[s] = wp.vec4(x[0], x[1], x[2], 0.0)
-        motion[s] = wp.vec4(v[0], v[1], v[2], rest_density)
-
-
-@wp.kernel(enable_backward=False)
-def gather_constants(
-    # Data in:
-    fluid_count: int,
-    order: wp.array(dtype=int),
-    fluid_mass: wp.array(dtype=float),
-    boundary_volume: wp.array(dtype=float),
-    boundary_owner: wp.array(dtype=int),
-    rest_density: float,
-    # Data out:
-    mass: wp.array(dtype=float),
-    kind: wp.array(dtype=int),
-):
-    """Copy what a particle keeps into sorted order. kind: 0 fluid, 1 fixed wall, 2 moving body."""
-    s = wp.tid()
-    i = order[s]
-    if i < fluid_count:
-        mass[s] = fluid_mass[i]
-        kind[s] = 0
-    else:
-        b = i - fluid_count
-        mass[s] = rest_density * boundary_volume[b]
-        kind[s] = wp.where(boundary_owner[b] >= 0, 2, 1)
+        point[s] = wp.vec4(x[0], x[1], x[2], -boundary_volume[b])
+        motion[s] = wp.vec4(v[0], v[1], v[2], 0.0)

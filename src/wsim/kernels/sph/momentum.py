@@ -2,119 +2,82 @@
 
 import warp as wp
 
-from wsim.kernels.sph.wendland import wendland_slope
+from wsim.kernels.sph.density import Method
+from wsim.kernels.sph.grid import wrap
+from wsim.kernels.sph.neighbors import Neighborhood, Search
+from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.records import load_record
 
 
-@wp.func
-def pair_force(
-    d: wp.vec3,
-    dv: wp.vec3,
-    pressure_i: float,
-    pressure_j: float,
-    rho_i: float,
-    rho_j: float,
-    h: float,
-    norm: float,
-    speed_of_sound: float,
-    artificial_viscosity: float,
-    viscosity: float,
-) -> wp.vec3:
-    """Acceleration of i by a unit mass j [m/s^2 per kg]; antisymmetric in i and j, so momentum is conserved.
+def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
+    """The kernel that sums forces and moves the fluid."""
+    runs, span_of, fluid_span_of = search.runs, search.span, search.fluid_span
+    sum_run, sum_fluid_run = sums.force, sums.force_of_fluid
 
-    Pressure as in Monaghan (1992); artificial viscosity of Monaghan (1992) with alpha; laminar viscosity of Morris,
-    Fox & Zhu (1997). pressure_* = p/rho^2.
-    """
-    r2 = wp.dot(d, d)
-    slope = wendland_slope(wp.sqrt(r2), h, norm)
-    spread = slope / (r2 + 0.01 * h * h)
-    approach = wp.min(wp.dot(dv, d), 0.0)
-    damping = 2.0 * artificial_viscosity * speed_of_sound * h / (rho_i + rho_j) * approach * spread
-    laminar = 2.0 * viscosity / (rho_i * rho_j) * r2 * spread
-    return (damping - (pressure_i + pressure_j) * slope) * d + laminar * dv
+    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    def momentum(
+        # Data in:
+        first: int,
+        nb: Neighborhood,
+        method: Method,
+        rest_density: wp.array(dtype=float),
+        viscosity: wp.array(dtype=float),
+        gravity: wp.array(dtype=wp.vec3),
+        point: wp.array(dtype=wp.vec4),
+        motion: wp.array(dtype=wp.vec4),
+        fluid_mass: wp.array(dtype=float),
+        fixed_count: int,
+        dt: float,
+        # Data out:
+        fluid_position: wp.array(dtype=wp.vec3),
+        fluid_velocity: wp.array(dtype=wp.vec3),
+        boundary_force: wp.array(dtype=wp.vec3),
+    ):
+        """Move each fluid particle, and find the fluid's force on each particle of a body, in original order.
 
+        F_i = -V_i sum V_j (p_i + p_j) grad W                                (Colagrossi & Landrini 2003)
+            + V_i sum V_j alpha h c rho_0 min(v_ij.x_ij, 0) / r^2 grad W      (Monaghan 1992; fluid pairs alone)
+            + V_i sum V_j 2(d + 2) mu v_ij.x_ij / r^2 grad W                  (Monaghan & Gingold 1983; Violeau 2012)
 
-@wp.kernel(enable_backward=False)
-def momentum(
-    # Data in:
-    first: int,
-    neighbor: wp.array(dtype=int),
-    neighbor_count: wp.array(dtype=int),
-    stride: wp.vec2i,
-    order: wp.array(dtype=int),
-    particle_world: wp.array(dtype=int),
-    gravity: wp.array(dtype=wp.vec3),
-    point: wp.array(dtype=wp.vec4),
-    motion: wp.array(dtype=wp.vec4),
-    mass: wp.array(dtype=float),
-    kind: wp.array(dtype=int),
-    fluid_count: int,
-    h: float,
-    norm: float,
-    speed_of_sound: float,
-    artificial_viscosity: float,
-    viscosity: float,
-    # Data out:
-    acceleration: wp.array(dtype=wp.vec3),
-    boundary_force: wp.array(dtype=wp.vec3),
-):
-    """Acceleration of each fluid particle, and the fluid's force on each particle of a body, in original order."""
-    s = first + wp.tid()
-    owner = kind[s]
-    if owner == 1:
-        return
-    i = order[s]
-    world = particle_world[i]
-    p = point[s]
-    m = motion[s]
-    x = wp.vec3(p[0], p[1], p[2])
-    v = wp.vec3(m[0], m[1], m[2])
-    total = wp.vec3(0.0, 0.0, 0.0)
-    base = s * stride[0]
-    for k in range(neighbor_count[s]):
-        entry = neighbor[base + k * stride[1]]
-        j = wp.where(entry < 0, ~entry, entry)
-        q = point[j]
-        d = wp.vec3(x[0] - q[0], x[1] - q[1], x[2] - q[2])
-        n = motion[j]
-        dv = v - wp.vec3(n[0], n[1], n[2])
-        total += mass[j] * pair_force(
-            d, dv, p[3], q[3], m[3], n[3], h, norm, speed_of_sound, artificial_viscosity, viscosity
-        )
-    if owner == 0:
-        acceleration[i] = total + gravity[world]
-    else:
-        boundary_force[i - fluid_count] = mass[s] * total
+        The pressure term is the adjoint of the continuity equation's divergence, so that a step exchanges no energy
+        but by the viscous terms. Every pair's force is along x_ij and opposite for j: momentum and angular momentum
+        are kept to rounding. Velocity is kicked first, and the new velocity moves the particle (symplectic Euler).
+        """
+        s = first + wp.tid()
+        i = nb.order[s]
+        if i >= nb.fluid_count and i < nb.fluid_count + fixed_count:
+            return
+        p = load_record(point, s)
+        m = load_record(motion, s)
+        fluid = p[3] > 0.0
+        x = wp.vec3(p[0], p[1], p[2])
+        v = wp.vec3(m[0], m[1], m[2])
+        world = nb.particle_world[i]
+        artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
+        laminar = method.laminar_factor * viscosity[world]
+        eta2 = 0.01 * method.h * method.h
+        own = m[3] + 2.0 * method.background_pressure
+        period, inv_period = nb.grid.period, nb.grid.inv_period
+        total = wp.vec3(0.0, 0.0, 0.0)
+        if fluid:
+            viscous = wp.vec3(artificial, laminar, eta2)
+            for run in range(runs(nb)):
+                span = span_of(nb, s, world, x, run)
+                total += sum_run(
+                    nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous
+                )
+        else:
+            viscous = wp.vec3(0.0, laminar, eta2)
+            for run in range(runs(nb)):
+                span = fluid_span_of(nb, s, world, x, run)
+                total += sum_fluid_run(
+                    nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous
+                )
+        if fluid:
+            v = v + dt * (p[3] / fluid_mass[i] * total + gravity[world])
+            fluid_velocity[i] = v
+            fluid_position[i] = wrap(nb.grid, x + dt * v)
+        else:
+            boundary_force[i - nb.fluid_count - fixed_count] = -p[3] * total
 
-
-@wp.kernel(enable_backward=False)
-def scatter_density(
-    # Data in:
-    fluid_count: int,
-    order: wp.array(dtype=int),
-    density: wp.array(dtype=float),
-    # Data out:
-    fluid_density: wp.array(dtype=float),
-):
-    """Copy the fluid's new densities back to the original order."""
-    s = wp.tid()
-    i = order[s]
-    if i < fluid_count:
-        fluid_density[i] = density[s]
-
-
-@wp.kernel(enable_backward=False)
-def kick_drift(
-    # Data in:
-    position: wp.array(dtype=wp.vec3),
-    velocity: wp.array(dtype=wp.vec3),
-    acceleration: wp.array(dtype=wp.vec3),
-    dt: float,
-    # Data out:
-    position_out: wp.array(dtype=wp.vec3),
-    velocity_out: wp.array(dtype=wp.vec3),
-):
-    """Symplectic Euler: the new velocity moves the particle."""
-    i = wp.tid()
-    v = velocity[i] + dt * acceleration[i]
-    velocity_out[i] = v
-    position_out[i] = position[i] + dt * v
+    return momentum

@@ -1,74 +1,137 @@
-"""Neighbour lists (Verlet 1967): found once, used by every sum until a particle has moved half the skin.
+"""How a sum finds its neighbours: a walk over the cells around it, or a list made once and kept (Verlet 1967).
 
-A list holds sorted indices. In a fluid particle's list a boundary neighbour j stands as ~j, so that a sum need not
-look up what it is; a boundary particle lists fluid alone, since nothing else acts on it. Entry k of particle s is at
-`s * stride[0] + k * stride[1]`: contiguous for each particle on a CPU, interleaved on a GPU.
+A GPU walks: fine cells trim the search close to the sphere, and no list takes memory. A CPU keeps lists: found once,
+they serve every sum until a particle has moved half the skin. Both look the same to a sum, which loops over runs of
+entries.
 """
+
+from dataclasses import dataclass
 
 import warp as wp
 
-from wsim.kernels.sph.grid import Grid, row_count, row_span
+from wsim.kernels.sph.grid import Grid, nearest_image, row_count, row_span
+from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.records import load_record
 
 
-@wp.kernel(enable_backward=False)
-def find_neighbors(
-    # Data in:
-    first: int,
-    grid: Grid,
-    cell_start: wp.array(dtype=int),
-    order: wp.array(dtype=int),
-    particle_world: wp.array(dtype=int),
-    point: wp.array(dtype=wp.vec4),
-    kind: wp.array(dtype=int),
-    capacity: int,
-    stride: wp.vec2i,
-    # Data out:
-    neighbor: wp.array(dtype=int),
-    neighbor_count: wp.array(dtype=int),
-    overflow: wp.array(dtype=int),
-):
-    """List the particles within the grid's search radius of each particle."""
-    s = first + wp.tid()
-    p = point[s]
-    x = wp.vec3(p[0], p[1], p[2])
-    fluid = kind[s] == 0
-    world = particle_world[order[s]]
-    radius2 = grid.support * grid.support
-    base = s * stride[0]
-    count = int(0)
-    for row in range(row_count(grid)):
-        span = row_span(grid, cell_start, world, x, row)
-        for j in range(span[0], span[1]):
-            q = point[j]
-            dx = x[0] - q[0]
-            dy = x[1] - q[1]
-            dz = x[2] - q[2]
-            if dx * dx + dy * dy + dz * dz < radius2 and j != s:
-                other_is_fluid = kind[j] == 0
-                if fluid or other_is_fluid:
-                    if count < capacity:
-                        neighbor[base + count * stride[1]] = wp.where(other_is_fluid, j, ~j)
-                    count += 1
-    neighbor_count[s] = wp.min(count, capacity)
-    if count > capacity:
-        wp.atomic_max(overflow, 0, count)
+@wp.struct
+class Neighborhood:
+    """What a search needs. A list entry is a sorted index; the list of particle s begins at `s * capacity`."""
+
+    grid: Grid
+    cell_start: wp.array(dtype=int)
+    fluid_before: wp.array(dtype=int)  # how many fluid particles stand before each sorted index; for walks alone
+    order: wp.array(dtype=int)  # sorted index -> original index
+    particle_world: wp.array(dtype=int)
+    entry: wp.array(dtype=int)
+    entry_count: wp.array(dtype=int)
+    capacity: int
+    fluid_count: int
+
+
+@wp.func
+def _walk_runs(nb: Neighborhood) -> int:
+    return row_count(nb.grid)
+
+
+@wp.func
+def _walk_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
+    return row_span(nb.grid, nb.cell_start, world, x, run)
+
+
+@wp.func
+def _walk_fluid_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
+    span = row_span(nb.grid, nb.cell_start, world, x, run)
+    if nb.fluid_before[span[0]] == nb.fluid_before[span[1]]:
+        return wp.vec2i(0, 0)
+    return span
+
+
+@wp.func
+def _list_runs(nb: Neighborhood) -> int:
+    return 1
+
+
+@wp.func
+def _list_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
+    base = s * nb.capacity
+    return wp.vec2i(base, base + nb.entry_count[s])
+
+
+@dataclass(frozen=True)
+class Search:
+    """The functions that a sum is built with.
+
+    `runs(nb)`: how many runs there are; `span(nb, s, world, x, run)`: first and past-the-last entry of one;
+    `fluid_span`: the same, empty where a run holds no fluid.
+    """
+
+    runs: wp.Function
+    span: wp.Function
+    fluid_span: wp.Function
+
+
+def make_search(lists: bool) -> Search:
+    """Search by kept lists or by walking cells."""
+    if lists:
+        return Search(_list_runs, _list_span, _list_span)
+    return Search(_walk_runs, _walk_span, _walk_fluid_span)
+
+
+def make_find_neighbors(sums: PairSums) -> wp.Kernel:
+    """The kernel that makes the lists."""
+    find = sums.find
+
+    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    def find_neighbors(
+        # Data in:
+        first: int,
+        nb: Neighborhood,
+        point: wp.array(dtype=wp.vec4),
+        # Data out:
+        entry: wp.array(dtype=int),
+        entry_count: wp.array(dtype=int),
+        overflow: wp.array(dtype=int),
+    ):
+        """List what is within the grid's search radius of each particle; a boundary particle lists fluid alone."""
+        s = first + wp.tid()
+        p = load_record(point, s)
+        x = wp.vec3(p[0], p[1], p[2])
+        fluid = p[3] > 0.0
+        world = nb.particle_world[nb.order[s]]
+        support2 = nb.grid.support * nb.grid.support
+        period, inv_period = nb.grid.period, nb.grid.inv_period
+        base = s * nb.capacity
+        count = int(0)
+        for run in range(_walk_runs(nb)):
+            span = _walk_span(nb, s, world, x, run)
+            count = find(
+                point, entry, base, nb.capacity, count, span[0], span[1], s, fluid, support2, period, inv_period, x
+            )
+        entry_count[s] = wp.min(count, nb.capacity)
+        if count > nb.capacity:
+            wp.atomic_max(overflow, 0, count)
+
+    return find_neighbors
 
 
 @wp.kernel(enable_backward=False)
 def largest_move(
     # Data in:
+    nb: Neighborhood,
     point: wp.array(dtype=wp.vec4),
     point_at_build: wp.array(dtype=wp.vec4),
     # Data out:
     move2: wp.array(dtype=float),
 ):
-    """Largest squared distance from where the lists were made [m^2]."""
+    """Largest squared distance from where the lists of a world were made [m^2]; infinite if it is not a number."""
     s = wp.tid()
     p = point[s]
     q = point_at_build[s]
-    dx = p[0] - q[0]
-    dy = p[1] - q[1]
-    dz = p[2] - q[2]
-    d2 = dx * dx + dy * dy + dz * dz
-    if d2 > move2[0]:
-        wp.atomic_max(move2, 0, d2)
+    d = nearest_image(wp.vec3(p[0] - q[0], p[1] - q[1], p[2] - q[2]), nb.grid.period)
+    d2 = wp.dot(d, d)
+    if not wp.isfinite(d2):
+        d2 = wp.inf
+    world = nb.particle_world[nb.order[s]]
+    if d2 > move2[world]:
+        wp.atomic_max(move2, world, d2)

@@ -1,0 +1,34 @@
+"""What went wrong, found on the device: one pass over the fluid, a few numbers out."""
+
+import warp as wp
+
+from wsim.kernels.sph.grid import Grid
+
+
+@wp.kernel(enable_backward=False)
+def inspect(
+    # Data in:
+    grid: Grid,
+    position: wp.array(dtype=wp.vec3),
+    velocity: wp.array(dtype=wp.vec3),
+    pressure: wp.array(dtype=float),
+    # Data out:
+    first_not_finite: wp.array(dtype=int),
+    fastest2: wp.array(dtype=float),
+    outside: wp.array(dtype=int),
+):
+    """First particle that is not finite, largest squared speed [m^2/s^2], and how many have left the grid."""
+    i = wp.tid()
+    x = position[i]
+    v = velocity[i]
+    speed2 = wp.dot(v, v)
+    if not wp.isfinite(wp.dot(x, x) + speed2 + pressure[i]):
+        wp.atomic_min(first_not_finite, 0, i)
+        return
+    if speed2 > fastest2[0]:
+        wp.atomic_max(fastest2, 0, speed2)
+    for axis in range(3):
+        k = wp.floor((x[axis] - grid.offset[axis]) * grid.inv_cell[axis]) - float(grid.first[axis])
+        if grid.reach[axis] > 0 and (k < 0.0 or k >= float(grid.count[axis])):
+            wp.atomic_add(outside, 0, 1)
+            return

@@ -1,0 +1,92 @@
+"""Settings of `SolverSPH`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+Period = tuple[float, float] | None
+
+
+@dataclass
+class ConfigSPH:
+    """Settings of `SolverSPH`."""
+
+    spacing: float = 0.02
+    """Distance between particles at rest [m]."""
+    smoothing_ratio: float = 1.3
+    """Smoothing length over spacing; the kernel's support is twice the smoothing length."""
+    rest_density: float = 1000.0
+    """Density at zero pressure [kg/m^3]; a world's own `sph:rest_density` comes first."""
+    speed_of_sound: float = 0.0
+    """Numerical speed of sound [m/s]; ten times the largest expected speed keeps the density within 1 %."""
+    viscosity: float = 1.0e-3
+    """Dynamic viscosity [Pa s]; a world's own `sph:viscosity` comes first."""
+    artificial_viscosity: float = 0.02
+    """Monaghan's alpha, between fluid particles that approach each other."""
+    density_diffusion: float = 0.1
+    """delta of the density diffusion term."""
+    background_pressure: float = 0.0
+    """Pressure added everywhere [Pa]. Where the fluid fills its domain it keeps particles from clumping under tension;
+    with a free surface it must be 0."""
+    dimensions: int = 3
+    """3, or 2: a flow in the x-z plane. In two dimensions particles stand at y = 0, and masses and forces are those
+    of one metre of depth."""
+    periodic: tuple[Period, Period, Period] = (None, None, None)
+    """Lower and upper end [m] of each periodic axis, None where the domain is open."""
+    cfl: float = 0.5
+    """Courant number: dt <= cfl * smoothing length / speed of sound."""
+    cells_per_support: int = 0
+    """Grid cells that the search radius spans; 0 takes 2 on a GPU, where finer cells trim the search closer to the
+    sphere, and 1 on a CPU, where looking up the rows costs more than that saves."""
+    skin: float = 0.1
+    """How much further than the support the neighbour lists reach, as a share of it. Lists are a CPU's: they are kept
+    until a particle has moved half the skin. A GPU walks the cells anew in each sum."""
+
+    def __post_init__(self) -> None:
+        """Reject settings that cannot work."""
+        for name in ("spacing", "smoothing_ratio", "rest_density", "speed_of_sound", "cfl"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ValueError(f"SolverSPH.Config: {name} = {value} must be > 0")
+        for name in ("viscosity", "artificial_viscosity", "density_diffusion", "background_pressure", "skin"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise ValueError(f"SolverSPH.Config: {name} = {value} must be >= 0")
+        if self.dimensions not in (2, 3):
+            raise ValueError(f"SolverSPH.Config: dimensions = {self.dimensions} must be 2 or 3")
+        if not 0 <= self.cells_per_support <= 8:
+            raise ValueError(f"SolverSPH.Config: cells_per_support = {self.cells_per_support} must be in 0..8")
+        for axis, ends in zip("xyz", self.periodic, strict=True):
+            if ends is not None and not ends[1] - ends[0] > 3.0 * (1.0 + self.skin) * self.support:
+                raise ValueError(
+                    f"SolverSPH.Config: periodic {axis} = {ends} is {ends[1] - ends[0]} m long; it must span more than "
+                    f"three search radii, {3.0 * (1.0 + self.skin) * self.support:.4g} m"
+                )
+        if self.dimensions == 2 and self.periodic[1] is not None:
+            raise ValueError("SolverSPH.Config: periodic y has no meaning in a flow in the x-z plane")
+
+    @property
+    def smoothing_length(self) -> float:
+        """Smoothing length h [m]."""
+        return self.smoothing_ratio * self.spacing
+
+    @property
+    def support(self) -> float:
+        """Radius of the kernel's support, 2h [m]."""
+        return 2.0 * self.smoothing_length
+
+    @property
+    def kernel_norm(self) -> float:
+        """Factor that makes Wendland's C2 kernel integrate to one [1/m^3], or [1/m^2] in a plane."""
+        h = self.smoothing_length
+        return 21.0 / (16.0 * math.pi * h**3) if self.dimensions == 3 else 7.0 / (4.0 * math.pi * h**2)
+
+    @property
+    def max_time_step(self) -> float:
+        """Largest stable step [s]: the acoustic Courant condition, and viscous diffusion (Morris et al. 1997)."""
+        h = self.smoothing_length
+        acoustic = self.cfl * h / self.speed_of_sound
+        if self.viscosity == 0.0:
+            return acoustic
+        return min(acoustic, 0.125 * h * h * self.rest_density / self.viscosity)
