@@ -182,6 +182,22 @@ def test_state_that_is_not_finite_ends_the_run_and_is_logged(tmp_path):
     assert any(line.level == "ERROR" for line in recording.log)
 
 
+def test_body_that_leaves_the_fluids_domain_is_logged_once(tmp_path):
+    def build(scene):
+        tank = scene.tank("tank", inner_size=(0.4, 0.3, 0.3))
+        scene.fluid("water", fills=tank, level=0.12, spacing=0.04)
+        scene.sphere("ball", radius=0.05, density=500.0, position=(0.0, 0.0, 0.5), velocity=(3.0, 0.0, 0.0))
+        scene.sphere("bystander", radius=0.05, density=500.0, position=(2.0, 0.0, 0.06))
+        scene.simulation(duration=0.4, frame_rate=20.0)
+
+    simulation = Simulation(stage_of(tmp_path, build), device="cpu")
+    simulation.run(tmp_path / "recording.rrd")
+    told = [entry for entry in read(tmp_path / "recording.rrd").log if "domain" in entry.text]
+    assert [entry.prim for entry in told] == ["/World/ball"]
+    assert told[0].level.upper().startswith("WARN")
+    assert 0.05 < told[0].time < 0.15  # 0.2 m and more at 3 m/s
+
+
 def test_controller_is_called_once_a_control_step(tmp_path):
     def build(scene):
         scene.simulation(duration=0.05, frame_rate=100.0)

@@ -82,6 +82,7 @@ class Simulation:
         self.model = self.built.model
         self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps
         self.time, self.step_count = 0.0, 0
+        self._were_inside: set[str] = set()
         progress("compiling kernels", 1, 3)
         self.rigid = RigidBodies(self.model) if self.model.body_count else None
         self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
@@ -127,7 +128,7 @@ class Simulation:
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
-            self.fluid.reset_lists()
+            self.fluid.reset_search()
         wp.synchronize_device(self.device)
 
     def step(self) -> None:
@@ -221,6 +222,8 @@ class Simulation:
                 if pictures and not problems:
                     pictures.take(frame)
                 progress("simulating", frame, frames)
+                for prim, text in self._departures():
+                    writer.log(self.time, "WARN", text, prim)
                 for problem in problems:
                     writer.log(self.time, "ERROR", problem)
                 if problems:
@@ -238,6 +241,17 @@ class Simulation:
             device=str(self.device),
             stills=pictures.stills if pictures else [],
         )
+
+    def _departures(self) -> list[tuple[str, str]]:
+        """Bodies of the first world that have left the fluid's domain since the last call: prim and what to say."""
+        if not self.fluid:
+            return []
+        outside = set(self.fluid.bodies_outside(self.state))
+        prims = {body.prim: index in outside for body, index in zip(self.world.bodies, self.built.bodies, strict=True)}
+        gone = [prim for prim, is_outside in prims.items() if is_outside and prim in self._were_inside]
+        self._were_inside = {prim for prim, is_outside in prims.items() if not is_outside}
+        low, high = (np.round(corner, 3).tolist() for corner in self.fluid.domain)
+        return [(prim, f"{prim} has left the fluid's domain, {low} to {high} m: no fluid is there") for prim in gone]
 
     def facts(self) -> dict[str, Any]:
         """Numbers of the run that the recording keeps."""

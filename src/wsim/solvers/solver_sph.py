@@ -13,16 +13,14 @@ from newton.solvers import SolverBase
 from wsim.kernels.sph import boundary as boundary_kernels
 from wsim.kernels.sph import density as density_kernels
 from wsim.kernels.sph import grid as grid_kernels
-from wsim.kernels.sph import neighbors as neighbor_kernels
-from wsim.kernels.sph.programs import Programs
 from wsim.kernels.sph.status import inspect
 from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_boundary
 from wsim.solvers.sph_config import ConfigSPH
-from wsim.solvers.sph_domain import cells_of, domain_of, make_grid
+from wsim.solvers.sph_domain import domain_of
+from wsim.solvers.sph_search import ParticleSearch
 
 LANES = 32
-MANY_NEIGHBORS = 1.6  # smoothing ratio from which a GPU does better to pass over what lies beyond the support
 
 
 class SolverSPH(SolverBase):
@@ -76,19 +74,13 @@ class SolverSPH(SolverBase):
         self.config = config
         self.fluid_count = model.particle_count
         self.world_count = max(1, model.world_count)
-        # A CPU keeps neighbour lists, with a skin; a GPU walks the cells in every sum.
-        self.skin = 0.0 if model.device.is_cuda else config.skin * config.support
         with wp.ScopedDevice(model.device):
             self._read_worlds()
             self._sample_solids(containers)
-            low, high = domain_of(model.particle_q.numpy(), containers)
-            self.grid = make_grid(config, low, high, config.support + self.skin, model.device.is_cuda, self.world_count)
+            self.domain = domain_of(model.particle_q.numpy(), containers)
+            self.search = ParticleSearch(config, self.domain, self.particle_world, self.fluid_count, self.world_count)
+            self.programs = self.search.programs
             self._allocate()
-            self.programs = Programs.make(
-                lists=not model.device.is_cuda,
-                periodic=tuple(map(bool, config.periodic)),
-                branch=model.device.is_cuda and config.smoothing_ratio > MANY_NEIGHBORS,
-            )
             self.method = self._method()
 
     def _method(self) -> density_kernels.Method:
@@ -136,49 +128,19 @@ class SolverSPH(SolverBase):
         self.has_bodies = self.boundary_count > self.fixed_count
         everywhere = np.concatenate([world, solids.world]).astype(np.int32)
         self.particle_world = wp.array(everywhere, dtype=int)
-        self.world_first = np.append(0, np.cumsum(np.bincount(everywhere, minlength=self.world_count))).tolist()
-        self.by_world = np.argsort(everywhere, kind="stable").astype(np.int32)
 
     def _allocate(self) -> None:
         n = self.count
-        self.cells_per_world = cells_of(self.grid)
-        self.key_bits = max(1, int(self.cells_per_world * self.world_count).bit_length())
-        self.key = wp.empty(2 * n, dtype=int)
-        self.value = wp.empty(2 * n, dtype=int)
-        self.order = wp.array(self.by_world, dtype=int)
-        self.cell_count = wp.zeros(self.cells_per_world * self.world_count + 1, dtype=int)
-        self.cell_start = wp.zeros(self.cells_per_world * self.world_count + 1, dtype=int)
         self.point = wp.empty(n, dtype=wp.vec4)
         self.motion = wp.empty(n, dtype=wp.vec4)
         self.pressure = wp.empty(n, dtype=float)
-        self.fluid_before = wp.zeros(n + 1 if self.model.device.is_cuda else 0, dtype=int)
         self.boundary_force = wp.zeros(max(1, self.boundary_count - self.fixed_count), dtype=wp.vec3)
         self.lane_wrench = wp.zeros((self.model.body_count, LANES), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
-        self.neighborhood = neighbor_kernels.Neighborhood()
-        self.neighborhood.grid = self.grid
-        self.neighborhood.cell_start = self.cell_start
-        self.neighborhood.order = self.order
-        self.neighborhood.particle_world = self.particle_world
-        self.neighborhood.fluid_count = self.fluid_count
-        self.neighborhood.fluid_before = self.fluid_before
-        self._allocate_lists(0 if self.model.device.is_cuda else n)
-        self.lists_stale = True
 
-    def _allocate_lists(self, n: int) -> None:
-        """Room for half as many neighbours again as stand around a particle at rest."""
-        reach = self.grid.support / self.config.spacing
-        at_rest = 4.0 / 3.0 * math.pi * reach**3 if self.config.dimensions == 3 else math.pi * reach**2
-        self.neighborhood.capacity = int(1.5 * at_rest) + 16
-        self.neighborhood.entry = wp.empty(n * self.neighborhood.capacity, dtype=int)
-        self.neighborhood.entry_count = wp.zeros(n, dtype=int)
-        self.neighbor_overflow = wp.zeros(1, dtype=int)
-        self.point_at_build = wp.zeros(n, dtype=wp.vec4)
-        self.move2 = wp.zeros(self.world_count, dtype=float)
-
-    def reset_lists(self) -> None:
+    def reset_search(self) -> None:
         """Forget the neighbour lists; for a state that did not come from the last step."""
-        self.lists_stale = True
+        self.search.stale = True
 
     def check(self, state: newton.State) -> int:
         """Look for what makes the fluid's state worthless; call it once in a while, as often as once a frame.
@@ -198,7 +160,7 @@ class SolverSPH(SolverBase):
             wp.launch(
                 inspect,
                 dim=self.fluid_count,
-                inputs=[self.grid, state.particle_q, state.particle_qd, state.sph.pressure],
+                inputs=[self.search.grid, state.particle_q, state.particle_qd, state.sph.pressure],
                 outputs=[broken, fastest2, outside],
             )
         particle, speed = int(broken.numpy()[0]), math.sqrt(float(fastest2.numpy()[0]))
@@ -214,13 +176,18 @@ class SolverSPH(SolverBase):
                 f"speed_of_sound = {self.config.speed_of_sound:.4g} m/s: the fluid is not nearly incompressible; "
                 "use a speed of sound ten times the largest expected speed"
             )
-        most = int(self.neighbor_overflow.numpy()[0])
-        if most:
-            raise RuntimeError(
-                f"SolverSPH: {most} neighbours where {self.neighborhood.capacity} fit: the fluid has collapsed; "
-                "use a smaller time step or a higher speed of sound"
-            )
+        self.search.check()
         return int(outside.numpy()[0])
+
+    def bodies_outside(self, state: newton.State) -> list[int]:
+        """Bodies whose origin is beside or below the domain, which spans the fluid's start and its tanks."""
+        if not self.has_bodies:
+            return []
+        low, high = self.domain
+        place = state.body_q.numpy()[:, :3]
+        sampled = np.diff(self.body_first.numpy()) > 0
+        beside = ((place < low) | (place > high))[:, :2].any(axis=1)
+        return np.flatnonzero(sampled & (beside | (place[:, 2] < low[2]))).tolist()
 
     def step(
         self,
@@ -242,7 +209,7 @@ class SolverSPH(SolverBase):
         """
         with wp.ScopedDevice(self.model.device):
             self._move_solids(state_in)
-            self._sort(state_in)
+            self.search.update(state_in, self.boundary_position, self.point, lambda: self._gather(state_in))
             self._update_pressure(state_out, dt)
             self._move_fluid(state_out, dt)
             self._return_wrenches(state_in, state_out)
@@ -253,7 +220,7 @@ class SolverSPH(SolverBase):
                 boundary_kernels.move_boundary,
                 dim=self.boundary_count,
                 inputs=[
-                    self.grid,
+                    self.search.grid,
                     self.boundary_local,
                     self.boundary_owner,
                     state.body_q,
@@ -263,68 +230,6 @@ class SolverSPH(SolverBase):
                 outputs=[self.boundary_position, self.boundary_velocity],
             )
 
-    def _sort(self, state: newton.State) -> None:
-        """Bring all particles into the order of their cells, and find their neighbours where lists are kept."""
-        if self.model.device.is_cuda:
-            self._sort_range(state, 0, self.world_count)
-            self._gather(state)
-            return
-        if not self.lists_stale:
-            self._gather(state)
-        stale = self._stale_worlds()
-        for world in stale:
-            self._sort_range(state, world, world + 1)
-        if stale:
-            self._gather(state)
-        for world in stale:
-            self._find_neighbors(world)
-        self.lists_stale = False
-
-    def _stale_worlds(self) -> list[int]:
-        """Worlds where a particle may have come within reach unseen: two that approach each other share the skin.
-
-        Each world is judged by its own particles, so that it goes the same way alone and in a batch.
-        """
-        if self.lists_stale or self.skin == 0.0:
-            return list(range(self.world_count))
-        self.move2.zero_()
-        wp.launch(
-            neighbor_kernels.largest_move,
-            dim=self.count,
-            inputs=[self.neighborhood, self.point, self.point_at_build],
-            outputs=[self.move2],
-        )
-        return np.flatnonzero(self.move2.numpy() >= (0.5 * self.skin) ** 2).tolist()
-
-    def _sort_range(self, state: newton.State, first_world: int, last_world: int) -> None:
-        """Sort the particles of some worlds by cell; the sort is stable, so that a run repeats bit for bit."""
-        first, last = self.world_first[first_world], self.world_first[last_world]
-        low, high = first_world * self.cells_per_world, last_world * self.cells_per_world
-        if first == last:
-            return
-        counted = self.cell_count[low : high + 1]
-        counted.zero_()
-        wp.launch(
-            grid_kernels.assign_cells,
-            dim=last - first,
-            inputs=[
-                first,
-                self.grid,
-                self.fluid_count,
-                self.order,
-                state.particle_q,
-                self.boundary_position,
-                self.particle_world,
-            ],
-            outputs=[self.key, self.value, self.cell_count],
-        )
-        start = self.cell_start[low : high + 1]
-        wp.utils.array_scan(counted, start, inclusive=False)
-        if first:
-            wp.launch(grid_kernels.shift, dim=high - low + 1, inputs=[first], outputs=[start])
-        wp.utils.radix_sort_pairs(self.key, self.value, last - first, 0, self.key_bits)
-        wp.copy(self.order, self.value, dest_offset=first, count=last - first)
-
     def _gather(self, state: newton.State) -> None:
         """Copy what the sums need into sorted order."""
         wp.launch(
@@ -332,7 +237,7 @@ class SolverSPH(SolverBase):
             dim=self.count,
             inputs=[
                 self.fluid_count,
-                self.order,
+                self.search.order,
                 state.particle_q,
                 state.particle_qd,
                 state.sph.pressure,
@@ -344,26 +249,12 @@ class SolverSPH(SolverBase):
                 self.rest_density,
                 self.config.speed_of_sound,
             ],
-            outputs=[self.point, self.motion, self.fluid_before],
+            outputs=[self.point, self.motion, self.search.fluid_before],
         )
-        if self.fluid_before.size:
-            wp.utils.array_scan(self.fluid_before, self.fluid_before, inclusive=False)
-
-    def _find_neighbors(self, world: int) -> None:
-        first, last = self.world_first[world], self.world_first[world + 1]
-        nb = self.neighborhood
-        launch_shared(
-            self.programs.find_neighbors,
-            dim=last - first,
-            first=first,
-            inputs=[nb, self.point],
-            outputs=[nb.entry, nb.entry_count, self.neighbor_overflow],
-        )
-        wp.copy(self.point_at_build, self.point, dest_offset=first, src_offset=first, count=last - first)
 
     def _update_pressure(self, state_out: newton.State, dt: float) -> None:
         """Continuity and the equation of state; then the walls take over the fluid's pressure."""
-        fluid = [self.neighborhood, self.method, self.rest_density]
+        fluid = [self.search.neighborhood, self.method, self.rest_density]
         launch_shared(
             self.programs.continuity,
             dim=self.count,
@@ -373,7 +264,7 @@ class SolverSPH(SolverBase):
         wp.launch(
             density_kernels.set_pressure,
             dim=self.count,
-            inputs=[self.fluid_count, self.order, self.pressure],
+            inputs=[self.fluid_count, self.search.order, self.pressure],
             outputs=[self.motion, state_out.sph.pressure],
         )
         if self.boundary_count:
@@ -390,7 +281,7 @@ class SolverSPH(SolverBase):
             self.programs.momentum,
             dim=self.count,
             inputs=[
-                self.neighborhood,
+                self.search.neighborhood,
                 self.method,
                 self.rest_density,
                 self.viscosity,
