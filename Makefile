@@ -5,10 +5,10 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 TORCH_VERSION := 2.13.0
 
-.PHONY: install demo test lint format bench lock clean help
+.PHONY: install demo test lint format bench bench-sph-validation lock clean help
 
 help:  ## Say what can be made
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
 
 install: $(STAMP)  ## Make .venv and install wsim in it
 
@@ -37,6 +37,10 @@ format: install  ## Format and fix
 
 bench: install  ## Measure what the README claims
 	$(BIN)/python benchmarks/sph_scenes.py
+
+bench-sph-validation: install  ## Hold the fluid against flows whose answer is known
+	$(BIN)/python benchmarks/sph_validation.py --device auto --json build/sph_validation/results.json \
+		--markdown build/sph_validation/table.md --plots build/sph_validation/plots
 
 lock:  ## Pin the versions of pyproject.toml (needs uv)
 	uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -147,12 +148,17 @@ def sample_boundary(
                 if len(here) and not containers:
                     reach = float((here.max(axis=0) - here.min(axis=0)).max())
                     low, high = here.min(axis=0)[:2] - reach, here.max(axis=0)[:2] + reach
+                    for axis in (0, 1):
+                        ends = config.periodic[axis]
+                        low[axis], high[axis] = ends or (low[axis], high[axis])
                     samples = plane_patch(low, high, config.spacing, config.support, plane)
                     height = np.array([0.0, 0.0, poses[shape][2]])
                     fixed[world].append((samples.position + height, samples.volume))
             continue
         found = sample_shape(int(kinds[shape]), scales[shape], model.shape_source[shape], config.spacing, plane)
         if found is None:
+            kind = GeoType(int(kinds[shape])).name
+            warnings.warn(f"SolverSPH: the fluid does not see {model.shape_label[shape]}, a {kind}", stacklevel=3)
             continue
         position = rotate(poses[shape][3:], found.position) + poses[shape][:3]
         if bodies[shape] >= 0:
@@ -161,9 +167,18 @@ def sample_boundary(
         for world in homes:
             here = fluid[fluid_world == world]
             if len(here):
-                keep = near_fluid(position, here, config.support)
+                keep = near_fluid(position, here, config.support) & _in_period(position, config)
                 fixed[world].append((position[keep], found.volume[keep]))
     return _join(fixed, moving, model.body_world.numpy() if model.body_count else np.zeros(0, int))
+
+
+def _in_period(position: Array, config: ConfigSPH) -> Array:
+    """Which positions are in the periodic box; what a fixed shape has beyond it is its own image."""
+    keep = np.ones(len(position), dtype=bool)
+    for axis, ends in enumerate(config.periodic):
+        if ends is not None:
+            keep &= (position[:, axis] >= ends[0]) & (position[:, axis] < ends[1])
+    return keep
 
 
 def _sample_container(box: OpenBox, config: ConfigSPH) -> tuple[Array, Array]:

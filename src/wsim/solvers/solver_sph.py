@@ -71,6 +71,11 @@ class SolverSPH(SolverBase):
         super().__init__(model)
         if model.particle_count == 0:
             raise ValueError("SolverSPH: the model has no particles; add the fluid to the builder first")
+        light = np.flatnonzero(~(model.particle_mass.numpy() > 0.0))
+        if len(light):
+            raise ValueError(
+                f"SolverSPH: particle {light[0]} has mass {model.particle_mass.numpy()[light[0]]}; it must be > 0"
+            )
         self.config = config
         self.fluid_count = model.particle_count
         self.world_count = max(1, model.world_count)
@@ -89,7 +94,7 @@ class SolverSPH(SolverBase):
         h = c.smoothing_length
         method.h, method.shape = h, wp.vec4(1.0 / c.support, -5.0 * c.kernel_norm / h**2, c.support**2, h)
         method.speed_of_sound, method.diffusion = c.speed_of_sound, c.density_diffusion
-        method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, 2.0 * (c.dimensions + 2.0)
+        method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, c.laminar_factor
         method.background_pressure = c.background_pressure
         return method
 
@@ -99,8 +104,10 @@ class SolverSPH(SolverBase):
         for name in ("rest_density", "viscosity"):
             values = np.full(self.world_count, getattr(self.config, name), dtype=np.float32)
             given = getattr(own, name, None)
-            if given is not None and given.shape[0] == self.world_count:
+            if given is not None:
                 given = given.numpy()
+                if len(given) not in (1, self.world_count):
+                    raise ValueError(f"SolverSPH: {len(given)} values of sph:{name} for {self.world_count} worlds")
                 if not (np.isfinite(given).all() and (given >= 0.0).all()):
                     raise ValueError(f"SolverSPH: sph:{name} = {given} must be finite and >= 0")
                 values = np.where(given > 0.0, given, values)
@@ -301,7 +308,14 @@ class SolverSPH(SolverBase):
         wp.launch(
             boundary_kernels.sum_body_lanes,
             dim=(self.model.body_count, LANES),
-            inputs=[self.body_first, self.boundary_force, self.boundary_local, state_in.body_q, self.model.body_com],
+            inputs=[
+                self.search.grid,
+                self.body_first,
+                self.boundary_force,
+                self.boundary_local,
+                state_in.body_q,
+                self.model.body_com,
+            ],
             outputs=[self.lane_wrench],
         )
         wp.launch(

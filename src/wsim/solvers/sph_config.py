@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 Period = tuple[float, float] | None
 
 
@@ -14,8 +16,9 @@ class ConfigSPH:
 
     spacing: float = 0.02
     """Distance between particles at rest [m]."""
-    smoothing_ratio: float = 1.3
-    """Smoothing length over spacing; the kernel's support is twice the smoothing length."""
+    smoothing_ratio: float = 0.0
+    """Smoothing length over spacing; the kernel's support is twice the smoothing length. 0 takes 1.3 in space (80
+    neighbours) and 2 in a plane (44), where 1.3 leaves 20 neighbours and gravity waves 4 % too quick."""
     rest_density: float = 1000.0
     """Density at zero pressure [kg/m^3]; a world's own `sph:rest_density` comes first."""
     speed_of_sound: float = 0.0
@@ -44,7 +47,9 @@ class ConfigSPH:
     until a particle has moved half the skin. A GPU walks the cells anew in each sum."""
 
     def __post_init__(self) -> None:
-        """Reject settings that cannot work."""
+        """Choose what was left open, and reject settings that cannot work."""
+        if self.smoothing_ratio == 0.0:
+            self.smoothing_ratio = 1.3 if self.dimensions == 3 else 2.0
         for name in ("spacing", "smoothing_ratio", "rest_density", "speed_of_sound", "cfl"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
@@ -81,6 +86,29 @@ class ConfigSPH:
         """Factor that makes Wendland's C2 kernel integrate to one [1/m^3], or [1/m^2] in a plane."""
         h = self.smoothing_length
         return 21.0 / (16.0 * math.pi * h**3) if self.dimensions == 3 else 7.0 / (4.0 * math.pi * h**2)
+
+    @property
+    def laminar_factor(self) -> float:
+        """K of the laminar viscosity: 2 (d + 2) over what the sum gives of a sheared layer's exact viscosity.
+
+        The sum is not its integral: it misses what a few neighbours miss, the same at every spacing. On layers dp
+        apart that slide over each other, with any offset as likely as another, it gives 0.87 of the exact value at
+        h/dp = 1.3 in a plane and 0.97 at 2. The Laplacian of Morris et al. (1997) needs no such factor, but pushes
+        across x_ij and so makes angular momentum.
+        """
+        d, s = self.dimensions, self.support / self.spacing
+        along = (np.arange(400) + 0.5) / 400 * s  # [spacings], from the axis out
+        share = 0.0
+        for z in range(1, math.ceil(s)):
+            r = np.sqrt(along**2 + z * z)
+            slope = (
+                5.0 * self.kernel_norm * self.spacing**d / self.smoothing_ratio**2 * np.maximum(1.0 - r / s, 0.0) ** 3
+            )
+            # Two layers at +z and -z; the mean of x^2 around the axis is r^2 / 2 in space.
+            measure = 2.0 if d == 2 else 2.0 * np.pi * along * 0.5
+            of_pair = 0.5 * z**2 * along**2 / (r**2 + 1.0e-4 * self.smoothing_ratio**2)
+            share += float(2.0 * (of_pair * slope * measure).sum() * s / 400)
+        return 1.0 / share
 
     @property
     def max_time_step(self) -> float:

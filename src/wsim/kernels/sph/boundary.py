@@ -3,7 +3,7 @@
 import warp as wp
 
 from wsim.kernels.sph.density import Method
-from wsim.kernels.sph.grid import Grid, wrap
+from wsim.kernels.sph.grid import Grid, in_plane, wrap
 from wsim.kernels.sph.neighbors import Neighborhood, Search
 from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
 from wsim.kernels.sph.records import load_record
@@ -22,7 +22,10 @@ def move_boundary(
     position: wp.array(dtype=wp.vec3),
     velocity: wp.array(dtype=wp.vec3),
 ):
-    """Carry the particles of moving bodies with them; body_qd is (velocity of the centre of mass, angular velocity)."""
+    """Carry the particles of moving bodies with them; body_qd is (velocity of the centre of mass, angular velocity).
+
+    In a plane they stay at y = 0, however a body may have rolled: one particle out of it and all the water follows.
+    """
     b = wp.tid()
     body = owner[b]
     if body < 0:
@@ -31,8 +34,12 @@ def move_boundary(
     x = wp.transform_point(pose, local_position[b])
     twist = body_qd[body]
     arm = x - wp.transform_point(pose, body_com[body])
+    v = wp.spatial_top(twist) + wp.cross(wp.spatial_bottom(twist), arm)
+    if in_plane(grid):
+        x[1] = 0.0
+        v[1] = 0.0
     position[b] = wrap(grid, x)
-    velocity[b] = wp.spatial_top(twist) + wp.cross(wp.spatial_bottom(twist), arm)
+    velocity[b] = v
 
 
 def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
@@ -51,11 +58,13 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         # Data in and out (boundary entries are written, fluid entries read):
         motion: wp.array(dtype=wp.vec4),
     ):
-        """Pressure and velocity of each boundary particle from the fluid around it (Adami et al. 2012, eqs. 23, 27).
+        """Pressure and velocity of each boundary particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
 
         p_b = sum (p_f + rho_0 g.(x_b - x_f)) W / sum W, never below what the background pressure holds, so that a wall
         does not hold the fluid back; v_b = 2 v_wall - sum v_f W / sum W, which puts the wall's own velocity on its
-        surface: no slip.
+        surface: no slip. The wall's own acceleration, which Adami et al. subtract from g, is left out: taken from the
+        last step it makes a light body unstable. That leaves an error of the order of a spacing where a body
+        accelerates.
         """
         s = first + wp.tid()
         p = load_record(point, s)
@@ -83,6 +92,7 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
 @wp.kernel(enable_backward=False)
 def sum_body_lanes(
     # Data in:
+    grid: Grid,
     body_first: wp.array(dtype=int),
     boundary_force: wp.array(dtype=wp.vec3),
     local_position: wp.array(dtype=wp.vec3),
@@ -101,7 +111,10 @@ def sum_body_lanes(
     for b in range(first + lane, body_first[body + 1], lane_wrench.shape[1]):
         f = boundary_force[b - fixed]
         force += f
-        torque += wp.cross(wp.transform_vector(pose, local_position[b] - body_com[body]), f)
+        arm = wp.transform_vector(pose, local_position[b] - body_com[body])
+        if in_plane(grid):
+            arm[1] = 0.0
+        torque += wp.cross(arm, f)
     lane_wrench[body, lane] = wp.spatial_vector(force, torque)
 
 

@@ -21,7 +21,7 @@ class Method:
     speed_of_sound: float  # [m/s]
     diffusion: float  # delta
     artificial_viscosity: float  # alpha
-    laminar_factor: float  # 2 (d + 2) in d dimensions
+    laminar_factor: float  # about 2 (d + 2) in d dimensions
     background_pressure: float  # [Pa]
 
 
@@ -54,7 +54,8 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
 
         The second sum is the density diffusion of Fourtakas et al. (2019, Computers & Fluids 190): the hydrostatic
         part rho^H_ij of the difference is left out of Molteni & Colagrossi's (2009) term, so that a tank at rest keeps
-        its pressure. It spans fluid alone, and so conserves the sum of V rho.
+        its pressure. It spans fluid alone, and so neither
+        makes nor destroys volume in sum.
         """
         s = first + wp.tid()
         p = load_record(point, s)

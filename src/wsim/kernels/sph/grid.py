@@ -43,6 +43,12 @@ def grid_cell(grid: Grid, world: int, x: wp.vec3) -> int:
 
 
 @wp.func
+def in_plane(grid: Grid) -> bool:
+    """Whether the flow is one in the x-z plane."""
+    return grid.reach[1] == 0
+
+
+@wp.func
 def row_count(grid: Grid) -> int:
     """Number of runs that a search visits; a row that may wrap around a periodic x is two."""
     rows = (2 * grid.reach[1] + 1) * (2 * grid.reach[2] + 1)

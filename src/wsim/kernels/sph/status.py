@@ -17,7 +17,10 @@ def inspect(
     fastest2: wp.array(dtype=float),
     outside: wp.array(dtype=int),
 ):
-    """First particle that is not finite, largest squared speed [m^2/s^2], and how many have left the grid."""
+    """First particle that is not finite, how many have left the grid, and the largest squared speed of the others.
+
+    What has left the grid may fall for as long as it likes.
+    """
     i = wp.tid()
     x = position[i]
     v = velocity[i]
@@ -25,10 +28,10 @@ def inspect(
     if not wp.isfinite(wp.dot(x, x) + speed2 + pressure[i]):
         wp.atomic_min(first_not_finite, 0, i)
         return
-    if speed2 > fastest2[0]:
-        wp.atomic_max(fastest2, 0, speed2)
     for axis in range(3):
         k = wp.floor((x[axis] - grid.offset[axis]) * grid.inv_cell[axis]) - float(grid.first[axis])
         if grid.reach[axis] > 0 and (k < 0.0 or k >= float(grid.count[axis])):
             wp.atomic_add(outside, 0, 1)
             return
+    if speed2 > fastest2[0]:
+        wp.atomic_max(fastest2, 0, speed2)
