@@ -126,7 +126,7 @@ def print_table(rows: list[tuple[str, ...]]) -> None:
 def describe(device: str) -> dict[str, str]:
     """What the numbers were measured with."""
     about = wp.get_device(device)
-    versions = {name: version(name) for name in ("wsim", "newton", "warp-lang", "mujoco", "mujoco-warp", "numpy")}
+    versions = {name: version(name) for name in ("newton", "warp-lang", "mujoco", "mujoco-warp", "numpy")}
     return {
         "device": device,
         "device_name": about.name if about.is_cuda else platform.processor() or platform.machine(),

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any
-
 import newton
 import numpy as np
 import warp as wp
@@ -16,7 +13,7 @@ def set_particles(
     mass: float,
     pressure: np.ndarray | float = 0.0,
     world: np.ndarray | int = 0,
-) -> Any:
+) -> newton.State:
     """Replace a finalized model's particles, and return a state of them.
 
     Args:
@@ -25,23 +22,13 @@ def set_particles(
         mass: Of each [kg].
         pressure: Of each [Pa].
         world: Of each.
-
-    Returns:
-        What `SolverSPH.step` reads and writes of a `newton.State`.
     """
-    n = len(position)
+    n, state = len(position), model.state()
     with wp.ScopedDevice(model.device):
         model.particle_count = n
         model.particle_q = wp.array(position.astype(np.float32), dtype=wp.vec3)
         model.particle_mass = wp.full(n, mass, dtype=float)
         model.particle_world = wp.array(np.broadcast_to(world, n).astype(np.int32), dtype=int)
-        model.particle_qd = model.particle_inv_mass = model.particle_radius = model.particle_flags = None
-        whole = model.state() if model.body_count else None
-        return SimpleNamespace(
-            particle_q=wp.clone(model.particle_q),
-            particle_qd=wp.zeros(n, dtype=wp.vec3),
-            sph=SimpleNamespace(pressure=wp.array(np.broadcast_to(pressure, n).astype(np.float32), dtype=float)),
-            body_q=None if whole is None else whole.body_q,
-            body_qd=None if whole is None else whole.body_qd,
-            body_f=None if whole is None else whole.body_f,
-        )
+        state.particle_q, state.particle_qd = wp.clone(model.particle_q), wp.zeros(n, dtype=wp.vec3)
+        state.sph.pressure = wp.array(np.broadcast_to(pressure, n).astype(np.float32), dtype=float)
+    return state

@@ -20,7 +20,7 @@ from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
 from wsim.solvers.sph_search import ParticleSearch
 
-LANES = 32
+LEAST_LANES = 32
 
 
 class SolverSPH(SolverBase):
@@ -142,7 +142,10 @@ class SolverSPH(SolverBase):
         self.motion = wp.empty(n, dtype=wp.vec4)
         self.pressure = wp.empty(n, dtype=float)
         self.boundary_force = wp.zeros(max(1, self.boundary_count - self.fixed_count), dtype=wp.vec3)
-        self.lane_wrench = wp.zeros((self.model.body_count, LANES), dtype=wp.spatial_vector)
+        # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
+        largest = int(np.diff(self.body_first.numpy()).max(initial=0))
+        self.lanes = max(LEAST_LANES, math.isqrt(largest))
+        self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
 
     def reset_search(self) -> None:
@@ -307,7 +310,7 @@ class SolverSPH(SolverBase):
             return
         wp.launch(
             boundary_kernels.sum_body_lanes,
-            dim=(self.model.body_count, LANES),
+            dim=(self.model.body_count, self.lanes),
             inputs=[
                 self.search.grid,
                 self.body_first,

@@ -26,7 +26,8 @@ class ConfigSPH:
     viscosity: float = 1.0e-3
     """Dynamic viscosity [Pa s]; a world's own `sph:viscosity` comes first."""
     artificial_viscosity: float = 0.02
-    """Monaghan's alpha, between fluid particles that approach each other."""
+    """Monaghan's alpha, between particles that approach each other. Walls and bodies take part: where they do not, a
+    still tank excites itself at its walls."""
     density_diffusion: float = 0.1
     """delta of the density diffusion term."""
     background_pressure: float = 0.0

@@ -75,7 +75,7 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         x = wp.vec3(p[0], p[1], p[2])
         period, inv_period = nb.grid.period, nb.grid.inv_period
         total = wp.spatial_vector()
-        for run in range(runs(nb)):
+        for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
             total += sum_run(
                 nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, weight_of_water

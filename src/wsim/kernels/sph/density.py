@@ -70,7 +70,7 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
         weight = rho0 * gravity[world]
         period, inv_period = nb.grid.period, nb.grid.inv_period
         total = wp.vec2(0.0, 0.0)
-        for run in range(runs(nb)):
+        for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
             total += sum_run(
                 nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, m[3], weight

@@ -50,9 +50,19 @@ def in_plane(grid: Grid) -> bool:
 
 @wp.func
 def row_count(grid: Grid) -> int:
-    """Number of runs that a search visits; a row that may wrap around a periodic x is two."""
-    rows = (2 * grid.reach[1] + 1) * (2 * grid.reach[2] + 1)
-    return wp.where(grid.period[0] > 0.0, 2 * rows, rows)
+    """Number of rows of cells that a search visits."""
+    return (2 * grid.reach[1] + 1) * (2 * grid.reach[2] + 1)
+
+
+@wp.func
+def run_count(grid: Grid, x: wp.vec3) -> int:
+    """Number of runs that a search around x visits: its rows, and again where they wrap around a periodic x."""
+    rows = row_count(grid)
+    u = x[0] - grid.offset[0]
+    margin = grid.support + grid.cell[0]
+    if grid.period[0] > 0.0 and (u < margin or u > grid.period[0] - margin):
+        rows = 2 * rows
+    return rows
 
 
 @wp.func
@@ -66,14 +76,12 @@ def gap_to_cell(grid: Grid, x: float, index: int, axis: int) -> float:
 
 
 @wp.func
-def row_span(grid: Grid, cell_start: wp.array(dtype=int), world: int, x: wp.vec3, row: int) -> wp.vec2i:
+def row_span(grid: Grid, cell_start: wp.array(dtype=int), world: int, x: wp.vec3, run: int) -> wp.vec2i:
     """First and past-the-last sorted index of the particles of one run that can lie within the support of x."""
     width = 2 * grid.reach[1] + 1
-    r = row
-    second = False
-    if grid.period[0] > 0.0:
-        r = row / 2
-        second = row % 2 == 1
+    rows = row_count(grid)
+    second = run >= rows
+    r = run % rows
     iy = grid_axis(grid, x[1], 1) + r % width - grid.reach[1]
     iz = grid_axis(grid, x[2], 2) + r / width - grid.reach[2]
     dy = gap_to_cell(grid, x[1], iy, 1)

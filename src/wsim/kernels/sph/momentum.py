@@ -39,7 +39,7 @@ def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
         """Move each fluid particle, and find the fluid's force on each particle of a body, in original order.
 
         F_i = -V_i sum V_j (p_i + p_j) grad W                                (Colagrossi & Landrini 2003)
-            + V_i sum V_j alpha h c rho_0 min(v_ij.x_ij, 0) / r^2 grad W      (Monaghan 1992; fluid pairs alone)
+            + V_i sum V_j alpha h c rho_0 min(v_ij.x_ij, 0) / r^2 grad W      (Monaghan 1992)
             + V_i sum V_j K mu v_ij.x_ij / r^2 grad W                         (Monaghan & Gingold 1983)
 
         where r^2 stands for r^2 + 1e-4 h^2. The pressure term is the adjoint of the continuity equation's divergence,
@@ -64,16 +64,15 @@ def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
         own = m[3] + 2.0 * method.background_pressure
         period, inv_period = nb.grid.period, nb.grid.inv_period
         total = wp.vec3(0.0, 0.0, 0.0)
+        viscous = wp.vec3(artificial, laminar, eta2)
         if fluid:
-            viscous = wp.vec3(artificial, laminar, eta2)
-            for run in range(runs(nb)):
+            for run in range(runs(nb, x)):
                 span = span_of(nb, s, world, x, run)
                 total += sum_run(
                     nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous
                 )
         else:
-            viscous = wp.vec3(0.0, laminar, eta2)
-            for run in range(runs(nb)):
+            for run in range(runs(nb, x)):
                 span = fluid_span_of(nb, s, world, x, run)
                 total += sum_fluid_run(
                     nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import warp as wp
 
-from wsim.kernels.sph.grid import Grid, nearest_image, row_count, row_span
+from wsim.kernels.sph.grid import Grid, nearest_image, row_span, run_count
 from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
 from wsim.kernels.sph.records import load_record
 
@@ -30,8 +30,8 @@ class Neighborhood:
 
 
 @wp.func
-def _walk_runs(nb: Neighborhood) -> int:
-    return row_count(nb.grid)
+def _walk_runs(nb: Neighborhood, x: wp.vec3) -> int:
+    return run_count(nb.grid, x)
 
 
 @wp.func
@@ -48,7 +48,7 @@ def _walk_fluid_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int)
 
 
 @wp.func
-def _list_runs(nb: Neighborhood) -> int:
+def _list_runs(nb: Neighborhood, x: wp.vec3) -> int:
     return 1
 
 
@@ -62,7 +62,7 @@ def _list_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp
 class Search:
     """The functions that a sum is built with.
 
-    `runs(nb)`: how many runs there are; `span(nb, s, world, x, run)`: first and past-the-last entry of one;
+    `runs(nb, x)`: how many runs there are; `span(nb, s, world, x, run)`: first and past-the-last entry of one;
     `fluid_span`: the same, empty where a run holds no fluid.
     """
 
@@ -103,7 +103,7 @@ def make_find_neighbors(sums: PairSums) -> wp.Kernel:
         period, inv_period = nb.grid.period, nb.grid.inv_period
         base = s * nb.capacity
         count = int(0)
-        for run in range(_walk_runs(nb)):
+        for run in range(_walk_runs(nb, x)):
             span = _walk_span(nb, s, world, x, run)
             count = find(
                 point, entry, base, nb.capacity, count, span[0], span[1], s, fluid, support2, period, inv_period, x

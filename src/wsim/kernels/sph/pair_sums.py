@@ -94,7 +94,7 @@ _MOMENTUM = (
     """,
     """
             const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
-            const float push = q.w > 0.0f && approach < 0.0f ? (artificial + laminar) * approach : laminar * approach;
+            const float push = approach < 0.0f ? (artificial + laminar) * approach : laminar * approach;
             const float volume = ONLY_FLUID;
             const float force = volume * slope_norm * t * t * t * (push / (r2 + eta2) - p - n.w);
             a0 += force * d0;
