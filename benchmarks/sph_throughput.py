@@ -23,21 +23,25 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import newton
-import numpy as np
-import warp as wp
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT)] if str(ROOT) not in sys.path else []
 
-from benchmarks.sph_cases.bodies import make_rigid
-from benchmarks.sph_cases.bulk import set_particles
-from benchmarks.sph_cases.water import make_builder
-from wsim.solvers.sampling import box_lattice
-from wsim.solvers.shapes import OpenBox
-from wsim.solvers.solver_sph import SolverSPH
+import newton  # noqa: E402
+import numpy as np  # noqa: E402
+import warp as wp  # noqa: E402
+
+from benchmarks.sph_cases.bodies import make_rigid  # noqa: E402
+from benchmarks.sph_cases.bulk import set_particles  # noqa: E402
+from benchmarks.sph_cases.water import make_builder  # noqa: E402
+from wsim.solvers.sampling import box_lattice  # noqa: E402
+from wsim.solvers.shapes import OpenBox  # noqa: E402
+from wsim.solvers.solver_sph import SolverSPH  # noqa: E402
 
 G, RHO = 9.81, 1000.0
 DUALSPHYSICS = {0.01: 213e6 * 2, 0.0063: 218e6 * 2}  # particle-evaluations/s on an H100 80GB

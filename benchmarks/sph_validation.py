@@ -192,7 +192,9 @@ def write_plots(runs: list[Run], folder: Path) -> None:
         axes.set(title=f"{here[0].case.title}\n{here[0].case.reference}", xlabel=here[0].case.axes[0])
         axes.set_ylabel(here[0].case.axes[1])
         axes.grid(alpha=0.3)
-        figure.legend(loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+        longest = max(map(len, axes.get_legend_handles_labels()[1]))
+        columns = 2 if longest > 24 else 3
+        figure.legend(loc="outside lower center", ncols=columns, fontsize="small", frameon=False)
         figure.savefig(folder / f"{name}.png")
 
 

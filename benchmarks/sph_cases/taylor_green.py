@@ -11,10 +11,9 @@ The particles start up to a fifth of a spacing off a lattice, at random (a fixed
 in files that pile up at the stagnation points, until the lattice collapses; half of the energy is lost in that, and the
 rate is 40 % too high: a property of the start, not of the flow (Colagrossi et al. 2012, Comput. Phys. Commun. 183).
 
-The pressure falls rho U^2 / 2 below its mean, and fluid under tension clumps and leaves voids. BACKGROUND is twice what
-that takes, rho U^2. The rate depends on it, at 20 mm: 3.6 % too low with none, where the closest particles come within
-a third of a spacing; 0.9 % too low with rho U^2; 6 % too high with 4 rho U^2, as the noise of the background pressure
-on disordered particles stirs the fluid. Artificial viscosity is off.
+The pressure falls rho U^2 / 2 below its mean, and fluid under tension clumps and leaves voids. BACKGROUND is what that
+takes. The rate depends on it, as the noise of the background pressure on disordered particles stirs the fluid: at 20 mm
+it is 1.6 % too high with rho U^2 / 2, 3.2 % with rho U^2. Artificial viscosity is off.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ class ConfigSPH:
     """Numerical speed of sound [m/s]; ten times the largest expected speed keeps the density within 1 %."""
     viscosity: float = 1.0e-3
     """Dynamic viscosity [Pa s]; a world's own `sph:viscosity` comes first."""
-    artificial_viscosity: float = 0.02
+    artificial_viscosity: float = 0.01
     """Monaghan's alpha, between particles that approach each other. Walls and bodies take part: where they do not, a
     still tank excites itself at its walls."""
     density_diffusion: float = 0.1
