@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from benchmarks.sph_cases.case import Measured
-from benchmarks.sph_cases.water import SMOOTHING_IN_PLANE, add_fluid, lattice, make_builder, simulate
+from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -86,7 +86,6 @@ def release(
     sound = 20.0 * math.sqrt(G * height)
     config = SolverSPH.Config(
         spacing=spacing,
-        smoothing_ratio=SMOOTHING_IN_PLANE,
         rest_density=RHO,
         speed_of_sound=sound,
         dimensions=2,

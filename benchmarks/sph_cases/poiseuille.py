@@ -18,7 +18,7 @@ import time
 import numpy as np
 
 from benchmarks.sph_cases.case import Case, Measured
-from benchmarks.sph_cases.water import SMOOTHING_IN_PLANE, add_fluid, lattice, make_builder, simulate
+from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -44,7 +44,6 @@ def run(device: str, spacing: float, seconds: float = SECONDS) -> Measured:
     plates = OpenBox(center=(0.5 * LENGTH, 0.0, 0.5 * GAP), size=(LENGTH, 1.0, GAP), closed=True)
     config = SolverSPH.Config(
         spacing=spacing,
-        smoothing_ratio=SMOOTHING_IN_PLANE,
         rest_density=RHO,
         speed_of_sound=SOUND,
         viscosity=RHO * NU,

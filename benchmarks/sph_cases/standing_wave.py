@@ -20,7 +20,7 @@ import numpy as np
 from scipy.optimize import curve_fit
 
 from benchmarks.sph_cases.case import Case, Measured
-from benchmarks.sph_cases.water import SMOOTHING_IN_PLANE, add_fluid, lattice, make_builder, simulate
+from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -61,7 +61,6 @@ def run(device: str, spacing: float, periods: float = PERIODS) -> Measured:
     tank = OpenBox(center=(0.5 * LENGTH, 0.0, 0.5 * height), size=(LENGTH, 1.0, height))
     config = SolverSPH.Config(
         spacing=spacing,
-        smoothing_ratio=SMOOTHING_IN_PLANE,
         rest_density=RHO,
         speed_of_sound=SOUND,
         dimensions=2,

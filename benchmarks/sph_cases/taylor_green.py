@@ -25,7 +25,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from benchmarks.sph_cases.case import Case, Measured
-from benchmarks.sph_cases.water import SMOOTHING_IN_PLANE, add_fluid, lattice, make_builder, simulate
+from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate
 from wsim.solvers.solver_sph import SolverSPH
 
 RHO, NU, SPEED = 1000.0, 0.01, 1.0
@@ -56,7 +56,6 @@ def run(device: str, spacing: float, background: float = BACKGROUND) -> Measured
     model.set_gravity((0.0, 0.0, 0.0))
     config = SolverSPH.Config(
         spacing=spacing,
-        smoothing_ratio=SMOOTHING_IN_PLANE,
         rest_density=RHO,
         speed_of_sound=SOUND,
         viscosity=RHO * NU,

@@ -12,11 +12,6 @@ import warp as wp
 from wsim.solvers.sampling import box_lattice
 from wsim.solvers.solver_sph import SolverSPH
 
-SMOOTHING_IN_PLANE = 2.0
-"""Smoothing length over spacing for flows in a plane, with Marrone et al. (2011, Comput. Methods Appl. Mech. Eng. 200):
-44 neighbours. The solver's 1.3 has 80 in space, but 20 in a plane, too few for the sums: on a lattice, Wendland's
-kernel then gives a gradient 2.6 % too small (0.1 % at 2.0), and a standing wave swings 4 % too fast."""
-
 
 def make_builder(gravity: tuple[float, float, float]) -> newton.ModelBuilder:
     """A builder that knows the attributes of both solvers. `gravity` [m/s^2]."""

@@ -92,7 +92,7 @@ class SolverSPH(SolverBase):
         c = self.config
         method = density_kernels.Method()
         h = c.smoothing_length
-        method.h, method.shape = h, wp.vec4(1.0 / c.support, -5.0 * c.kernel_norm / h**2, c.support**2, h)
+        method.h, method.shape = h, wp.vec3(1.0 / c.support, -5.0 * c.kernel_norm / h**2, c.support**2)
         method.speed_of_sound, method.diffusion = c.speed_of_sound, c.density_diffusion
         method.artificial_viscosity, method.laminar_factor = c.artificial_viscosity, c.laminar_factor
         method.background_pressure = c.background_pressure

@@ -24,7 +24,7 @@ def _of_one_neighbor(
     entry: wp.array(dtype=int),
     point: wp.array(dtype=wp.vec4),
     motion: wp.array(dtype=wp.vec4),
-    shape: wp.vec4,
+    shape: wp.vec3,
     weight: wp.array(dtype=float),
     force: wp.array(dtype=wp.vec3),
 ):
@@ -34,7 +34,7 @@ def _of_one_neighbor(
     sums = wp.static(SUMS.extrapolation)(entry, point, motion, k, k + 1, shape, none, none, none, none)
     weight[k] = sums[0]
     viscosity = wp.vec3(0.0, 0.0, 1.0)
-    force[k] = wp.static(SUMS.force)(entry, point, motion, k, k + 1, shape, none, none, none, none, 1.0, viscosity)
+    force[k] = wp.static(SUMS.force)(entry, point, motion, k, k + 1, shape, none, none, none, none, 1.0, viscosity, 1.0)
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
@@ -45,7 +45,7 @@ def test_kernel_integrates_to_one_and_the_force_follows_its_slope(dimensions):
     point = wp.array(np.stack([r, 0 * r, 0 * r, 0 * r + 1.0], axis=1), dtype=wp.vec4, device=DEVICE)
     motion, entry = wp.zeros(n, dtype=wp.vec4, device=DEVICE), wp.array(np.arange(n), dtype=int, device=DEVICE)
     weight, force = wp.zeros(n, dtype=float, device=DEVICE), wp.zeros(n, dtype=wp.vec3, device=DEVICE)
-    shape = wp.vec4(1.0 / config.support, -5.0 * config.kernel_norm / h**2, config.support**2, h)
+    shape = wp.vec3(1.0 / config.support, -5.0 * config.kernel_norm / h**2, config.support**2)
     wp.launch(_of_one_neighbor, n, [entry, point, motion, shape], [weight, force], device=DEVICE)
 
     w = config.kernel_norm * weight.numpy().astype(float)
@@ -134,9 +134,7 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
         nb, point, motion, index, programs = sorted_world(config, fluid, boundary, world, lists)
         n, method = len(index), Method()
         method.h, method.speed_of_sound, method.diffusion = config.smoothing_length, 3.0, 0.1
-        method.shape = wp.vec4(
-            1.0 / config.support, -5.0 * config.kernel_norm / method.h**2, config.support**2, method.h
-        )
+        method.shape = wp.vec3(1.0 / config.support, -5.0 * config.kernel_norm / method.h**2, config.support**2)
         method.artificial_viscosity, method.laminar_factor = 0.1, 10.0
         per_world = [wp.full(2, v, dtype=float, device=DEVICE) for v in (1000.0, 2.0)]
         gravity = wp.array([(0.0, 0.0, -9.8)] * 2, dtype=wp.vec3, device=DEVICE)

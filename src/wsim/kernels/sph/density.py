@@ -17,7 +17,7 @@ class Method:
     """What a step's sums share: `SolverSPH.Config` in the form that kernels take."""
 
     h: float  # smoothing length [m]
-    shape: wp.vec4  # (1 / 2h, -5 norm / h^2, (2h)^2, h)
+    shape: wp.vec3  # (1 / 2h, -5 norm / h^2, (2h)^2)
     speed_of_sound: float  # [m/s]
     diffusion: float  # delta
     artificial_viscosity: float  # alpha

@@ -14,8 +14,7 @@ COINCIDENT = wp.constant(1.0e-4)
 
 def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
     """The kernel that sums forces and moves the fluid."""
-    runs, span_of, fluid_span_of = search.runs, search.span, search.fluid_span
-    sum_run, sum_fluid_run = sums.force, sums.force_of_fluid
+    runs, span_of, fluid_span_of, sum_run = search.runs, search.span, search.fluid_span, sums.force
 
     @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
     def momentum(
@@ -65,18 +64,15 @@ def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
         period, inv_period = nb.grid.period, nb.grid.inv_period
         total = wp.vec3(0.0, 0.0, 0.0)
         viscous = wp.vec3(artificial, laminar, eta2)
-        if fluid:
-            for run in range(runs(nb, x)):
+        solids = wp.where(fluid, 1.0, 0.0)
+        for run in range(runs(nb, x)):
+            if fluid:
                 span = span_of(nb, s, world, x, run)
-                total += sum_run(
-                    nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous
-                )
-        else:
-            for run in range(runs(nb, x)):
+            else:
                 span = fluid_span_of(nb, s, world, x, run)
-                total += sum_fluid_run(
-                    nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous
-                )
+            total += sum_run(
+                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous, solids
+            )
         if fluid:
             v = v + dt * (p[3] / fluid_mass[i] * total + gravity[world])
             fluid_velocity[i] = v

@@ -6,7 +6,7 @@ a loop is put together from choices that must cost nothing per pair: entries of 
 periodic, whether to branch, and what is summed.
 
 Every sum takes `entry` (list entries; not read when cells are walked), the records `point` and `motion`, the run
-`[first, last)`, and `shape` = (1 / 2h, -5 norm / h^2, (2h)^2, h): what the kernel function needs.
+`[first, last)`, and `shape` = (1 / 2h, -5 norm / h^2, (2h)^2): what the kernel function needs.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ _MOMENTUM = (
     """
             const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
             const float push = approach < 0.0f ? (artificial + laminar) * approach : laminar * approach;
-            const float volume = ONLY_FLUID;
+            const float volume = q.w > 0.0f ? q.w : -solids * q.w;
             const float force = volume * slope_norm * t * t * t * (push / (r2 + eta2) - p - n.w);
             a0 += force * d0;
             a1 += force * d1;
@@ -129,15 +129,13 @@ class PairSums:
     Attributes:
         continuity: Sum of V_j (v_i - v_j).grad W, and of the density diffusion.
         extrapolation: Sums over fluid neighbours of W (up to a factor), of W times pressure, of W times velocity.
-        force: Force on a fluid particle, per volume.
-        force_of_fluid: The same from fluid neighbours alone, for the particles of a body.
-        find: Write a run's neighbours behind `start` others; returns how many there are then. For lists alone.
+        force: Force on a particle, per volume, from fluid and `solids` times from boundary neighbours.
+            find: Write a run's neighbours behind `start` others; returns how many there are then. For lists alone.
     """
 
     continuity: wp.Function
     extrapolation: wp.Function
     force: wp.Function
-    force_of_fluid: wp.Function
     find: wp.Function
 
 
@@ -159,12 +157,11 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
             at 270; a CPU mispredicts it a quarter of the time.
     """
 
-    def loop(parts: tuple[str, str, str], only_fluid: bool = False) -> str:
+    def loop(parts: tuple[str, str, str]) -> str:
         before, term, after = parts
         text = _LOOP.replace("INDEX", "entries[k]" if lists else "k")
         text = text.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
         text = text.replace("BEFORE", before).replace("TERM", term).replace("AFTER", after)
-        text = text.replace("ONLY_FLUID", "(q.w > 0.0f ? q.w : 0.0f)" if only_fluid else "fabsf(q.w)")
         return text.replace("IMAGES", _images(periodic))
 
     @wp.func_native(loop(_CONTINUITY))
@@ -174,7 +171,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         motion: wp.array(dtype=wp.vec4),
         first: int,
         last: int,
-        shape: wp.vec4,
+        shape: wp.vec3,
         period: wp.vec3,
         inv_period: wp.vec3,
         x: wp.vec3,
@@ -190,7 +187,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         motion: wp.array(dtype=wp.vec4),
         first: int,
         last: int,
-        shape: wp.vec4,
+        shape: wp.vec3,
         period: wp.vec3,
         inv_period: wp.vec3,
         x: wp.vec3,
@@ -204,29 +201,14 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         motion: wp.array(dtype=wp.vec4),
         first: int,
         last: int,
-        shape: wp.vec4,
+        shape: wp.vec3,
         period: wp.vec3,
         inv_period: wp.vec3,
         x: wp.vec3,
         v: wp.vec3,
         p: float,
         viscosity: wp.vec3,
-    ) -> wp.vec3: ...
-
-    @wp.func_native(loop(_MOMENTUM, only_fluid=True))
-    def force_of_fluid(
-        entry: wp.array(dtype=int),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
-        first: int,
-        last: int,
-        shape: wp.vec4,
-        period: wp.vec3,
-        inv_period: wp.vec3,
-        x: wp.vec3,
-        v: wp.vec3,
-        p: float,
-        viscosity: wp.vec3,
+        solids: float,
     ) -> wp.vec3: ...
 
     @wp.func_native(_FIND.replace("IMAGES", _images(periodic)))
@@ -246,4 +228,4 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         x: wp.vec3,
     ) -> int: ...
 
-    return PairSums(continuity, extrapolation, force, force_of_fluid, find)
+    return PairSums(continuity, extrapolation, force, find)
