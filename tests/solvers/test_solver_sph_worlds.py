@@ -46,7 +46,7 @@ def world(k: int) -> newton.ModelBuilder:
     return builder
 
 
-def simulate(worlds: list[int]) -> list[dict]:
+def simulate(worlds: list[int], device: str = "cpu", steps: int = STEPS) -> list[dict]:
     """Step these worlds together; what each holds at the end."""
     builder = newton.ModelBuilder(up_axis=newton.Axis.Z)
     SolverSPH.register_custom_attributes(builder)
@@ -55,7 +55,7 @@ def simulate(worlds: list[int]) -> list[dict]:
         builder.add_world(world(k))
     for name in ("rest_density", "viscosity"):
         builder.custom_attributes[f"sph:{name}"].values = {i: settings(k)[name] for i, k in enumerate(worlds)}
-    model = builder.finalize(device="cpu")
+    model = builder.finalize(device=device)
     tanks = tuple(
         OpenBox((0.0, 0.0, 0.2), (settings(k)["width"], 6 * SPACING, 0.4), world=i) for i, k in enumerate(worlds)
     )
@@ -64,7 +64,7 @@ def simulate(worlds: list[int]) -> list[dict]:
     newton.eval_fk(model, model.joint_q, model.joint_qd, state)
     integrator = newton.solvers.SolverSemiImplicit(model)
     push = np.zeros(model.body_count)
-    for _ in range(STEPS):
+    for _ in range(steps):
         state.clear_forces()
         solver.step(state, state, None, None, solver.config.max_time_step)
         push = np.maximum(push, np.abs(solver.body_wrench.numpy()[:, 2]))
@@ -75,11 +75,12 @@ def simulate(worlds: list[int]) -> list[dict]:
     of_particle, of_body = model.particle_world.numpy(), model.body_world.numpy()
     return [
         {
-            "position": state.particle_q.numpy()[of_particle == i].tobytes(),
-            "velocity": state.particle_qd.numpy()[of_particle == i].tobytes(),
-            "pressure": state.sph.pressure.numpy()[of_particle == i].tobytes(),
-            "push": float(push[of_body == i][0]),
-            "body": state.body_q.numpy()[of_body == i].tobytes() + state.body_qd.numpy()[of_body == i].tobytes(),
+            "position": state.particle_q.numpy()[of_particle == i],
+            "velocity": state.particle_qd.numpy()[of_particle == i],
+            "pressure": state.sph.pressure.numpy()[of_particle == i],
+            "push": push[of_body == i],
+            "pose": state.body_q.numpy()[of_body == i],
+            "twist": state.body_qd.numpy()[of_body == i],
         }
         for i in range(len(worlds))
     ]
@@ -88,9 +89,30 @@ def simulate(worlds: list[int]) -> list[dict]:
 def test_a_world_in_a_batch_of_64_gives_bit_for_bit_what_it_gives_alone():
     batch = simulate(list(range(WORLDS)))
     for k in (0, 8, 31, 62):  # bodies over the water and in it
-        assert batch[k] == simulate([k])[0]
-    assert batch[8]["push"] > 0.5  # [N]: the water does push on the body; measured 1.55
-    assert len({result["position"] for result in batch}) == WORLDS  # they do differ
+        alone = simulate([k])[0]
+        for name, values in batch[k].items():
+            assert values.tobytes() == alone[name].tobytes(), (k, name)
+    assert batch[8]["push"][0] > 0.5  # [N]: the water does push on the body; measured 1.55
+    assert len({result["position"].tobytes() for result in batch}) == WORLDS  # they do differ
+
+
+def furthest(one: dict, other: dict) -> dict[str, float]:
+    """Largest difference of each quantity, over its largest value."""
+    return {name: float(np.abs(values - other[name]).max() / np.abs(values).max()) for name, values in one.items()}
+
+
+@pytest.mark.cuda
+def test_on_cuda_a_world_in_a_batch_of_64_gives_what_it_gives_alone_to_rounding():
+    batch = simulate(list(range(WORLDS)), "cuda:0")
+    for k in (0, 8, 31, 62):
+        assert max(furthest(simulate([k], "cuda:0")[0], batch[k]).values()) < 1e-4, k
+
+
+@pytest.mark.cuda
+def test_cuda_gives_what_the_cpu_gives_to_rounding():
+    for k in (0, 8, 31, 62):
+        on_cpu, on_gpu = simulate([k])[0], simulate([k], "cuda:0")[0]
+        assert max(furthest(on_cpu, on_gpu).values()) < 1e-3, k
 
 
 def test_density_viscosity_and_gravity_are_the_worlds_own():

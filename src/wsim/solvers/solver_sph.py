@@ -281,7 +281,7 @@ class SolverSPH(SolverBase):
             launch_shared(
                 self.programs.extrapolate,
                 dim=self.count,
-                inputs=[*fluid, self.model.gravity, self.point],
+                inputs=[*fluid, self.viscosity, self.model.gravity, self.point],
                 outputs=[self.motion],
             )
 

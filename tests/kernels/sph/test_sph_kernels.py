@@ -141,7 +141,7 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
         pressure = wp.zeros(n, dtype=float, device=DEVICE)
         inputs = [0, nb, method, per_world[0], gravity, point, motion, 1e-3]
         wp.launch(programs.continuity, n, inputs, [pressure], device=DEVICE)
-        wp.launch(programs.extrapolate, n, [0, nb, method, per_world[0], gravity, point], [motion], device=DEVICE)
+        wp.launch(programs.extrapolate, n, [0, nb, method, *per_world, gravity, point], [motion], device=DEVICE)
         moved = [wp.zeros(len(fluid), dtype=wp.vec3, device=DEVICE) for _ in range(2)]
         force = wp.zeros(len(boundary), dtype=wp.vec3, device=DEVICE)
         mass = wp.full(len(fluid), 0.1, dtype=float, device=DEVICE)

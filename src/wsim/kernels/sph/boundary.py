@@ -5,8 +5,10 @@ import warp as wp
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, in_plane, wrap
 from wsim.kernels.sph.neighbors import Neighborhood, Search
-from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.pair_sums import OPTIONS, Extrapolated, PairSums
 from wsim.kernels.sph.records import load_record
+
+TINY = wp.constant(1.0e-30)
 
 
 @wp.kernel(enable_backward=False)
@@ -53,6 +55,7 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         nb: Neighborhood,
         method: Method,
         rest_density: wp.array(dtype=float),
+        viscosity: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
         point: wp.array(dtype=wp.vec4),
         # Data in and out (boundary entries are written, fluid entries read):
@@ -61,10 +64,14 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         """Pressure and velocity of each boundary particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
 
         p_b = sum (p_f + rho_0 g.(x_b - x_f)) W / sum W, never below what the background pressure holds, so that a wall
-        does not hold the fluid back; v_b = 2 v_wall - sum v_f W / sum W, which puts the wall's own velocity on its
-        surface: no slip. The wall's own acceleration, which Adami et al. subtract from g, is left out: taken from the
-        last step it makes a light body unstable. That leaves an error of the order of a spacing where a body
-        accelerates.
+        does not hold the fluid back. The wall's own acceleration, which Adami et al. subtract from g, is left out:
+        taken from the last step it makes a light body unstable. That leaves an error of the order of a spacing where
+        a body accelerates.
+
+        The velocity is the fluid's, v_f = sum v W / sum W, mirrored in two ways. For the laminar viscosity
+        v_b = 2 v_wall - v_f: no slip. For the artificial one v_b = v_f - 2 n n.(v_f - v_wall), which mirrors the way
+        into the wall alone: a boundary layer of that viscosity, centimetres thick, would drag on bodies and load
+        them with water. Both forces are linear in v_b, so that its mean, weighted with the viscosities, serves both.
         """
         s = first + wp.tid()
         p = load_record(point, s)
@@ -72,9 +79,11 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
             return
         world = nb.particle_world[nb.order[s]]
         weight_of_water = rest_density[world] * gravity[world]
+        artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
+        laminar = method.laminar_factor * viscosity[world]
         x = wp.vec3(p[0], p[1], p[2])
         period, inv_period = nb.grid.period, nb.grid.inv_period
-        total = wp.spatial_vector()
+        total = Extrapolated()
         for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
             total += sum_run(
@@ -83,8 +92,13 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         if total[0] > 0.0:
             m = motion[s]
             pressure = wp.max(total[1] / total[0], -method.background_pressure)
-            flow = wp.vec3(total[2], total[3], total[4]) / total[0]
-            motion[s] = wp.vec4(2.0 * m[0] - flow[0], 2.0 * m[1] - flow[1], 2.0 * m[2] - flow[2], pressure)
+            wall = wp.vec3(m[0], m[1], m[2])
+            past = wp.vec3(total[2], total[3], total[4]) / total[0] - wall
+            normal = wp.normalize(wp.vec3(total[5], total[6], total[7]))
+            slip = past - 2.0 * wp.dot(past, normal) * normal
+            share = artificial / wp.max(artificial + laminar, TINY)
+            v = wall + share * slip - (1.0 - share) * past
+            motion[s] = wp.vec4(v[0], v[1], v[2], pressure)
 
     return extrapolate
 

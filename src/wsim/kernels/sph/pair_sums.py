@@ -17,6 +17,9 @@ import warp as wp
 
 OPTIONS = {"fast_math": True}
 
+# Sums of W, of W times pressure, of W times velocity (3), and of W times the way to the fluid (3).
+Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
+
 _LOOP = """
 #if defined(__CUDA_ARCH__)
     typedef float4 Record;
@@ -69,7 +72,7 @@ _CONTINUITY = (
 _EXTRAPOLATION = (
     """
     const float w0 = weight[0], w1 = weight[1], w2 = weight[2];
-    float total = 0.0f, pressure = 0.0f, f0 = 0.0f, f1 = 0.0f, f2 = 0.0f;
+    float total = 0.0f, pressure = 0.0f, f0 = 0.0f, f1 = 0.0f, f2 = 0.0f, o0 = 0.0f, o1 = 0.0f, o2 = 0.0f;
     """,
     """
             const float w = q.w > 0.0f ? t * t * t * t * (1.0f + 4.0f * u) : 0.0f;
@@ -78,10 +81,14 @@ _EXTRAPOLATION = (
             f0 += w * n.x;
             f1 += w * n.y;
             f2 += w * n.z;
+            o0 -= w * d0;
+            o1 -= w * d1;
+            o2 -= w * d2;
     """,
     """
-    wp::vec_t<6, float> sums;
-    sums[0] = total, sums[1] = pressure, sums[2] = f0, sums[3] = f1, sums[4] = f2, sums[5] = 0.0f;
+    wp::vec_t<8, float> sums;
+    sums[0] = total, sums[1] = pressure, sums[2] = f0, sums[3] = f1, sums[4] = f2;
+    sums[5] = o0, sums[6] = o1, sums[7] = o2;
     return sums;
     """,
 )
@@ -128,7 +135,7 @@ class PairSums:
 
     Attributes:
         continuity: Sum of V_j (v_i - v_j).grad W, and of the density diffusion.
-        extrapolation: Sums over fluid neighbours of W (up to a factor), of W times pressure, of W times velocity.
+        extrapolation: `Extrapolated`, over fluid neighbours; W up to a factor.
         force: Force on a particle, per volume, from fluid and `solids` times from boundary neighbours.
             find: Write a run's neighbours behind `start` others; returns how many there are then. For lists alone.
     """
@@ -192,7 +199,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         inv_period: wp.vec3,
         x: wp.vec3,
         weight: wp.vec3,
-    ) -> wp.spatial_vector: ...
+    ) -> Extrapolated: ...
 
     @wp.func_native(loop(_MOMENTUM))
     def force(
