@@ -12,6 +12,8 @@ WANTED = (
     "wsim/py.typed",
     "wsim/scene/schema/generatedSchema.usda",
     "wsim/scene/schema/plugInfo.json",
+    "wsim/plan/language/english.lark",
+    "wsim/plan/language/nouns.toml",
     "wsim/report/template.html",
     "wsim/report/style.css",
     "wsim/_skills/floating-bodies/SKILL.md",

@@ -57,9 +57,11 @@ def _crossing_time(world: World) -> float | None:
 
 
 def _thickness(body: Body) -> float:
-    """Smallest extent of a body's smallest shape [m]."""
+    """Smallest extent of a body's smallest shape that collides [m]."""
     extents = []
     for shape in body.shapes:
+        if not shape.collides:
+            continue
         if shape.kind in ("sphere", "cylinder", "capsule"):
             extents.append(2.0 * shape.size[0])
         if shape.kind == "cylinder":

@@ -1,0 +1,139 @@
+"""Every asset stands where it is put, and what falls into a hollow one comes to rest on its inner floor.
+
+One stage holds them all, far enough apart: one simulation answers for each.
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Gf, UsdGeom
+
+from wsim.assets import load_catalogue
+from wsim.scene import Scene
+from wsim.scene.check import check_stage
+from wsim.sim import Simulation
+
+CATALOGUE = load_catalogue()
+HOLLOW = [id for id, asset in CATALOGUE.items() if asset.hollow]
+SPACING = 4.0  # [m]
+DROP = 0.001  # [m]
+DURATION = 2.0  # [s]
+BALLS = {"lain": 0.0, "thrown": 0.5}  # [m/s] along Y, where every hollow asset has walls
+
+
+def place(scene: Scene, name: str, id: str, slot: int) -> tuple[float, float]:
+    x, y = SPACING * (slot % 5), SPACING * (slot // 5)
+    prim = UsdGeom.Xform.Define(scene.stage, f"/World/{name}")
+    prim.GetPrim().GetReferences().AddReference(str(CATALOGUE[id].path))
+    prim.AddTranslateOp().Set(Gf.Vec3d(x, y, DROP))
+    return x, y
+
+
+def radius_of(id: str) -> float:
+    return min(0.03, 0.25 * min(CATALOGUE[id].hollow.size))
+
+
+class World:
+    """All assets after `DURATION`: poses by prim path, at the start and at the end."""
+
+    def __init__(self, folder: Path) -> None:
+        scene = Scene()
+        scene.simulation(duration=DURATION, frame_rate=50.0)
+        scene.ground()
+        self.places = {id: place(scene, id, id, slot) for slot, id in enumerate(CATALOGUE)}
+        filled = [(id, ball) for ball in BALLS for id in HOLLOW]
+        for slot, (id, ball) in enumerate(filled, start=len(CATALOGUE)):
+            x, y = place(scene, f"{id}_{ball}", id, slot)
+            cx, cy, cz = CATALOGUE[id].hollow.center
+            start, velocity = (x + cx, y + cy, cz + DROP), (0.0, BALLS[ball], 0.0)
+            scene.sphere(f"{ball}_{id}", radius=radius_of(id), density=1000.0, position=start, velocity=velocity)
+            self.places[f"{id}_{ball}"] = (x, y)
+        self.stage = scene.save(folder / "stage.usda")
+        # The step that wsim takes for bodies that fall this little, were not one of them a seesaw's plank in the air.
+        simulation = Simulation(self.stage, device="cpu", time_step=1.0 / 800.0)
+        self.start = self._poses(simulation)
+        for _ in range(round(DURATION * 50.0)):
+            simulation.advance_frame()
+        self.problems = simulation.problems()
+        self.end = self._poses(simulation)
+
+    @staticmethod
+    def _poses(simulation: Simulation) -> dict[str, np.ndarray]:
+        poses = simulation.state.body_q.numpy()[simulation.built.bodies]
+        return {body.prim: pose for body, pose in zip(simulation.world.bodies, poses, strict=True)}
+
+
+@pytest.fixture(scope="module")
+def world(tmp_path_factory: pytest.TempPathFactory) -> World:
+    return World(tmp_path_factory.mktemp("standing"))
+
+
+def tilt(pose: np.ndarray) -> float:
+    """Angle between a body's Z axis and the vertical [deg]."""
+    x, y = pose[3:5]
+    return math.degrees(math.acos(min(1.0, 1.0 - 2.0 * (x * x + y * y))))
+
+
+def body_of(id: str) -> str:
+    """The body that stands on the ground."""
+    return f"/World/{id}/stand" if CATALOGUE[id].articulated else f"/World/{id}"
+
+
+def test_stage_is_sound(world: World) -> None:
+    folder = next(iter(CATALOGUE.values())).path.parents[1]
+    assert check_stage(world.stage, [world.stage.parent, folder]) == []
+
+
+def test_nothing_goes_wrong(world: World) -> None:
+    assert world.problems == []
+
+
+@pytest.mark.parametrize("id", CATALOGUE)
+def test_it_stands(world: World, id: str) -> None:
+    start, end = world.start[body_of(id)], world.end[body_of(id)]
+    assert tilt(end) < 1.0
+    assert np.linalg.norm((end - start)[:2]) < 0.005
+    assert end[2] == pytest.approx(start[2] - DROP, abs=0.002)
+
+
+@pytest.mark.parametrize("id", HOLLOW)
+def test_a_ball_stays_on_its_inner_floor(world: World, id: str) -> None:
+    hollow = CATALOGUE[id].hollow
+    ball = world.end[f"/World/lain_{id}"]
+    floor = hollow.center[2] - hollow.size[2] / 2
+    assert ball[2] == pytest.approx(floor + radius_of(id), abs=0.002)
+    away = np.abs(ball[:2] - world.places[f"{id}_lain"] - hollow.center[:2])
+    assert (away <= np.array(hollow.size[:2]) / 2).all()
+
+
+@pytest.mark.parametrize("id", HOLLOW)
+def test_a_ball_thrown_against_the_wall_stays_inside(world: World, id: str) -> None:
+    asset = CATALOGUE[id]
+    ball = world.end[f"/World/thrown_{id}"]
+    floor = asset.hollow.center[2] - asset.hollow.size[2] / 2
+    assert abs(ball[1] - world.places[f"{id}_thrown"][1]) < asset.size[1] / 2 - radius_of(id)
+    assert floor + radius_of(id) - 0.002 < ball[2] < asset.size[2]
+
+
+def test_seesaw_tilts_about_its_hinge_to_its_limit(tmp_path: Path) -> None:
+    """A load on one seat brings that end down; the stand stays."""
+    scene = Scene()
+    scene.simulation(duration=1.5, frame_rate=50.0)
+    scene.ground()
+    place(scene, "seesaw", "seesaw", 0)
+    x, y, z = CATALOGUE["seesaw"].anchors["front_seat"]
+    scene.box("load", size=(0.2, 0.2, 0.2), density=1250.0, position=(x, y, z + 0.101 + DROP), friction=1.0)
+    limit = scene.stage.GetPrimAtPath("/World/seesaw/hinge").GetAttribute("physics:upperLimit").Get()
+    stage = scene.save(tmp_path / "stage.usda")
+
+    simulation = Simulation(stage, device="cpu", time_step=1.0 / 800.0)
+    most = 0.0
+    for _ in range(75):
+        simulation.advance_frame()
+        poses = World._poses(simulation)
+        most = max(most, tilt(poses["/World/seesaw/plank"]))
+    assert simulation.problems() == []
+    assert limit - 1.0 < most < limit + 2.0
+    assert tilt(poses["/World/seesaw/stand"]) < 1.0
