@@ -2,7 +2,8 @@
 
 Koshizuka & Oka (1996, Nucl. Sci. Eng. 123, 421-434), with the numbers that DualSPHysics distributes, scaled to a column
 1 m wide: the front on the dry floor [m] against time [s]. The error is the mean of |x - x_measured| / x_measured over
-the fifteen points; `ideal` is the same against potential flow. The tank is 5 m long, so that the front does not meet its far wall.
+the fifteen points; `ideal` is the same against potential flow. The tank is 5 m long, so that the front does not meet
+its far wall.
 """
 
 from __future__ import annotations

@@ -25,5 +25,5 @@ def test_ideal_column_starts_with_the_acceleration_of_the_series():
 
 def test_front_starts_at_the_gate_from_rest_and_refuses_times_beyond_its_table():
     assert potential.front(np.array([0.0, 1e-4])) == pytest.approx([1.0, 1.0], abs=1e-6)
-    with pytest.raises(ValueError, match="9.25"):
+    with pytest.raises(ValueError, match=r"9\.25"):
         potential.front(np.array([10.0 / math.sqrt(2.0) + 1.0]))
