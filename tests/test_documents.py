@@ -8,7 +8,7 @@ from typer.main import get_command
 
 from wsim.cli import app
 from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
-from wsim.plan.words import COLORS, GROUND, GROUPS, MATERIALS, NOUNS, TANKS, WATER
+from wsim.plan.lexicon import lexicon
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
 
@@ -61,7 +61,11 @@ def test_readme_has_every_check_and_objective() -> None:
 def test_readme_has_the_planners_vocabulary() -> None:
     said = set(re.findall(r"[a-z]+", section("The builtin planner").lower()))
     spelled = {"aluminum", "golden", "gray", "wooden"}  # other spellings of words that are there
-    assert (set(NOUNS.values()) | GROUPS | TANKS | WATER | GROUND | set(MATERIALS) | set(COLORS)) - spelled <= said
+    known = lexicon()
+    words = {
+        word for kind in ("GROUP", "FLUID", "GROUND", "MATERIAL", "COLOR", "SCALE") for word in known.words_of(kind)
+    }
+    assert (set(known.nouns) | words) - spelled <= said
 
 
 def test_program_of_the_readme_builds_a_sound_stage(tmp_path: Path) -> None:

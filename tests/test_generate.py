@@ -16,7 +16,7 @@ def test_a_plan_that_is_not_approved_is_kept_and_not_built(tmp_path: Path) -> No
     done = generate("A cork ball floats in a tank of water.", tmp_path, approve=shown.append)
     assert shown == [done.plan]
     assert done.verdict is None
-    assert {path.name for path in done.run.path.iterdir()} == {"run.json", "plan.json", "transcript.jsonl"}
+    assert {path.name for path in done.run.path.iterdir()} == {"run.json", "plan.json", "plan.png", "transcript.jsonl"}
     assert done.run.facts()["status"] == "not approved"
     (line,) = (done.run.path / "transcript.jsonl").read_text().splitlines()
     assert json.loads(line)["reply"] == done.plan.model_dump(mode="json")

@@ -49,6 +49,7 @@ def generate(
     Raises:
         NotUnderstood: If the planner cannot ground the prompt; nothing is left behind.
     """
+    from wsim.plan.drawing.picture import draw_picture
     from wsim.program.compose import compose
     from wsim.report import write as write_report
 
@@ -57,6 +58,7 @@ def generate(
     run.record(prompt=prompt, title=plan.title, models={"planner": BUILTIN, "coder": BUILTIN})
     run.say("planner", BUILTIN, prompt, plan.model_dump(mode="json"))
     write_whole(run.path / "plan.json", plan.model_dump_json(indent=2) + "\n")
+    draw_picture(plan, run.path / "plan.png")
     if not approve(plan):
         run.record(status="not approved")
         return Generated(run, plan, None, None)

@@ -86,8 +86,8 @@ def floating_plan(tmp_path_factory: pytest.TempPathFactory) -> Path:
     data = plan("A wooden block floats in a tank of water.").model_dump(mode="json")
     things = {thing["name"]: thing for thing in data["objects"]}
     level = 0.25
-    things["tank"]["size"] = [0.4, 0.4, 0.4]
-    (surface,) = (rule for rule in things["water"]["relations"] if rule["predicate"] == "FREE-SURFACE-AT")
+    things["tank"]["construction"]["size"] = [0.4, 0.4, 0.4]
+    (surface,) = (rule for rule in things["water"]["topology"]["relation"] if rule["predicate"] == "FREE-SURFACE-AT")
     surface["value"] = level
     things["wooden_block"]["pose"]["position"] = [0.0, 0.0, 0.28]  # 0.06 m deep; at rest it is 0.084 m
     data["simulation"] |= {"duration": 2.0, "spacing": 0.05, "frame_rate": 10.0}

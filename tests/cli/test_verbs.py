@@ -1,4 +1,4 @@
-"""plan, judge, view, doctor, wrong options and Ctrl-C, as a person at a terminal meets them."""
+"""judge, view, doctor, wrong options and Ctrl-C, as a person at a terminal meets them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ import pytest
 
 from wsim import __version__
 from wsim.judge.verdict import Verdict
-from wsim.plan.schema import Plan
 
 PROMPT = "A wooden block floats in a tank of water."
 TANK = """\
@@ -27,25 +26,6 @@ def build(scene):
     scene.fluid("water", fills=tank, level=0.15, spacing=0.05)
     scene.camera("side", eye=(0.0, -2.0, 1.0), target=(0.0, 0.0, 0.0), width=64, height=36)
 """
-
-
-def test_plan_is_shown_printed_and_written(wsim, tmp_path: Path) -> None:
-    ended = wsim("plan", PROMPT, "-o", "plan.json")
-    assert (ended.code, ended.err) == (0, "")
-    for word in ("wooden_block", "tank", "must: wooden_block floats on the water.", "assumed: "):
-        assert word in ended.out
-    written = Plan.model_validate_json((tmp_path / "plan.json").read_text())
-    printed = wsim("plan", PROMPT, "--json")
-    assert Plan.model_validate_json(printed.out) == written
-    assert {path.name for path in tmp_path.iterdir()} == {"plan.json"}
-
-
-def test_a_plan_that_cannot_be_written_is_said(wsim, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    ended = wsim("plan", PROMPT, "-o", "file/plan.json")
-    assert ended.code == 2
-    assert ended.err.startswith("wsim: cannot write the plan to file/plan.json: ")
-    assert ended.err.count("\n") == 1
 
 
 @pytest.mark.parametrize("verb", [("plan",), ("generate", "--yes")])

@@ -11,11 +11,16 @@ from wsim.errors import UserError
 from wsim.plan.schema import (
     Assumption,
     CameraPlan,
+    External,
+    FromAsset,
+    Joint,
     Material,
     Objective,
     Plan,
     PlanObject,
     Pose,
+    Proxy,
+    Registration,
     Relation,
     SimulationPlan,
 )
@@ -29,7 +34,7 @@ PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 def _tank_plan(**changes: object) -> Plan:
     blocks = [
-        PlanObject(
+        PlanObject.proxy(
             name=f"block_{i}",
             role="rigid_body",
             primitive="box",
@@ -39,17 +44,17 @@ def _tank_plan(**changes: object) -> Plan:
         )
         for i, x in enumerate((-0.5, 0.1 + 0.2 - 0.3, 0.5))
     ]
-    water = PlanObject(
+    water = PlanObject.proxy(
         name="water",
         role="fluid",
         primitive="fluid",
         state="fluid",
         relations=[
             Relation(predicate="PLACE-IN", ref="tank"),
-            Relation(predicate="FREE-SURFACE-AT", ref="tank", value=0.6),
+            Relation(predicate="FREE-SURFACE-AT", value=0.6),
         ],
     )
-    tank = PlanObject(
+    tank = PlanObject.proxy(
         name="tank",
         role="container",
         primitive="tank",
@@ -123,8 +128,8 @@ def _solids() -> list[PlanObject]:
     steel, paint = Material(name="Stahl (ä)", density=7850.0), Material(name="2 coats", density=1.0, opacity=0.5)
     turned = Pose(position=(0.0, 2.0, 1.0), rotation_deg=(0.0, 90.0, 0.0))
     return [
-        PlanObject(name="ground", role="terrain", primitive="ground", state="static", material=paint),
-        PlanObject(
+        PlanObject.proxy(name="ground", role="terrain", primitive="ground", state="static", material=paint),
+        PlanObject.proxy(
             name="scene",
             role="rigid_body",
             primitive="sphere",
@@ -133,8 +138,10 @@ def _solids() -> list[PlanObject]:
             velocity=(1.0, 0.0, 0.00015),
             pose=Pose(position=(0.0, 0.0, 1.0)),
         ),
-        PlanObject(name="class", role="rigid_body", primitive="cylinder", size=(0.1, 0.3), material=WOOD, pose=turned),
-        PlanObject(
+        PlanObject.proxy(
+            name="class", role="rigid_body", primitive="cylinder", size=(0.1, 0.3), material=WOOD, pose=turned
+        ),
+        PlanObject.proxy(
             name="i",
             role="rigid_body",
             primitive="capsule",
@@ -142,7 +149,7 @@ def _solids() -> list[PlanObject]:
             material=WOOD.model_copy(update={"color": (1.0, 0.0, 0.0)}),
             pose=Pose(position=(1 / 3, 4.0, 1.0)),
         ),
-        PlanObject(
+        PlanObject.proxy(
             name="step",
             role="terrain",
             primitive="box",
@@ -150,7 +157,7 @@ def _solids() -> list[PlanObject]:
             state="static",
             pose=Pose(position=(5.0, 0.0, 0.05)),
         ),
-        PlanObject(
+        PlanObject.proxy(
             name="drop",
             role="fluid",
             primitive="fluid",
@@ -160,7 +167,7 @@ def _solids() -> list[PlanObject]:
             material=Material(name="oil", density=900.0),
         ),
         *(
-            PlanObject(
+            PlanObject.proxy(
                 name=f"ball_{i + 1}",
                 role="rigid_body",
                 primitive="sphere",
@@ -213,7 +220,6 @@ HARMFUL = [
     "",
     "# " + "long " * 200,
     "x" * 500,
-    "\ud800",
 ]
 
 
@@ -259,4 +265,68 @@ def test_an_object_without_a_pose_is_a_users_mistake() -> None:
     plan = _tank_plan()
     plan.objects[1].pose = None
     with pytest.raises(UserError, match="block_0 has no pose"):
+        compose(plan)
+
+
+def _hinged(**changes: object) -> Plan:
+    """A rod that hangs at 30 degrees from a hinge in the world, with a bob of 2 kg on it; and a bead on a slider."""
+    turned = (0.0, -30.0, 0.0)
+    steel = Material(name="steel", density=7850.0)
+    values: dict[str, object] = {
+        "title": "Hinged",
+        "prompt": "",
+        "objects": [
+            PlanObject.proxy(
+                name="rod",
+                role="mechanism",
+                primitive="cylinder",
+                size=(0.01, 0.8),
+                material=steel,
+                pose=Pose(position=(0.2, 0.0, 1.0 - 0.4 * 3**0.5 / 2), rotation_deg=turned),
+            ),
+            PlanObject(
+                name="bob",
+                role="rigid_body",
+                construction=External(candidate="a bob", stand_in=Proxy(primitive="sphere", size=(0.1,))),
+                material=steel,
+                registration=Registration(mass=2.0),
+                pose=Pose(position=(0.45, 0.0, 1.0 - 0.9 * 3**0.5 / 2), rotation_deg=turned),
+            ),
+            PlanObject.proxy(
+                name="bead",
+                role="rigid_body",
+                primitive="box",
+                size=(0.1, 0.1, 0.1),
+                material=steel,
+                pose=Pose(position=(3.0, 0.0, 1.0)),
+            ),
+        ],
+        "joints": [
+            Joint(name="pivot", kind="hinge", child="rod", anchor=(0.0, 0.0, 0.4), axis="Y", limits=(-60.0, 60.0)),
+            Joint(name="hold", kind="fixed", parent="rod", child="bob", anchor=(0.0, 0.0, 0.1)),
+            Joint(name="rail", kind="slider", child="bead", axis="X", limits=(-1.0, 1.0)),
+        ],
+        **changes,
+    }
+    return Plan.model_validate(values)
+
+
+def test_joints_and_masses_are_built(tmp_path: Path) -> None:
+    text = compose(_hinged())
+    # Where the rod, turned, has its upper end.
+    assert "anchor=(0.0, 0.0, 1.0)" in text and "limits_deg=(-60.0, 60.0)" in text
+    world = _world(text, tmp_path)
+    assert [(joint.kind, joint.parent, joint.child) for joint in world.joints] == [
+        ("revolute", None, "/World/rod"),
+        ("fixed", "/World/rod", "/World/bob"),
+        ("prismatic", None, "/World/bead"),
+    ]
+    assert world.body("/World/bob").mass == pytest.approx(2.0)
+    _formatted(text, tmp_path)
+
+
+def test_an_asset_is_refused_with_a_way_out() -> None:
+    plan = _hinged(joints=[])
+    plan.objects[2].construction = FromAsset(asset="mug")
+    with pytest.raises(UserError, match=r"bead: a program cannot load the catalogue's 'mug' yet; .*stand_in"):
         compose(plan)

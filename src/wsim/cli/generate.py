@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, parse_params
+from wsim.cli.options import (
+    EXIT_CODES,
+    Answers,
+    Device,
+    Image,
+    Isolation,
+    Pictures,
+    Runs,
+    Set,
+    TimeStep,
+    parse_params,
+    refuse_image,
+)
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -17,6 +29,8 @@ def generate(
     prompt: Annotated[str, typer.Argument(help="What the world must be, in a sentence.")] = "",
     yes: Annotated[bool, typer.Option("--yes", "-y", help="Build the plan without asking.")] = False,
     plan: Annotated[Path | None, typer.Option("--plan", help="Use this plan.json in place of the planner.")] = None,
+    answers: Answers = None,
+    image: Image = None,
     device: Device = "auto",
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
@@ -28,12 +42,10 @@ def generate(
 
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """
-    from wsim.cli.show import ConsoleProgress, console, show_plan, show_verdict
+    from wsim.cli.show import ConsoleProgress, console, show_verdict
     from wsim.errors import UserError
     from wsim.generate import generate as generate_world
-    from wsim.generate import make_plan
     from wsim.pipeline import Settings
-    from wsim.plan.store import load
 
     if not prompt and plan is None:
         raise UserError(
@@ -43,25 +55,32 @@ def generate(
         device=device, isolation=isolation, pictures=pictures, time_step=time_step, params=parse_params(params)
     )
     settings.check()
-    chosen: Plan = load(plan) if plan else make_plan(prompt)
-    show_plan(chosen)
-    if not yes and not _agreed():
+    refuse_image(image)
+    chosen = _agreed(prompt, plan, answers, yes)
+    if chosen is None:
         console.print("nothing was built")
         raise typer.Exit(0)
+    said = prompt if plan is not None and prompt else chosen.prompt  # with answers in it, the sentence is another
     with ConsoleProgress() as progress:
-        done = generate_world(prompt or chosen.prompt, runs, settings, plan=chosen, progress=progress)
+        done = generate_world(said, runs, settings, plan=chosen, progress=progress)
     assert done.verdict is not None
     show_verdict(done.verdict, done.run.path, done.report)
     raise typer.Exit(EXIT_CODES[done.verdict.status])
 
 
-def _agreed() -> bool:
-    from wsim.errors import UserError
+def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool) -> Plan | None:
+    """The plan to build: a file of answers is a yes, as --yes is; else a person is asked."""
+    from wsim.cli.approve import approved, with_answers
+    from wsim.cli.show import show_plan
+    from wsim.generate import make_plan
+    from wsim.plan.store import load
 
-    try:
-        return typer.confirm("Build this world?", default=True)
-    except typer.Abort:
-        raise UserError("nothing was built: there was no answer; --yes builds without asking") from None
+    planner = make_plan if path is None else None
+    proposed = with_answers(make_plan(prompt) if path is None else load(path), planner, answers)
+    if not (yes or answers):
+        return approved(proposed, planner)
+    show_plan(proposed)
+    return proposed
 
 
 def register(app: typer.Typer) -> None:

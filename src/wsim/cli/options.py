@@ -22,6 +22,13 @@ TimeStep = Annotated[
     float | None,
     typer.Option("--time-step", min=1e-7, max=0.1, help="Upper bound of the time step [s]; default: chosen."),
 ]
+Answers = Annotated[
+    Path | None,
+    typer.Option(
+        "--answers", help="Answers to the planner's questions, TOML or JSON; generate then builds without asking."
+    ),
+]
+Image = Annotated[Path | None, typer.Option("--image", help="A picture of what the world must look like.")]
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the program.")]
 
 
@@ -42,3 +49,25 @@ def parse_params(pairs: list[str] | None) -> dict[str, float]:
             raise UserError(f"--set {pair}: expected NAME=NUMBER, such as --set wood_density=2500")
         params[name] = value
     return params
+
+
+def refuse_image(path: Path | None) -> None:
+    """No planner here sees pictures, and a picture that is left out must not go unsaid.
+
+    Raises:
+        UserError: A picture was given: it is not there, is no picture, or is one.
+    """
+    if path is None:
+        return
+    from PIL import Image as Pictures
+
+    try:
+        with Pictures.open(path) as picture:
+            picture.verify()
+    except (OSError, ValueError, SyntaxError, Pictures.DecompressionBombError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is not a picture"
+        raise UserError(f"--image {path}: {reason}; give a PNG or a JPEG") from error
+    raise UserError(
+        f"--image {path}: the builtin planner does not see pictures; leave --image out and say it in the sentence, or "
+        "write the plan yourself and pass it with --plan FILE"
+    )

@@ -1,37 +1,83 @@
-"""`wsim plan`: the plan of a sentence, without building it."""
+"""`wsim plan`: the plan of a sentence, or of a file, without building it."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from wsim.cli.options import Answers, Image, refuse_image
 from wsim.errors import UserError
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan
 
 
 def plan(
-    prompt: Annotated[str, typer.Argument(help="What the world must be, in a sentence.")],
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="Write plan.json here.")] = None,
+    prompt: Annotated[str, typer.Argument(help="What the world must be, in a sentence.")] = "",
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write plan.json here, its picture beside.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the plan as JSON.")] = False,
+    file: Annotated[Path | None, typer.Option("--plan", help="Check and show this plan.json.")] = None,
+    schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of a plan, and stop.")] = False,
+    answers: Answers = None,
+    image: Image = None,
 ) -> None:
-    """Show the plan of a sentence: objects, places, what must happen, what was assumed."""
-    from wsim.cli.show import console, show_plan
-    from wsim.generate import make_plan
+    """Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two drawings."""
     from wsim.runs import write_whole
 
-    made = make_plan(prompt)
+    if schema:
+        print(_schema())
+        return
+    refuse_image(image)
+    made = _plan(prompt, file, answers)
     text = made.model_dump_json(indent=2)
-    if json:
-        print(text)
-    else:
-        show_plan(made)
     if output:
         try:
             write_whole(output, text + "\n")
         except OSError as error:
             raise UserError(f"cannot write the plan to {output}: {error.strerror}") from error
-        console.print(f"plan: {output}")
+    if json:
+        print(text)
+    else:
+        _show(made, output, planned=file is None)
+
+
+def _schema() -> str:
+    import json
+
+    from wsim.plan.schema import Plan
+
+    return json.dumps(Plan.model_json_schema(), indent=2)
+
+
+def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
+    from wsim.cli.approve import with_answers
+    from wsim.generate import make_plan
+    from wsim.plan.store import load
+
+    if bool(prompt) == (file is not None):
+        raise UserError(
+            'give a sentence, such as wsim plan "A cork ball floats in a tank of water.", or --plan FILE; not both'
+        )
+    if file is not None:
+        return with_answers(load(file), None, answers)
+    return with_answers(make_plan(prompt), make_plan, answers)
+
+
+def _show(made: Plan, output: Path | None, planned: bool) -> None:
+    import tempfile
+
+    from wsim.cli.approve import draw
+    from wsim.cli.show import console, show_plan
+    from wsim.plan.questions import questions
+
+    path = output.with_suffix(".png") if output else Path(tempfile.mkdtemp(prefix="wsim-plan-")) / "plan.png"
+    show_plan(made, questions(made) if planned else (), draw(made, path))
+    if output:
+        console.print(f"plan: {output}", soft_wrap=True, markup=False)
 
 
 def register(app: typer.Typer) -> None:

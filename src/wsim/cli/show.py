@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -13,6 +14,7 @@ from rich.text import Text
 
 if TYPE_CHECKING:
     from wsim.judge.verdict import Finding, Verdict
+    from wsim.plan.questions import Question
     from wsim.plan.schema import Plan
 
 PIPED_WIDTH = 1000  # a file or a pipe gets each finding on one line
@@ -59,22 +61,56 @@ class ConsoleProgress:
         self._bars.update(self._tasks[stage], completed=done, total=total)
 
 
-def show_plan(plan: Plan) -> None:
-    """Print a plan: objects, what must happen, and what was assumed."""
-    table = Table(title=plan.title, title_justify="left", show_edge=False)
-    for column in ("object", "what", "material", "size [m]", "place [m]"):
-        table.add_column(column)
+def show_plan(plan: Plan, questions: Sequence[Question] = (), picture: Path | None = None) -> None:
+    """Print all that a person reads before saying yes.
+
+    Args:
+        plan: A laid-out plan.
+        questions: What may be answered first.
+        picture: Where the drawings were written as a picture.
+    """
+    from wsim.plan.cost import cost_of
+    from wsim.plan.drawing.text import draw_text
+
+    console.print(_objects(plan))
     for item in plan.objects:
-        place = "" if item.pose is None else ", ".join(f"{x:.3g}" for x in item.pose.position)
-        size = " × ".join(f"{x:.3g}" for x in item.size)
-        table.add_row(item.name, item.primitive, item.material.name if item.material else "", size, place)
-    console.print(table)
+        if item.relations:
+            console.print(f"  {item.name}: {'; '.join(row.sentence() for row in item.relations)}", markup=False)
     for objective in plan.objectives:
-        console.print(f"  must: {objective.sentence or objective.kind}", markup=False)
+        console.print(f"  must: {objective.sentence or f'{objective.object} {objective.kind}'}", markup=False)
     for assumption in plan.assumptions:
         console.print(
             f"  assumed: {assumption.subject}: {assumption.choice} ({assumption.why})", style="dim", markup=False
         )
+    console.print(draw_text(plan, min(console.width, 100)), markup=False, no_wrap=True, emoji=False)
+    console.print(f"  cost: {cost_of(plan).sentence()}", markup=False)
+    if picture:
+        console.print(f"picture: {picture}", soft_wrap=True, markup=False)
+    for number, question in enumerate(questions, start=1):
+        choices = ", ".join(question.choices)
+        console.print(
+            f"  question {number}, {question.id}: {question.text} {choices} … [{question.default}]", markup=False
+        )
+
+
+def _objects(plan: Plan) -> Table:
+    """What there is, where, and of what."""
+    table = Table(title=Text(plan.title), title_justify="left", show_edge=False)
+    for column in ("object", "what", "material", "size [m]", "place [m]"):
+        table.add_column(column)
+    for item in plan.objects:
+        what = item.primitive
+        if item.construction.kind == "asset":
+            what = f"asset {item.construction.asset}"
+        elif item.construction.kind == "external":
+            what = f"{item.construction.candidate} (for now: {item.primitive})"
+        place = "" if item.pose is None else ", ".join(f"{x:.3g}" for x in item.pose.position)
+        if item.pose is not None and any(item.pose.rotation_deg):
+            place += " turned " + ", ".join(f"{x:.3g}" for x in item.pose.rotation_deg) + "°"
+        size = " × ".join(f"{x:.3g}" for x in item.size)
+        cells = (item.name, what, item.material.name if item.material else "", size, place)
+        table.add_row(*(Text(cell) for cell in cells))
+    return table
 
 
 def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> None:

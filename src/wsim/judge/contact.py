@@ -82,6 +82,17 @@ def overlaps(evidence: Evidence) -> list[Overlap]:
     return found
 
 
+def distance(evidence: Evidence, one: str, other: str) -> Floats:
+    """The gap between two objects at each frame, (T,) [m]; not positive when they touch, inf where nothing collides."""
+    shapes = placed_shapes(evidence)
+    near = np.ones(len(evidence.time), dtype=bool)
+    gap = np.full(len(near), np.inf)
+    for a in (shape for shape in shapes if shape.owner == one):
+        for b in (shape for shape in shapes if shape.owner == other):
+            gap = np.minimum(gap, -np.maximum(_probe(a, b, near), _probe(b, a, near)))
+    return gap
+
+
 def _depth(a: Placed, b: Placed) -> Floats | None:
     near = np.ones(len(a.position), dtype=bool)
     if np.isfinite(b.radius):

@@ -13,7 +13,15 @@ from wsim.judge.checks_physics import (
 )
 from wsim.judge.checks_run import CheckComplete, CheckFinite, CheckLog, CheckPlanObjects
 from wsim.judge.evidence import Evidence
-from wsim.judge.objectives_fluid import ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
+from wsim.judge.objectives_fluid import ObjectiveFills, ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
+from wsim.judge.objectives_hinge import ObjectiveSwings, ObjectiveTilts
+from wsim.judge.objectives_motion import (
+    ObjectiveCollidesWith,
+    ObjectiveFlies,
+    ObjectiveMoves,
+    ObjectiveRollsDown,
+    ObjectiveSlides,
+)
 from wsim.judge.objectives_solid import (
     CheckSettled,
     ObjectiveRestsOn,
@@ -37,6 +45,14 @@ OBJECTIVES: dict[str, type[ObjectiveCheck]] = {
     "topples": ObjectiveTopples,
     "stays_inside": ObjectiveStaysInside,
     "settles": ObjectiveSettles,
+    "swings": ObjectiveSwings,
+    "slides": ObjectiveSlides,
+    "rolls_down": ObjectiveRollsDown,
+    "moves": ObjectiveMoves,
+    "flies": ObjectiveFlies,
+    "collides_with": ObjectiveCollidesWith,
+    "tilts": ObjectiveTilts,
+    "fills": ObjectiveFills,
 }
 
 

@@ -184,9 +184,10 @@ class Evidence:
         track = self.track(fluid)
         if container is None:
             return np.zeros(len(track.time))
-        return np.array([self._strayed(container, fluid, frame).mean() for frame in track.position])
+        return np.array([self.strayed(container, fluid, frame).mean() for frame in track.position])
 
-    def _strayed(self, container: Container, fluid: Fluid, points: Floats) -> NDArray[np.bool_]:
+    def strayed(self, container: Container, fluid: Fluid, points: Floats) -> NDArray[np.bool_]:
+        """Which of a fluid's particles (N, 3) are more than a spacing outside a container, (N,)."""
         p = self.local(container, points)
         half = np.array(container.inner_size) / 2 + fluid.spacing
         strayed: NDArray[np.bool_] = (np.abs(p[:, 0]) > half[0]) | (np.abs(p[:, 1]) > half[1]) | (p[:, 2] < -half[2])
@@ -207,7 +208,7 @@ class Evidence:
         floor = container.inner_center[2] - container.inner_size[2] / 2
         # A particle stands for its cell of the lattice that fills the fluid's box at the start.
         cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
-        inside = 1.0 - float(np.mean([self._strayed(container, fluid, track.position[f]).mean() for f in chosen]))
+        inside = 1.0 - float(np.mean([self.strayed(container, fluid, track.position[f]).mean() for f in chosen]))
         volume = math.prod(fluid.size) / cells * track.position.shape[1] * inside
         height = self._level_of_volume(container, floor, volume)
         return Level(height, self._level_seen(fluid, container, track, chosen, height), floor)

@@ -203,6 +203,42 @@ class ObjectiveStaysInside(ObjectiveCheck):
         ]
 
 
+@dataclass
+class ObjectiveFills(ObjectiveCheck):
+    """What was poured ends in the container."""
+
+    share: float = 0.9  # of the particles
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding: the share of the particles that is inside, below the rim, over the final window."""
+        fluid = evidence.fluid(evidence.prim(self.objective.object))
+        container = evidence.container(evidence.prim(self.ref()))
+        if container is None:
+            raise MissingError(f"the world has no container {evidence.prim(self.ref())}")
+        track = evidence.track(fluid)
+        rim = container.inner_size[2] / 2 + fluid.spacing
+        shares = []
+        for points in track.position[track.time >= evidence.window_start - 1e-9]:
+            world = np.asarray(points, dtype=np.float64)
+            above = evidence.local(container, world)[:, 2] > rim
+            shares.append(1.0 - float((evidence.strayed(container, fluid, world) | above).mean()))
+        if not shares:
+            raise MissingError(f"the recording has no particles of {fluid.prim} in the last second")
+        value = float(np.mean(shares))
+        return [
+            self.measured(
+                f"{value:.1%} of {fluid.prim} is in {container.prim} at the end",
+                value,
+                1.0 - self.objective.tolerance if self.objective.tolerance else self.share,
+                "share of particles",
+                at_most=False,
+                expected=1.0,
+                time=evidence.window_start,
+                limit_from="the rest may splash out",
+            )
+        ]
+
+
 def _afloat(evidence: Evidence, name: str, ref: str) -> _Afloat:
     i = evidence.index(evidence.prim(name))
     fluid = evidence.fluid(evidence.prim(ref))

@@ -10,63 +10,90 @@ beforehand that it will not. A prompt that contradicts itself ("a ball floats an
 
 from __future__ import annotations
 
+import re
+
+from wsim.errors import UserError
 from wsim.plan.cast import Cast
 from wsim.plan.grammar import NotUnderstood, parse
-from wsim.plan.ground_scene import build_ground, ground_object
 from wsim.plan.layout import layout
+from wsim.plan.lexicon import lexicon
 from wsim.plan.meaning import understand
-from wsim.plan.schema import Objective, Plan, PlanObject, SimulationPlan
-from wsim.plan.tank_scene import build_tank
+from wsim.plan.scenes.ground import build_ground
+from wsim.plan.scenes.incline import build_inclines
+from wsim.plan.scenes.mechanisms import build_pendulum, build_seesaw
+from wsim.plan.scenes.motion import ground_object
+from wsim.plan.scenes.part import Part
+from wsim.plan.scenes.pour import build_pour
+from wsim.plan.scenes.tank import build_tank
+from wsim.plan.schema import Plan, SimulationPlan
+from wsim.plan.steps import steps
 from wsim.plan.views import cameras
-from wsim.plan.words import GROUND
 
 __all__ = ["NotUnderstood", "plan"]
 
 FRAME_RATE = 24.0  # [1/s]: the cinema's; a fifth fewer pictures than 30
+LONGEST = 60.0  # that a prompt may ask for [s]
 
 
 def plan(prompt: str) -> Plan:
-    """The plan for a prompt about things in a tank of water or on the ground, laid out and validated.
+    """The plan for a prompt about things in a tank of water, on the ground, on tables, ramps or hinges.
 
     Raises:
         NotUnderstood: names the words that no rule took.
         UserError: the prompt contradicts itself or asks for more than the planner builds.
     """
     cast = understand(parse(prompt))
-    taken = {"ground", "side", "top"}
-    objects: list[PlanObject] = [ground_object()]
-    objectives: list[Objective] = []
-    duration = 0.0
-    spacing = 0.0
-    surface = None
-    if cast.wet:
-        tank = build_tank(cast, taken)
-        objects += tank.objects
-        objectives += tank.objectives
-        duration, spacing, surface = tank.duration, tank.spacing, tank.surface
-    if any(thing.place == "ground" for thing in cast.things):
-        ground = build_ground(cast, taken, behind="tank" if cast.wet else None)
-        objects += ground.objects
-        objectives += ground.objectives
-        duration = max(duration, ground.duration)
+    scene = _scene(cast)
+    duration = _duration(cast, scene)
     _note_what_is_common(cast, prompt, duration)
-    draft = Plan(
-        title=" ".join(prompt.split()).rstrip("."),
-        prompt=prompt,
-        objects=objects,
-        objectives=objectives,
-        simulation=SimulationPlan(duration=duration, spacing=spacing, frame_rate=FRAME_RATE),
-        assumptions=cast.assumptions,
+    common = {
+        "title": " ".join(prompt.split()).rstrip("."),
+        "prompt": prompt,
+        "simulation": SimulationPlan(duration=duration, spacing=scene.spacing, frame_rate=FRAME_RATE),
+    }
+    placed = layout(Plan(objects=scene.objects, **common))
+    whole = Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common)
+    return Plan.model_validate(
+        {
+            **whole.model_dump(),
+            "objectives": scene.objectives,
+            "cameras": cameras(whole, above=scene.surface),
+            "steps": steps(whole),
+            "assumptions": cast.assumptions,
+        }
     )
-    placed = layout(draft)
-    return Plan.model_validate({**placed.model_dump(), "cameras": cameras(placed, above=surface)})
+
+
+def _scene(cast: Cast) -> Part:
+    taken = {"ground", "side", "top", "pivot", "hold"}
+    scene = Part(objects=[ground_object()])
+    if cast.wet:
+        scene.add(build_tank(cast, taken))
+    for build in (build_pour, build_inclines, build_pendulum, build_seesaw):
+        made = build(cast, taken)
+        if made.objects and cast.wet:
+            raise UserError("the builtin planner builds ramps, hinges and what is poured without a tank of water")
+        scene.add(made)
+    if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
+        fixed = Part(objects=scene.objects[1:] if not cast.wet else [], names=scene.names)
+        scene.add(build_ground(cast, taken, fixed, behind="tank" if cast.wet else None))
+    return scene
+
+
+def _duration(cast: Cast, scene: Part) -> float:
+    if cast.duration is None:
+        return scene.duration
+    if not 0.1 <= cast.duration <= LONGEST:
+        raise UserError(f"{cast.duration:g} s is outside 0.1 to {LONGEST:g} s, the builtin planner's range")
+    return cast.duration
 
 
 def _note_what_is_common(cast: Cast, prompt: str, duration: float) -> None:
-    words = prompt.lower().replace(",", " ").replace(".", " ").split()
-    if not set(words) & GROUND:
+    words = re.findall(r"[a-z]+", prompt.lower())
+    if not set(words) & set(lexicon().words_of("GROUND")):
         cast.assume("scene", "on level ground", "something has to carry it")
-    cast.assume("scene", f"{duration:g} s long", "time to come to rest; the prompt gives no duration")
+    if cast.duration is None:
+        cast.assume("scene", f"{duration:g} s long", "time to come to rest; the prompt gives no duration")
     if "then" in words:
         cast.assume(
             "scene", "everything starts at once", "'then' gives no time, and the builtin planner schedules nothing"

@@ -7,15 +7,18 @@ import math
 import re
 import textwrap
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from wsim.errors import UserError
-from wsim.plan.schema import CameraPlan, Material, Plan, PlanObject
+from wsim.plan.schema import CameraPlan, Joint, Material, Plan, PlanObject
 
 _WIDTH = 88  # columns; a call that does not fit has one argument a line, which any formatter's settings keep
 _AXES = "xyz"
 _DEFAULT_FRAME_RATE = 30.0
+_JOINTS = {"fixed": "fixed", "hinge": "revolute", "slider": "prismatic", "ball": "spherical"}
+_LIMITS = {"hinge": "limits_deg", "slider": "limits"}
+_SOUND_OVER_FALL = 30.0
 _PARTICLES = 8000  # of a fluid whose spacing the plan leaves open
 
 
@@ -47,6 +50,7 @@ class _Composer:
             *self._assumptions(),
             *self._materials(),
             *self._objects(),
+            *self._joints(),
             *self._cameras(),
             *self._simulation(),
         ]
@@ -128,13 +132,19 @@ class _Composer:
     def _objects(self) -> list[str]:
         lines: list[str] = []
         containers = {_container(item) for item in self.plan.objects if item.primitive == "fluid"}
-        for group in _groups(_ordered(self.plan.objects)):
+        jointed = {name for joint in self.plan.joints for name in (joint.child, joint.parent)}
+        for group in _groups(_ordered(self.plan.objects), jointed):
             if len(group) > 1:
                 lines += self._loop(group)
                 continue
             item = group[0]
             target = "scene." + item.primitive
-            if item.name in containers:
+            if item.primitive == "asset":
+                raise UserError(
+                    f"{item.name}: a program cannot load the catalogue's {item.built.asset!r} yet; "  # type: ignore[union-attr]
+                    'give it a construction of kind "external" with a stand_in'
+                )
+            if item.name in containers | jointed:
                 self.handles[item.name] = self._variable(item.name)
                 target = f"{self.handles[item.name]} = {target}"
             lines += _call(target, [f'"{item.name}"', *self._arguments(item)])
@@ -181,6 +191,10 @@ class _Composer:
             arguments.append(f"velocity={_tuple(item.velocity)}")
         if item.state == "static" and item.primitive not in ("ground", "tank"):
             arguments.append("static=True")
+        if item.state == "kinematic":
+            arguments.append("kinematic=True")
+        if item.state == "dynamic":
+            arguments += _weight(item)
         if item.material is not None:
             arguments.append(f"material={self.materials[item.material.model_dump_json()]}")
         return arguments
@@ -195,15 +209,36 @@ class _Composer:
         else:
             volume = item.size
             arguments = [f"size={_tuple(item.size)}", f"position={_tuple(_position(item))}"]
-        spacing = self.plan.simulation.spacing or _spacing(volume)
+        spacing = item.registration.spacing or self.plan.simulation.spacing or _spacing(volume)
         arguments.append(f"spacing={_number(spacing)}")
+        if item.registration.viscosity is not None:
+            arguments.append(f"viscosity={_number(item.registration.viscosity)}")
+        if any(objective.kind == "fills" and objective.object == item.name for objective in self.plan.objectives):
+            arguments.append(f"speed_of_sound={_number(_sound(item))}")
         if item.material is not None:
             arguments.append(f"density={_number(item.material.density)}")
             arguments.append(f"color={_tuple(item.material.color)}")
         return arguments
 
+    def _joints(self) -> list[str]:
+        lines: list[str] = []
+        for joint in self.plan.joints:
+            parent = "None" if joint.parent is None else self.handles[joint.parent]
+            arguments = [f'"{joint.name}"', parent, self.handles[joint.child]]
+            child = self.plan.object(joint.child)
+            if joint.anchor is not None:
+                arguments.append(f"anchor={_tuple(_anchor(child, joint))}")
+            if joint.kind in ("hinge", "slider"):
+                arguments.append(f'axis="{joint.axis}"')
+            if joint.limits is not None:
+                arguments.append(f"{_LIMITS[joint.kind]}={_tuple(joint.limits)}")
+            lines += _call(f"scene.joint_{_JOINTS[joint.kind]}", arguments)
+        return lines
+
     def _cameras(self) -> list[str]:
         def arguments(camera: CameraPlan) -> list[str]:
+            if camera.eye is None or camera.target is None:
+                raise UserError(f"camera {camera.name} has no eye or no target; lay the plan out before composing it")
             return [f'"{camera.name}"', f"eye={_tuple(camera.eye)}", f"target={_tuple(camera.target)}"]
 
         return [line for camera in self.plan.cameras for line in _call("scene.camera", arguments(camera))]
@@ -242,11 +277,14 @@ def _ordered(objects: Sequence[PlanObject]) -> list[PlanObject]:
     return ordered
 
 
-def _groups(objects: Sequence[PlanObject]) -> list[list[PlanObject]]:
-    """Runs of three or more neighbours named x_0, x_1, ... or x_1, x_2, ... that are alike in all but position."""
+def _groups(objects: Sequence[PlanObject], apart: Collection[str | None] = ()) -> list[list[PlanObject]]:
+    """Runs of three or more neighbours named x_0, x_1, ... or x_1, x_2, ... that are alike in all but position.
+
+    What is `apart` needs a variable of its own, and is never one of them.
+    """
     groups: list[list[PlanObject]] = []
     for item in objects:
-        if groups and _continues(groups[-1], item):
+        if groups and not {item.name, groups[-1][-1].name} & {*apart} and _continues(groups[-1], item):
             groups[-1].append(item)
         else:
             groups.append([item])
@@ -259,7 +297,7 @@ def _continues(group: list[PlanObject], item: PlanObject) -> bool:
     if (
         number not in ("0", "1")
         or item.name != f"{prefix}_{int(number) + len(group)}"
-        or item.primitive in ("tank", "fluid", "ground")
+        or item.primitive in ("tank", "fluid", "ground", "asset")
     ):
         return False
     return _alike(first) == _alike(item) and _position(first) != _position(item)
@@ -267,13 +305,32 @@ def _continues(group: list[PlanObject], item: PlanObject) -> bool:
 
 def _alike(item: PlanObject) -> object:
     rotation = item.pose.rotation_deg if item.pose is not None else None
-    return (item.primitive, item.size, item.material, item.state, item.velocity, rotation)
+    return (item.primitive, item.size, item.material, item.state, item.velocity, rotation, _weight(item))
 
 
 def _position(item: PlanObject) -> tuple[float, float, float]:
     if item.pose is None:
         raise UserError(f"{item.name} has no pose; lay the plan out before composing its program")
     return item.pose.position
+
+
+def _weight(item: PlanObject) -> list[str]:
+    """A mass or a density of its own, which comes before its material's."""
+    registration = item.registration
+    if registration.mass is not None:
+        return [f"mass={_number(registration.mass)}"]
+    return [f"density={_number(registration.density)}"] if registration.density is not None else []
+
+
+def _anchor(child: PlanObject, joint: Joint) -> tuple[float, float, float]:
+    """Where a joint is in the world [m]: its anchor turned with its child, from the child's centre."""
+    x, y, z = joint.anchor or (0.0, 0.0, 0.0)
+    roll, pitch, yaw = (math.radians(angle) for angle in (child.pose.rotation_deg if child.pose else (0.0, 0.0, 0.0)))
+    y, z = y * math.cos(roll) - z * math.sin(roll), y * math.sin(roll) + z * math.cos(roll)
+    x, z = x * math.cos(pitch) + z * math.sin(pitch), -x * math.sin(pitch) + z * math.cos(pitch)
+    x, y = x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) + y * math.cos(yaw)
+    at = _position(child)
+    return (at[0] + x, at[1] + y, at[2] + z)
 
 
 def _container(item: PlanObject) -> str | None:
@@ -297,6 +354,16 @@ def _size(item: PlanObject) -> list[str]:
 def _spacing(size: Sequence[float]) -> float:
     """A spacing that gives some thousand particles, at least four of them across the least edge [m]."""
     return float(f"{min((math.prod(size) / _PARTICLES) ** (1 / 3), min(size) / 4):.2g}")
+
+
+def _sound(poured: PlanObject) -> float:
+    """Numerical speed of sound of what is poured [m/s].
+
+    A block that lands flat stops at once; what it is compressed by is its speed over that of sound. The solver's own
+    choice, ten times the speed, lets it spring back through the rim.
+    """
+    top = _position(poured)[2] + (poured.size[2] / 2 if poured.size else 0.0)
+    return float(f"{_SOUND_OVER_FALL * math.sqrt(2 * 9.81 * max(top, 0.01)):.2g}")
 
 
 def _number(value: float) -> str:

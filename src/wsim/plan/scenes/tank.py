@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 from wsim.errors import UserError
 from wsim.plan.layout import extents
-from wsim.plan.materials import WATER_DENSITY
+from wsim.plan.materials import GLASS_LOOK, WATER, WATER_DENSITY
+from wsim.plan.scenes.part import Part
 from wsim.plan.schema import Material, Objective, PlanObject, Relation
-from wsim.plan.sizes import PRIMITIVES, material_of, names, size_of, thickness, volume
+from wsim.plan.sizes import bodies, mean_density, thickness, volume
 
 if TYPE_CHECKING:
     from wsim.plan.cast import Cast, Thing
-
-WATER = Material(name="water", density=WATER_DENSITY, friction=0.0, color=(0.15, 0.4, 0.6), opacity=0.6)
-GLASS_LOOK = Material(name="tank_glass", density=2500.0, friction=0.3, color=(0.75, 0.88, 0.9), opacity=0.25)
 
 LAYERS_FLOATING = 4.5  # particle spacings in the height of what floats, at least
 LAYERS_SINKING = 4.0  # and in what sinks
@@ -43,18 +41,7 @@ class Swimmer:
     relation: Relation  # how it starts
 
 
-@dataclass
-class Tank:
-    """The part of a plan that is the tank."""
-
-    objects: list[PlanObject]
-    objectives: list[Objective]
-    spacing: float  # [m]
-    duration: float  # [s]
-    surface: float  # height of the still water above the ground [m]
-
-
-def build_tank(cast: Cast, taken: set[str]) -> Tank:
+def build_tank(cast: Cast, taken: set[str]) -> Part:
     """The tank, its water and the things in it, in one row along X.
 
     Raises:
@@ -63,7 +50,7 @@ def build_tank(cast: Cast, taken: set[str]) -> Tank:
     taken |= {"tank", "water"}
     swimmers = [one for thing in cast.things if thing.place == "water" for one in _swimmers(thing, cast, taken)]
     spacing, inner, level = _dimensions(swimmers, cast)
-    tank = PlanObject(
+    tank = PlanObject.proxy(
         name="tank",
         role="container",
         primitive="tank",
@@ -73,7 +60,7 @@ def build_tank(cast: Cast, taken: set[str]) -> Tank:
         relations=[Relation(predicate="PLACE-ON-BASE")],
         words=cast.tank or "",
     )
-    water = PlanObject(
+    water = PlanObject.proxy(
         name="water",
         role="fluid",
         primitive="fluid",
@@ -81,7 +68,7 @@ def build_tank(cast: Cast, taken: set[str]) -> Tank:
         state="fluid",
         relations=[
             Relation(predicate="PLACE-IN", ref="tank"),
-            Relation(predicate="FREE-SURFACE-AT", ref="tank", value=level),
+            Relation(predicate="FREE-SURFACE-AT", value=level),
         ],
         words=cast.water or "",
     )
@@ -91,14 +78,16 @@ def build_tank(cast: Cast, taken: set[str]) -> Tank:
         relations = [swimmer.relation]
         if left is not None:
             relations.append(Relation(predicate="FRONT-OF", ref=left.item.name, gap=gap))
-        objects.append(swimmer.item.model_copy(update={"relations": relations + swimmer.item.relations}))
+        objects.append(swimmer.item.related(relations + swimmer.item.relations))
     objectives = [_objective(swimmer) for swimmer in swimmers]
     objectives.append(
         Objective(kind="stays_inside", object="water", ref="tank", sentence="The water stays inside the tank.")
     )
     tallest = max((extents(s.item, _lying(s.item))[2] for s in swimmers), default=0.14)
     duration = math.ceil(2 * DURATION * max(1.0, math.sqrt(tallest / 0.14))) / 2
-    return Tank(objects, objectives, spacing, duration, round(0.02 + level, 6))
+    return Part(
+        objects=objects, objectives=objectives, duration=duration, spacing=spacing, surface=round(0.02 + level, 6)
+    )
 
 
 def _lying(item: PlanObject) -> tuple[float, float, float]:
@@ -106,34 +95,17 @@ def _lying(item: PlanObject) -> tuple[float, float, float]:
 
 
 def _swimmers(thing: Thing, cast: Cast, taken: set[str]) -> list[Swimmer]:
-    material = material_of(thing, cast)
-    size = size_of(thing, material, WATER_DENSITY, cast)
-    end = _end(thing, material, cast)
+    items = bodies(thing, cast, taken)
+    assert items[0].material is not None
+    end = _end(thing, items[0].material, mean_density(items[0]), cast)
     start = _start(thing, end, cast)
-    relations = [Relation(predicate="LIES-ALONG-Y")] if thing.kind == "log" else []
-    return [
-        Swimmer(
-            thing,
-            PlanObject(
-                name=name,
-                role="rigid_body",
-                primitive=PRIMITIVES[thing.kind],
-                size=size,
-                material=material,
-                relations=relations,
-                words=thing.words,
-            ),
-            end,
-            start,
-        )
-        for name in names(thing, taken)
-    ]
+    return [Swimmer(thing, item, end, start) for item in items]
 
 
-def _end(thing: Thing, material: Material, cast: Cast) -> Literal["floats", "sinks", "submerged"]:
+def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Literal["floats", "sinks", "submerged"]:
     """What was asked for, even if it cannot happen; the material decides where nothing was."""
-    ratio = f"{material.name}, {material.density:g} kg/m^3, in water of {WATER_DENSITY:g} kg/m^3"
-    light = material.density < WATER_DENSITY
+    ratio = f"{material.name}, {density:g} kg/m^3, in water of {WATER_DENSITY:g} kg/m^3"
+    light = density < WATER_DENSITY
     if "float" in thing.does:
         if not light:
             cast.assume(
@@ -223,7 +195,7 @@ def _spacing(swimmers: list[Swimmer], tallest: float) -> float:
 
 
 def _ratio(item: PlanObject) -> float:
-    return item.material.density / WATER_DENSITY if item.material is not None else 1.0
+    return mean_density(item) / WATER_DENSITY
 
 
 def _up(length: float, spacing: float) -> float:

@@ -1,0 +1,1 @@
+"""The scenes that the builtin planner builds from a cast."""

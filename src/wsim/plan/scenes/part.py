@@ -1,0 +1,77 @@
+"""What each scene contributes to a plan, and the physics that its defaults come from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from wsim.plan.schema import Joint, Objective, PlanObject, Vec3
+
+GRAVITY = 9.81  # [m/s^2]
+DIRECTIONS: dict[str, Vec3] = {
+    "front": (1.0, 0.0, 0.0),
+    "back": (-1.0, 0.0, 0.0),
+    "left": (0.0, 1.0, 0.0),
+    "right": (0.0, -1.0, 0.0),
+}
+
+
+@dataclass
+class Part:
+    """Part of a plan.
+
+    Attributes:
+        objects: To be laid out by their rows, or kept where their pose says.
+        posed: With poses that no row could give, such as on an incline: added once the rest is laid out.
+        joints: Between any of them.
+        objectives: What must happen to them.
+        duration: That it takes [s].
+        names: Of each thing's objects, lowest first, by the thing's identity.
+        spacing: Of its fluid's particles [m]; 0 without a fluid.
+        surface: Height that the side camera looks across [m].
+    """
+
+    objects: list[PlanObject] = field(default_factory=list)
+    posed: list[PlanObject] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    objectives: list[Objective] = field(default_factory=list)
+    duration: float = 0.0
+    names: dict[int, list[str]] = field(default_factory=dict)
+    spacing: float = 0.0
+    surface: float | None = None
+
+    def add(self, other: Part) -> None:
+        """Take in another part."""
+        self.objects += other.objects
+        self.posed += other.posed
+        self.joints += other.joints
+        self.objectives += other.objectives
+        self.duration = max(self.duration, other.duration)
+        self.names |= other.names
+        self.spacing = self.spacing or other.spacing
+        self.surface = self.surface if self.surface is not None else other.surface
+
+
+def times(direction: Vec3, speed: float) -> Vec3:
+    """A velocity along a direction."""
+    return (direction[0] * speed + 0.0, direction[1] * speed + 0.0, direction[2] * speed + 0.0)
+
+
+def pair_friction(a: PlanObject, b: PlanObject) -> float:
+    """Friction between two things: the larger of the two, as MuJoCo takes it."""
+    return max((item.material.friction for item in (a, b) if item.material is not None), default=0.5)
+
+
+def stopping_distance(speed: float, friction: float) -> float:
+    """How far something slides on the level: v^2 / (2 mu g) [m]."""
+    return speed**2 / (2 * friction * GRAVITY)
+
+
+def fall_time(height: float) -> float:
+    """Of a free fall [s]."""
+    return math.sqrt(2 * height / GRAVITY)
+
+
+def tidy(value: float) -> float:
+    """Rounded to a micrometre, without a negative zero: plans are read by people."""
+    return round(value, 6) + 0.0

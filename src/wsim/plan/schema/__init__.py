@@ -1,0 +1,62 @@
+"""The plan's model: a pydantic schema in which nothing dangles."""
+
+from wsim.plan.schema.base import Name, Vec3
+from wsim.plan.schema.explain import explain
+from wsim.plan.schema.objects import (
+    Actuation,
+    External,
+    FromAsset,
+    Material,
+    PlanObject,
+    Pose,
+    Proxy,
+    Registration,
+    Topology,
+)
+from wsim.plan.schema.plan import (
+    PLAN_VERSION,
+    Assumption,
+    CameraPlan,
+    ImageHints,
+    Joint,
+    Objective,
+    Outputs,
+    Plan,
+    ReferenceImage,
+    SensorPlan,
+    SimulationPlan,
+    Step,
+)
+from wsim.plan.schema.relations import PREDICATES, TEMPLATES, Predicate, Region, Relation
+
+__all__ = [
+    "PLAN_VERSION",
+    "PREDICATES",
+    "TEMPLATES",
+    "Actuation",
+    "Assumption",
+    "CameraPlan",
+    "External",
+    "FromAsset",
+    "ImageHints",
+    "Joint",
+    "Material",
+    "Name",
+    "Objective",
+    "Outputs",
+    "Plan",
+    "PlanObject",
+    "Pose",
+    "Predicate",
+    "Proxy",
+    "ReferenceImage",
+    "Region",
+    "Registration",
+    "Relation",
+    "SensorPlan",
+    "SimulationPlan",
+    "Step",
+    "Topology",
+    "Vec3",
+    "explain",
+]

@@ -1,0 +1,222 @@
+"""Objects of a plan: how each is made, of what, where it is, and how the simulator takes it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from wsim.plan.schema.base import Color, Name, NotNegative, Positive, Share, Strict, Text, Vec3, Word
+from wsim.plan.schema.relations import Relation
+
+Role = Literal["rigid_body", "mechanism", "vehicle", "robot", "terrain", "fluid", "container", "sensor", "background"]
+State = Literal["static", "dynamic", "kinematic", "fluid"]
+Primitive = Literal["box", "sphere", "cylinder", "capsule", "tank", "fluid", "ground"]
+SIZE_COUNT: dict[str, tuple[int, ...]] = {
+    "box": (3,),
+    "sphere": (1,),
+    "cylinder": (2,),
+    "capsule": (2,),
+    "tank": (3,),
+    "fluid": (0, 3),
+    "ground": (0,),
+}
+SIZE_MEANING = {
+    "box": "the edge lengths (x, y, z)",
+    "sphere": "(radius,)",
+    "cylinder": "(radius, height)",
+    "capsule": "(radius, height without the caps)",
+    "tank": "the inner edge lengths (x, y, z)",
+    "fluid": "the edge lengths (x, y, z), or nothing when it fills a container",
+    "ground": "nothing",
+}
+_SOLIDS = ("box", "sphere", "cylinder", "capsule")
+ROLE_PRIMITIVES: dict[str, tuple[str, ...]] = {
+    "rigid_body": _SOLIDS,
+    "mechanism": _SOLIDS,
+    "vehicle": _SOLIDS,
+    "robot": _SOLIDS,
+    "sensor": _SOLIDS,
+    "background": _SOLIDS,
+    "container": ("tank", *_SOLIDS),
+    "fluid": ("fluid",),
+    "terrain": ("ground", *_SOLIDS),
+}
+ROLE_STATES: dict[str, tuple[str, ...]] = {
+    "rigid_body": ("dynamic", "static", "kinematic"),
+    "mechanism": ("dynamic", "static", "kinematic"),
+    "vehicle": ("dynamic", "kinematic"),
+    "robot": ("dynamic", "kinematic"),
+    "sensor": ("static", "kinematic", "dynamic"),
+    "background": ("static",),
+    "container": ("static", "dynamic", "kinematic"),
+    "fluid": ("fluid",),
+    "terrain": ("static",),
+}
+
+
+class Proxy(Strict):
+    """A primitive that stands for the object."""
+
+    kind: Literal["proxy"] = "proxy"
+    primitive: Primitive
+    size: tuple[Positive, ...] = Field((), max_length=3)  # [m], as SIZE_MEANING has it
+
+    @model_validator(mode="after")
+    def _count(self) -> Proxy:
+        counts = SIZE_COUNT[self.primitive]
+        if len(self.size) not in counts:
+            wanted = " or ".join(str(count) for count in counts)
+            raise ValueError(
+                f"size of a {self.primitive} has {wanted} numbers, {SIZE_MEANING[self.primitive]}, in metres; "
+                f"it has {len(self.size)}"
+            )
+        return self
+
+
+class FromAsset(Strict):
+    """An entry of the catalogue."""
+
+    kind: Literal["asset"] = "asset"
+    asset: Word  # its id
+
+
+class External(Strict):
+    """Something to be found elsewhere; until it is, the stand-in is built."""
+
+    kind: Literal["external"] = "external"
+    candidate: Word  # what to look for
+    stand_in: Proxy
+
+
+Construction = Annotated[Proxy | FromAsset | External, Field(discriminator="kind")]
+
+
+class Material(Strict):
+    """Bulk and surface properties."""
+
+    name: Word
+    density: Positive  # [kg/m^3]
+    friction: NotNegative = 0.5
+    restitution: Share = 0.0
+    color: Color = (0.7, 0.7, 0.7)
+    opacity: Share = 1.0
+
+
+class Topology(Strict):
+    """How the object stands to others."""
+
+    relation: list[Relation] = Field(default_factory=list, max_length=100)
+
+
+class Pose(Strict):
+    """Where the layout put the object: its centre, and roll, pitch, yaw in degrees."""
+
+    position: Vec3
+    rotation_deg: Vec3 = (0.0, 0.0, 0.0)
+
+
+class Actuation(Strict):
+    """What drives the object, or a joint of it."""
+
+    kind: Literal["position", "velocity", "force", "torque", "path", "policy"]
+    joint: Name | None = None
+    target: tuple[float, ...] = Field(
+        (), max_length=10_000
+    )  # of the kind's unit: rad or m, per second, N, N m; a path's points
+    words: Text = ""
+
+
+class Registration(Strict):
+    """How the simulator takes the object."""
+
+    collision: Literal["shape", "convex_hull", "mesh", "none"] = "shape"
+    mass: Positive | None = None  # [kg]; comes before the material's density
+    density: Positive | None = None  # [kg/m^3]
+    spacing: Positive | None = None  # of a fluid's particles [m]
+    viscosity: NotNegative | None = None  # of a fluid [Pa s]
+    actuation: list[Actuation] = Field(default_factory=list, max_length=100)
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> Registration:
+        if self.mass is not None and self.density is not None:
+            raise ValueError("mass and density are both given; keep one of them")
+        return self
+
+
+class PlanObject(Strict):
+    """One thing in the world; its name is its prim's name."""
+
+    name: Name
+    role: Role
+    construction: Construction
+    dimensions: Vec3 | None = None  # bounding box before it is turned [m]; what gives it is the construction, or HEIGHT
+    material: Material | None = None
+    state: State = "dynamic"
+    topology: Topology = Field(default_factory=Topology)
+    pose: Pose | None = None
+    velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial
+    registration: Registration = Field(default_factory=Registration)
+    words: Text = ""  # the words of the prompt that asked for it
+
+    @classmethod
+    def proxy(
+        cls,
+        *,
+        primitive: Primitive,
+        size: tuple[float, ...] = (),
+        relations: list[Relation] | None = None,
+        **fields: Any,
+    ) -> PlanObject:
+        """An object that a primitive stands for, with its rows; the other fields are the object's own."""
+        return cls(
+            construction=Proxy(primitive=primitive, size=size),
+            topology=Topology(relation=list(relations or [])),
+            **fields,
+        )
+
+    @property
+    def built(self) -> Proxy | FromAsset:
+        """What is built: the stand-in of what is external."""
+        return self.construction.stand_in if isinstance(self.construction, External) else self.construction
+
+    @property
+    def primitive(self) -> str:
+        """The primitive that is built, or "asset"."""
+        return self.built.primitive if isinstance(self.built, Proxy) else "asset"
+
+    @property
+    def size(self) -> tuple[float, ...]:
+        """The primitive's size [m]; empty for an asset."""
+        return self.built.size if isinstance(self.built, Proxy) else ()
+
+    @property
+    def relations(self) -> list[Relation]:
+        """Its rows of the topology."""
+        return self.topology.relation
+
+    def related(self, rows: list[Relation]) -> PlanObject:
+        """A copy with these rows."""
+        return self.model_copy(update={"topology": Topology(relation=rows)})
+
+    def relation(self, predicate: str) -> Relation | None:
+        """The object's first relation of that predicate, if it has one."""
+        return next((relation for relation in self.relations if relation.predicate == predicate), None)
+
+    @model_validator(mode="after")
+    def _fits(self) -> PlanObject:
+        if self.primitive != "asset" and self.primitive not in ROLE_PRIMITIVES[self.role]:
+            known = ", ".join(ROLE_PRIMITIVES[self.role])
+            raise ValueError(f"{self.name}: primitive of a {self.role} is {known}; it is a {self.primitive}")
+        if self.primitive == "asset" and self.role == "fluid":
+            raise ValueError(f'{self.name}: a fluid is no asset; its construction is a proxy with primitive "fluid"')
+        if self.state not in ROLE_STATES[self.role]:
+            raise ValueError(
+                f'{self.name}: state of a {self.role} is {" or ".join(ROLE_STATES[self.role])}; it is "{self.state}"'
+            )
+        weighed = self.material or self.registration.mass or self.registration.density or self.primitive == "asset"
+        if self.state == "dynamic" and not weighed:
+            raise ValueError(f'{self.name}: a dynamic body needs "material" with a name and a density in kg/m^3')
+        if self.dimensions is not None and min(self.dimensions) <= 0.0:
+            raise ValueError(f"{self.name}: dimensions {self.dimensions} must be > 0")
+        return self

@@ -1,0 +1,156 @@
+"""What makes a plan of valid parts invalid as a whole. Each problem names its path, and what would fix it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from wsim.plan.schema.supports import FILLS, support_problems
+
+if TYPE_CHECKING:
+    from wsim.plan.schema.objects import PlanObject
+    from wsim.plan.schema.plan import Plan
+    from wsim.plan.schema.relations import Relation
+
+SHOWN = 12  # names in a message
+_OF_A_FLUID = ("FLOATS-AT-SURFACE", "SUBMERGED", "CONTAINS-FLUID", "floats_at_surface")
+_SURFACE_TEMPLATES = ("bottom_flush_water_surface", "center_at_water_surface", "top_flush_water_surface")
+_FOR_FLUIDS = ("FREE-SURFACE-AT", *FILLS)
+_NEEDS_OBJECTIVE_REF = {
+    "floats", "rests_on", "submerged", "stays_on", "stays_inside", "rolls_down", "collides_with", "tilts", "fills",
+}  # fmt: skip
+
+
+def problems(plan: Plan) -> list[str]:
+    """All of them."""
+    return [*_names(plan), *_rows(plan), *support_problems(plan), *_groups(plan), *_joints(plan), *_others(plan)]
+
+
+def _names(plan: Plan) -> Iterator[str]:
+    named = {
+        "objects": [item.name for item in plan.objects],
+        "cameras": [camera.name for camera in plan.cameras],
+        "sensors": [sensor.name for sensor in plan.sensors],
+        "joints": [joint.name for joint in plan.joints],
+    }
+    taken: dict[str, str] = {}
+    for kind, names in named.items():
+        for index, name in enumerate(names):
+            where = f"{kind}.{index}"
+            if name in taken:
+                yield f"{where}.name: {name!r} is taken by {taken[name]}; give it another name"
+            else:
+                taken[name] = where
+
+
+def _known(plan: Plan) -> str:
+    names = [item.name for item in plan.objects]
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return (", ".join(names[:SHOWN]) or "no objects") + more
+
+
+def _rows(plan: Plan) -> Iterator[str]:
+    items = {item.name: item for item in plan.objects}
+    groups = {row.group for item in plan.objects for row in item.relations if row.predicate == "GROUP"}
+    for i, item in enumerate(plan.objects):
+        for j, row in enumerate(item.relations):
+            where = f"objects.{i}.topology.relation.{j}"
+            for field, name in row.refs():
+                if name == item.name:
+                    yield f"{where}.{field}: {item.name} cannot be placed by itself; name another object"
+                elif name not in items and name not in groups:
+                    yield f"{where}.{field}: no object {name!r}; the plan has {_known(plan)}"
+            yield from _row_problems(where, item, row, items)
+
+
+def _row_problems(where: str, item: PlanObject, row: Relation, items: dict[str, PlanObject]) -> Iterator[str]:
+    other = items.get(row.ref or "")
+    if other is not None and row.predicate in (*_OF_A_FLUID, *_SURFACE_TEMPLATES) and other.role != "fluid":
+        yield f"{where}.ref: {row.predicate} needs a fluid; {row.ref} is a {other.role}"
+    if other is not None and row.predicate in FILLS and other.role != "container":
+        yield f"{where}.ref: {row.predicate} needs a container; {row.ref} is a {other.role}"
+    # What is hollow beside tanks is known to the catalogue alone; the layout asks it.
+    if other is not None and row.predicate == "PLACE-IN" and other.primitive in ("ground", "fluid"):
+        yield f"{where}.ref: PLACE-IN needs a container; {row.ref} is a {other.role}"
+    if row.predicate in _FOR_FLUIDS and item.role != "fluid":
+        yield f"{where}: {row.predicate} is a fluid's; {item.name} is a {item.role}"
+    if row.predicate == "CONTAINS-FLUID" and item.role != "container":
+        yield f"{where}: CONTAINS-FLUID is a container's; {item.name} is a {item.role}"
+
+
+def _groups(plan: Plan) -> Iterator[str]:
+    made: dict[str, tuple[str, int]] = {}
+    member_of: dict[str, str] = {}
+    rows = [(i, j, item, row) for i, item in enumerate(plan.objects) for j, row in enumerate(item.relations)]
+    names = {item.name for item in plan.objects}
+    for i, j, item, row in rows:
+        where = f"objects.{i}.topology.relation.{j}"
+        if row.predicate not in ("GROUP", "COPY-GROUP"):
+            continue
+        for name in [item.name, *(row.members or [])]:
+            if name in member_of:
+                yield f"{where}.members: {name} is in the group of {member_of[name]} already; a thing has one group"
+            member_of[name] = item.name
+        if row.predicate == "GROUP" and row.group is not None:
+            if row.group in made or row.group in names:
+                yield f"{where}.group: {row.group!r} is taken; give the group another name"
+            made[row.group] = (item.name, len(row.members or []))
+    for i, j, item, row in rows:
+        for field, name in row.refs():
+            if name in made and member_of.get(item.name) == made[name][0]:
+                yield (
+                    f"objects.{i}.topology.relation.{j}.{field}: {item.name} is in the group {name}, and cannot be "
+                    "placed by it; name an object"
+                )
+    for i, j, _, row in rows:
+        if row.predicate != "COPY-GROUP" or row.group is None:
+            continue
+        where = f"objects.{i}.topology.relation.{j}"
+        if row.group not in made:
+            known = ", ".join(made) or "none"
+            yield f"{where}.group: no group {row.group!r}; the plan's groups: {known}"
+        elif len(row.members or []) != made[row.group][1]:
+            yield (
+                f"{where}.members: {len(row.members or [])} members copy the group {row.group}, which has "
+                f"{made[row.group][1]} beside its anchor; name as many"
+            )
+
+
+def _joints(plan: Plan) -> Iterator[str]:
+    names = {item.name for item in plan.objects}
+    for i, joint in enumerate(plan.joints):
+        for field in ("child", "parent"):
+            name = getattr(joint, field)
+            if name is not None and name not in names:
+                yield f"joints.{i}.{field}: no object {name!r}; the plan has {_known(plan)}"
+        if joint.child == joint.parent:
+            yield f"joints.{i}.parent: {joint.child} cannot hold itself; name another object, or leave it out"
+        if joint.limits is not None and joint.limits[0] > joint.limits[1]:
+            yield f"joints.{i}.limits: {joint.limits[0]:g} is above {joint.limits[1]:g}; swap them"
+        if joint.limits is not None and joint.kind in ("fixed", "ball"):
+            yield f"joints.{i}.limits: a {joint.kind} joint has none; remove them"
+
+
+def _others(plan: Plan) -> Iterator[str]:
+    names = {item.name for item in plan.objects}
+    cameras = {camera.name for camera in plan.cameras}
+    for i, objective in enumerate(plan.objectives):
+        if objective.object not in names:
+            yield f"objectives.{i}.object: no object {objective.object!r}; the plan has {_known(plan)}"
+        if objective.ref is None and objective.kind in _NEEDS_OBJECTIVE_REF:
+            yield f'objectives.{i}.ref: "{objective.kind}" needs "ref", the name of the other object'
+        if objective.ref is not None and objective.ref not in names:
+            yield f"objectives.{i}.ref: no object {objective.ref!r}; the plan has {_known(plan)}"
+    for i, camera in enumerate(plan.cameras):
+        if camera.of is not None and camera.of not in names:
+            yield f"cameras.{i}.of: no object {camera.of!r}; the plan has {_known(plan)}"
+    for i, sensor in enumerate(plan.sensors):
+        if sensor.mount is not None and sensor.mount not in names:
+            yield f"sensors.{i}.mount: no object {sensor.mount!r}; the plan has {_known(plan)}"
+    for i, step in enumerate(plan.steps):
+        for j, name in enumerate(step.objects):
+            if name not in names:
+                yield f"steps.{i}.objects.{j}: no object {name!r}; the plan has {_known(plan)}"
+    for i, name in enumerate(plan.outputs.stills):
+        if name not in cameras:
+            yield f"outputs.stills.{i}: no camera {name!r}; the plan has {', '.join(cameras) or 'none'}"

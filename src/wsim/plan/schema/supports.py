@@ -1,0 +1,144 @@
+"""What carries what: fluids before what refers to them, one support an object, and no object that carries itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from wsim.plan.schema.objects import PlanObject
+    from wsim.plan.schema.plan import Plan
+    from wsim.plan.schema.relations import Relation
+
+FILLS = ("fills_container_to_top", "fills_container_lower_half")
+# Rows that say where an object starts in height, beside those of the kind "support".
+_ALSO_SUPPORTS = (
+    "FLOATS-AT-SURFACE",
+    "SUBMERGED",
+    "spawned_on_top",
+    "placed_on_top",
+    "centered_on_ref",
+    "bottom_flush_water_surface",
+    "center_at_water_surface",
+    "top_flush_water_surface",
+    "floats_at_surface",
+    "bridge_between_a_and_b",
+    *FILLS,
+)
+
+
+def support_problems(plan: Plan) -> list[str]:
+    """All of them."""
+    return [*_surfaces(plan), *_order(plan), *_doubles(plan), *_circles(plan)]
+
+
+def is_support(row: Relation) -> bool:
+    """Whether the row says what carries its object."""
+    return row.spec.kind == "support" or row.predicate in _ALSO_SUPPORTS
+
+
+def _surfaces(plan: Plan) -> Iterator[str]:
+    """A fluid says how high it stands, and in what."""
+    for i, item in enumerate(plan.objects):
+        if item.role != "fluid":
+            continue
+        filled = any(row.predicate in FILLS for row in item.relations)
+        contained = item.relation("PLACE-IN") is not None
+        level = item.relation("FREE-SURFACE-AT") is not None
+        if not (filled or contained or item.size):
+            yield f"objects.{i}: the fluid {item.name} needs PLACE-IN with a container, or a size (x, y, z) in metres"
+        elif contained and not (filled or level or item.size):
+            yield (
+                f'objects.{i}.topology.relation: the fluid {item.name} needs FREE-SURFACE-AT with "value", its level '
+                f"above the inner floor in metres; or {FILLS[0]} in place of PLACE-IN, or a size (x, y, z)"
+            )
+
+
+def _order(plan: Plan) -> Iterator[str]:
+    """A fluid's surface is settled before anything is placed by it: it comes first in the list."""
+    index = {item.name: k for k, item in enumerate(plan.objects)}
+    for i, item in enumerate(plan.objects):
+        for j, row in enumerate(item.relations):
+            for field, name in row.refs():
+                k = index.get(name, -1)
+                if k > i and plan.objects[k].role == "fluid":
+                    yield (
+                        f"objects.{i}.topology.relation.{j}.{field}: the fluid {name} comes after {item.name}, which "
+                        f"refers to it; move it up: objects.{k} before objects.{i}"
+                    )
+
+
+def _doubles(plan: Plan) -> Iterator[str]:
+    for i, item in enumerate(plan.objects):
+        first: tuple[int, Relation] | None = None
+        for j, row in enumerate(item.relations):
+            if not is_support(row):
+                continue
+            if first is None:
+                first = (j, row)
+            elif not _same_container(first[1], row):
+                yield (
+                    f"objects.{i}.topology.relation.{j}: {item.name} is {_said(row)}, and {_said(first[1])} by "
+                    f"relation.{first[0]}; a thing starts in one place: remove one of the two rows"
+                )
+                break
+
+
+def _same_container(a: Relation, b: Relation) -> bool:
+    """A fluid in a container, and the template that says how far it fills it, agree."""
+    fills = (a.predicate in FILLS) != (b.predicate in FILLS)
+    return fills and "PLACE-IN" in (a.predicate, b.predicate) and a.ref == b.ref
+
+
+def _said(row: Relation) -> str:
+    return f"{row.sentence()} ({row.predicate})"
+
+
+def _circles(plan: Plan) -> Iterator[str]:
+    """Each circle of supports once, named by its rows. Iterative: a chain may be as long as the plan."""
+    items = {item.name: item for item in plan.objects}
+    anchors = {row.group: item.name for item in plan.objects for row in item.relations if row.predicate == "GROUP"}
+    index = {item.name: i for i, item in enumerate(plan.objects)}
+    done: set[str] = set()
+    for start in items:
+        path: list[str] = []
+        on_path: set[str] = set()
+        todo: list[tuple[str, bool]] = [(start, False)]
+        while todo:
+            name, leaving = todo.pop()
+            if leaving:
+                on_path.discard(path.pop())
+                done.add(name)
+            elif name in on_path:
+                circle = path[path.index(name) :]
+                yield _circle(circle, items, anchors, index)
+            elif name not in done:
+                path.append(name)
+                on_path.add(name)
+                todo.append((name, True))
+                todo += [(ref, False) for _, ref in _carriers(items[name], items, anchors)]
+
+
+def _carriers(item: PlanObject, items: dict[str, PlanObject], anchors: dict[str | None, str]) -> list[tuple[int, str]]:
+    """What carries an object, with the number of the row that says so."""
+    found = []
+    for j, row in enumerate(item.relations):
+        if is_support(row):
+            for _, name in row.refs():
+                carrier = name if name in items else anchors.get(name, "")
+                if carrier in items and carrier != item.name:
+                    found.append((j, carrier))
+    return found
+
+
+def _circle(
+    circle: list[str], items: dict[str, PlanObject], anchors: dict[str | None, str], index: dict[str, int]
+) -> str:
+    rows = []
+    for name, carrier in zip(circle, [*circle[1:], circle[0]], strict=True):
+        j = next(j for j, ref in _carriers(items[name], items, anchors) if ref == carrier)
+        rows.append((f"objects.{index[name]}.topology.relation.{j}", f"{name} {items[name].relations[j].sentence()}"))
+    shown = [f"{said} ({where})" for where, said in rows[:6]] + (["…"] if len(rows) > 6 else [])
+    return (
+        f"{rows[0][0]}.ref: nothing carries these in the end: {', '.join(shown)}; stand one of them on something else"
+    )
