@@ -91,3 +91,16 @@ def test_a_message_is_one_short_line_whatever_the_file_holds(tmp_path, data):
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 3000
     assert "and 81 more" in str(caught.value)
+
+
+def test_places_that_add_up_beyond_the_world_are_refused(tmp_path):
+    box = {
+        "role": "background",
+        "state": "static",
+        "construction": {"kind": "proxy", "primitive": "box", "size": [1, 1, 1]},
+    }
+    rows = [[], *([{"predicate": "FRONT-OF", "ref": f"b{k}", "gap": 9e5}] for k in range(5))]
+    objects = [{**box, "name": f"b{k}", "topology": {"relation": row}} for k, row in enumerate(rows)]
+    (tmp_path / "a.json").write_text(json.dumps({"title": "far", "prompt": "", "objects": objects}))
+    with pytest.raises(UserError, match=r"a\.json: laid out, it is no plan: position"):
+        load(tmp_path / "a.json")

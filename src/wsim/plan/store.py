@@ -33,6 +33,8 @@ def load(path: str | Path) -> Plan:
         return layout(plan)
     except LayoutError as error:
         raise UserError(f"{path}: {error}") from error
+    except ValidationError as error:  # rows of numbers in range can add up to a place that is not
+        raise UserError(f"{path}: laid out, it is no plan: {explain(error)}") from error
 
 
 def _with_cameras(plan: Plan) -> Plan:

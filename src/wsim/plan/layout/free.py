@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 MM = 1000.0
 SLACK = 0.4  # by which a box, or an area's edge, may be rounded in favour of a fit [mm]
-PATIENCE = 0.5  # deterministic time; about three times as long in seconds
+PATIENCE = 0.1  # deterministic time; from once to ten times as long in seconds
+LAST_RESORT = 0.6  # [s]: with coordinates of many digits deterministic time may stand almost still
+NEARER = 0.05  # the same, to come nearer to the best places
 FEW = 40  # unknowns up to which the nearest places are looked for, and not just any
 FINE = 1000  # factors that are no whole numbers are rounded to a thousandth
 
@@ -67,12 +69,22 @@ class Search:
         """The free coordinates [m]; none if there are no such places, or none were found in time."""
         self._stay_in_areas()
         self._stay_apart()
-        if len(self.unknowns) <= FEW:
-            self._stay_near()
+        found = self._solve(patience)
+        if found is None or len(self.unknowns) > FEW:
+            return found
+        # Any places first, then the nearest: looking for both at once may spend all its time and have neither.
+        self.model.clear_hints()
+        for var, value in found.items():
+            self.model.add_hint(self.unknowns[var], round(value * MM))
+        self._stay_near()
+        return self._solve(NEARER) or found
+
+    def _solve(self, patience: float) -> dict[Var, float] | None:
         solver = self.cp.CpSolver()
         solver.parameters.num_workers = 1
         solver.parameters.random_seed = self.space.world.plan.simulation.seed % 2**31
         solver.parameters.max_deterministic_time = patience
+        solver.parameters.max_time_in_seconds = LAST_RESORT
         status = solver.solve(self.model)
         if status not in (self.cp.OPTIMAL, self.cp.FEASIBLE):
             return None

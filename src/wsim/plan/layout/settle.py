@@ -56,19 +56,23 @@ def _by_levels(space: Space, start: System, wishes: list[Wish]) -> tuple[Places 
     """
     pinned = start.copy()
     level_of = _levels(space, start)
+    best = _best(space, pinned, wishes)
+    suspects = space.troubled(best, space.names)
     for level in sorted(set(level_of.values())):
         here = [name for name in space.names if level_of[name] == level]
-        among = [name for name in space.names if level_of[name] <= level]
-        best = _best(space, pinned, wishes)
-        trouble = space.troubled(best, among)
-        for loose in ([name for name in here if name in trouble], here):
-            values = _search(space, pinned, best, loose, among) if trouble else None
-            if values:
-                _pin(space, pinned, values)
-                best = _best(space, pinned, wishes)
-                trouble = space.troubled(best, among)
-        if trouble:
-            return None, trouble
+        # Who is in no trouble among all is in none among those below; looking again at each level takes n^2 for n.
+        if not suspects.isdisjoint(here):
+            among = [name for name in space.names if level_of[name] <= level]
+            trouble = space.troubled(best, among)
+            for loose in ([name for name in here if name in trouble], here):
+                values = _search(space, pinned, best, loose, among) if trouble else None
+                if values:
+                    _pin(space, pinned, values)
+                    best = _best(space, pinned, wishes)
+                    trouble = space.troubled(best, among)
+            if trouble:
+                return None, trouble
+            suspects = space.troubled(best, space.names)
         _pin(space, pinned, {(k, name): best[name][k] for name in here for k in (0, 1)}, remember=False)
     return _best(space, pinned, wishes), set()
 
