@@ -128,10 +128,18 @@ def simulate_and_judge(
 
 def build_stage(program: Path, stage: Path, settings: Settings, progress: Progress = silent) -> BuildResult:
     """Run the program's `build` in the sandbox."""
+    from wsim.assets import assets_folder
     from wsim.program.sandbox import build
 
     progress("building the stage", 0, 1)
-    built = build(program, stage, settings.params, settings.limits(), isolation=settings.isolation)
+    built = build(
+        program,
+        stage,
+        settings.params,
+        settings.limits(),
+        isolation=settings.isolation,
+        readable=[assets_folder()],
+    )
     progress("building the stage", 1, 1)
     return built
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from wsim.assets import get
 from wsim.errors import UserError
 from wsim.plan.schema import (
     Assumption,
@@ -325,8 +326,25 @@ def test_joints_and_masses_are_built(tmp_path: Path) -> None:
     _formatted(text, tmp_path)
 
 
-def test_an_asset_is_refused_with_a_way_out() -> None:
+def test_an_asset_is_placed_as_the_catalogue_has_it(tmp_path: Path) -> None:
+    desk = PlanObject(
+        name="desk", role="rigid_body", construction=FromAsset(asset="desk"), pose=Pose(position=(1.0, 0.0, 0.0)),
+        state="static",
+    )  # fmt: skip
+    mug = PlanObject(
+        name="mug", role="rigid_body", construction=FromAsset(asset="mug"),
+        pose=Pose(position=(1.0, 0.0, 0.74), rotation_deg=(0.0, 0.0, 90.0)),
+    )  # fmt: skip
+    text = compose(Plan(title="A mug on a desk", prompt="", objects=[desk, mug]))
+    assert 'scene.asset("desk", "desk", position=(1.0, 0.0, 0.0), static=True)' in text
+    world = _world(text, tmp_path)
+    assert [body.prim for body in world.bodies] == ["/World/mug"]
+    assert world.body("/World/mug").mass == pytest.approx(get("mug").mass, rel=0.01)
+    _formatted(text, tmp_path)
+
+
+def test_what_an_asset_has_of_its_own_is_refused_with_a_way_out() -> None:
     plan = _hinged(joints=[])
     plan.objects[2].construction = FromAsset(asset="mug")
-    with pytest.raises(UserError, match=r"bead: a program cannot load the catalogue's 'mug' yet; .*stand_in"):
+    with pytest.raises(UserError, match=r"bead: an asset of the catalogue keeps its own material; .*proxy"):
         compose(plan)

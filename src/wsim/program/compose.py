@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from wsim.errors import UserError
-from wsim.plan.schema import CameraPlan, Joint, Material, Plan, PlanObject
+from wsim.plan.schema import CameraPlan, FromAsset, Joint, Material, Plan, PlanObject
 
 _WIDTH = 88  # columns; a call that does not fit has one argument a line, which any formatter's settings keep
 _AXES = "xyz"
@@ -139,11 +139,6 @@ class _Composer:
                 continue
             item = group[0]
             target = "scene." + item.primitive
-            if item.primitive == "asset":
-                raise UserError(
-                    f"{item.name}: a program cannot load the catalogue's {item.built.asset!r} yet; "  # type: ignore[union-attr]
-                    'give it a construction of kind "external" with a stand_in'
-                )
             if item.name in containers | jointed:
                 self.handles[item.name] = self._variable(item.name)
                 target = f"{self.handles[item.name]} = {target}"
@@ -179,6 +174,8 @@ class _Composer:
     def _arguments(self, item: PlanObject, position: str | None = None) -> list[str]:
         if item.primitive == "fluid":
             return self._fluid(item)
+        if item.primitive == "asset":
+            return _asset(item)
         arguments = _size(item)
         if item.primitive == "ground":
             if item.pose is not None and item.pose.position[2]:
@@ -336,6 +333,29 @@ def _anchor(child: PlanObject, joint: Joint) -> tuple[float, float, float]:
 def _container(item: PlanObject) -> str | None:
     relation = item.relation("PLACE-IN")
     return relation.ref if relation is not None else None
+
+
+def _asset(item: PlanObject) -> list[str]:
+    """Arguments of `scene.asset`; what the asset has of its own cannot be given."""
+    weighed = item.registration.mass is not None or item.registration.density is not None
+    for what, given in (
+        ("velocity", any(item.velocity)),
+        ("material", item.material is not None),
+        ("registration.mass or .density", weighed),
+        ('state "kinematic"', item.state == "kinematic"),
+    ):
+        if given:
+            raise UserError(
+                f"{item.name}: an asset of the catalogue keeps its own {what}; remove it, or give the object a "
+                'construction of kind "proxy"'
+            )
+    arguments = [
+        f'"{item.built.asset}"' if isinstance(item.built, FromAsset) else "",
+        f"position={_tuple(_position(item))}",
+    ]
+    if item.pose is not None and any(item.pose.rotation_deg):
+        arguments.append(f"rotation_deg={_tuple(item.pose.rotation_deg)}")
+    return [*arguments, *(["static=True"] if item.state == "static" else [])]
 
 
 def _size(item: PlanObject) -> list[str]:

@@ -10,6 +10,7 @@ from pxr import Gf, Sdf, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
+from wsim.scene.catalogued import Catalogued
 from wsim.scene.errors import SceneError
 from wsim.scene.fluids import Fluids
 from wsim.scene.joints import Joints
@@ -21,7 +22,7 @@ _GRAVITY = (0.0, 0.0, -9.81)
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Fluids, Joints, Views):
+class Scene(Fluids, Joints, Views, Catalogued):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

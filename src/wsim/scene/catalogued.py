@@ -1,0 +1,60 @@
+"""Objects of the catalogue, copied into the stage: it needs no file beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pxr import Sdf, Usd, UsdPhysics
+
+from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose
+from wsim.scene.validate import Call
+
+_HERE = (0.0, 0.0, 0.0)
+
+
+class Catalogued(Author):
+    """The call that places an asset."""
+
+    def asset(
+        self,
+        name: str,
+        id: str,
+        *,
+        position: Sequence[float] = _HERE,
+        rotation_deg: Sequence[float] = _HERE,
+        static: bool = False,
+    ) -> Handle:
+        """Place an object of the catalogue.
+
+        Args:
+            name: Name of its prim.
+            id: Of the asset, such as "desk"; `wsim.assets.search` finds it by other words.
+            position: Of the centre of its bottom face [m].
+            rotation_deg: Roll, pitch, yaw about the world's X, Y, Z, in this order [deg].
+            static: Never moves.
+
+        Raises:
+            SceneError: If the catalogue has no such asset, or it has joints and is to be static.
+        """
+        from wsim.assets import AssetError, get
+
+        call = Call("asset", name)
+        path = self._path(call)
+        try:
+            entry = get(id)
+        except AssetError as error:
+            call.fail(str(error))
+        if static and entry.articulated:
+            call.fail(f"static = True on {id!r}, whose parts move on a joint; leave it out")
+        layer = Sdf.Layer.OpenAsAnonymous(str(entry.path))
+        Sdf.CopySpec(layer, Sdf.Path(f"/{layer.defaultPrim}"), self._stage.GetRootLayer(), Sdf.Path(path))
+        prim = self._stage.GetPrimAtPath(path)
+        set_pose(prim, call.position("position", position), rotation(call.angles(rotation_deg)))
+        bodies = [part for part in Usd.PrimRange(prim) if part.HasAPI(UsdPhysics.RigidBodyAPI)]
+        for part in {prim, *bodies}:
+            note_line(part)
+        if static:
+            for part in bodies:
+                part.RemoveAPI(UsdPhysics.RigidBodyAPI)
+                part.RemoveAPI(UsdPhysics.MassAPI)
+        return Handle(name=prim.GetName(), path=path, kind="static" if static else "body")
