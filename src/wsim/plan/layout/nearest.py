@@ -52,6 +52,11 @@ class _Filling:
         self.open = {var for name in loose for k in (0, 1) for var in system.value((k, name)).terms}
         self.values: dict[Var, float] = {}
         self.waiting = {name for name in among if self._unknown(name)}
+        self.rank = {name: k for k, name in enumerate(space.names)}
+        self.users: dict[Var, set[str]] = {}
+        for name in self.waiting:
+            for var in self._unknown(name):
+                self.users.setdefault(var, set()).add(name)
         self.standing: list[tuple[str, Box]] = []
         for name in among:
             if name not in self.waiting:
@@ -81,8 +86,8 @@ class _Filling:
             own.append(mine[0] if mine else None)
         if own[0] is not None and own[0] == own[1]:
             return False
-        tied = [n for n in self.waiting if self._unknown(n) and self._unknown(n) <= unknown]
-        tied = [n for n in self.space.names if n in tied]
+        users = set().union(*(self.users[var] for var in unknown)) & self.waiting
+        tied = sorted((n for n in users if self._unknown(n) <= unknown), key=self.rank.__getitem__)
         found = self._nearest(name, own, tied)
         if found is None:
             return False

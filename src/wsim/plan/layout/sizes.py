@@ -84,6 +84,9 @@ def gap_between(world: World, row: Row) -> tuple[float, float]:
     Both are distances from the first one's centre.
     """
     a, b = row.ref or "", row.other or ""
+    for name in (a, b):
+        if name in world.items and name not in world.centre:
+            raise LayoutError(f"{row}: {name} is no body that a bridge can rest on; name another object")
     (ax, ay), (bx, by) = world.box(a).center[:2], world.box(b).center[:2]
     apart = math.hypot(bx - ax, by - ay)
     if apart < TOUCH:
