@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from wsim.plan.layout.space import Places, Space
 
 CHUNK = 4000  # places tried at once
-EDGES = 160  # of the edges along an axis, nearest first
+MOST_EDGES = (20, 60, 160)  # of the edges along an axis, nearest first: as many as it takes
 SLIVER = 1e-7  # [m]: a place on an edge is free
 
 
@@ -214,29 +214,43 @@ def _first_free(
     import numpy as np
 
     rects = np.array(blocked).reshape(-1, 4)
-    axes = []
-    for k in (0, 1):
-        if not moves[k]:
-            axes.append(np.array([here[k]]))
-            continue
-        edges = [wish[k], *rects[:, 2 * k], *rects[:, 2 * k + 1]]
-        for a, b, low, high in limits:
-            factor, other = (a, b) if k == 0 else (b, a)
-            if abs(factor) > 1e-9 and abs(other) < 1e-9:
-                edges += [low / factor, high / factor, min(max(wish[k], min(low / factor, high / factor)),
-                                                           max(low / factor, high / factor))]  # fmt: skip
-        values = np.unique(np.round([e for e in edges if abs(e) < 1e8], 6))
-        axes.append(values[np.argsort(np.abs(values - wish[k]), kind="stable")][:EDGES])
-    x, y = (grid.ravel() for grid in np.meshgrid(axes[0], axes[1], indexing="ij"))
-    order = np.argsort(np.hypot(x - wish[0], y - wish[1]), kind="stable")
-    x, y = x[order], y[order]
-    for start in range(0, len(x), CHUNK):
-        px, py = x[start : start + CHUNK], y[start : start + CHUNK]
-        good = _inside(px, py, limits) & _clear(px, py, rects)
-        if good.any():
-            first = int(np.argmax(good))
-            return (float(px[first]), float(py[first]))
+    axes = [_edges(k, wish, here, rects, limits) if moves[k] else np.array([here[k]]) for k in (0, 1)]
+    for most in MOST_EDGES:
+        x, y = (grid.ravel() for grid in np.meshgrid(axes[0][:most], axes[1][:most], indexing="ij"))
+        # Nothing that is left out is nearer than this.
+        seen = min((abs(axes[k][most] - wish[k]) for k in (0, 1) if len(axes[k]) > most), default=np.inf)
+        far = np.hypot(x - wish[0], y - wish[1])
+        order = np.argsort(far, kind="stable")
+        if most != MOST_EDGES[-1]:
+            order = order[far[order] <= seen]
+        for start in range(0, len(order), CHUNK):
+            part = order[start : start + CHUNK]
+            good = _inside(x[part], y[part], limits) & _clear(x[part], y[part], rects)
+            if good.any():
+                first = part[int(np.argmax(good))]
+                return (float(x[first]), float(y[first]))
     return None
+
+
+def _edges(
+    k: int,
+    wish: tuple[float, float],
+    here: tuple[float, float],
+    rects: Any,
+    limits: list[tuple[float, float, float, float]],
+) -> Any:
+    """Coordinates along an axis where something ends, and the wish itself, nearest first."""
+    import numpy as np
+
+    bounds = [wish[k]]
+    for a, b, low, high in limits:
+        factor, other = (a, b) if k == 0 else (b, a)
+        if abs(factor) > 1e-9 and abs(other) < 1e-9:
+            ends = sorted((low / factor, high / factor))
+            bounds += [*ends, min(max(wish[k], ends[0]), ends[1])]
+    edges = np.concatenate([bounds, rects[:, 2 * k], rects[:, 2 * k + 1]])
+    values = np.unique(np.round(edges[np.abs(edges) < 1e8], 6))
+    return values[np.argsort(np.abs(values - wish[k]), kind="stable")]
 
 
 def _inside(px: Any, py: Any, limits: list[tuple[float, float, float, float]]) -> Any:

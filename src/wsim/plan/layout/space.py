@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -79,7 +80,7 @@ class Space:
                 found.add(name)
         for a, b in self._overlaps(places, among):
             known = a in found and b in found  # where all stand in one place, this spares most of n^2 looks
-            if not known and self._may_part(a, b):
+            if not known and frozenset((a, b)) not in self.exempt and self._may_part(a, b):
                 found |= {a, b}
         return found
 
@@ -96,23 +97,20 @@ class Space:
         limit = room_in(self.world, name, area)
         return abs(along) <= limit[0] + TOUCH / 2 and abs(across) <= limit[1] + TOUCH / 2
 
-    def _overlaps(self, places: Places, among: list[str]) -> list[tuple[str, str]]:
+    def _overlaps(self, places: Places, among: list[str]) -> Iterator[tuple[str, str]]:
         import numpy as np
 
         owners = [name for name in among for _ in self.parts.get(name, [])]
         if not owners:
-            return []
+            return
         boxes = [(places[name], box) for name in among for box in self.parts.get(name, [])]
         low = np.array([(b.low[0] + p[0], b.low[1] + p[1], b.low[2]) for p, b in boxes])
         high = np.array([(b.high[0] + p[0], b.high[1] + p[1], b.high[2]) for p, b in boxes])
-        found = set()
         for i in range(len(owners) - 1):
             deep = np.minimum(high[i + 1 :], high[i]) - np.maximum(low[i + 1 :], low[i])
-            for j in np.flatnonzero(deep.min(axis=1) > TOUCH):
-                pair = (owners[i], owners[i + 1 + int(j)])
-                if pair[0] != pair[1] and frozenset(pair) not in self.exempt:
-                    found.add(pair)
-        return sorted(found)
+            for j in np.flatnonzero(deep.min(axis=1) > TOUCH).tolist():
+                if owners[i] != owners[i + 1 + j]:
+                    yield owners[i], owners[i + 1 + j]
 
 
 def _along(offset: list[float | None], axis: int, yaw: float) -> float:
