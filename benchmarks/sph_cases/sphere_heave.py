@@ -16,10 +16,10 @@ back after 0.9 m, 1.5 s, and 1.2 s are shown.
 The sphere is held for a while before it is let go, as it hung from a line in the experiment, and the water's
 velocities are damped meanwhile. A cubic lattice of particles in space is not stable under its own pressure: after
 0.3 s to 1 s it slips into a disorder that stays, and stirs the tank with up to 3.7 J, ten times the 0.3 J that the
-lifted sphere has over its equilibrium. Let go in the middle of that, the sphere's first peak was anything from 11 mm to 18 mm. The lattice starts a tenth of a
-spacing off, at random, so that it slips early. The disorder takes up 0.3 % less room; the level is what the particles'
-mean height says at release, and the sphere hangs DROP above that. A body-centred lattice stays, but holds the sphere
-as a soft solid would: 6 % too much lift at 30 mm.
+lifted sphere has over its equilibrium. Let go in the middle of that, the sphere's first peak was anything from 11 mm
+to 18 mm. The lattice starts a tenth of a spacing off, at random, so that it slips early. The disorder takes up 0.6 %
+less room; the level is what the particles' mean height says at release, and the sphere hangs DROP above that. A
+body-centred lattice stays, but holds the sphere as a soft solid would: 6 % too much lift at 30 mm.
 """
 
 from __future__ import annotations

@@ -209,10 +209,8 @@ def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
 
 def _catalogue(made: Lexicon) -> None:
     """The catalogue's other names for what is known, and its other things, as solid stand-ins of their boxes."""
-    try:
-        from wsim.assets import load_catalogue
-    except ImportError:
-        return
+    from wsim.assets import load_catalogue
+
     by_asset = {noun.asset: noun.key for noun in made.nouns.values() if noun.asset is not None}
     for asset in load_catalogue().values():
         key = by_asset.get(asset.id)
