@@ -265,6 +265,13 @@ class SolverSPH(SolverBase):
     def _update_pressure(self, state_out: newton.State, dt: float) -> None:
         """Continuity and the equation of state; then the walls take over the fluid's pressure."""
         fluid = [self.search.neighborhood, self.method, self.rest_density]
+        if self.boundary_count:
+            launch_shared(
+                self.programs.compress,
+                dim=self.count,
+                inputs=[*fluid, self.model.gravity, self.point],
+                outputs=[self.motion],
+            )
         launch_shared(
             self.programs.continuity,
             dim=self.count,

@@ -5,7 +5,7 @@ import warp as wp
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, in_plane, wrap
 from wsim.kernels.sph.neighbors import Neighborhood, Search
-from wsim.kernels.sph.pair_sums import OPTIONS, Extrapolated, PairSums
+from wsim.kernels.sph.pair_sums import OPTIONS, Extrapolated, Flux, PairSums
 from wsim.kernels.sph.records import load_record
 
 TINY = wp.constant(1.0e-30)
@@ -42,6 +42,53 @@ def move_boundary(
         v[1] = 0.0
     position[b] = wrap(grid, x)
     velocity[b] = v
+
+
+def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
+    """The kernel that finds how fast the fluid is pressed into each boundary particle."""
+    runs, span_of, sum_run = search.runs, search.fluid_span, sums.flux
+
+    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    def compress(
+        # Data in:
+        first: int,
+        nb: Neighborhood,
+        method: Method,
+        rest_density: wp.array(dtype=float),
+        gravity: wp.array(dtype=wp.vec3),
+        point: wp.array(dtype=wp.vec4),
+        # Data in and out (boundary entries are written, fluid entries read):
+        motion: wp.array(dtype=wp.vec4),
+    ):
+        """What each boundary particle adds to the compression of the fluid near it [m^3/s], per sum of W.
+
+        The momentum equation lets a wall push with pressure extrapolated from the fluid, p_b = sum p_f W / sum W. The
+        work of that push on fluid that moves, V_b p_b sum V_f (v_f - v_b).grad W, must be found again in the fluid's
+        compression, or walls pump energy into sound: a still tank excites its slowest tone. So the same sum is given
+        back to the same fluid with the same weights: continuity is the adjoint of the push, as it is between fluid
+        particles (Bonet & Lok 1999, section 3). Where the wall does not push, it gives nothing back.
+        """
+        s = first + wp.tid()
+        p = load_record(point, s)
+        if p[3] > 0.0:
+            return
+        world = nb.particle_world[nb.order[s]]
+        m = motion[s]
+        x, v = wp.vec3(p[0], p[1], p[2]), wp.vec3(m[0], m[1], m[2])
+        weight_of_water = rest_density[world] * gravity[world]
+        period, inv_period = nb.grid.period, nb.grid.inv_period
+        total = Flux()
+        for run in range(runs(nb, x)):
+            span = span_of(nb, s, world, x, run)
+            total += sum_run(
+                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, weight_of_water
+            )
+        given_back = float(0.0)
+        if total[0] > 0.0 and total[1] > -method.background_pressure * total[0]:
+            given_back = -p[3] * total[2] / total[0]
+        motion[s] = wp.vec4(m[0], m[1], m[2], given_back)
+
+    return compress
 
 
 def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:

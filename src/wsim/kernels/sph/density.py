@@ -69,13 +69,13 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
         # p^H_j - p^H_i = rho_0 g.(x_j - x_i): the incompressible column, within the 1 % of compression.
         weight = rho0 * gravity[world]
         period, inv_period = nb.grid.period, nb.grid.inv_period
-        total = wp.vec2(0.0, 0.0)
+        total = wp.vec3(0.0, 0.0, 0.0)
         for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
             total += sum_run(
                 nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, m[3], weight
             )
-        divergence, smoothing = total[0], total[1]
+        divergence, smoothing = total[0] + total[2] / p[3], total[1]
         c2 = method.speed_of_sound * method.speed_of_sound
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
         pressure[s] = wp.max(m[3] + dt * rate, (LOWEST_DENSITY - 1.0) * rho0 * c2)

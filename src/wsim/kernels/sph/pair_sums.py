@@ -17,6 +17,9 @@ import warp as wp
 
 OPTIONS = {"fast_math": True}
 
+# Sums of W, of W times pressure, and of V (v - v_b).grad W.
+Flux = wp.vec3
+
 # Sums of W, of W times pressure, of W times velocity (3), and of W times the way to the fluid (3).
 Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
 
@@ -59,14 +62,30 @@ _LOOP = """
 _CONTINUITY = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = weight[0], w1 = weight[1], w2 = weight[2];
-    float divergence = 0.0f, smoothing = 0.0f;
+    float divergence = 0.0f, smoothing = 0.0f, carried = 0.0f;
     """,
     """
             const float slope = slope_norm * t * t * t;
             divergence += fabsf(q.w) * slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             smoothing -= (q.w > 0.0f ? q.w : 0.0f) * slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
+            carried += q.w > 0.0f ? 0.0f : t * t * t * t * (1.0f + 4.0f * u) * n.w;
     """,
-    "return wp::vec_t<2, float>(divergence, smoothing);",
+    "return wp::vec_t<3, float>(divergence, smoothing, carried);",
+)
+
+_FLUX = (
+    """
+    const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = weight[0], w1 = weight[1], w2 = weight[2];
+    float total = 0.0f, pressure = 0.0f, flux = 0.0f;
+    """,
+    """
+            const float volume = q.w > 0.0f ? q.w : 0.0f;
+            const float w = q.w > 0.0f ? t * t * t * t * (1.0f + 4.0f * u) : 0.0f;
+            total += w;
+            pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
+            flux -= volume * slope_norm * t * t * t * ((n.x - v0) * d0 + (n.y - v1) * d1 + (n.z - v2) * d2);
+    """,
+    "return wp::vec_t<3, float>(total, pressure, flux);",
 )
 
 _EXTRAPOLATION = (
@@ -134,13 +153,15 @@ class PairSums:
     """The native loops of one way of searching.
 
     Attributes:
-        continuity: Sum of V_j (v_i - v_j).grad W, and of the density diffusion.
+        continuity: Sums of V_j (v_i - v_j).grad W, of the density diffusion, and over the walls' compression times W.
+        flux: `Flux`, over fluid neighbours; W up to a factor.
         extrapolation: `Extrapolated`, over fluid neighbours; W up to a factor.
         force: Force on a particle, per volume, from fluid and `solids` times from boundary neighbours.
-            find: Write a run's neighbours behind `start` others; returns how many there are then. For lists alone.
+        find: Write a run's neighbours behind `start` others; returns how many there are then. For lists alone.
     """
 
     continuity: wp.Function
+    flux: wp.Function
     extrapolation: wp.Function
     force: wp.Function
     find: wp.Function
@@ -185,7 +206,22 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         v: wp.vec3,
         p: float,
         weight: wp.vec3,
-    ) -> wp.vec2: ...
+    ) -> wp.vec3: ...
+
+    @wp.func_native(loop(_FLUX))
+    def flux(
+        entry: wp.array(dtype=int),
+        point: wp.array(dtype=wp.vec4),
+        motion: wp.array(dtype=wp.vec4),
+        first: int,
+        last: int,
+        shape: wp.vec3,
+        period: wp.vec3,
+        inv_period: wp.vec3,
+        x: wp.vec3,
+        v: wp.vec3,
+        weight: wp.vec3,
+    ) -> Flux: ...
 
     @wp.func_native(loop(_EXTRAPOLATION))
     def extrapolation(
@@ -235,4 +271,4 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         x: wp.vec3,
     ) -> int: ...
 
-    return PairSums(continuity, extrapolation, force, find)
+    return PairSums(continuity, flux, extrapolation, force, find)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import warp as wp
 
-from wsim.kernels.sph.boundary import make_extrapolate
+from wsim.kernels.sph.boundary import make_compress, make_extrapolate
 from wsim.kernels.sph.density import make_continuity
 from wsim.kernels.sph.momentum import make_momentum
 from wsim.kernels.sph.neighbors import make_find_neighbors, make_search
@@ -19,6 +19,7 @@ class Programs:
     """Kernels of one way of searching: by lists or by cells, in an open or a periodic domain."""
 
     find_neighbors: wp.Kernel
+    compress: wp.Kernel
     continuity: wp.Kernel
     extrapolate: wp.Kernel
     momentum: wp.Kernel
@@ -30,6 +31,7 @@ class Programs:
         search, sums = make_search(lists), make_pair_sums(lists, periodic, branch)
         return Programs(
             make_find_neighbors(sums),
+            make_compress(search, sums),
             make_continuity(search, sums),
             make_extrapolate(search, sums),
             make_momentum(search, sums),
