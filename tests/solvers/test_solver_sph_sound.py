@@ -1,4 +1,4 @@
-"""Sound in a still tank: walls neither feed it nor eat it; what damps it is the density diffusion, at its known rate."""
+"""Sound in a still tank: walls neither feed nor eat it; what damps it is the density diffusion, at its known rate."""
 
 import math
 

@@ -24,14 +24,30 @@ def accumulate_push(
 @wp.kernel(enable_backward=False)
 def accumulate_drive(
     # Data in:
-    effort: wp.array(dtype=wp.float32),  # of the drives
+    effort: wp.array(dtype=wp.float32),  # of the drives: at the step's end, or at its start
+    at_end: bool,
     joint_f: wp.array(dtype=wp.float32),  # of the controller
     before: wp.array(dtype=wp.float32),
     after: wp.array(dtype=wp.float32),
     dt: float,
     # Data out:
+    last: wp.array(dtype=wp.float32),  # effort as it was told a step ago
     work: wp.array(dtype=wp.float32),
+    unsure: wp.array(dtype=wp.float32),
 ):
-    """Add a step's work [J] on each degree of freedom."""
+    """Add a step's work [J] on each degree of freedom, and what the effort's change in the step leaves open of it.
+
+    Known at both ends, the effort is taken as their mean (trapezoidal rule), which is right but for the product of
+    both changes; known at the start alone, it may be wrong by its change.
+    """
     dof = wp.tid()
-    work[dof] = work[dof] + 0.5 * dt * (effort[dof] + joint_f[dof]) * (before[dof] + after[dof])
+    change = effort[dof] - last[dof]
+    mean = 0.5 * (before[dof] + after[dof])
+    push = effort[dof]
+    open_ = wp.abs(change * mean)
+    if at_end:
+        push = push - 0.5 * change
+        open_ = wp.abs(change * (after[dof] - before[dof]))
+    work[dof] = work[dof] + dt * (push + joint_f[dof]) * mean
+    unsure[dof] = unsure[dof] + dt * open_
+    last[dof] = effort[dof]

@@ -263,19 +263,20 @@ class SolverSPH(SolverBase):
         )
 
     def _update_pressure(self, state_out: newton.State, dt: float) -> None:
-        """Continuity and the equation of state; then the walls take over the fluid's pressure."""
+        """Continuity with the walls' share, and the equation of state; then the walls take over the pressure."""
         fluid = [self.search.neighborhood, self.method, self.rest_density]
+        walls, gravity = self.search.boundary_slot, self.model.gravity
         if self.boundary_count:
             launch_shared(
                 self.programs.compress,
-                dim=self.count,
-                inputs=[*fluid, self.model.gravity, self.point],
+                dim=len(walls),
+                inputs=[walls, *fluid, gravity, self.point, self.fixed_count],
                 outputs=[self.motion],
             )
         launch_shared(
             self.programs.continuity,
             dim=self.count,
-            inputs=[*fluid, self.model.gravity, self.point, self.motion, dt],
+            inputs=[*fluid, gravity, self.point, self.motion, dt],
             outputs=[self.pressure],
         )
         wp.launch(
@@ -287,8 +288,8 @@ class SolverSPH(SolverBase):
         if self.boundary_count:
             launch_shared(
                 self.programs.extrapolate,
-                dim=self.count,
-                inputs=[*fluid, self.viscosity, self.model.gravity, self.point],
+                dim=len(walls),
+                inputs=[walls, *fluid, self.viscosity, gravity, self.point],
                 outputs=[self.motion],
             )
 

@@ -74,6 +74,8 @@ class ParticleSearch:
         self.cell_count = wp.zeros(cells + 1, dtype=int)
         self.cell_start = wp.zeros(cells + 1, dtype=int)
         self.fluid_before = wp.zeros(n + 1 if self.cuda else 0, dtype=int)
+        # A CPU loses nothing by passing over the fluid: there the slots are all.
+        self.boundary_slot = wp.array(np.arange(n - self.fluid_count if self.cuda else n, dtype=np.int32), dtype=int)
         self.neighborhood = neighbor_kernels.Neighborhood()
         self.neighborhood.grid = self.grid
         self.neighborhood.cell_start = self.cell_start
@@ -117,6 +119,9 @@ class ParticleSearch:
             self._sort(state, boundary_position, 0, self.world_count)
             gather()
             wp.utils.array_scan(self.fluid_before, self.fluid_before, inclusive=False)
+            wp.launch(
+                neighbor_kernels.find_boundary, dim=self.count, inputs=[self.fluid_before], outputs=[self.boundary_slot]
+            )
             return
         if not self.stale:
             gather()

@@ -52,11 +52,13 @@ def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
     def compress(
         # Data in:
         first: int,
+        slot: wp.array(dtype=int),
         nb: Neighborhood,
         method: Method,
         rest_density: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
         point: wp.array(dtype=wp.vec4),
+        fixed_count: int,
         # Data in and out (boundary entries are written, fluid entries read):
         motion: wp.array(dtype=wp.vec4),
     ):
@@ -67,12 +69,18 @@ def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
         compression, or walls pump energy into sound: a still tank excites its slowest tone. So the same sum is given
         back to the same fluid with the same weights: continuity is the adjoint of the push, as it is between fluid
         particles (Bonet & Lok 1999, section 3). Where the wall does not push, it gives nothing back.
+
+        Fixed walls alone do: water that comes to a dry wall is compressed twice on its way, and stands off. A tank is
+        full at the start, but a body that falls into it would float a fifth of a spacing too high.
         """
-        s = first + wp.tid()
+        s = slot[first + wp.tid()]
         p = load_record(point, s)
         if p[3] > 0.0:
             return
-        world = nb.particle_world[nb.order[s]]
+        i = nb.order[s]
+        if i >= nb.fluid_count + fixed_count:
+            return
+        world = nb.particle_world[i]
         m = motion[s]
         x, v = wp.vec3(p[0], p[1], p[2]), wp.vec3(m[0], m[1], m[2])
         weight_of_water = rest_density[world] * gravity[world]
@@ -99,6 +107,7 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
     def extrapolate(
         # Data in:
         first: int,
+        slot: wp.array(dtype=int),
         nb: Neighborhood,
         method: Method,
         rest_density: wp.array(dtype=float),
@@ -120,7 +129,7 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         into the wall alone: a boundary layer of that viscosity, centimetres thick, would drag on bodies and load
         them with water. Both forces are linear in v_b, so that its mean, weighted with the viscosities, serves both.
         """
-        s = first + wp.tid()
+        s = slot[first + wp.tid()]
         p = load_record(point, s)
         if p[3] > 0.0:
             return

@@ -116,6 +116,20 @@ def make_find_neighbors(sums: PairSums) -> wp.Kernel:
 
 
 @wp.kernel(enable_backward=False)
+def find_boundary(
+    # Data in:
+    fluid_before: wp.array(dtype=int),
+    # Data out:
+    slot: wp.array(dtype=int),
+):
+    """Sorted indices of the boundary particles, in order: a sum over them alone fills a GPU's warps."""
+    s = wp.tid()
+    before = fluid_before[s]
+    if fluid_before[s + 1] == before:
+        slot[s - before] = s
+
+
+@wp.kernel(enable_backward=False)
 def largest_move(
     # Data in:
     nb: Neighborhood,
