@@ -106,10 +106,11 @@ def test_box_floats_at_archimedes_depth(specific):
     state = model.state()
     newton.eval_fk(model, model.joint_q, model.joint_qd, state)
 
-    heights = []
+    heights, lifts = [], []
     for _ in range(20):
         advance(solver, state, 0.05, rigid)
         heights.append(float(state.body_q.numpy()[0, 2]))
+        lifts.append(float(solver.body_wrench.numpy()[0, 2]))
     # The level follows from the water's volume, measured by its particles' masses.
     water = float(model.particle_mass.numpy().sum()) / RHO
     rest = np.mean(heights[10:])
@@ -117,8 +118,8 @@ def test_box_floats_at_archimedes_depth(specific):
     measured_level = (water + edge * edge * max(0.0, draft)) / (size[0] * size[1])
     measured = measured_level - bottom
     assert measured == pytest.approx(draft, abs=0.04 * edge)
-    lift = solver.body_wrench.numpy()[0, 2]
-    assert lift == pytest.approx(specific * RHO * edge**3 * G, rel=0.15)
+    # The start rings: the slowest tone of the tank, damped by 0.3 a second, moves the lift by 15 %; its mean carries.
+    assert np.mean(lifts[10:]) == pytest.approx(specific * RHO * edge**3 * G, rel=0.05)
 
 
 def test_fluid_and_body_exchange_momentum_without_loss():

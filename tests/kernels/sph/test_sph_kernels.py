@@ -139,16 +139,23 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
         per_world = [wp.full(2, v, dtype=float, device=DEVICE) for v in (1000.0, 2.0)]
         gravity = wp.array([(0.0, 0.0, -9.8)] * 2, dtype=wp.vec3, device=DEVICE)
         pressure = wp.zeros(n, dtype=float, device=DEVICE)
+        slot = wp.array(np.arange(n), dtype=int, device=DEVICE)
+        inputs = [0, slot, nb, method, per_world[0], gravity, point, len(boundary)]
+        wp.launch(programs.compress, n, inputs, [motion], device=DEVICE)
+        given_back = motion.numpy()[np.argsort(index)][len(fluid) :, 3]
+        assert (given_back != 0.0).any()
         inputs = [0, nb, method, per_world[0], gravity, point, motion, 1e-3]
         wp.launch(programs.continuity, n, inputs, [pressure], device=DEVICE)
-        wp.launch(programs.extrapolate, n, [0, nb, method, *per_world, gravity, point], [motion], device=DEVICE)
+        wp.launch(programs.extrapolate, n, [0, slot, nb, method, *per_world, gravity, point], [motion], device=DEVICE)
         moved = [wp.zeros(len(fluid), dtype=wp.vec3, device=DEVICE) for _ in range(2)]
         force = wp.zeros(len(boundary), dtype=wp.vec3, device=DEVICE)
         mass = wp.full(len(fluid), 0.1, dtype=float, device=DEVICE)
         inputs = [0, nb, method, *per_world, gravity, point, motion, mass, 0, 1e-3]
         wp.launch(programs.momentum, n, inputs, [*moved, force], device=DEVICE)
         back = np.argsort(index)
-        results.append([pressure.numpy()[back], motion.numpy()[back], *(a.numpy() for a in (*moved, force))])
+        results.append(
+            [given_back, pressure.numpy()[back], motion.numpy()[back], *(a.numpy() for a in (*moved, force))]
+        )
     for of_lists, of_walk in zip(*results, strict=True):
         assert np.abs(of_walk - of_lists).max() < 2e-5 * np.abs(of_lists).max()
 

@@ -9,6 +9,7 @@ from wsim.kernels.sph.pair_sums import OPTIONS, Extrapolated, Flux, PairSums
 from wsim.kernels.sph.records import load_record
 
 TINY = wp.constant(1.0e-30)
+BODY = wp.constant(1.0e20)  # what a body's particle has where a wall's has what it gives back
 
 
 @wp.kernel(enable_backward=False)
@@ -70,18 +71,20 @@ def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
         back to the same fluid with the same weights: continuity is the adjoint of the push, as it is between fluid
         particles (Bonet & Lok 1999, section 3). Where the wall does not push, it gives nothing back.
 
-        Fixed walls alone do: water that comes to a dry wall is compressed twice on its way, and stands off. A tank is
-        full at the start, but a body that falls into it would float a fifth of a spacing too high.
+        Fixed walls alone do, to water that no body is near: water that comes to a dry wall is compressed twice on its
+        way, and stands off. A tank is full at the start, but a body that falls into it would float a fifth of a spacing
+        too high, and drive the water under it into the floor.
         """
         s = slot[first + wp.tid()]
         p = load_record(point, s)
         if p[3] > 0.0:
             return
         i = nb.order[s]
+        m = motion[s]
         if i >= nb.fluid_count + fixed_count:
+            motion[s] = wp.vec4(m[0], m[1], m[2], BODY)
             return
         world = nb.particle_world[i]
-        m = motion[s]
         x, v = wp.vec3(p[0], p[1], p[2]), wp.vec3(m[0], m[1], m[2])
         weight_of_water = rest_density[world] * gravity[world]
         period, inv_period = nb.grid.period, nb.grid.inv_period
@@ -145,8 +148,10 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
             total += sum_run(
                 nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, weight_of_water
             )
-        if total[0] > 0.0:
-            m = motion[s]
+        m = motion[s]
+        if total[0] <= 0.0:
+            motion[s] = wp.vec4(m[0], m[1], m[2], 0.0)
+        else:
             pressure = wp.max(total[1] / total[0], -method.background_pressure)
             wall = wp.vec3(m[0], m[1], m[2])
             past = wp.vec3(total[2], total[3], total[4]) / total[0] - wall

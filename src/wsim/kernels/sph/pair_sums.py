@@ -62,15 +62,17 @@ _LOOP = """
 _CONTINUITY = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = weight[0], w1 = weight[1], w2 = weight[2];
-    float divergence = 0.0f, smoothing = 0.0f, carried = 0.0f;
+    float divergence = 0.0f, smoothing = 0.0f, carried = 0.0f, body = 0.0f;
     """,
     """
             const float slope = slope_norm * t * t * t;
             divergence += fabsf(q.w) * slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             smoothing -= (q.w > 0.0f ? q.w : 0.0f) * slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
-            carried += q.w > 0.0f ? 0.0f : t * t * t * t * (1.0f + 4.0f * u) * n.w;
+            const float given_back = q.w > 0.0f ? 0.0f : n.w;
+            body += t * given_back;
+            carried += t * t * t * t * (1.0f + 4.0f * u) * given_back;
     """,
-    "return wp::vec_t<3, float>(divergence, smoothing, carried);",
+    "return wp::vec_t<3, float>(divergence, smoothing, body < 1.0e10f ? carried : 0.0f);",
 )
 
 _FLUX = (
@@ -153,7 +155,8 @@ class PairSums:
     """The native loops of one way of searching.
 
     Attributes:
-        continuity: Sums of V_j (v_i - v_j).grad W, of the density diffusion, and over the walls' compression times W.
+        continuity: Sums of V_j (v_i - v_j).grad W, of the density diffusion, and of what walls give back times W; the
+            last is 0 where a neighbour has `boundary.BODY` in its place.
         flux: `Flux`, over fluid neighbours; W up to a factor.
         extrapolation: `Extrapolated`, over fluid neighbours; W up to a factor.
         force: Force on a particle, per volume, from fluid and `solids` times from boundary neighbours.
