@@ -2,12 +2,14 @@
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from typer.main import get_command
 
 from wsim.cli import app
 from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
+from wsim.judge.verdict import RepairKind
 from wsim.plan.lexicon import lexicon
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
@@ -17,14 +19,14 @@ DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
 VERBS = get_command(app).commands
 
 
-def section(title: str) -> str:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+def section(title: str, document: str = "README.md") -> str:
+    text = (ROOT / document).read_text(encoding="utf-8")
     return re.split(r"^## ", text.split(f"\n## {title}\n")[1], flags=re.MULTILINE)[0]
 
 
 def test_there_are_documents() -> None:
     names = {path.relative_to(ROOT).as_posix() for path in DOCUMENTS}
-    assert {"README.md", "CONTRIBUTING.md", "AGENTS.md", "docs/architecture.md"} <= names
+    assert {"README.md", "CONTRIBUTING.md", "AGENTS.md", "docs/architecture.md", "docs/judge.md"} <= names
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
@@ -52,10 +54,31 @@ def test_readme_has_every_verb_and_no_option_that_is_not_there() -> None:
     assert set(re.findall(r"--[a-z][a-z-]+", said)) <= options | {"--help"}
 
 
-def test_readme_has_every_check_and_objective() -> None:
-    said = section("How the verdict is reached")
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_commands_take_the_options_that_they_are_given(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    code = "\n".join(re.findall(r"`([^`\n]+)`", text) + re.findall(r"^ {4}(.+)$", text, re.MULTILINE))
+    for verb, rest in re.findall(r"^(?:\S*/)?wsim ([a-z]+)(.*)$", code, re.MULTILINE):
+        options = {name for option in VERBS[verb].params for name in option.opts + option.secondary_opts}
+        assert set(re.findall(r"(?<=\s)--[a-z][a-z-]+", rest)) <= options, f"wsim {verb}{rest}"
+
+
+def test_the_judges_page_has_every_check_and_objective() -> None:
     checks = {check.name for check in run_checks() + physics_checks()}
-    assert set(re.findall(r"^\| `([A-Za-z_]+)`", said, re.MULTILINE)) == checks | set(OBJECTIVES)
+    for title, names in (("Checks", checks), ("Objectives", set(OBJECTIVES))):
+        said = re.findall(r"^\| `([A-Za-z_]+)`", section(title, "docs/judge.md"), re.MULTILINE)
+        assert sorted(said) == sorted(names)
+
+
+def test_the_judges_page_has_every_kind_of_repair() -> None:
+    said = " ".join(section("What to change", "docs/judge.md").split())
+    assert [kind for kind in get_args(RepairKind) if kind not in said] == []
+
+
+@pytest.mark.parametrize("marks", ["faults", "judge-speed"])
+def test_the_judges_page_has_the_places_of_its_tables(marks: str) -> None:
+    text = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
+    assert re.search(f"^<!-- {marks}:begin -->\n(.*\n)*?<!-- {marks}:end -->$", text, re.MULTILINE)
 
 
 def test_readme_has_the_planners_vocabulary() -> None:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import shutil
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wsim.judge.targets import aim
 from wsim.judge.verdict import Finding, Verdict
 from wsim.progress import Progress, silent
 from wsim.runs import RunFolder, write_json, write_whole
@@ -18,7 +21,11 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
     from wsim.program.sandbox import BuildResult, Limits
     from wsim.sim.control import ArrayController
-    from wsim.sim.simulation import SimulationResult
+    from wsim.sim.simulation import Simulation, SimulationResult
+    from wsim.verify import Verification
+
+
+RERUN_FACTS = ("variant", "seed", "time_step", "spacing_ratio", "status", "summary", "seconds")  # for run.json
 
 
 @dataclass
@@ -30,6 +37,7 @@ class Settings:
     isolation: str = "auto"
     pictures: bool = True
     time_step: float | None = None  # [s]
+    verify: bool = False  # an accepted world is run again, computed more finely
     build_timeout: float = 30.0  # [s]
     build_memory: int = 4 * 2**30  # [bytes]
 
@@ -73,6 +81,9 @@ def run_in_folder(
     if verdict.status == "accepted":
         run.accept(iteration)
     run.record(status=verdict.status, summary=verdict.summary, seconds=round(time.perf_counter() - started, 1))
+    checks = json.loads((iteration / "checks.json").read_text(encoding="utf-8"))
+    if "verify" in checks:
+        run.record(verify=[{key: copy[key] for key in RERUN_FACTS} for copy in checks["verify"]])
     return verdict
 
 
@@ -122,7 +133,12 @@ def simulate_and_judge(
         return conclude(folder, reject(Finding(**error.finding()), f"The program's control failed ({error.kind})."))
     verdict = _timed(seconds, "judge", lambda: judge_recording(folder / "recording.rrd", plan, progress))
     simulation = {**asdict(result), "stills": [path.name for path in result.stills]}
-    write_json(folder / "checks.json", {"build": build, "simulation": simulation, "seconds": seconds})
+    checks: dict[str, Any] = {"build": build, "simulation": simulation, "seconds": seconds}
+    write_json(folder / "checks.json", checks)
+    if settings.verify and verdict.status == "accepted":
+        again = verification(folder, program, plan, settings, progress)
+        verdict = _timed(seconds, "verify", lambda: again.check(verdict))
+        write_json(folder / "checks.json", checks | {"verify": again.figures})
     return conclude(folder, verdict)
 
 
@@ -150,17 +166,8 @@ def simulate(folder: Path, program: Path, settings: Settings, progress: Progress
     Raises:
         ControlError: If the program's own `control` fails.
     """
-    from wsim.sim import Simulation
-
     pictures = settings.pictures
-    with _controller(program, folder / "stage.usda", settings) as controller:
-        simulation = Simulation(
-            folder / "stage.usda",
-            device=settings.device,
-            time_step=settings.time_step,
-            controller=controller,
-            progress=progress,
-        )
+    with open_simulation(folder / "stage.usda", program, settings, progress) as simulation:
         return simulation.run(
             folder / "recording.rrd",
             video=folder / "video.mp4" if pictures else None,
@@ -169,6 +176,41 @@ def simulate(folder: Path, program: Path, settings: Settings, progress: Progress
             metadata={"program": program.name, "params": settings.params},
             progress=progress,
         )
+
+
+@contextlib.contextmanager
+def open_simulation(
+    stage: Path, program: Path, settings: Settings, progress: Progress = silent, seeds: Sequence[int] = (0,)
+) -> Iterator[Simulation]:
+    """A simulation of a stage, a copy of the world for each seed, with the program's own `control` if it has one."""
+    from wsim.sim import Simulation
+
+    with _controller(program, stage, settings) as controller:
+        yield Simulation(
+            stage,
+            device=settings.device,
+            world_count=len(seeds),
+            time_step=settings.time_step,
+            controller=controller,
+            progress=progress,
+            seeds=seeds,
+        )
+
+
+def verification(
+    folder: Path, program: Path, plan: Plan | None, settings: Settings, progress: Progress = silent
+) -> Verification:
+    """What runs an accepted world again. Copies go side by side on CUDA, where no `control` steps them one by one."""
+    from wsim.program.control import has_control
+    from wsim.sim.devices import pick_device
+    from wsim.verify import Verification
+
+    def open_(stage: Path, time_step: float | None, seeds: Sequence[int]) -> AbstractContextManager[Simulation]:
+        return open_simulation(stage, program, replace(settings, time_step=time_step), progress, seeds)
+
+    controlled = has_control(program.read_text(encoding="utf-8", errors="replace"))
+    side_by_side = pick_device(settings.device).startswith("cuda") and not controlled
+    return Verification(folder, plan, open_, side_by_side, settings.time_step, progress)
 
 
 @contextlib.contextmanager
@@ -188,13 +230,16 @@ def _controller(program: Path, stage: Path, settings: Settings) -> Iterator[Arra
         yield ArrayController(process.step)
 
 
-def judge_recording(recording: Path, plan: Plan | None, progress: Progress = silent) -> Verdict:
-    """Read a recording back and judge it."""
+def judge_recording(
+    recording: Path, plan: Plan | None, progress: Progress = silent, model: Path | None = None
+) -> Verdict:
+    """Read a recording back and judge it; a trajectory.npz is one of someone else's, of what `model` describes."""
+    from wsim.importers import read_npz
     from wsim.judge import judge
     from wsim.recording import read
 
     progress("judging", 0, 2)
-    evidence = read(recording)
+    evidence = read_npz(recording, model) if recording.suffix == ".npz" else read(recording)
     progress("judging", 1, 2)
     verdict = judge(evidence, plan)
     progress("judging", 2, 2)
@@ -203,6 +248,7 @@ def judge_recording(recording: Path, plan: Plan | None, progress: Progress = sil
 
 def reject(finding: Finding, summary: str) -> Verdict:
     """The verdict on a program that made no world, or broke it."""
+    aim([finding])
     return Verdict(status="rejected", summary=summary, findings=[finding])
 
 

@@ -70,6 +70,9 @@ def test_view_without_a_display_prints_what_to_do(wsim, floating) -> None:
     assert (ended.code, ended.err) == (0, "")
     assert "rerun recording.rrd" in ended.out
     assert f"wsim view --web {floating.run}" in ended.out
+    chosen = wsim("view", floating.run, "--finding", 1)
+    assert "wsim view recording.rrd --finding 1\n" in chosen.out and "verdict.json" in chosen.out
+    assert f"wsim view --web {floating.run} --finding 1\n" in chosen.out
     beyond = wsim("view", floating.run, "--finding", 99)
     assert beyond.code == 2
     assert beyond.err == f"wsim: --finding 99: the verdict has {len(floating.verdict['findings'])} findings\n"
@@ -79,6 +82,8 @@ def test_view_serves_a_finding_to_a_browser_until_interrupted(launch, reruns) ->
     _, heavy = reruns
     number = 1 + next(i for i, finding in enumerate(heavy.verdict["findings"]) if not finding["passed"])
     process = launch("view", "--web", heavy.run, "--finding", number)
+    chosen = heavy.verdict["findings"][number - 1]
+    assert process.stdout.readline().startswith(f"finding {number} at {chosen['time']:.3f} s: {chosen['message'][:40]}")
     assert "127.0.0.1 only" in process.stdout.readline()
     url = process.stdout.readline().strip()
     assert url.startswith("http://127.0.0.1:")

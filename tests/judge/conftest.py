@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from wsim.plan.materials import material_named
 from wsim.plan.planner import plan as make_plan
 from wsim.plan.schema import Plan
 from wsim.recording.frames import LogLine
@@ -55,16 +56,27 @@ class Case:
 
 
 def body(prim: str, shape: Shape, volume: float, density: float, position: tuple[float, float, float]) -> Body:
+    mass = density * volume
+    if shape.kind == "sphere":
+        moments = [0.4 * mass * shape.size[0] ** 2] * 3
+    else:
+        x, y, z = (mass * edge**2 / 12.0 for edge in shape.size)
+        moments = [y + z, x + z, x + y]
     return Body(
         prim=prim,
-        mass=density * volume,
+        mass=mass,
         volume=volume,
-        inertia=(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        inertia=tuple(np.diag(moments).ravel().tolist()),
         position=position,
         rotation=(0.0, 0.0, 0.0, 1.0),
         shapes=[shape],
         line=f"program.py:{10 + len(prim)}",
     )
+
+
+def look(material: str) -> dict[str, Any]:
+    named = material_named(material)
+    return {"color": named.color, "friction": named.friction, "restitution": named.restitution}
 
 
 def ground() -> Static:
@@ -137,14 +149,14 @@ def pool() -> Callable[..., Case]:
         ball_z, ball_v = dropping(times, surface + 0.2, surface, WALL + BALL)
         q = np.zeros((len(times), 2, 7), dtype=np.float32)
         q[:, :, 6] = 1.0
-        q[:, 0, 0], q[:, 0, 2], q[:, 1, 0], q[:, 1, 2] = -0.15, z, 0.15, ball_z
+        q[:, 0, 0], q[:, 0, 2], q[:, 1, 0], q[:, 1, 2] = -0.12, z, 0.15, ball_z
         qd = np.zeros((len(times), 2, 6), dtype=np.float32)
         qd[:, 0, 2], qd[:, 1, 2] = v, ball_v
         force = np.zeros((len(times), 2, 3), dtype=np.float32)
         force[:, 1, 2] = np.where(ball_v == 0, (7850.0 - 1000.0) * ball_volume * G, 0.0)
         force[0] = 0.0
-        box = Shape(prim=f"{BLOCK_PRIM}/geometry", kind="box", size=BLOCK)
-        sphere = Shape(prim=f"{BALL_PRIM}/geometry", kind="sphere", size=(BALL,))
+        box = Shape(prim=f"{BLOCK_PRIM}/geometry", kind="box", size=BLOCK, **look("wood"))
+        sphere = Shape(prim=f"{BALL_PRIM}/geometry", kind="sphere", size=(BALL,), **look("steel"))
         world = World(
             duration=DURATION,
             frame_rate=RATE,
@@ -204,7 +216,7 @@ def stack() -> Callable[..., Case]:
         bodies = [
             body(
                 f"/World/box_{i}",
-                Shape(prim=f"/World/box_{i}/geometry", kind="box", size=edge),
+                Shape(prim=f"/World/box_{i}/geometry", kind="box", size=edge, **look("wood")),
                 0.008,
                 600.0,
                 (0, 0, z),

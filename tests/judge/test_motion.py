@@ -196,6 +196,18 @@ def test_a_near_miss_a_ghost_and_a_gain_of_momentum_are_rejected():
     assert not findings(plan, recording, "ObjectiveCollidesWith")[2].passed
 
 
+@pytest.mark.parametrize(("factor", "passes"), [(0.0, True), (0.9, True), (1.1, False)])
+def test_momentum_is_known_to_what_friction_takes_in_a_frame(factor, passes):
+    plan, right = collided()
+    bodies = right.world.bodies
+    mu = max(shape.friction for thing in (*bodies, *right.world.statics) for shape in thing.shapes)
+    assert bodies[0].mass == pytest.approx(bodies[1].mass)
+    # Of the pair's 2 m at 1 m/s each: a tenth of it, and friction on both; all of it lost by one of the two.
+    plan, recording = collided(lost=factor * (0.1 * 2.0 + 2.0 * mu * G / RATE))
+    momentum = findings(plan, recording, "ObjectiveCollidesWith")[2]
+    assert momentum.passed == passes and momentum.span[1] - momentum.span[0] == pytest.approx(1.0 / RATE)
+
+
 # ---- on a hinge
 def swinging(slow=1.0, gain=0.0):
     """The exact motion of the planned pendulum, integrated in small steps."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wsim.judge.verdict import Finding, Verdict
+from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.plan.planner import plan as make_plan
 from wsim.recording import FluidFrame, Frame, RecordingWriter
 from wsim.recording.video import write_video
@@ -171,7 +171,24 @@ SINKS = Finding(
     unit="m",
     limit_from="twice the contact margin",
     line=f"program.py:{BALL_LINE}",
+    target=RepairTarget(
+        kind="geometry",
+        prim="/World/ball",
+        parameter="collision",
+        direction="change",
+        why="it looks smaller than it is",
+    ),
 )
+
+
+@pytest.fixture
+def floats() -> Finding:
+    return FLOATS
+
+
+@pytest.fixture
+def sinks() -> Finding:
+    return SINKS
 
 
 @pytest.fixture(scope="session")

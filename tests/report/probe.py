@@ -31,7 +31,7 @@ addEventListener("load", () => {  // which waits for the video's first frame
   out.id = "probe";
   out.textContent = JSON.stringify({
     title: document.title, width: innerWidth, scrollWidth: document.documentElement.scrollWidth,
-    card: box(document.querySelector(".card")),
+    fix: box(document.querySelector(".card .fix")), moment: box(document.querySelector(".card img")),
     rows: [...document.querySelectorAll(".finding")].map(row => row.innerText),
     video: video && {duration: video.duration, width: video.videoWidth, state: video.readyState,
                      muted: video.muted, loop: video.loop, error: video.error && video.error.message},

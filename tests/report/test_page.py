@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import importlib.util
 import re
-import time
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from wsim.errors import UserError
-from wsim.judge.verdict import Finding, Verdict
+from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.recording import Frame, RecordingWriter
 from wsim.report import write
 from wsim.report.page import write_page
@@ -72,9 +71,12 @@ def test_the_reason_comes_first(rejected: Path) -> None:
     for word in ("Rejected", "1 of 2 findings failed"):
         assert text.index(word, text.index("wsim · run")) < reason
     card = text[reason : text.index("What must happen")]
-    for words in ("measured 0.031 m", "at most 0.01 m", "margin −0.021 m", "time 2.5 s", "twice the contact margin"):
+    for words in (
+        "measured 0.031 m", "at most 0.01 m", "margin −0.021 m", "time 2.5 s", "twice the contact margin",
+        "Change the collision of ball", "it looks smaller than it is", "side at 2.5 s",
+    ):  # fmt: skip
         assert words in card, card
-    assert "scene.sphere(" in card
+    assert "scene.sphere(" in card and "--finding 2" in card
     rows = page.all("tbody", class_="finding")
     assert [("fail" in (row["class"] or "").split()) for row in rows] == [True, False]
     assert "wsim view " in text and "--finding 2" in text and "--finding 1" not in text
@@ -92,6 +94,29 @@ def test_the_summary_says_nothing_twice(make_run) -> None:
     assert words.index("2 of 2") < first < second
 
 
+def test_only_the_first_card_is_open_and_what_passed_is_folded(make_run, sinks, floats) -> None:
+    findings = [sinks, sinks.model_copy(update={"prim": "/World/block"}), floats]
+    page = Elements(write(make_run(Verdict(status="rejected", summary="Rejected: 2 of 3.", findings=findings))))
+    cards = page.all("details", class_="card")
+    assert [card["id"] for card in cards] == ["failed-1", "failed-2"]
+    assert ["open" in card for card in cards] == [True, False]
+    assert ["open" in folded for folded in page.all("details", class_="passed")] == [False]
+    assert "✓ 1 passed ; the closest to its limit: #3 ObjectiveFloats of block" in page.words
+
+
+def test_what_to_change_is_listed_once_where_several_findings_ask(make_run, sinks) -> None:
+    block = sinks.target.model_copy(update={"prim": "/World/block"})
+    step = RepairTarget(kind="time step", parameter="time_step", direction="lower", suggested=2e-4, unit="s")
+    targets = [sinks.target, block, step]
+    findings = [sinks.model_copy(update={"target": target}) for target in targets]
+    run = make_run(Verdict(status="rejected", summary="Rejected: 3 of 3.", findings=findings))
+    page = Elements(write(run))
+    assert len(page.all("section", id="fixes")) == 1
+    words = page.words[page.words.index("What to change") :]
+    assert "Change the collision of ball and block" in words and "Lower the time step to 0.0002 s" in words
+    assert f"wsim run {run} --time-step 0.0002" in words
+
+
 def test_findings_link_to_their_lines(rejected: Path) -> None:
     page = Elements(write(rejected))
     assert [line["id"] for line in page.all("span", class_="failed")] == [f"L{BALL_LINE}"]
@@ -102,9 +127,7 @@ def test_findings_link_to_their_lines(rejected: Path) -> None:
 
 
 def test_one_file_that_needs_no_other(rejected: Path) -> None:
-    started = time.perf_counter()
     path = write(rejected)
-    assert time.perf_counter() - started < 3.0
     assert path == rejected / "report.html" and 20_000 < path.stat().st_size < 2_000_000
     page = Elements(path)
     assert all(link.startswith(("#", "data:")) for link in page.links())
@@ -214,8 +237,9 @@ def test_a_browser_shows_it(rejected: Path, tmp_path: Path, width: int) -> None:
     shown = browser.probe(write(rejected), tmp_path / "profile", width)
     assert shown["scrollWidth"] <= shown["width"] == width
     assert len(shown["rows"]) == 2 and "The ball lies 31 mm above" in shown["rows"][0]
-    assert shown["card"]["bottom"] < 900  # the reason is on the first screen
-    assert shown["images"] == 7 and shown["broken"] == 0 and shown["charts"] == 6
+    assert shown["fix"]["bottom"] < 900  # the reason and what to change are on the first screen
+    assert width < 800 or shown["moment"]["bottom"] < 900  # and so is the picture, where there is room beside them
+    assert shown["images"] == 7 and shown["broken"] == 0 and shown["charts"] == 7
     assert shown["video"]["error"] is None and shown["video"]["state"] >= 2 and shown["video"]["width"] == 320
     assert shown["video"]["duration"] == pytest.approx(91 / 30, abs=0.05)
     assert shown["video"]["muted"] and shown["video"]["loop"]

@@ -17,6 +17,7 @@ from wsim.cli.options import (
     Runs,
     Set,
     TimeStep,
+    Verify,
     parse_params,
     refuse_image,
 )
@@ -36,6 +37,7 @@ def generate(
     isolation: Isolation = "auto",
     pictures: Pictures = True,
     time_step: TimeStep = None,
+    verify: Verify = False,
     params: Set = None,
 ) -> None:
     """Plan a world from a sentence, build it, simulate it, and judge it.
@@ -52,7 +54,12 @@ def generate(
             'give a sentence, such as wsim generate "A cork ball floats in a tank of water.", or --plan FILE'
         )
     settings = Settings(
-        device=device, isolation=isolation, pictures=pictures, time_step=time_step, params=parse_params(params)
+        device=device,
+        isolation=isolation,
+        pictures=pictures,
+        time_step=time_step,
+        verify=verify,
+        params=parse_params(params),
     )
     settings.check()
     refuse_image(image)

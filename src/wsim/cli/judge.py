@@ -1,4 +1,4 @@
-"""`wsim judge`: judge a recording again."""
+"""`wsim judge`: judge a recording again, or a trajectory that another simulator made."""
 
 from __future__ import annotations
 
@@ -13,28 +13,44 @@ from wsim.runs import RunFolder
 
 
 def judge(
-    target: Annotated[Path, typer.Argument(help="The folder of a run, or a recording.rrd.")],
+    target: Annotated[Path, typer.Argument(help="The folder of a run, a recording.rrd, or a trajectory.npz.")],
     plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the verdict as JSON.")] = False,
+    model: Annotated[
+        Path | None,
+        typer.Option("--model", help="What a trajectory is of: MJCF or URDF (.xml, .urdf), a USD stage, a World.json."),
+    ] = None,
+    save: Annotated[
+        Path | None, typer.Option("--save", metavar="FILE.rrd", help="Write the trajectory as a recording, to view it.")
+    ] = None,
 ) -> None:
     """Judge a recording: the checks that hold for any world, and the plan's objectives.
 
+    A trajectory is a NumPy file of MuJoCo's states (time, qpos, qvel), or of bodies: time and body_names with xpos and
+    xquat, or with Newton's body_q; body_qd and contact_force may be there.
     The run's own verdict.json is not touched. Exit code: 0 accepted, 1 rejected, 3 blocked.
     """
     from wsim.cli.show import ConsoleProgress, show_verdict
     from wsim.pipeline import judge_recording
     from wsim.plan.store import load
 
+    if (model or save) and target.suffix != ".npz":
+        raise UserError(f"{target} is no trajectory; --model and --save go with a .npz file")
     recording, own = find_recording(target)
     path = plan or own
     chosen = load(path) if path else None
     if json:
-        verdict = judge_recording(recording, chosen)
+        verdict = judge_recording(recording, chosen, model=model)
         print(verdict.model_dump_json(indent=2))
     else:
         with ConsoleProgress() as progress:
-            verdict = judge_recording(recording, chosen, progress)
+            verdict = judge_recording(recording, chosen, progress, model)
         show_verdict(verdict, recording.parent)
+    if save:
+        from wsim.importers import read_npz
+        from wsim.importers.trajectory import save as save_recording
+
+        save_recording(read_npz(recording, model), save)
     raise typer.Exit(EXIT_CODES[verdict.status])
 
 
@@ -44,7 +60,7 @@ def find_recording(target: Path) -> tuple[Path, Path | None]:
     Raises:
         UserError: If there is no recording.
     """
-    if target.suffix == ".rrd":
+    if target.suffix in (".rrd", ".npz"):
         if not target.is_file():
             raise UserError(f"{target} does not exist")
         try:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, parse_params
+from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
 from wsim.errors import UserError
 from wsim.runs import RunFolder, write_whole
 
@@ -21,6 +21,7 @@ def run(
     isolation: Isolation = "auto",
     pictures: Pictures = True,
     time_step: TimeStep = None,
+    verify: Verify = False,
     timeout: Annotated[
         float, typer.Option("--timeout", min=0.5, max=3600.0, help="Seconds that build may take.")
     ] = 30.0,
@@ -45,6 +46,7 @@ def run(
         isolation=isolation,
         pictures=pictures,
         time_step=time_step,
+        verify=verify,
         params=parse_params(params),
         build_timeout=timeout,
         build_memory=int(memory * 2**30),

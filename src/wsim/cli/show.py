@@ -126,6 +126,8 @@ def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> 
     for finding in verdict.failures:
         where = f" [{finding.line}]" if finding.line else ""
         console.print(Text(f"✗ {finding.check}{where}: {finding.message}", style="red"))
+        if finding.target is not None:
+            console.print(Text(f"  → {finding.target.sentence}: {finding.target.why}".rstrip(": ")))
     console.print(Text(verdict.status, style=STATUS_STYLE[verdict.status]), Text(f" {verdict.summary}"))
     console.print(f"run:    {folder}", soft_wrap=True)
     if report:

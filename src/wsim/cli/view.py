@@ -25,7 +25,7 @@ def view(
     from wsim.recording.view import has_display, open_native, serve_web
 
     recording, _ = find_recording(target)
-    time, prim = _moment(recording, finding) if finding else (None, None)
+    time, prim = _moment(recording, finding) if finding is not None else (None, None)
     if web:
         with serve_web(recording, port, time=time, entity=prim) as server:
             print(f"serving {recording} on 127.0.0.1 only; Ctrl-C stops\n{server.url}", flush=True)
@@ -36,15 +36,19 @@ def view(
         open_native(recording, time, prim)
         print(f"opened {recording}")
         return
-    print("There is no display here. Copy the recording to a machine with one, and there run:")
-    print(f"  rerun {shlex.quote(recording.name)}")
+    chosen = f" --finding {finding}" if finding is not None else ""
+    what = "the recording" if finding is None else "the recording, with verdict.json beside it,"
+    print(f"There is no display here. Copy {what} to a machine with one, and there run:")
+    name = shlex.quote(recording.name)
+    print(f"  wsim view {name}{chosen}" if chosen else f"  rerun {name}")
     print("or serve it to a browser on this machine (also through an SSH tunnel):")
-    print(f"  wsim view --web {shlex.quote(str(target))}")
+    print(f"  wsim view --web {shlex.quote(str(target))}{chosen}")
 
 
 def _moment(recording: Path, number: int) -> tuple[float | None, str | None]:
-    """Time and prim of a finding of the verdict beside a recording."""
+    """Time and prim of a finding of the verdict beside a recording, which is told; None for what cannot be shown."""
     from wsim.judge.verdict import Verdict
+    from wsim.recording.reader import read_world
 
     path = recording.with_name("verdict.json")
     if not path.is_file():
@@ -52,7 +56,19 @@ def _moment(recording: Path, number: int) -> tuple[float | None, str | None]:
     findings = Verdict.model_validate_json(path.read_text(encoding="utf-8")).findings
     if number > len(findings):
         raise UserError(f"--finding {number}: the verdict has {len(findings)} findings")
-    return findings[number - 1].time, findings[number - 1].prim
+    finding = findings[number - 1]
+    world = read_world(recording)
+    # A missing object has a prim that nothing was recorded of; a joint is seen where its child is.
+    seen = {item.prim for group in (world.bodies, world.statics, world.fluids, world.cameras) for item in group}
+    seen_as = {joint.prim: joint.child for joint in world.joints}
+    prim = seen_as.get(finding.prim, finding.prim) if finding.prim is not None else None
+    shown = prim if prim is not None and any(prim == one or prim.startswith(one + "/") for one in seen) else None
+    time = finding.time if finding.time is not None or finding.span is None else finding.span[0]
+    where = f" at {time:.3f} s" if time is not None else ""
+    print(
+        f"finding {number}{where}: {finding.message}" + ("" if shown == prim else f" ({prim} is not in the recording)")
+    )
+    return time, shown
 
 
 def register(app: typer.Typer) -> None:

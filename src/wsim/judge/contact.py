@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.geometry import conjugate, depth_inside, multiply, radius_about, rotate
+from wsim.judge.geometry import conjugate, depth_inside, matrices, multiply, radius_about, rotate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_VERTICES = 200  # of a mesh that are probed
+CHUNK = 2048  # frames probed at once
 
 
 @dataclass
@@ -49,8 +50,11 @@ def placed_shapes(evidence: Evidence) -> list[Placed]:
         q = evidence.body_q[:, i, 3:]
         for shape in body.shapes:
             if shape.collides:
-                position = evidence.body_q[:, i, :3] + rotate(q, np.array(shape.position, dtype=np.float64))
-                turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
+                position, turned = evidence.body_q[:, i, :3], q
+                if any(shape.position):
+                    position = position + rotate(q, np.array(shape.position, dtype=np.float64))
+                if any(shape.rotation[:3]):
+                    turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
                 placed.append(Placed(body.prim, i, shape, position, turned, radius_about(shape)))
     for static in evidence.world.statics:
         for shape in static.shapes:
@@ -67,13 +71,18 @@ def overlaps(evidence: Evidence) -> list[Overlap]:
     A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
     edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
     """
-    shapes = placed_shapes(evidence)
+    shapes = evidence.placed
     jointed = {frozenset((joint.parent, joint.child)) for joint in evidence.world.joints}
+    # Two can only meet if the boxes about all the places that each is ever in do.
+    low = np.array([shape.position.min(axis=0) - shape.radius for shape in shapes]).reshape(-1, 3)
+    high = np.array([shape.position.max(axis=0) + shape.radius for shape in shapes]).reshape(-1, 3)
     found = []
     for index, a in enumerate(shapes):
         if a.body < 0:
             break
-        for b in shapes[index + 1 :]:
+        later = slice(index + 1, None)
+        may_meet = np.all((low[index] <= high[later]) & (low[later] <= high[index]), axis=1)
+        for b in (shapes[index + 1 + k] for k in np.flatnonzero(may_meet)):
             if a.owner == b.owner or frozenset((a.owner, b.owner)) in jointed:
                 continue
             depth = _depth(a, b)
@@ -84,7 +93,7 @@ def overlaps(evidence: Evidence) -> list[Overlap]:
 
 def distance(evidence: Evidence, one: str, other: str) -> Floats:
     """The gap between two objects at each frame, (T,) [m]; not positive when they touch, inf where nothing collides."""
-    shapes = placed_shapes(evidence)
+    shapes = evidence.placed
     near = np.ones(len(evidence.time), dtype=bool)
     gap = np.full(len(near), np.inf)
     for a in (shape for shape in shapes if shape.owner == one):
@@ -109,10 +118,16 @@ def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
     if a.shape.kind == "plane":
         return np.full(int(near.sum()), -np.inf)
     points, margin = probe_points(a.shape)
-    world = rotate(a.rotation[near][:, None], points[None]) + a.position[near][:, None]
-    local = rotate(conjugate(b.rotation[near])[:, None], world - b.position[near][:, None])
-    depth: Floats = depth_inside(b.shape, local).max(axis=1) + margin
-    return depth
+    frames = np.flatnonzero(near)
+    depth = np.empty(len(frames))
+    for start in range(0, len(frames), CHUNK):  # so many frames at once as the processor's cache holds
+        part = frames[start : start + CHUNK]
+        back = conjugate(b.rotation[part])
+        local = rotate(back, a.position[part] - b.position[part])[:, :, None]
+        if points.any():  # else it is the middle of a ball, however turned
+            local = local + matrices(multiply(back, a.rotation[part])) @ points.T
+        depth[start : start + CHUNK] = depth_inside(b.shape, np.moveaxis(local, 1, -1)).max(axis=1)
+    return depth + margin
 
 
 def probe_points(shape: Shape) -> tuple[Floats, float]:

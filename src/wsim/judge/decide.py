@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wsim.judge.checks_camera import CheckInFrame, CheckSeen
+from wsim.judge.checks_contact import CheckFriction, CheckSupport, CheckTunnelling
+from wsim.judge.checks_energy import CheckEnergy
+from wsim.judge.checks_fluid import CheckFluidMass, CheckHydrostatic, CheckPlanFluid
+from wsim.judge.checks_joint import CheckDrives, CheckJointLimits, CheckJoints
+from wsim.judge.checks_mass import CheckMass
+from wsim.judge.checks_motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
 from wsim.judge.checks_physics import (
     CheckDensity,
     CheckExplosion,
@@ -11,8 +18,11 @@ from wsim.judge.checks_physics import (
     CheckPenetration,
     CheckWaterLevel,
 )
+from wsim.judge.checks_plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
+from wsim.judge.checks_rest import CheckCreep, CheckJitter, CheckRestForce
 from wsim.judge.checks_run import CheckComplete, CheckFinite, CheckLog, CheckPlanObjects
 from wsim.judge.evidence import Evidence
+from wsim.judge.language.objective import ObjectiveFormula
 from wsim.judge.objectives_fluid import ObjectiveFills, ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
 from wsim.judge.objectives_hinge import ObjectiveSwings, ObjectiveTilts
 from wsim.judge.objectives_motion import (
@@ -29,6 +39,7 @@ from wsim.judge.objectives_solid import (
     ObjectiveStaysOn,
     ObjectiveTopples,
 )
+from wsim.judge.targets import aim
 from wsim.judge.verdict import Finding, Verdict
 
 if TYPE_CHECKING:
@@ -70,6 +81,30 @@ def physics_checks() -> list[Check]:
         CheckDensity(),
         CheckWaterLevel(),
         CheckSettled(),
+        CheckContinuity(),
+        CheckFreeFlight(),
+        CheckFreeTurning(),
+        CheckGravity(),
+        CheckEnergy(),
+        CheckTunnelling(),
+        CheckSupport(),
+        CheckFriction(),
+        CheckRestForce(),
+        CheckJitter(),
+        CheckCreep(),
+        CheckJoints(),
+        CheckJointLimits(),
+        CheckDrives(),
+        CheckMass(),
+        CheckPlanSizes(),
+        CheckPlanPlaces(),
+        CheckPlanLooks(),
+        CheckPlanJoints(),
+        CheckPlanFluid(),
+        CheckFluidMass(),
+        CheckHydrostatic(),
+        CheckInFrame(),
+        CheckSeen(),
     ]
 
 
@@ -78,13 +113,14 @@ def decide(recording: Recording, plan: Plan | None) -> Verdict:
     evidence = Evidence(recording, plan)
     if len(evidence.time) == 0:
         finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
+        aim([finding])
         return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
     findings = [finding for check in run_checks() for finding in check.run(evidence)]
     broken = next((f for f in findings if f.check == "CheckFinite" and not f.passed), None)
     if broken is None:
         findings += [finding for check in physics_checks() for finding in check.run(evidence)]
     for objective in plan.objectives if plan is not None else []:
-        check = OBJECTIVES[objective.kind](objective)
+        check = (OBJECTIVES[objective.kind] if objective.formula is None else ObjectiveFormula)(objective)
         if broken is None:
             findings += check.run(evidence)
         else:
@@ -93,11 +129,12 @@ def decide(recording: Recording, plan: Plan | None) -> Verdict:
             findings.append(
                 check.failed(message, objective=check.sentence, prim=prim, time=broken.time, line=evidence.line(prim))
             )
-    return conclude(findings)
+    return conclude(findings, evidence)
 
 
-def conclude(findings: list[Finding]) -> Verdict:
-    """Accepted if every finding passed; one sentence says why not."""
+def conclude(findings: list[Finding], evidence: Evidence | None = None) -> Verdict:
+    """Accepted if every finding passed; one sentence says why not, and each failed finding what to change."""
+    aim(findings, evidence)
     failures = [finding for finding in findings if not finding.passed]
     if not failures:
         return Verdict(status="accepted", summary=f"Accepted: all {len(findings)} findings pass.", findings=findings)

@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.geometry import Solid, conjugate, mean_rotation, rotate
+from wsim.judge.joints import JointTrack, track_of
+from wsim.judge.motion import Motion
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.contact import Placed
     from wsim.plan.schema import Plan
     from wsim.recording.reader import FluidTrack, Recording
-    from wsim.scene.world import Body, Container, Fluid, Static
+    from wsim.scene.world import Body, Container, Fluid, Joint, Static
 
     Floats = NDArray[np.float64]
 
@@ -52,6 +55,7 @@ class Evidence:
         self.body_qd: Floats = np.asarray(recording.body_qd, dtype=np.float64)
         self._solids: dict[int, Solid] = {}
         self._levels: dict[str, Level] = {}
+        self._joints: dict[str, JointTrack | None] = {}
         self._ends: dict[int, tuple[Floats, Floats]] = {}
 
     # ---- time
@@ -129,6 +133,7 @@ class Evidence:
     def line(self, prim: str | None) -> str | None:
         """The program's line that made a prim."""
         lines = {item.prim: item.line for item in self.world.fluids}
+        lines |= {item.prim: item.line for item in self.world.joints}
         lines |= {item.prim: item.line for item in self.world.statics}
         lines |= {item.prim: item.line for item in self.world.bodies}
         return lines.get(prim) if prim is not None else None
@@ -138,6 +143,24 @@ class Evidence:
         return ", ".join(prims) if prims else "none"
 
     # ---- bodies
+    @cached_property
+    def motion(self) -> Motion:
+        """What bodies do between frames."""
+        return Motion(self)
+
+    @cached_property
+    def placed(self) -> list[Placed]:
+        """All colliding shapes through time, those of bodies first."""
+        from wsim.judge.contact import placed_shapes
+
+        return placed_shapes(self)
+
+    def joint(self, joint: Joint) -> JointTrack | None:
+        """How a joint holds; None where the recording does not say where its anchors are."""
+        if joint.prim not in self._joints:
+            self._joints[joint.prim] = track_of(self, joint)
+        return self._joints[joint.prim]
+
     def solid(self, i: int) -> Solid:
         """A body's shapes."""
         if i not in self._solids:

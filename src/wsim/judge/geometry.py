@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -21,9 +22,16 @@ _AROUND, _ALONG = 48, 24  # facets of a round shape
 def rotate(q: Floats, v: Floats) -> Floats:
     """Vectors (..., 3) turned by quaternions (..., 4); shapes broadcast."""
     axis, w = q[..., :3], q[..., 3:4]
-    t = 2.0 * np.cross(axis, v)
-    turned: Floats = v + w * t + np.cross(axis, t)
+    t = 2.0 * _cross(axis, v)
+    turned: Floats = v + w * t + _cross(axis, t)
     return turned
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Cross products (..., 3); for short arrays several times as fast as NumPy's own."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
 
 def conjugate(q: Floats) -> Floats:
@@ -34,9 +42,20 @@ def conjugate(q: Floats) -> Floats:
 def multiply(a: Floats, b: Floats) -> Floats:
     """Hamilton products (..., 4) of quaternions: first b, then a."""
     va, wa, vb, wb = a[..., :3], a[..., 3:4], b[..., :3], b[..., 3:4]
-    vector = wa * vb + wb * va + np.cross(va, vb)
+    vector = wa * vb + wb * va + _cross(va, vb)
     scalar = wa * wb - np.sum(va * vb, axis=-1, keepdims=True)
     return np.concatenate([vector, scalar], axis=-1)
+
+
+def matrices(q: Floats) -> Floats:
+    """Unit quaternions (N, 4) as rotation matrices (N, 3, 3)."""
+    x, y, z, w = q.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
 
 
 def mean_rotation(q: Floats) -> Floats:
@@ -244,11 +263,11 @@ def depth_inside(shape: Shape, points: Floats) -> Floats:
         beyond = np.maximum(np.abs(z) - shape.size[1] / 2, 0.0)
         return shape.size[0] - np.sqrt(x * x + y * y + beyond * beyond)
     if shape.kind == "cylinder":
-        distance = np.stack([np.hypot(x, y) - shape.size[0], np.abs(z) - shape.size[1] / 2], axis=-1)
+        beyond_each = [np.hypot(x, y) - shape.size[0], np.abs(z) - shape.size[1] / 2]
     elif shape.kind == "box":
-        distance = np.abs(points) - np.array(shape.size) / 2
+        beyond_each = [np.abs(along) - size / 2 for along, size in zip((x, y, z), shape.size, strict=True)]
     else:
         return np.full(points.shape[:-1], -np.inf)
-    outside = np.linalg.norm(np.maximum(distance, 0.0), axis=-1)
-    depth: Floats = -(outside + np.minimum(distance.max(axis=-1), 0.0))
+    outside = np.sqrt(sum(np.square(np.maximum(beyond, 0.0)) for beyond in beyond_each))
+    depth: Floats = -(outside + np.minimum(functools.reduce(np.maximum, beyond_each), 0.0))
     return depth

@@ -11,6 +11,7 @@ import numpy as np
 from wsim.judge.evidence import MissingError
 from wsim.judge.geometry import conjugate, multiply, rotate
 from wsim.judge.objective import ObjectiveCheck
+from wsim.judge.pendulum import swing_stretch
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -85,10 +86,7 @@ class ObjectiveSwings(ObjectiveCheck):
     def _theory(self, evidence: Evidence, swing: _Pendulum, amplitude: float) -> float:
         """Period of a physical pendulum at an amplitude: T0 / agm(1, cos(amplitude / 2)), which is exact [s]."""
         small = 2 * math.pi * math.sqrt(swing.inertia / (swing.mass * evidence.gravity * swing.arm))
-        a, b = 1.0, math.cos(amplitude / 2)
-        while abs(a - b) > 1e-12:
-            a, b = (a + b) / 2, math.sqrt(a * b)
-        return small / a
+        return small * float(swing_stretch(amplitude))
 
     def _pendulum(self, evidence: Evidence) -> _Pendulum:
         joint, names = self._chain(evidence)

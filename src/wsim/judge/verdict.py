@@ -9,6 +9,39 @@ from pydantic import BaseModel, ConfigDict, Field
 Status = Literal["accepted", "rejected", "blocked"]
 
 
+RepairKind = Literal[
+    "physical parameter", "settlement", "camera", "geometry", "joint", "drive", "controller", "resolution", "time step",
+    "fluid", "missing object", "extra object", "visual mismatch", "program",
+]  # fmt: skip
+
+
+class RepairTarget(BaseModel):
+    """What to change so that a finding passes: one of a closed list, with parameter and direction where physics says.
+
+    `suggested` is the value that the physics gives, where it gives one, and `current` what it is now.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    kind: RepairKind
+    prim: str | None = None
+    parameter: str = ""  # as the program calls it: "density", "friction", "position.z", "time_step"
+    direction: Literal["raise", "lower", "change", "add", "remove", ""] = ""
+    current: float | None = None
+    suggested: float | None = None
+    unit: str = ""
+    why: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """What to do, in words: "lower density of /World/block from 2500 to 600 kg/m^3"."""
+        of = f"{self.parameter} of {self.prim}" if self.parameter and self.prim else self.parameter or self.prim
+        words = f"{self.direction or 'look at'} {of or f'the {self.kind}'}"
+        given = [(word, x) for word, x in (("from", self.current), ("to", self.suggested)) if x is not None]
+        numbers = " ".join(f"{word} {x:.4g}" for word, x in given)
+        return " ".join(part for part in (words, numbers, self.unit if numbers else "") if part)
+
+
 class Finding(BaseModel):
     """One check's outcome: the measured value beside its limit, where, when and by which line of the program."""
 
@@ -19,7 +52,8 @@ class Finding(BaseModel):
     message: str  # one sentence a person reads
     objective: str | None = None  # the plan's objective that this finding answers
     prim: str | None = None
-    time: float | None = None  # [s] of simulated time
+    time: float | None = None  # [s] of simulated time: the moment to look at
+    span: tuple[float, float] | None = None  # [s]: from when to when it was so
     value: float | None = None
     limit: float | None = None
     expected: float | None = None  # what theory gives, where there is one
@@ -27,6 +61,7 @@ class Finding(BaseModel):
     margin: float | None = None  # distance to the limit, positive = satisfied, in `unit`
     limit_from: str = ""  # how the limit was got
     line: str | None = None  # "program.py:12"
+    target: RepairTarget | None = None  # what to change, where the finding failed
 
 
 class Verdict(BaseModel):

@@ -38,15 +38,15 @@ class BodyBuffer:
         self._heights = [names.entity_path(names.HEIGHT_ROOT + _short(b.prim)) for b in world.bodies[:MAX_HEIGHT_PLOTS]]
         self._times: list[int] = []
         self._seconds: list[float] = []
-        self._rows: list[tuple[Floats, Floats, Floats]] = []
+        self._rows: list[tuple[Floats, ...]] = []
         self._bytes = 0
 
-    def add(self, ns: int, t: float, body_q: Floats, body_qd: Floats, contact_force: Floats) -> None:
-        """Keep one frame: its time [ns] and as it was given [s], (B, 7), (B, 6), (B, 3)."""
+    def add(self, ns: int, t: float, rows: tuple[Floats, ...]) -> None:
+        """Keep one frame: its time [ns] and as given [s]; (B, 7), (B, 6), (B, 3), and (B, 4) of what is applied."""
         self._times.append(ns)
         self._seconds.append(t)
-        self._rows.append((body_q, body_qd, contact_force))
-        self._bytes += body_q.nbytes + body_qd.nbytes + contact_force.nbytes
+        self._rows.append(rows)
+        self._bytes += sum(row.nbytes for row in rows)
         if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
             self.flush()
 
@@ -55,12 +55,11 @@ class BodyBuffer:
         if not self._times:
             return
         # Bodies first, so that each body's rows are one contiguous block.
-        q, qd, force = (np.stack(arrays, axis=1) for arrays in zip(*self._rows, strict=True))
+        q, qd, force, *applied = (np.stack(arrays, axis=1) for arrays in zip(*self._rows, strict=True))
         index = names.time_column(self._times)
         for i, entity in enumerate(self._entities):
-            self._stream.send_columns(
-                entity, [index], [*self._pose(q[i], self._nested[i]), *_motion(qd[i], force[i])], strict=True
-            )
+            own = [*_motion(qd[i], force[i]), *(names.column(names.APPLIED, array[i]) for array in applied)]
+            self._stream.send_columns(entity, [index], [*self._pose(q[i], self._nested[i]), *own], strict=True)
         for i, entity in enumerate(self._heights):
             height = names.column(names.SCALARS, q[i, :, 2].astype(np.float64))
             self._stream.send_columns(entity, [index], [height], strict=True)
@@ -174,6 +173,8 @@ class RowBuffer:
         self._bytes.pop(key)
         if key[1] == names.IMAGE:
             columns = _jpeg_columns([row[names.IMAGE] for row in rows])
+        elif key[1] == names.SEEN:
+            columns = [names.column(names.SEEN, np.stack([row[names.SEEN] for row in rows]))]
         else:
             columns = [_row_column(name, [row[name] for row in rows]) for name in rows[0]]
         self._stream.send_columns(key[0], [names.time_column(times)], columns, strict=True)

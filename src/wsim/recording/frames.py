@@ -36,6 +36,9 @@ class Frame:
     contact_force: Floats  # (B, 3) net contact force on each body [N]
     fluids: Mapping[str, FluidFrame] = field(default_factory=dict)  # by the fluid's prim
     scalars: Mapping[str, float] = field(default_factory=dict)  # by name, e.g. "energy/kinetic" [SI]
+    # What fluid and control did to each body since the last frame; in all frames of a recording, or in none.
+    applied_impulse: Floats | None = None  # (B, 3) [N s]
+    applied_work: Floats | None = None  # (B,) [J]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,6 +73,15 @@ class ImageTrack(Sequence["NDArray[np.uint8]"]):
 
 
 @dataclass(frozen=True, eq=False)
+class SeenTrack:
+    """How much of a camera's picture each object takes up, through time."""
+
+    time: Times  # (T,) [s]
+    objects: list[str]  # prims
+    share: Floats  # (T, objects)
+
+
+@dataclass(frozen=True, eq=False)
 class Recording:
     """What happened in a world. T frames, B bodies in the order of `world.bodies`."""
 
@@ -87,6 +96,9 @@ class Recording:
     scalars: dict[str, Times]  # by name, (T,); NaN where a frame had none
     log: list[LogLine]  # in order of time, then of writing
     images: Mapping[str, ImageTrack]  # by camera prim
+    seen: Mapping[str, SeenTrack] = field(default_factory=dict)  # by camera prim; empty where nothing was drawn
+    applied_impulse: Floats | None = None  # (T, B, 3) [N s], of fluid and control since the frame before
+    applied_work: Floats | None = None  # (T, B) [J], likewise
 
     @property
     def complete(self) -> bool:
@@ -147,6 +159,7 @@ def read(path: str | Path) -> Recording:
     frame_ns, frame_time = table.get(names.FRAME_ENTITY, names.FRAME_TIME, (), np.float64)
     clock = Clock(frame_ns, frame_time)
     body_q, body_qd, force = _bodies(table, world, frame_ns, path)
+    applied = _applied(table, world, frame_ns)
     return Recording(
         path=path,
         world=world,
@@ -159,6 +172,9 @@ def read(path: str | Path) -> Recording:
         scalars=_scalars(table, clock),
         log=_log(table, clock),
         images=_images(table, world, clock),
+        seen=_seen(table, clock),
+        applied_impulse=None if applied is None else applied[:, :, :3],
+        applied_work=None if applied is None else applied[:, :, 3],
     )
 
 
@@ -225,6 +241,26 @@ def _bodies(table: Table, world: World, frame_ns: NDArray[np.int64], path: Path)
                 raise UserError(f"{path}: {body.prim} has {len(ns)} rows of {name}, the recording {count} frames")
             target[:] = values[rows]
     return q, qd, force
+
+
+def _applied(table: Table, world: World, frame_ns: NDArray[np.int64]) -> Floats | None:
+    """Impulse and work of what is applied to bodies (T, B, 4), where they were recorded."""
+    found = np.full((len(frame_ns), len(world.bodies), 4), np.nan, np.float32)
+    for i, body in enumerate(world.bodies):
+        ns, values = table.get(names.entity_path(body.prim), names.APPLIED, (4,), np.float32)
+        if not len(ns):
+            return None
+        found[:, i] = values[np.searchsorted(ns, frame_ns)]
+    return found if world.bodies else None
+
+
+def _seen(table: Table, clock: Clock) -> dict[str, SeenTrack]:
+    tracks = {}
+    for entity in table.entities(names.SEEN_OBJECTS):
+        objects = json.loads(table.cells(entity, names.SEEN_OBJECTS)[1][-1][0].as_py())
+        ns, share = table.get(entity, names.SEEN, (len(objects),), np.float32)
+        tracks[entity] = SeenTrack(clock.seconds(ns), objects, share)
+    return tracks
 
 
 def _fluids(table: Table, world: World, clock: Clock) -> dict[str, FluidTrack]:

@@ -57,6 +57,8 @@ class RecordingWriter:
         self._last_ns: int | None = None
         self._log_count = 0
         self._image_sizes = {c.prim: (c.width, c.height) for c in world.cameras}
+        self._seen_objects: dict[str, list[str]] = {}
+        self._applied = False
         self._closed = False
         self._flushed_at = time.monotonic()
         self._stream = _open_stream(self.partial_path, world.name)
@@ -72,14 +74,14 @@ class RecordingWriter:
             ValueError: A shape does not match the world, a prim or a name is unknown, or time stands still.
         """
         ns = self._frame_time(t)
-        body_q, body_qd, contact_force = self._check_bodies(frame)
+        rows = self._check_bodies(frame)
         fluids = {prim: self._fluid(prim).check(value) for prim, value in frame.fluids.items()}
         for name in frame.scalars:
             if not SCALAR_NAME.fullmatch(name):
                 raise ValueError(f"scalar {name!r}: a name is letters, digits and _.-, its parts separated by /")
         self._last_ns = ns
         self.frame_count += 1
-        self._bodies.add(ns, float(t), body_q, body_qd, contact_force)
+        self._bodies.add(ns, float(t), rows)
         for prim, arrays in fluids.items():
             self._fluids[prim].add(ns, *arrays)
         for name, value in frame.scalars.items():
@@ -133,6 +135,26 @@ class RecordingWriter:
             self._image_sizes[camera_prim] = (width, height)
         _, jpeg = cv2.imencode(".jpg", rgb[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
         self._rows.add(names.entity_path(camera_prim), _time_ns(t), {names.IMAGE: np.asarray(jpeg).reshape(-1)})
+
+    def seen(self, t: float, camera_prim: str, shares: Mapping[str, float]) -> None:
+        """Record the share of a camera's picture that each object takes up.
+
+        Args:
+            t: When [s].
+            camera_prim: The camera.
+            shares: By the object's prim, 0 for one that is not to be seen; the same objects each time.
+        """
+        self._check_open()
+        entity = names.entity_path(camera_prim)
+        if camera_prim not in self._seen_objects:
+            self._seen_objects[camera_prim] = list(shares)
+            objects = names.column(names.SEEN_OBJECTS, [json.dumps(list(shares))])
+            self._stream.send_columns(entity, [], [objects], strict=True)
+        elif self._seen_objects[camera_prim] != list(shares):
+            raise ValueError(f"seen by {camera_prim}: objects {list(shares)} were {self._seen_objects[camera_prim]}")
+        if shares:
+            row = np.array(list(shares.values()), dtype=np.float32)
+            self._rows.add(entity, _time_ns(t), {names.SEEN: row})
 
     def close(self, complete: bool = True, error: str | None = None) -> Path:
         """Write what is left, check the file and give it its name. Closing twice is fine.
@@ -207,9 +229,15 @@ class RecordingWriter:
     def _check_bodies(self, frame: Frame) -> tuple[NDArray[np.float32], ...]:
         count = len(self.world.bodies)
         arrays = []
-        for name, width in (("body_q", 7), ("body_qd", 6), ("contact_force", 3)):
+        fields = {"body_q": (frame.body_q, 7), "body_qd": (frame.body_qd, 6), "contact_force": (frame.contact_force, 3)}
+        if frame.applied_impulse is not None and frame.applied_work is not None:
+            fields["applied_impulse and applied_work"] = (np.c_[frame.applied_impulse, frame.applied_work], 4)
+        if self.frame_count and ("applied_impulse and applied_work" in fields) != self._applied:
+            raise ValueError("frame: applied_impulse and applied_work come in all frames or in none")
+        self._applied = len(fields) == 4
+        for name, (given, width) in fields.items():
             # A copy: a simulator may hand out the same array each frame.
-            array = np.array(getattr(frame, name), dtype=np.float32)
+            array = np.array(given, dtype=np.float32)
             if array.shape != (count, width):
                 raise ValueError(
                     f"frame: {name} has shape {array.shape}, the world has {count} bodies: ({count}, {width})"

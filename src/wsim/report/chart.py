@@ -52,6 +52,19 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Limit:
+    """A level that values must keep to, drawn with the side that is forbidden."""
+
+    value: float
+    words: str = ""  # "at most", "at least": which side is allowed; else neither is drawn
+
+    @property
+    def forbids(self) -> float:
+        """Towards which values: +1, -1, or 0 where it is not known."""
+        return {"at most": 1.0, "at least": -1.0}.get(self.words, 0.0)
+
+
+@dataclass(frozen=True)
 class Chart:
     """Series over simulated time."""
 
@@ -62,6 +75,8 @@ class Chart:
     note: str = ""
     downwards: bool = False  # larger values lower: depths
     zero: str = ""  # names the line at zero, which is then always in view
+    limits: list[Limit] = field(default_factory=list)
+    over: tuple[float, float] | None = None  # [s]: a stretch that is shaded
 
     def legend(self) -> list[tuple[int, str, str]]:
         """(colour, label, what it says) of each series."""
@@ -82,11 +97,13 @@ class Chart:
     def svg(self) -> Markup:
         """The drawing."""
         frame = _Frame.around(self)
-        parts = [*_axes(self, frame)]
+        parts = [*_backdrop(self, frame), *_axes(self, frame)]
+        parts += [_limit(limit, frame) for limit in self.limits]
         for mark in self.marks:
             parts.append(_moment(mark, frame))
         for line in sorted(self.series, key=lambda line: -line.color):
             parts += _line(line, frame, self.unit)
+        parts += [_limit_label(limit, frame, self.unit) for limit in self.limits]
         for mark in self.marks:
             if mark.measured is not None:
                 t, value = mark.measured
@@ -112,6 +129,7 @@ class _Frame:
         times = _finite([line.time for line in chart.series])
         values = _finite([line.value for line in chart.series])
         extra = [line.expected for line in chart.series] + [mark.measured[1] for mark in chart.marks if mark.measured]
+        extra += [limit.value for limit in chart.limits]
         known = [x for x in extra if x is not None and math.isfinite(x)] + ([0.0] if chart.zero else [])
         values = np.concatenate([values, known])
         low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
@@ -126,6 +144,35 @@ class _Frame:
 
     def y(self, value: float) -> float:
         return HEIGHT - BOTTOM - (value - self.bottom) / (self.top - self.bottom) * (HEIGHT - TOP - BOTTOM)
+
+
+def _backdrop(chart: Chart, frame: _Frame) -> list[Markup]:
+    """The forbidden side of each limit, and the stretch that a value is taken from."""
+    box = '<rect class="{}" x="{}" y="{}" width="{}" height="{}"/>'
+    parts = []
+    for limit in chart.limits:
+        if limit.forbids:
+            edge = max(frame.top, frame.bottom) if limit.forbids > 0 else min(frame.top, frame.bottom)
+            top, bottom = sorted((frame.y(limit.value), frame.y(edge)))
+            place = (LEFT, _px(top), WIDTH - LEFT - RIGHT, _px(max(bottom - top, 0.0)))
+            parts.append(Markup(box).format("forbidden", *place))
+    if chart.over is not None and chart.over[1] > chart.over[0]:
+        start, end = (frame.x(min(max(t, frame.t0), frame.t1)) for t in chart.over)
+        parts.append(Markup(box).format("over", _px(start), TOP, _px(end - start), HEIGHT - TOP - BOTTOM))
+    return parts
+
+
+def _limit(limit: Limit, frame: _Frame) -> Markup:
+    y = _px(frame.y(limit.value))
+    line = '<line class="limit" x1="{}" x2="{}" y1="{}" y2="{}"/>'
+    return Markup(line).format(LEFT, WIDTH - RIGHT, y, y)
+
+
+def _limit_label(limit: Limit, frame: _Frame, unit: str) -> Markup:
+    y = frame.y(limit.value)
+    text = f"{limit.words or 'limit'} {quantity(limit.value, unit)}"
+    place = (WIDTH - RIGHT - 4, _px(y + 14 if y < TOP + 16 else y - 5))
+    return Markup('<text class="limit end" x="{}" y="{}">{}</text>').format(*place, text)
 
 
 def ticks(low: float, high: float, count: int = TICKS) -> list[float]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wsim.report.locate import ring_of, where_is
 from wsim.report.numbers import quantity
 
 if TYPE_CHECKING:
@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 MOST_VIDEO_BYTES = 20_000_000  # a larger video is linked, not inlined
 MOST_STILLS = 36
-MOST_MOMENTS = 6
 STILL_WIDTH = 480  # [px]
 STILL_QUALITY = 80
+LEAST_RING = 12  # [px]
+RING = (38, 38, 220)  # red, as OpenCV has it: BGR
 STILL_NAME = re.compile(r"(?P<camera>.+)_(?P<time>[0-9]+\.?[0-9]*)s")
 
 
@@ -60,21 +61,20 @@ def find_stills(folder: Path) -> list[Picture]:
     return [picture for picture in pictures if picture]
 
 
-def find_moments(recording: Recording, findings: Sequence[Finding]) -> list[Picture | None]:
-    """For each finding what the recording's first camera saw at its time, if it saw anything; for the first few."""
-    tracks = [(camera, track) for camera, track in recording.images.items() if len(track)]
-    if not tracks:
-        return [None] * len(findings)
-    camera, track = tracks[0]
-    moments: list[Picture | None] = []
-    for i, finding in enumerate(findings):
-        if i >= MOST_MOMENTS or finding.time is None:
-            moments.append(None)
-            continue
-        nearest = min(range(len(track)), key=lambda k: abs(float(track.time[k]) - float(finding.time or 0.0)))
-        caption = f"{camera.rsplit('/', 1)[-1]} at {quantity(float(track.time[nearest]), 's')}"
-        moments.append(_thumbnail(track.jpeg(nearest), caption))
-    return moments
+def find_moment(recording: Recording, finding: Finding) -> Picture | None:
+    """The picture nearest to a finding's time, its prim ringed, by the first camera that has the prim in view."""
+    cameras = [camera for camera in recording.world.cameras if len(recording.images.get(camera.prim, ()))]
+    if not cameras or finding.time is None:
+        return None
+    ball = where_is(recording, finding.prim, finding.time)
+    rings = [ring_of(camera, *ball) if ball is not None else None for camera in cameras]
+    camera, ring = next(((c, r) for c, r in zip(cameras, rings, strict=True) if r is not None), (cameras[0], None))
+    track = recording.images[camera.prim]
+    nearest = min(range(len(track)), key=lambda k: abs(float(track.time[k]) - float(finding.time or 0.0)))
+    caption = f"{camera.prim.rsplit('/', 1)[-1]} at {quantity(float(track.time[nearest]), 's')}"
+    if ball is not None and ring is None:
+        caption += ": no camera has it in view"
+    return _thumbnail(track.jpeg(nearest), caption, ring)
 
 
 def _still_order(path: Path) -> tuple[str, float, str]:
@@ -87,8 +87,8 @@ def _still_caption(path: Path) -> str:
     return f"{match['camera']} at {quantity(float(match['time']), 's')}" if match else path.stem
 
 
-def _thumbnail(data: bytes, caption: str) -> Picture | None:
-    """A picture made small; None if it cannot be decoded."""
+def _thumbnail(data: bytes, caption: str, ring: tuple[float, float, float] | None = None) -> Picture | None:
+    """A picture made small, with a ring (x, y, radius) in widths of the picture; None if it cannot be decoded."""
     import cv2
     import numpy as np
 
@@ -99,6 +99,9 @@ def _thumbnail(data: bytes, caption: str) -> Picture | None:
     if width > STILL_WIDTH:
         width, height = STILL_WIDTH, max(1, round(height * STILL_WIDTH / width))
         image = cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA)
+    if ring is not None:
+        center, radius = (round(ring[0] * width), round(ring[1] * width)), max(LEAST_RING, round(ring[2] * width))
+        cv2.circle(image, center, radius, RING, 2, cv2.LINE_AA)
     _, jpeg = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, STILL_QUALITY])
     return Picture(_data("image/jpeg", jpeg.tobytes()), caption, width, height)
 

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import math
 import shlex
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
 
+from wsim.judge.targets_objectives import sentence_of
 from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
 from wsim.report.chart import Chart
 from wsim.report.contents import RunContents, gather
 from wsim.report.facts import make_facts, make_parameters
-from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moments, find_stills, find_video
-from wsim.report.source import SourceLine, source_lines
+from wsim.report.fixes import command, describe, make_fixes
+from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_stills, find_video
+from wsim.report.source import SourceLine, source_lines, statement
 from wsim.runs import write_whole
 
 STATUS_WORDS = {"accepted": "Accepted", "rejected": "Rejected", "blocked": "Blocked"}
@@ -33,8 +36,12 @@ class Row:
     measures: list[tuple[str, str]]
     prim: str
     line: int | None  # of the shown program
-    code: str  # that line
+    code: str  # the statement there
+    command: str  # opens Rerun at the finding's time and prim; empty without a recording
     moment: Picture | None = None
+    chart: Chart | None = None
+    fix: str = ""  # what to change
+    try_it: str = ""  # the command that does
 
 
 def write_page(run_dir: Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path:
@@ -72,6 +79,8 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         from wsim.report.plots import make_charts
 
         charts = make_charts(recording, [row.finding for row in rows])
+    cards = _illustrated(failed[:MOST_CARDS], contents)
+    world = recording.world if recording is not None else None
     status = verdict.status if verdict else str(contents.facts.get("status") or "unfinished")
     return {
         "title": _title(contents),
@@ -80,9 +89,12 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "summary": _summary(verdict, failed) if verdict else _unjudged(contents, status),
         "prompt": str(contents.facts.get("prompt") or (contents.plan.prompt if contents.plan else "")),
         "notes": contents.notes,
-        "rows": [*failed, *(row for row in rows if row.finding.passed)],
-        "cards": failed[:MOST_CARDS],
-        "more_failed": len(failed) - MOST_CARDS,
+        "rows": rows,
+        "failed": failed,
+        "passed": [row for row in rows if row.finding.passed],
+        "closest": _closest(rows),
+        "cards": cards,
+        "fixes": make_fixes([(row.index, row.finding) for row in failed], world, contents.run.path),
         "video": find_video(last.folder, contents.run.path, most_video_bytes) if last else None,
         "stills": find_stills(last.folder) if last else [],
         "charts": charts,
@@ -95,7 +107,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "parameters": make_parameters(contents),
         "iterations": contents.iterations,
         "shown": last.number if last else "",
-        "view": f"wsim view {shlex.quote(str(contents.run.path))}" if recording is not None else "",
+        "view": _view(contents),
         "folder": contents.run.path.resolve().name,
     }
 
@@ -105,16 +117,14 @@ def make_rows(contents: RunContents) -> list[Row]:
     if contents.verdict is None:
         return []
     findings = contents.verdict.findings
-    failures = contents.verdict.failures
-    moments = find_moments(contents.recording, failures) if contents.recording is not None else [None] * len(failures)
-    pictures = dict(zip(map(id, failures), moments, strict=True))
     program = (contents.last.program or "") if contents.last else ""
-    code = program.splitlines()
+    count = len(program.splitlines())
+    world = contents.recording.world if contents.recording is not None else None
     # A program that ran in its author's process keeps its own name.
     names = {"program.py", Path(str(contents.facts.get("program") or "program.py")).name}
     rows = []
     for index, finding in enumerate(findings, start=1):
-        line = text.program_line(finding, names, len(code))
+        line = text.program_line(finding, names, count)
         rows.append(
             Row(
                 index=index,
@@ -123,11 +133,46 @@ def make_rows(contents: RunContents) -> list[Row]:
                 measures=text.measures(finding),
                 prim=text.prim_name(finding.prim or ""),
                 line=line,
-                code=code[line - 1].strip() if line else "",
-                moment=pictures.get(id(finding)),
+                code=statement(program, line) if line else "",
+                command=f"{_view(contents)} --finding {index}" if _view(contents) else "",
+                fix=describe([finding.target]) if finding.target is not None else "",
+                try_it=command(finding.target, world, contents.run.path) if finding.target is not None else "",
             )
         )
     return rows
+
+
+def _illustrated(rows: list[Row], contents: RunContents) -> list[Row]:
+    """Rows with a plot and a picture of their moment, where the recording has them."""
+    if contents.recording is None:
+        return rows
+    from wsim.judge.evidence import Evidence
+    from wsim.report.moments import moment_chart
+
+    evidence = Evidence(contents.recording, contents.plan)
+    return [
+        replace(
+            row,
+            chart=moment_chart(evidence, row.finding, row.index),
+            moment=find_moment(contents.recording, row.finding),
+        )
+        for row in rows
+    ]
+
+
+def _closest(rows: list[Row]) -> Row | None:
+    """The finding that passed with the least of its limit to spare."""
+
+    def spare(row: Row) -> float:
+        margin, limit, expected = row.finding.margin, row.finding.limit, row.finding.expected
+        room = abs(limit - expected) if limit is not None and expected is not None else abs(limit or 0.0)
+        return margin / room if margin is not None and room else math.inf
+
+    return min((row for row in rows if row.finding.passed and math.isfinite(spare(row))), key=spare, default=None)
+
+
+def _view(contents: RunContents) -> str:
+    return f"wsim view {shlex.quote(str(contents.run.path))}" if contents.recording is not None else ""
 
 
 def _source(contents: RunContents, failed: list[Row]) -> list[SourceLine]:
@@ -147,8 +192,7 @@ def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
     findings = contents.verdict.findings if contents.verdict else []
     rows: list[tuple[str, bool | None]] = []
     for item in contents.plan.objectives:
-        # As the judge names an objective that has no sentence.
-        sentence = item.sentence or " ".join(word for word in (item.object, item.kind, item.ref) if word)
+        sentence = sentence_of(item)
         answers = [finding.passed for finding in findings if finding.objective == sentence]
         rows.append((sentence, all(answers) if answers else None))
     return rows

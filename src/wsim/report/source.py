@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import keyword
 import re
+import textwrap
 import token
 import tokenize
 from collections.abc import Iterator
@@ -13,6 +15,7 @@ from dataclasses import dataclass
 from markupsafe import Markup, escape
 
 MOST_LINES = 5000
+MOST_STATEMENT_LINES = 10
 # Characters that change the order in which text is shown, so that code would not read as it runs.
 BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
@@ -35,6 +38,26 @@ def source_lines(program: str, failed: dict[int, list[int]]) -> list[SourceLine]
     for row, start, end, kind in _tokens("\n".join(lines) + "\n"):
         spans.setdefault(row, []).append((start, end, kind))
     return [SourceLine(i, _colored(line, spans.get(i, [])), failed.get(i, [])) for i, line in enumerate(lines, start=1)]
+
+
+def statement(program: str, line: int) -> str:
+    """The whole call that begins at a line, or the line alone where the program does not parse; dedented."""
+    lines = program.splitlines()
+    try:
+        tree = ast.parse(program)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return lines[line - 1].strip()
+    # Of the statements that hold the line, the innermost; those with a body of their own are no calls.
+    found = [
+        (node.lineno, node.end_lineno or node.lineno)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.stmt) and not hasattr(node, "body") and node.lineno <= line <= (node.end_lineno or 0)
+    ]
+    first, last = max(found, default=(line, line))
+    shown = lines[first - 1 : last]
+    if len(shown) > MOST_STATEMENT_LINES:
+        shown = [*shown[:MOST_STATEMENT_LINES], "…"]
+    return textwrap.dedent("\n".join(shown))
 
 
 def _tokens(text: str) -> Iterator[tuple[int, int, int, str]]:

@@ -35,6 +35,11 @@ def prim_name(prim: str) -> str:
     return prim.removeprefix("/World/") or prim
 
 
+def said(message: str) -> str:
+    """A finding's words as a person reads them: prims by their names, powers as such."""
+    return nice_unit(message.replace("/World/", ""))
+
+
 def program_line(finding: Finding, names: set[str], count: int) -> int | None:
     """The line of the shown program that a finding names, if it is one of its `count` lines."""
     match = LINE.fullmatch(finding.line or "")
@@ -47,14 +52,32 @@ def program_line(finding: Finding, names: set[str], count: int) -> int | None:
 def measures(finding: Finding) -> list[tuple[str, str]]:
     """(label, text) of a finding's numbers, as many as it has, with digits enough to tell them apart."""
     digits = digits_to_tell_apart([finding.value, finding.limit])
+    factor, unit = percent(finding.unit)
+
+    def words(x: float | None, digits: int = 3, sign: bool = False) -> str:
+        return quantity(None if x is None else factor * x, unit, digits, sign)
+
     rows = [
-        ("measured", quantity(finding.value, finding.unit, digits)),
-        ("expected", quantity(finding.expected, finding.unit, digits)),
-        (limit_word(finding), quantity(finding.limit, finding.unit, digits)),
-        ("margin", quantity(finding.margin, finding.unit, sign=True)),
+        ("measured", words(finding.value, digits)),
+        ("expected", words(finding.expected, digits)),
+        (limit_word(finding), words(finding.limit, digits)),
+        ("margin", words(finding.margin, sign=True)),
         ("time", quantity(finding.time, "s")),
+        ("lasts", _lasts(finding)),
     ]
     return [(label, text) for label, text in rows if text]
+
+
+def _lasts(finding: Finding) -> str:
+    """From when to when it was so; nothing for a moment."""
+    if finding.span is None or not finding.span[1] > finding.span[0]:
+        return ""
+    return f"{number(finding.span[0])} … {quantity(finding.span[1], 's')}"
+
+
+def percent(unit: str) -> tuple[float, str]:
+    """What a number is multiplied with before a person reads it, and its unit then: a share is said in percent."""
+    return (100.0, "%") if unit.startswith("share") else (1.0, unit)
 
 
 def table_numbers(finding: Finding) -> dict[str, str]:
@@ -69,6 +92,7 @@ def table_numbers(finding: Finding) -> dict[str, str]:
         "margin": number(finding.margin, sign=True),
         "unit": nice_unit(finding.unit),
         "time": number(finding.time),
+        "lasts": _lasts(finding),
     }
 
 

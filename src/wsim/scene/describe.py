@@ -25,6 +25,7 @@ from wsim.scene.world import (
     Fluid,
     Joint,
     Light,
+    Motor,
     Parameter,
     Quat,
     Shape,
@@ -206,9 +207,57 @@ def _joints(prims: list[Usd.Prim]) -> Iterator[Joint]:
                     "parent": parent,
                     "child": child,
                     "axis": axis,
+                    **_anchors(UsdPhysics.Joint(prim), parent, child),
+                    **_motion(prim, kind),
                     "line": _line(prim),
                 }
             )
+
+
+def _anchors(joint: UsdPhysics.Joint, parent: str | None, child: str) -> dict[str, Any]:
+    """Where a joint's frame is in its parent and in its child."""
+    stage = joint.GetPrim().GetStage()
+    found: dict[str, Any] = {}
+    sides = (
+        (joint.GetBody0Rel(), joint.GetLocalPos0Attr(), joint.GetLocalRot0Attr()),
+        (joint.GetBody1Rel(), joint.GetLocalPos1Attr(), joint.GetLocalRot1Attr()),
+    )
+    for relation, position, rotation in sides:
+        targets = relation.GetTargets()
+        prim = stage.GetPrimAtPath(targets[0]) if targets else None
+        owner = _owner(prim) if prim else None
+        frame = Gf.Matrix4d().SetRotate(Gf.Quatd(rotation.Get())).SetTranslateOnly(Gf.Vec3d(position.Get()))
+        if prim:
+            frame *= _rigid(prim)
+        if owner is not None:
+            frame *= _rigid(stage.GetPrimAtPath(owner)).GetInverse()
+        side = "child" if owner == child else "parent"
+        found[f"{side}_anchor"] = to_vec3(frame.ExtractTranslation())
+        found[f"{side}_turn"] = _turn(frame)
+    return found
+
+
+def _motion(prim: Usd.Prim, kind: str) -> dict[str, Any]:
+    """A hinge's or a slider's limits and motor, in radians."""
+    if kind not in ("revolute", "prismatic"):
+        return {}
+    unit = math.pi / 180.0 if kind == "revolute" else 1.0
+    found: dict[str, Any] = {}
+    for name, attribute in (("low", "physics:lowerLimit"), ("high", "physics:upperLimit")):
+        value = prim.GetAttribute(attribute).Get()
+        if value is not None and math.isfinite(value):
+            found[name] = float(value) * unit
+    drive = UsdPhysics.DriveAPI.Get(prim, "angular" if kind == "revolute" else "linear")
+    if drive:
+        most = float(drive.GetMaxForceAttr().Get())
+        found["drive"] = Motor(
+            stiffness=float(drive.GetStiffnessAttr().Get()) / unit,
+            damping=float(drive.GetDampingAttr().Get()) / unit,
+            position=float(drive.GetTargetPositionAttr().Get()) * unit,
+            velocity=float(drive.GetTargetVelocityAttr().Get()) * unit,
+            max_effort=most if math.isfinite(most) else None,
+        )
+    return found
 
 
 def _camera(prim: Usd.Prim) -> Camera:

@@ -90,14 +90,34 @@ class Fluid(_Model):
     line: str | None = None
 
 
+class Motor(_Model):
+    """A joint's drive: effort = stiffness (position - q) + damping (velocity - q'), at most `max_effort`."""
+
+    stiffness: float = 0.0  # [N m/rad] or [N/m]
+    damping: float = 0.0  # [N m s/rad] or [N s/m]
+    position: float = 0.0  # [rad] or [m]
+    velocity: float = 0.0  # [rad/s] or [m/s]
+    max_effort: float | None = None  # [N m] or [N]; None: without bound
+
+
 class Joint(_Model):
-    """A joint between two bodies, or a body and the world (parent None)."""
+    """A joint between two bodies, or a body and the world (parent None).
+
+    The anchors are one frame, seen from both ends: while the joint holds, they stay together but for its own motion.
+    """
 
     prim: str
     kind: Literal["fixed", "revolute", "prismatic", "spherical"]
     parent: str | None
     child: str
-    axis: Literal["X", "Y", "Z"] = "X"
+    axis: Literal["X", "Y", "Z"] = "X"  # of the anchors
+    parent_anchor: Vec3 | None = None  # [m], in the parent's frame, or the world's; None: not known
+    parent_turn: Quat = (0.0, 0.0, 0.0, 1.0)
+    child_anchor: Vec3 | None = None  # [m], in the child's frame
+    child_turn: Quat = (0.0, 0.0, 0.0, 1.0)
+    low: float | None = None  # [rad] or [m]; None: free
+    high: float | None = None
+    drive: Motor | None = None
     line: str | None = None
 
 

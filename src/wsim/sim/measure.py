@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from wsim.recording import FluidFrame, Frame
+from wsim.sim.ledger import Ledger
 from wsim.sim.model import Built
 from wsim.sim.rigid import RigidBodies
 from wsim.solvers.shapes import rotate
@@ -22,6 +23,7 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
     scalars: dict[str, float] = {}
     fluids = _fluids(built, state, scalars)
     count = len(built.bodies)
+    pushed = worked = None
     body_q, body_qd, force = np.zeros((0, 7)), np.zeros((0, 6)), np.zeros((0, 3))
     if count:
         body_q = state.body_q.numpy()[built.bodies]
@@ -30,6 +32,8 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         force = force[built.bodies]
         scalars["contact/penetration"] = deepest
         scalars.update(_body_energy(built, body_q, body_qd))
+        if rigid and rigid.ledger:
+            pushed, worked = _from_outside(built, rigid.ledger, scalars)
     scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
     scalars["energy/potential"] = scalars.get("energy/potential_bodies", 0.0) + scalars.get(
         "energy/potential_fluid", 0.0
@@ -40,7 +44,24 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         contact_force=force.astype(np.float32),
         fluids=fluids,
         scalars=scalars,
+        applied_impulse=pushed,
+        applied_work=worked,
     )
+
+
+def _from_outside(built: Built, ledger: Ledger, scalars: dict[str, float]) -> tuple[Array, Array]:
+    """Impulse (B, 3) [N s] and work (B,) [J] on each body since the last frame; the drives' work and efforts."""
+    entry = ledger.take()
+    scalars["work/drives"] = entry.drives
+    scalars["work/drives_unsure"] = entry.unsure
+    if ledger.observables is not None:
+        labels = [str(label) for label in built.model.joint_label]
+        starts = built.model.joint_qd_start.numpy()
+        for joint in built.world.joints:
+            if joint.drive is not None:
+                name = "drive" + joint.prim.removeprefix("/World")
+                scalars[name] = float(entry.effort[starts[labels.index(joint.prim)]])
+    return entry.impulse[built.bodies].astype(np.float32), entry.work[built.bodies].astype(np.float32)
 
 
 def _fluids(built: Built, state: Any, scalars: dict[str, float]) -> dict[str, FluidFrame]:

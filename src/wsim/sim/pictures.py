@@ -53,7 +53,10 @@ class Pictures:
         self.still_frames = {round(k * frames / (STILLS - 1)) for k in range(STILLS)}
         self.stills: list[Path] = []
         self.seen: list[dict[str, Any]] = []
-        self.objects = np.array([_object_of(prim) for prim in self.renderer.shape_prims])
+        names, self.object_of = np.unique(
+            np.array([_object_of(prim) for prim in self.renderer.shape_prims], dtype=str), return_inverse=True
+        )
+        self.objects = [str(name) for name in names]
         self.recorded = {camera.prim for camera in simulation.world.cameras}
 
     def __enter__(self) -> Pictures:
@@ -80,8 +83,10 @@ class Pictures:
                 self.video.write(image.rgb)
             if camera in self.recorded:
                 self.writer.image(simulation.time, camera, image.rgb)
+            shares = self._shares(image)
+            self.writer.seen(simulation.time, camera, shares)
             if still:
-                self._keep(camera, image)
+                self._keep(camera, image, shares)
 
     def _fluids(self) -> dict[str, np.ndarray]:
         parts = self.simulation.built.fluids
@@ -90,14 +95,18 @@ class Pictures:
         position = self.simulation.state.particle_q.numpy()
         return {prim: position[part] for prim, part in parts.items()}
 
-    def _keep(self, camera: str, image: CameraImage) -> None:
+    def _shares(self, image: CameraImage) -> dict[str, float]:
+        """The share of a picture that each object takes up; 0 for one that is not to be seen."""
+        shown = image.shape_index[image.shape_index >= 0]
+        pixels = np.bincount(self.object_of[shown], minlength=len(self.objects))
+        return {prim: float(n) / image.shape_index.size for prim, n in zip(self.objects, pixels, strict=True)}
+
+    def _keep(self, camera: str, image: CameraImage, shares: dict[str, float]) -> None:
         import cv2
 
         time = self.simulation.time
-        shown = image.shape_index[image.shape_index >= 0]
-        prims, pixels = np.unique(self.objects[shown], return_counts=True)
-        shares = {str(prim): round(float(n) / image.shape_index.size, 5) for prim, n in zip(prims, pixels, strict=True)}
-        self.seen.append({"camera": camera, "time": round(time, 4), "objects": shares})
+        shown = {prim: round(share, 5) for prim, share in shares.items() if share}
+        self.seen.append({"camera": camera, "time": round(time, 4), "objects": shown})
         if self.frames_dir:
             self.frames_dir.mkdir(parents=True, exist_ok=True)
             path = self.frames_dir / f"{camera.rsplit('/', 1)[-1]}_{time:06.3f}s.png"

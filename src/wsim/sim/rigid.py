@@ -8,6 +8,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.overflow import accumulate_overflow
+from wsim.sim.ledger import Ledger
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
 ROWS_A_CONTACT = 6  # pyramidal friction: four, elliptic and torsional up to six
@@ -37,14 +38,24 @@ def _is_mechanism(model: Any) -> bool:
     return model.joint_count > 0 and bool((model.joint_type.numpy() != int(JointType.FREE)).any())
 
 
+def _is_driven(model: Any) -> bool:
+    """Whether any joint has a motor."""
+    gains = (model.joint_target_ke, model.joint_target_kd) if model.joint_dof_count else ()
+    return any(bool(gain.numpy().any()) for gain in gains)
+
+
 class RigidBodies:
-    """Steps the bodies of a model, and tells about contacts and overflows.
+    """Steps the bodies of a model, and tells about contacts, overflows and what drives them.
 
     Args:
         model: The Newton model.
+        controlled: Whether a controller pushes bodies or joints.
+
+    Attributes:
+        ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
     """
 
-    def __init__(self, model: Any) -> None:
+    def __init__(self, model: Any, controlled: bool = False) -> None:
         import newton
 
         self.model = model
@@ -58,7 +69,7 @@ class RigidBodies:
             self.solver = newton.solvers.SolverMuJoCo(
                 model, use_mujoco_cpu=True, use_mujoco_contacts=True, integrator=integrator
             )
-            self.observables: Any = None
+            kinds: set[Any] = set()
         else:
             self.solver = newton.solvers.SolverMuJoCo(
                 model,
@@ -68,12 +79,21 @@ class RigidBodies:
                 integrator=integrator,
             )
             kinds = {self.solver.ObservableKind.OVERFLOW}
-            self.observables = self.solver.observables(kinds)
             self.overflow_seen = wp.zeros(max(1, model.world_count), dtype=wp.int32, device=model.device)
+        driven = _is_driven(model)
+        if driven:
+            kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
+        self.observables: Any = self.solver.observables(kinds) if kinds else None
+        pushed = driven or controlled or model.particle_count > 0
+        self.ledger = Ledger(model, self.observables if driven else None, integrator == "rk4") if pushed else None
 
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
+        if self.ledger:
+            self.ledger.before(state_in)
         self.solver.step(state_in, state_out, control, None, dt, observables=self.observables)
+        if self.ledger:
+            self.ledger.after(state_in.body_f, state_out, control, dt)
         if not self.on_c:
             wp.launch(
                 accumulate_overflow,
@@ -86,6 +106,8 @@ class RigidBodies:
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
         self.solver.reset(state)
+        if self.ledger:
+            self.ledger.clear()
         if not self.on_c:
             self.overflow_seen.zero_()
 
@@ -102,16 +124,27 @@ class RigidBodies:
                 found.append(f"MuJoCo: {mujoco.mjtWarning(kind).name} {warning.number} times, last {warning.lastinfo}")
         return found
 
+    def overflowed(self) -> np.ndarray:
+        """Whether a world's contact buffers were too small at some time, (W,)."""
+        return np.zeros(1, dtype=bool) if self.on_c else self.overflow_seen.numpy() != 0
+
     def contacts_of_first_world(self) -> tuple[np.ndarray, float]:
         """Net contact force on each body of the first world [N], shape (bodies, 3), and the deepest penetration [m]."""
-        return self._contacts_c() if self.on_c else self._contacts_warp()
+        force, deepest = self.contacts()
+        return force[0], float(deepest[0])
 
-    def _contacts_c(self) -> tuple[np.ndarray, float]:
+    def contacts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Net contact force on each body of each world [N], (W, bodies, 3), and the deepest penetrations [m], (W,)."""
+        worlds = max(1, self.model.world_count)
+        force, deepest = self._contacts_c() if self.on_c else self._contacts_warp(worlds)
+        return force.reshape(worlds, -1, 3), deepest
+
+    def _contacts_c(self) -> tuple[np.ndarray, np.ndarray]:
         mujoco = self.solver.import_mujoco()[0]
         mj_model, mj_data = self.solver.mj_model, self.solver.mj_data
         force = np.zeros((self.model.body_count, 3))
         deepest, wrench = 0.0, np.zeros(6)
-        shapes, bodies = self._geom_shapes(), self._shape_bodies()
+        shapes, bodies = self._geom_shapes()[0], self._shape_bodies()
         for k in range(mj_data.ncon):
             contact = mj_data.contact[k]
             deepest = max(deepest, -float(contact.dist))
@@ -122,38 +155,34 @@ class RigidBodies:
                 body = bodies[shapes[geom]]
                 if body >= 0:
                     force[body] += sign * push
-        return force, deepest
+        return force, np.array([deepest])
 
-    def _contacts_warp(self) -> tuple[np.ndarray, float]:
+    def _contacts_warp(self, worlds: int) -> tuple[np.ndarray, np.ndarray]:
         """Forces from the rows of MuJoCo Warp's constraint solver; pyramidal edges add up to the normal force."""
         data = self.solver.mjw_data
         count = int(data.nacon.numpy()[0])
-        force = np.zeros((self.model.body_count, 3))
+        force, deepest = np.zeros((self.model.body_count, 3)), np.zeros(worlds)
         if count == 0:
-            return force, 0.0
+            return force, deepest
         contact = data.contact
-        here = contact.worldid.numpy()[:count] == 0
-        distance = contact.dist.numpy()[:count][here]
-        frames = contact.frame.numpy()[:count][here].reshape(-1, 3, 3)
-        geoms, rows = contact.geom.numpy()[:count][here], contact.efc_address.numpy()[:count][here]
-        friction, rows_force = contact.friction.numpy()[:count][here], data.efc.force.numpy()[0]
+        world, rows = contact.worldid.numpy()[:count], contact.efc_address.numpy()[:count]
+        np.maximum.at(deepest, world, -contact.dist.numpy()[:count])
+        held = rows[:, 0] >= 0
+        world, rows = world[held], rows[held]
+        frames = contact.frame.numpy()[:count][held].reshape(-1, 3, 3)
+        geoms, friction = contact.geom.numpy()[:count][held], contact.friction.numpy()[:count][held]
+        edges = data.efc.force.numpy()[world[:, None], rows[:, :4]]
+        along = [edges.sum(axis=1), *(friction[:, k] * (edges[:, 2 * k] - edges[:, 2 * k + 1]) for k in (0, 1))]
+        push = np.einsum("nji,nj->ni", frames, np.stack(along, axis=1))
         shapes, bodies = self._geom_shapes(), self._shape_bodies()
-        for k in range(len(distance)):
-            if rows[k, 0] < 0:
-                continue
-            edges = rows_force[rows[k, :4]]
-            local = np.array(
-                [edges.sum(), friction[k, 0] * (edges[0] - edges[1]), friction[k, 1] * (edges[2] - edges[3])]
-            )
-            push = frames[k].T @ local
-            for geom, sign in ((geoms[k, 0], -1.0), (geoms[k, 1], 1.0)):
-                body = bodies[shapes[geom]]
-                if body >= 0:
-                    force[body] += sign * push
-        return force, max(0.0, -float(distance.min(initial=0.0)))
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            body = bodies[shapes[world, geoms[:, side]]]
+            np.add.at(force, body[body >= 0], sign * push[body >= 0])
+        return force, deepest
 
     def _geom_shapes(self) -> np.ndarray:
-        return self.solver.mjc_geom_to_newton_shape.numpy()[0]
+        """Newton's shape of each of MuJoCo's geoms in each world, (W, geoms)."""
+        return self.solver.mjc_geom_to_newton_shape.numpy()
 
     def _shape_bodies(self) -> np.ndarray:
         return np.append(self.model.shape_body.numpy(), -1)

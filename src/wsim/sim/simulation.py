@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -47,6 +48,8 @@ class Simulation:
         controller: Called every `control_interval` seconds.
         control_interval: Time between calls [s]; rounded to whole steps.
         progress: Told about compilation.
+        seeds: One for each world, which then starts a little off what the stage states (`wsim.sim.perturb`); 0 does
+            not. By default none does.
 
     Attributes:
         world: What the stage states.
@@ -65,15 +68,19 @@ class Simulation:
         controller: Controller | None = None,
         control_interval: float = 0.01,
         progress: Progress = silent,
+        seeds: Sequence[int] = (),
     ) -> None:
         import warp as wp
 
         from wsim.scene.describe import describe
         from wsim.sim.devices import pick_device
         from wsim.sim.model import build_model
+        from wsim.sim.perturb import perturb
         from wsim.sim.rigid import RigidBodies
         from wsim.solvers.solver_sph import SolverSPH
 
+        if seeds and len(seeds) != world_count:
+            raise ValueError(f"seeds: {len(seeds)} were given for {world_count} worlds; give one for each")
         progress("compiling kernels", 0, 3)
         self.stage = Path(stage)
         self.device = wp.get_device(pick_device(device))
@@ -84,12 +91,13 @@ class Simulation:
         self.time, self.step_count = 0.0, 0
         self._were_inside: set[str] = set()
         progress("compiling kernels", 1, 3)
-        self.rigid = RigidBodies(self.model) if self.model.body_count else None
+        self.rigid = RigidBodies(self.model, controller is not None) if self.model.body_count else None
         self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
         self.state, self.control = self.model.state(), self.model.control()
         import newton
 
-        newton.eval_fk(self.model, self.model.joint_q, self.model.joint_qd, self.state)
+        perturb(self.built, self.state, seeds)
+        newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
         self._give_jointed_bodies_their_velocity()
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         self._controller = controller
@@ -263,6 +271,7 @@ class Simulation:
             "time_step": self.dt,
             "time_step_reason": self.built.time_step.reason,
             "particles": self.model.particle_count,
+            "controlled": self._controller is not None,
             "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
             "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},
         }

@@ -47,16 +47,16 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
 
 def _crossing_time(world: World) -> float | None:
     """Time that the fastest body takes to cross the thinnest shape [s], from its start and its fall."""
-    thickness = [_thickness(body) for body in world.bodies]
-    if not thickness:
+    extents = [thickness(body) for body in world.bodies]
+    if not extents:
         return None
     g = float(np.linalg.norm(world.gravity))
     fall = max(max(body.position[2] for body in world.bodies) - min(0.0, *(b.position[2] for b in world.bodies)), 0.0)
     start = max(float(np.linalg.norm(body.velocity)) for body in world.bodies)
-    return min(thickness) / max(math.sqrt(start**2 + 2.0 * g * fall), 1e-3)
+    return min(extents) / max(math.sqrt(start**2 + 2.0 * g * fall), 1e-3)
 
 
-def _thickness(body: Body) -> float:
+def thickness(body: Body) -> float:
     """Smallest extent of a body's smallest shape that collides [m]."""
     extents = []
     for shape in body.shapes:

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
+from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
 
 PLAN_VERSION = 2
@@ -91,11 +92,11 @@ class Step(Strict):
 
 
 class Objective(Strict):
-    """What must happen. `kind` is a name of the judge's closed list."""
+    """What must happen. `kind` is a name of the judge's closed list, or "formula", which says it in full."""
 
     kind: Literal[
         "floats", "rests_on", "submerged", "stays_on", "topples", "stays_inside", "settles", "swings", "slides",
-        "rolls_down", "moves", "flies", "collides_with", "tilts", "fills",
+        "rolls_down", "moves", "flies", "collides_with", "tilts", "fills", "formula",
     ]  # fmt: skip
     object: Name
     ref: Name | None = None
@@ -103,6 +104,14 @@ class Objective(Strict):
     value: Positive | None = None  # the least distance [m] of what moves, slides or rolls
     direction: Literal["front", "back", "left", "right"] | None = None  # of what moves
     sentence: Text = ""
+    formula: Formula | None = None  # of the kind "formula": docs/objectives.md
+
+    @model_validator(mode="after")
+    def _says_it_once(self) -> Objective:
+        if (self.kind == "formula") != (self.formula is not None):
+            lacks = "it has none" if self.formula is None else f"this is {self.kind!r}"
+            raise ValueError(f'"formula" goes with the kind "formula" and with no other; {lacks}')
+        return self
 
 
 class SimulationPlan(Strict):

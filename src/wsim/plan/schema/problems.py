@@ -141,6 +141,9 @@ def _others(plan: Plan) -> Iterator[str]:
             yield f'objectives.{i}.ref: "{objective.kind}" needs "ref", the name of the other object'
         if objective.ref is not None and objective.ref not in names:
             yield f"objectives.{i}.ref: no object {objective.ref!r}; the plan has {_known(plan)}"
+        for name in sorted(objective.formula.names()) if objective.formula is not None else ():
+            if not name.startswith("/") and name not in names:
+                yield f"objectives.{i}.formula: no object {name!r}; the plan has {_known(plan)}"
     for i, camera in enumerate(plan.cameras):
         if camera.of is not None and camera.of not in names:
             yield f"cameras.{i}.of: no object {camera.of!r}; the plan has {_known(plan)}"

@@ -1,0 +1,185 @@
+"""Predicates about what a body touches, what carries it and what it hits."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence import MissingError
+from wsim.judge.geometry import rotate
+from wsim.judge.language.contacts import gap, moving_size, touch_reach
+from wsim.judge.language.measure import Measure, measures
+from wsim.judge.motion import FLOAT32
+from wsim.judge.objective import support_of
+from wsim.plan.schema.formula import (
+    CollidesWith,
+    NeverTouches,
+    RestsOn,
+    RollsWithoutSlip,
+    Settles,
+    SupportedBy,
+    Touches,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.language.signals import Signals
+
+    Floats = NDArray[np.float64]
+
+STILL, QUIET = 0.05, 0.02  # of sqrt(g L): what rests bobs by 5 % of L, what has settled by 2 %, as in the checks
+CHANGE = 0.05  # of the speed of approach, that a collision changes at least
+
+
+@measures(Touches)
+def _touches(asked: Touches, signals: Signals) -> list[Measure]:
+    return [_touching(asked.object, asked.ref, asked.within, signals)]
+
+
+def _touching(one: str, other: str, within: float | None, signals: Signals) -> Measure:
+    limit, source = touch_reach(signals, one, other)
+    value = gap(signals, one, other)
+    if within is not None:
+        limit, source = np.full(1, within), "the objective's"
+    scale = np.maximum(limit, FLOAT32 * moving_size(signals, one, other))
+    return Measure(f"gap to {signals.prim(other)}", signals.prim(one), value, limit, "m", scale, source)
+
+
+@measures(NeverTouches)
+def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
+    value = gap(signals, asked.object, asked.ref)
+    size = moving_size(signals, asked.object, asked.ref)
+    source = "the objective's clearance" if asked.clearance else "the surfaces"
+    return [
+        Measure(
+            f"gap to {signals.prim(asked.ref)}", signals.prim(asked.object), value, asked.clearance, "m",
+            asked.clearance or size, source, at_most=False,
+        )
+    ]  # fmt: skip
+
+
+@measures(RestsOn)
+def _rests_on(asked: RestsOn, signals: Signals) -> list[Measure]:
+    prim, other = signals.prim(asked.object), signals.prim(asked.ref)
+    frames = signals.frames(asked.object, asked.ref)
+    i = frames.index(prim)
+    support, solid = support_of(frames, i, other), frames.solid(i)
+    low, high = frames.ends(i)
+    height = float(high[0] - low[0])
+    # Where it is not over the other it cannot rest on it, however near its height.
+    over = support.over & np.isfinite(support.top)
+    value = signals.fold(np.where(over, np.abs(low - np.where(over, support.top, 0.0)), max(solid.smallest, height)))
+    limit = asked.within or STILL * height
+    source = "the objective's" if asked.within else f"{STILL:g} of its height, {height:.3g} m"
+    speed = np.linalg.norm(signals.velocity(asked.object) - signals.velocity(asked.ref), axis=-1)
+    rest = STILL * signals.speed_scale(solid.smallest)
+    return [
+        Measure(f"gap to the top of {other}", prim, value, limit, "m", limit, source, expected=0.0),
+        Measure(
+            f"speed against {other}", prim, speed, rest, "m/s", rest,
+            f"{STILL:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {STILL:.0%} of L", expected=0.0,
+        ),
+    ]  # fmt: skip
+
+
+@measures(SupportedBy)
+def _supported_by(asked: SupportedBy, signals: Signals) -> list[Measure]:
+    touching = _touching(asked.object, asked.ref, None, signals)
+    weight = signals.weight(asked.object)
+    value = signals.force(asked.object) @ signals.up
+    source = f"{asked.share:g} of its weight"
+    limit = asked.share * weight
+    carried = Measure("force of contacts upwards", touching.prim, value, limit, "N", weight, source, at_most=False)
+    return [touching, carried]
+
+
+@measures(Settles)
+def _settles(asked: Settles, signals: Signals) -> list[Measure]:
+    size, twist = signals.solid(asked.object).smallest, signals.qd(asked.object)
+    value = np.linalg.norm(twist[..., :3], axis=-1) + np.linalg.norm(twist[..., 3:], axis=-1) * size / 2
+    limit = asked.speed or QUIET * signals.speed_scale(size)
+    source = "the objective's" if asked.speed else f"{QUIET:g} sqrt(g L), L = {size:.3g} m"
+    what, prim = "speed of its fastest point", signals.prim(asked.object)
+    return [Measure(what, prim, value, limit, "m/s", limit, source, expected=0.0)]
+
+
+@measures(RollsWithoutSlip)
+def _rolls(asked: RollsWithoutSlip, signals: Signals) -> list[Measure]:
+    prim, body = signals.prim(asked.object), signals.body(asked.object)
+    round_ = [s for s in body.shapes if s.collides and s.kind in ("sphere", "cylinder", "capsule")]
+    if not round_:
+        raise MissingError("it is not round: only a sphere, a cylinder or a capsule rolls")
+    radius = max(shape.size[0] for shape in round_)
+    normal = _normal(signals, asked.on)
+    twist = signals.qd(asked.object)
+    under = signals.velocity(asked.on) if asked.on else 0.0
+    v, w = twist[..., :3] - under, twist[..., 3:]
+    slip = v + np.cross(w, -radius * normal)
+    slip = slip - (slip @ normal)[..., None] * normal
+    value = np.linalg.norm(slip, axis=-1)
+    speed = np.maximum(np.linalg.norm(v, axis=-1), np.linalg.norm(w, axis=-1) * radius)
+    rest = QUIET * signals.speed_scale(radius)
+    source = f"{asked.share:g} of its speed, and {rest:.3g} m/s = {QUIET:g} sqrt(g r), at which it counts as at rest"
+    limit = asked.share * speed + rest
+    what = "speed of the point where it touches"
+    return [Measure(what, prim, value, limit, "m/s", limit, source, expected=0.0)]
+
+
+def _normal(signals: Signals, on: str | None) -> Floats:
+    """What the ground of a fixed object faces (3,): up, or its first shape's own Z."""
+    if on is None or signals.moves(on):
+        return signals.up
+    prim = signals.prim(on)
+    shape = next(static.shapes[0] for static in signals.world.statics if static.prim == prim)
+    return rotate(np.array(shape.rotation, dtype=np.float64), np.array([0.0, 0.0, 1.0]))
+
+
+@measures(CollidesWith)
+def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
+    """At each frame the collision that is between the frame before and the one after it."""
+    touching = _touching(asked.object, asked.ref, None, signals)
+    u = signals.velocity(asked.object) - signals.velocity(asked.ref)
+    before, after = np.concatenate([u[:, :1], u[:, :-1]], axis=1), np.concatenate([u[:, 1:], u[:, -1:]], axis=1)
+    span = 2 * signals.step
+    free = signals.moves(asked.object) and signals.moves(asked.ref)
+    pull = np.zeros(3) if free else np.array(signals.world.gravity)
+    jolt = after - before - pull * span * (1.0 if signals.moves(asked.object) else -1.0)
+    jump = np.linalg.norm(jolt, axis=-1)
+    speed = np.linalg.norm(before, axis=-1)
+    # What carries a body changes its speed against gravity's, and what rubs on it besides: neither is a collision.
+    carried = math.hypot(1.0, _friction(signals)) * signals.gravity * span
+    floor = CHANGE * signals.speed_scale(moving_size(signals, asked.object, asked.ref))
+    scale = np.maximum(speed, floor)
+    limit = CHANGE * scale + carried
+    change = Measure(
+        f"change of its speed to {signals.prim(asked.ref)}", touching.prim, jump, limit, "m/s", scale,
+        f"{CHANGE:g} of the speed of approach, and what weight and friction can do in two frames", at_most=False,
+    )  # fmt: skip
+    found = [touching, change]
+    if asked.restitution is not None:
+        # The impulse acts along the contact's normal, but for friction; what parts over what approached, along it.
+        normal = jolt / np.where(jump > 0.0, jump, 1.0)[..., None]
+        approach = -np.sum(before * normal, axis=-1)
+        parting = np.sum(after * normal, axis=-1)
+        towards = approach > floor
+        ratio = np.clip(parting / np.where(towards, approach, 1.0), -1.0, 2.0)
+        # What does not approach has no restitution: as far from the one asked as one can be.
+        value = np.where(towards, ratio, np.where(np.isfinite(approach), -1.0, np.nan))
+        blur = np.linalg.norm(pull) * span / np.where(towards, approach, np.inf)
+        found.append(
+            Measure.about(
+                value, asked.restitution, asked.within + blur, what="restitution", prim=touching.prim, unit="1",
+                limit_from=f"{asked.within:g} about the objective's, and what gravity changes between two frames",
+            )
+        )  # fmt: skip
+    return found
+
+
+def _friction(signals: Signals) -> float:
+    """The largest friction in the world."""
+    shapes = [shape for body in signals.world.bodies for shape in body.shapes]
+    shapes += [shape for static in signals.world.statics for shape in static.shapes]
+    return max((shape.friction for shape in shapes), default=0.5)

@@ -1,0 +1,130 @@
+"""Predicates about bodies and fluid, on one recorded world: Archimedes is the oracle.
+
+The surface is that of still fluid: as high as the conserved volume in the container makes it, over what the bodies
+displace at the end. Waves are not in it; what has not yet been poured in is not either.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence import MissingError
+from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measures_place import latest
+from wsim.plan.schema.formula import FillsTo, Floats, Sinks, Submerged
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence import Evidence
+    from wsim.judge.language.signals import Signals
+    from wsim.scene.world import Fluid
+
+    Array = NDArray[np.float64]
+
+SHARE, SPACINGS = 0.1, 0.5  # of the body's height, or particle spacings if more: what particles resolve of a draft
+
+
+@dataclass
+class _Wet:
+    """A body in a fluid; heights are (1, T) [m]."""
+
+    evidence: Evidence
+    fluid: Fluid
+    surface: Array
+    floor: float
+    low: Array
+    high: Array
+    height: float  # the body's vertical extent at the end
+    tolerance: float
+    source: str  # of the tolerance
+
+
+def _wet(signals: Signals, name: str, fluid_name: str, within: float | None) -> _Wet:
+    evidence, fluid = signals.fluid(fluid_name)
+    surface, floor = _surface(signals, evidence, fluid)
+    low, high = signals.ends(name)
+    height = float((high - low)[0, evidence.window].mean())
+    tolerance = within or max(SHARE * height, SPACINGS * fluid.spacing)
+    source = f"the larger of {SHARE:g} of its height and {SPACINGS:g} particle spacings, {tolerance:.3g} m"
+    return _Wet(evidence, fluid, surface, floor, low, high, height, tolerance, "the objective's" if within else source)
+
+
+def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array, float]:
+    """Height of the still surface at each frame, (1, T), and of the container's floor [m]."""
+    level, container, track = evidence.level(fluid), evidence.container_of(fluid), evidence.track(fluid)
+    if container is None:
+        raise MissingError(f"{fluid.prim} has no container: it has no level")
+    rim = container.inner_size[2] / 2 + fluid.spacing
+    inside = np.array(
+        [
+            1.0 - float((evidence.strayed(container, fluid, p) | (evidence.local(container, p)[:, 2] > rim)).mean())
+            for p in track.position.astype(np.float64)
+        ]
+    )
+    end = float(inside[track.time >= evidence.window_start - 1e-9].mean())
+    area = container.inner_size[0] * container.inner_size[1]
+    missing = (end - inside) * math.prod(fluid.size) / area
+    return (level.height - missing[latest(track.time, signals.time)])[None], level.floor
+
+
+@measures(Floats)
+def _floats(asked: Floats, signals: Signals) -> list[Measure]:
+    wet = _wet(signals, asked.object, asked.fluid, asked.within)
+    prim, solid = signals.prim(asked.object), signals.solid(asked.object)
+    assert signals.mass is not None
+    displaced = float(signals.mass[0, signals.row(asked.object)]) / wet.fluid.density
+    value = wet.surface - wet.low
+    if displaced >= solid.volume:
+        # It cannot: whatever its depth, it fails by as much as it is too heavy.
+        excess = (displaced / solid.volume - 1.0) * wet.tolerance
+        limit = np.minimum(wet.height, value - excess)
+        heavy = f"it weighs {displaced / solid.volume:.3g} times the fluid that it displaces"
+        source = f"its height: what floats is no deeper; {heavy}"
+        return [Measure("draft", prim, value, limit, "m", wet.tolerance, source)]
+    _, rotation = wet.evidence.resting_pose(wet.evidence.index(prim))
+    expected = solid.draft(rotation, displaced)
+    source = f"Archimedes for its own shape, {expected:.4g} m, and {wet.source}"
+    return [
+        Measure.about(
+            value, expected, wet.tolerance, what="draft", prim=prim, unit="m", limit_from=source
+        )
+    ]  # fmt: skip
+
+
+@measures(Sinks)
+def _sinks(asked: Sinks, signals: Signals) -> list[Measure]:
+    wet = _wet(signals, asked.object, asked.fluid, asked.within)
+    above = Measure(
+        "height above the floor", signals.prim(asked.object), wet.low - wet.floor, wet.tolerance, "m", wet.tolerance,
+        wet.source, expected=0.0,
+    )  # fmt: skip
+    return [above, _under(signals, asked.object, wet)]
+
+
+@measures(Submerged)
+def _submerged(asked: Submerged, signals: Signals) -> list[Measure]:
+    return [_under(signals, asked.object, _wet(signals, asked.object, asked.fluid, None))]
+
+
+def _under(signals: Signals, name: str, wet: _Wet) -> Measure:
+    depth, prim = wet.surface - wet.high, signals.prim(name)
+    return Measure("depth of its highest point", prim, depth, 0.0, "m", wet.tolerance, "the surface", at_most=False)
+
+
+@measures(FillsTo)
+def _fills_to(asked: FillsTo, signals: Signals) -> list[Measure]:
+    evidence, fluid = signals.fluid(asked.fluid)
+    surface, floor = _surface(signals, evidence, fluid)
+    tolerance = asked.within or SPACINGS * fluid.spacing
+    source = "the objective's" if asked.within else f"{SPACINGS:g} particle spacings: what the particles resolve"
+    return [
+        Measure.about(
+            surface - floor, asked.level, tolerance, what="level above the floor", prim=fluid.prim, unit="m",
+            limit_from=source,
+        )
+    ]  # fmt: skip

@@ -1,0 +1,216 @@
+"""Predicates about where a body is, how it stands and how fast it is."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence import Evidence, MissingError
+from wsim.judge.geometry import conjugate, multiply, reach, rotate
+from wsim.judge.language.contacts import gap, touch_reach
+from wsim.judge.language.measure import Measure, measures
+from wsim.judge.motion import FLOAT32
+from wsim.plan.schema.formula import (
+    ContainedIn,
+    Crosses,
+    FollowsPath,
+    Reaches,
+    SpeedBetween,
+    StaysInside,
+    StaysWithin,
+    Upright,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.language.signals import Signals
+    from wsim.scene.world import Container
+
+    Floats = NDArray[np.float64]
+
+LASTING = 0.05  # of a body's smallest extent, by which it may be in a wall: as much as the check of penetration lets
+
+
+@measures(Reaches)
+def _reaches(asked: Reaches, signals: Signals) -> list[Measure]:
+    prim = signals.prim(asked.object)
+    if isinstance(asked.target, str):
+        value = gap(signals, asked.object, asked.target)
+        default, source = touch_reach(signals, asked.object, asked.target)
+        what = f"gap to {signals.prim(asked.target)}"
+    else:
+        value = np.linalg.norm(signals.centre(asked.object) - np.array(asked.target), axis=-1)
+        size = signals.solid(asked.object).smallest
+        default, source = np.full(1, size / 2), f"half of its smallest extent, {size:.3g} m: the point is in it"
+        what = "distance to the point"
+    limit = default if asked.within is None else asked.within
+    scale = np.maximum(limit, FLOAT32 * signals.solid(asked.object).smallest)
+    return [Measure(what, prim, value, limit, "m", scale, source if asked.within is None else "the objective's")]
+
+
+@measures(StaysWithin)
+def _stays_within(asked: StaysWithin, signals: Signals) -> list[Measure]:
+    centre = signals.centre(asked.center) if isinstance(asked.center, str) else np.array(asked.center)
+    value = np.linalg.norm(signals.centre(asked.object) - centre, axis=-1)
+    prim = signals.prim(asked.object)
+    return [Measure("distance", prim, value, asked.radius, "m", asked.radius, "the objective's radius")]
+
+
+@measures(ContainedIn)
+def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
+    prim, container = signals.prim(asked.object), signals.container(asked.ref)
+    q, solid = signals.frames(asked.object).body_q[:, 0], signals.solid(asked.object)
+    back = conjugate(np.array(container.rotation, dtype=np.float64))
+    local = Evidence.local(container, q[:, :3])
+    room = []
+    for axis, half in enumerate(np.array(container.inner_size) / 2):
+        # The extents along an axis of the container are those along Z after that axis was turned to Z.
+        turned = multiply(np.broadcast_to(multiply(_TO_Z[axis], back), q[:, 3:].shape), q[:, 3:])
+        ends = [reach(shape, turned) for shape in solid.shapes]
+        low = local[:, axis] + np.min([e[0] for e in ends], axis=0)
+        high = local[:, axis] + np.max([e[1] for e in ends], axis=0)
+        room += [half - high, half + low]
+    value = signals.fold(np.min(room, axis=0))
+    tolerance = LASTING * solid.smallest if asked.within is None else asked.within
+    source = f"{LASTING:g} of its smallest extent, as the check of penetration has it"
+    return [
+        Measure(
+            f"room to the walls, floor and rim of {container.prim}", prim, value, -tolerance, "m", solid.smallest,
+            source if asked.within is None else "the objective's", at_most=False,
+        )
+    ]  # fmt: skip
+
+
+_HALF = math.sqrt(0.5)
+_TO_Z = (  # quaternions that turn X, Y and Z to Z
+    np.array([0.0, -_HALF, 0.0, _HALF]),
+    np.array([_HALF, 0.0, 0.0, _HALF]),
+    np.array([0.0, 0.0, 0.0, 1.0]),
+)
+
+
+@measures(StaysInside)
+def _stays_inside(asked: StaysInside, signals: Signals) -> list[Measure]:
+    prim, container = signals.prim(asked.object), signals.container(asked.ref)
+    if not signals.moves(asked.object):
+        return [_fluid_inside(asked, signals, container)]
+    p = Evidence.local(container, signals.centre(asked.object))
+    half = np.array(container.inner_size) / 2
+    room = np.minimum((half[:2] - np.abs(p[..., :2])).min(axis=-1), p[..., 2] + half[2])
+    size = signals.solid(asked.object).smallest
+    what = f"way from its centre to the walls and floor of {container.prim}"
+    return [Measure(what, prim, room, 0.0, "m", size, "the walls' inner faces", at_most=False)]
+
+
+def _fluid_inside(asked: StaysInside, signals: Signals, container: Container) -> Measure:
+    evidence, fluid = signals.fluid(asked.object)
+    track = evidence.track(fluid)
+    outside = np.array([evidence.strayed(container, fluid, points).mean() for points in track.position])
+    value = outside[latest(track.time, signals.time)][None]
+    source = f"{asked.share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m"
+    return Measure(f"part outside {container.prim}", fluid.prim, value, asked.share, "1", asked.share, source)
+
+
+def latest(known: Floats, time: Floats) -> NDArray[np.intp]:
+    """For each time the index of the last of the known times at or before it, or of the first (T,)."""
+    return np.maximum(np.searchsorted(known, time + 1e-9, side="right") - 1, 0)
+
+
+@measures(Upright)
+def _upright(asked: Upright, signals: Signals) -> list[Measure]:
+    prim, q = signals.prim(asked.object), signals.q(asked.object)[..., 3:]
+    solid = signals.solid(asked.object)
+    if all(shape.kind == "sphere" for shape in solid.shapes):
+        raise MissingError("a ball has no upright")
+    own = rotate(conjugate(q[:, :1]), signals.up)  # what points up at the start, in the body's frame
+    value = np.degrees(np.arccos(np.clip(rotate(q, own) @ signals.up, -1.0, 1.0)))
+    limit, source = asked.within, "the objective's angle"
+    if limit is None:
+        limit, source = _tipping(signals, asked.object)
+    return [Measure("tilt", prim, value, limit, "deg", limit, source)]
+
+
+def _tipping(signals: Signals, name: str) -> tuple[float, str]:
+    """The tilt at which a body's middle is over the edge that it tips about [deg]: beyond it, it falls."""
+    solid = signals.solid(name)
+    q = signals.frames(name).body_q[:1, 0, 3:]
+    low, high = solid.reach(q)
+    halves = []
+    for axis in (0, 1):
+        ends = [reach(shape, multiply(_TO_Z[axis][None], q)) for shape in solid.shapes]
+        halves.append(float(np.max([e[1] for e in ends]) - np.min([e[0] for e in ends])) / 2)
+    half, middle = min(halves), float(high[0] - low[0]) / 2
+    angle = math.degrees(math.atan2(half, middle))
+    return angle, f"atan({half:.3g} m / {middle:.3g} m): there its middle is over the edge that it tips about"
+
+
+@measures(SpeedBetween)
+def _speed_between(asked: SpeedBetween, signals: Signals) -> list[Measure]:
+    prim = signals.prim(asked.object)
+    value = np.linalg.norm(signals.qd(asked.object)[..., :3], axis=-1)
+    low, high = (
+        Measure("speed", prim, value, limit, "m/s", asked.high or 1.0, "the objective's range", at_most=at_most)
+        for limit, at_most in ((asked.low, False), (asked.high, True))
+    )
+    return [low, high]
+
+
+@measures(Crosses)
+def _crosses(asked: Crosses, signals: Signals) -> list[Measure]:
+    prim, size = signals.prim(asked.object), signals.solid(asked.object).smallest
+    value = signals.centre(asked.object)[..., "xyz".index(asked.axis)]
+    from_above = np.broadcast_to(value[:, :1] > asked.at, value.shape)
+    source = "the objective's plane; it started on the other side, or on it"
+    return [Measure(asked.axis, prim, value, asked.at, "m", size, source, at_most=from_above)]
+
+
+@measures(FollowsPath)
+def _follows_path(asked: FollowsPath, signals: Signals) -> list[Measure]:
+    prim, size = signals.prim(asked.object), signals.solid(asked.object).smallest
+    limit = asked.within or size / 2
+    source = "the objective's" if asked.within else f"half of its smallest extent, {size:.3g} m: the path is in it"
+    p, path = signals.centre(asked.object), np.array(asked.path)
+    off = np.full(p.shape[:2], np.inf)
+    for a, b in itertools.pairwise(path):
+        off = np.minimum(off, _to_segment(p, a, b))
+    missed = np.broadcast_to(_missed(p, path, limit)[:, None], off.shape)
+    what = "distance to the point of the path that it misses most"
+    return [
+        Measure("distance from the path", prim, off, limit, "m", limit, source),
+        Measure(what, prim, missed, limit, "m", limit, source),
+    ]
+
+
+def _missed(p: Floats, path: Floats, limit: float) -> Floats:
+    """How near the body gets, at worst, to the points of the path taken in order, (W,) [m].
+
+    A point counts from where the one before it was reached. After one that is not reached no other is looked for.
+    """
+    count, frames = p.shape[:2]
+    start = np.zeros(count, dtype=np.intp)
+    worst = np.zeros(count)
+    going = np.ones(count, dtype=bool)
+    for point in path:
+        # Between two frames it is on the line between them.
+        near = np.linalg.norm(p - point, axis=-1)
+        if frames > 1:
+            near[:, 1:] = np.minimum(near[:, 1:], _to_segment(point, p[:, :-1], p[:, 1:]))
+        near = np.where(np.arange(frames) >= start[:, None], near, np.inf)
+        nearest = near.min(axis=1)
+        worst = np.where(going & ~(nearest <= worst), nearest, worst)
+        going = going & (nearest <= limit)
+        start = np.argmax(near <= limit, axis=1)
+    return worst
+
+
+def _to_segment(p: Floats, a: Floats, b: Floats) -> Floats:
+    """Distance (...) of points to line segments, (..., 3) each; shapes broadcast."""
+    along = b - a
+    length2 = np.sum(along * along, axis=-1)
+    share = np.sum((p - a) * along, axis=-1) / np.where(length2 > 0.0, length2, 1.0)
+    nearest = a + np.clip(share, 0.0, 1.0)[..., None] * along
+    return np.asarray(np.linalg.norm(p - nearest, axis=-1))

@@ -1,0 +1,165 @@
+"""Predicates about how a motion goes on: what swings, and what is conserved."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measures_place import latest
+from wsim.judge.motion import FLOAT32
+from wsim.judge.pendulum import Pendulum, period_of, pivot_of
+from wsim.plan.schema.formula import Conserves, Swings
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.language.signals import Signals
+
+    Floats = NDArray[np.float64]
+
+REST = 0.5  # [deg]: a smaller swing is rest
+
+
+@measures(Swings)
+def _swings(asked: Swings, signals: Signals) -> list[Measure]:
+    prim = signals.prim(asked.object)
+    swing = _pendulum(signals, asked.object)
+    half, highest = _half_swings(signals.time, swing.angle)
+    if asked.period is None:
+        expected = period_of(swing, signals.gravity)[:, None]
+        source = f"2 pi sqrt(I / m g d) at its amplitude, to {asked.share:.0%}"
+    else:
+        expected, source = np.full((signals.count, 1), asked.period), f"the objective's, to {asked.share:.0%}"
+    # A body that does not pass its middle twice has a period of twice its time at least, which may be long enough to
+    # tell; else it is not known.
+    length = 2 * float(signals.time[-1] - signals.time[0])
+    too_long = np.where(length > expected * (1 + asked.share), length, np.nan)
+    value = np.where(np.isfinite(half), 2 * half, np.where(np.isfinite(swing.angle), too_long, np.nan))
+    found = [
+        Measure.about(
+            value, expected, asked.share * expected, what="period", prim=prim, unit="s", limit_from=source
+        )
+    ]  # fmt: skip
+    if asked.amplitude is None:
+        what, source = "amplitude", "a smaller swing is rest"
+        found.append(Measure(what, prim, highest, REST, "deg", REST, source, at_most=False))
+    else:
+        found.append(
+            Measure.about(
+                highest, asked.amplitude, asked.share * asked.amplitude, what="amplitude", prim=prim, unit="deg",
+                limit_from=f"the objective's, to {asked.share:.0%}",
+            )
+        )  # fmt: skip
+    return found
+
+
+def _pendulum(signals: Signals, name: str) -> Pendulum:
+    """The body as a pendulum about the point that its own velocities turn about."""
+    i = signals.row(name)
+    centre, twist = signals.centre_of_mass(i), signals.qd(name)
+    pivot, axis = pivot_of(centre, twist[..., :3], twist[..., 3:])
+    arm = centre - pivot[:, None]
+    arm = arm - np.einsum("wti,wi->wt", arm, axis)[..., None] * axis[:, None]
+    down = -signals.up
+    angle = np.arctan2(np.einsum("wti,wi->wt", np.cross(np.broadcast_to(down, arm.shape), arm), axis), arm @ down)
+    assert signals.mass is not None
+    mass = signals.mass[:, i]
+    length = np.linalg.norm(arm, axis=-1).mean(axis=1)
+    return Pendulum(angle, mass, length, signals.inertia_about(i, axis[:, None])[:, 0] + mass * length**2)
+
+
+def _half_swings(time: Floats, angle: Floats) -> tuple[Floats, Floats]:
+    """Length of the half swing that each frame is in, or is nearest to [s], and how far it goes [deg], (W, T) each.
+
+    A half swing is from one passage of the middle to the next. Of those that the recording begins and ends in not all
+    is seen: each is as long, and goes as far, as the nearest whole one, or more where it is seen to. The length is NaN
+    in a world that passes the middle less than twice.
+    """
+    count, frames = angle.shape
+    if frames < 2:
+        return np.full(angle.shape, np.nan), np.degrees(np.abs(angle))
+    a, b = angle[:, :-1], angle[:, 1:]
+    passes = (a * b < 0.0) | ((a == 0.0) & (b != 0.0) & (np.arange(frames - 1) > 0))
+    moment = time[:-1] - a * np.diff(time) / np.where(passes, b - a, 1.0)
+    last = np.maximum.accumulate(np.where(passes, moment, -np.inf), axis=1)
+    following = np.minimum.accumulate(np.where(passes, moment, np.inf)[:, ::-1], axis=1)[:, ::-1]
+    # The frame k is after the passages of the intervals up to k - 1, and before those from k on.
+    edge = np.full((count, 1), np.inf)
+    until, since = np.concatenate([following, edge], axis=1), np.concatenate([-edge, last], axis=1)
+    whole = np.isfinite(until - since)
+    half = np.minimum(until, time[-1]) - np.maximum(since, time[0])
+    swing = np.concatenate([np.zeros((count, 1), np.intp), np.cumsum(passes, axis=1)], axis=1)
+    highest = np.zeros((count, int(swing.max()) + 1))
+    np.maximum.at(highest, (np.arange(count)[:, None], swing), np.abs(angle))
+    far = np.take_along_axis(highest, swing, axis=1)
+    half, far = (np.where(whole, seen, _at_least(seen, whole)) for seen in (half, far))
+    return np.where(whole.any(axis=1, keepdims=True), half, np.nan), np.degrees(far)
+
+
+def _at_least(values: Floats, known: NDArray[np.bool_]) -> Floats:
+    """Each number (W, T), or the nearest known one before it, or else after it, if that is greater."""
+    frames = np.arange(values.shape[1])
+    before = np.maximum.accumulate(np.where(known, frames, -1), axis=1)
+    after = np.minimum.accumulate(np.where(known, frames, frames[-1])[:, ::-1], axis=1)[:, ::-1]
+    return np.maximum(values, np.take_along_axis(values, np.where(before >= 0, before, after), axis=1))
+
+
+@measures(Conserves)
+def _conserves(asked: Conserves, signals: Signals) -> list[Measure]:
+    if asked.what == "mass":
+        return [_mass(asked, signals)]
+    rows = [signals.row(name) for name in asked.objects] or [
+        i for i, body in enumerate(signals.world.bodies) if not body.kinematic
+    ]
+    prim = signals.world.bodies[rows[0]].prim if len(rows) == 1 else "/World"
+    change, scale = (_energy if asked.what == "energy" else _momentum)(signals, rows)
+    unit = "J" if asked.what == "energy" else "kg m/s"
+    limit = asked.share * scale
+    source = f"{asked.share:g} of the {asked.what} that moves, {float(np.nanmedian(scale)):.3g} {unit}"
+    return [Measure(f"change of {asked.what}", prim, change, limit, unit, scale, source, expected=0.0)]
+
+
+def _energy(signals: Signals, rows: list[int]) -> tuple[Floats, Floats]:
+    """Change of kinetic and potential energy (W, T), and how much of either comes and goes (W, 1) [J]."""
+    assert signals.mass is not None
+    kinetic, potential = np.zeros((2, signals.count, len(signals.time)))
+    size = np.zeros((signals.count, 1))
+    for i in rows:
+        mass, twist = signals.mass[:, [i]], signals.body_qd[:, :, i].astype(np.float64)
+        own = -mass * (signals.centre_of_mass(i) @ np.array(signals.world.gravity))
+        kinetic += mass * np.einsum("wti,wti->wt", twist[..., :3], twist[..., :3]) / 2
+        kinetic += signals.inertia_about(i, twist[..., 3:]) / 2
+        potential += own
+        size = size + np.abs(own).max(axis=1, keepdims=True)
+    total = kinetic + potential
+    moved = np.maximum(kinetic.max(axis=1, keepdims=True), np.ptp(potential, axis=1, keepdims=True))
+    return np.abs(total - total[:, :1]), moved + size * FLOAT32 + np.finfo(np.float32).tiny
+
+
+def _momentum(signals: Signals, rows: list[int]) -> tuple[Floats, Floats]:
+    """Change of the momentum that gravity leaves (W, T), and the sum of the sizes of all momenta (W, 1) [kg m/s]."""
+    assert signals.mass is not None
+    total, size = np.zeros((signals.count, len(signals.time), 3)), np.zeros((signals.count, len(signals.time)))
+    for i in rows:
+        v = signals.body_qd[:, :, i, :3].astype(np.float64)
+        if signals.gravity > 0.0:
+            v = v - (v @ signals.up)[..., None] * signals.up
+        total = total + signals.mass[:, i, None, None] * v
+        size = size + signals.mass[:, [i]] * np.linalg.norm(v, axis=-1)
+    change = np.linalg.norm(total - total[:, :1], axis=-1)
+    return change, size.max(axis=1, keepdims=True) + np.finfo(np.float32).tiny
+
+
+def _mass(asked: Conserves, signals: Signals) -> Measure:
+    """What of a fluid is no longer where it can be counted: outside of its container, or not finite."""
+    evidence, fluid = signals.fluid(asked.objects[0])
+    track, total = evidence.track(fluid), math.prod(fluid.size) * fluid.density
+    finite = np.isfinite(track.position).all(axis=2)
+    there = finite.mean(axis=1) if fluid.container is None else 1.0 - evidence.outside(fluid)
+    there = np.minimum(there, finite.mean(axis=1))
+    value = (np.abs(there - there[0]) * total)[latest(track.time, signals.time)][None]
+    source = f"{asked.share:g} of {total:.4g} kg"
+    return Measure("change of mass", fluid.prim, value, asked.share * total, "kg", total, source, expected=0.0)

@@ -1,0 +1,244 @@
+"""What a formula is evaluated on: the signals of one recording, or of many worlds that share one description."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsim.judge.evidence import Evidence, MissingError
+from wsim.judge.geometry import conjugate, rotate
+from wsim.recording.reader import Recording
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.geometry import Solid
+    from wsim.plan.schema import Plan
+    from wsim.scene.world import Body, Container, Fluid, World
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class Signals:
+    """W worlds of T frames and B bodies in the order of `world.bodies`.
+
+    Args:
+        world: What all of them are made of; their masses may differ.
+        time: (T,) [s], increasing.
+        body_q: (W, T, B, 7), [x y z qx qy qz qw], world frame.
+        body_qd: (W, T, B, 6), velocity of the centre of mass [m/s] and angular velocity [rad/s], world frame.
+        contact_force: (W, T, B, 3), net force of the contacts on a body [N]; NaN where it was not recorded.
+        mass: (W, B) [kg]; the description's if left out.
+        evidence: The recording they are from, for what has no world axis: the particles of a fluid.
+
+    Raises:
+        ValueError: The shapes do not fit each other, or time does not increase.
+    """
+
+    world: World
+    time: Floats
+    body_q: NDArray[Any]
+    body_qd: NDArray[Any]
+    contact_force: NDArray[Any]
+    mass: Floats | None = None
+    evidence: Evidence | None = None
+    _frames: dict[tuple[str, ...], Evidence] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        self.time = np.asarray(self.time, dtype=np.float64)
+        count, frames, bodies = self.body_q.shape[0], len(self.time), len(self.world.bodies)
+        for name, width in (("body_q", 7), ("body_qd", 6), ("contact_force", 3)):
+            shape, wanted = getattr(self, name).shape, (count, frames, bodies, width)
+            if shape != wanted:
+                raise ValueError(f"{name} has the shape {shape}; {frames} times and {bodies} bodies need {wanted}")
+        if frames == 0 or not np.all(np.diff(self.time) > 0.0):
+            raise ValueError("time must be one or more finite seconds that increase")
+        if self.mass is None:
+            self.mass = np.tile([body.mass for body in self.world.bodies], (count, 1)).reshape(count, bodies)
+        elif self.mass.shape != (count, bodies):
+            raise ValueError(f"mass has the shape {self.mass.shape}; {count} worlds of {bodies} bodies need one each")
+
+    @classmethod
+    def of(cls, evidence: Evidence) -> Signals:
+        """One recorded world."""
+        return cls(
+            evidence.world, evidence.time, evidence.body_q[None], evidence.body_qd[None],
+            np.asarray(evidence.recording.contact_force)[None], evidence=evidence,
+        )  # fmt: skip
+
+    @classmethod
+    def of_recording(cls, recording: Recording, plan: Plan | None = None) -> Signals:
+        """One recorded world."""
+        return cls.of(Evidence(recording, plan))
+
+    # ---- time and space
+    @property
+    def count(self) -> int:
+        """How many worlds."""
+        return int(self.body_q.shape[0])
+
+    @cached_property
+    def step(self) -> float:
+        """The median time between two frames [s]; 0 where there is one frame alone."""
+        return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
+
+    @property
+    def gravity(self) -> float:
+        """The strength of gravity [m/s^2]."""
+        return float(np.linalg.norm(self.world.gravity))
+
+    @cached_property
+    def up(self) -> Floats:
+        """Against gravity (3,); +Z where there is none."""
+        pull = np.array(self.world.gravity, dtype=np.float64)
+        return -pull / self.gravity if self.gravity > 0.0 else np.array([0.0, 0.0, 1.0])
+
+    def speed_scale(self, length: float) -> float:
+        """The speed sqrt(g L) that gravity gives over a length [m/s]."""
+        return math.sqrt(max(self.gravity, 1e-9) * length)
+
+    # ---- who is who
+    def prim(self, name: str) -> str:
+        """The prim of a name; MissingError naming all that are known."""
+        prim = name if name.startswith("/") else Evidence.prim(name)
+        world = self.world
+        known = [body.prim for body in world.bodies] + [static.prim for static in world.statics]
+        known += [container.prim for container in world.containers] + [fluid.prim for fluid in world.fluids]
+        if prim not in known:
+            raise MissingError(f"the world has no {name!r}; it has {', '.join(dict.fromkeys(known)) or 'nothing'}")
+        return prim
+
+    def row(self, name: str) -> int:
+        """The row of a body; MissingError naming the bodies."""
+        prim = self.prim(name)
+        prims = [body.prim for body in self.world.bodies]
+        if prim not in prims:
+            raise MissingError(f"{name!r} is no body that moves; those are {', '.join(prims) or 'none'}")
+        return prims.index(prim)
+
+    def moves(self, name: str) -> bool:
+        """Whether a name is a body's."""
+        return any(body.prim == self.prim(name) for body in self.world.bodies)
+
+    def body(self, name: str) -> Body:
+        """A body's description."""
+        return self.world.bodies[self.row(name)]
+
+    def container(self, name: str) -> Container:
+        """A container; MissingError naming the containers."""
+        prim = self.prim(name)
+        for container in self.world.containers:
+            if container.prim == prim:
+                return container
+        known = ", ".join(container.prim for container in self.world.containers) or "none"
+        raise MissingError(f"{name!r} is no container; those are {known}")
+
+    def fluid(self, name: str) -> tuple[Evidence, Fluid]:
+        """A fluid, by its name or its container's, and the recording with its particles.
+
+        Raises:
+            MissingError: It is no fluid, or these are many worlds: their particles are in no recording.
+        """
+        prim = self.prim(name)
+        if self.evidence is None or self.count != 1:
+            raise MissingError(
+                f"{name!r} is seen through its particles, which only a recording of one world has; these signals are "
+                f"of {self.count} worlds without: evaluate the objective on each world's own recording"
+            )
+        return self.evidence, self.evidence.fluid(prim)
+
+    # ---- signals of a body, float64
+    def q(self, name: str) -> Floats:
+        """Poses (W, T, 7)."""
+        return self.body_q[:, :, self.row(name)].astype(np.float64)
+
+    def qd(self, name: str) -> Floats:
+        """Velocities (W, T, 6)."""
+        return self.body_qd[:, :, self.row(name)].astype(np.float64)
+
+    def force(self, name: str) -> Floats:
+        """Contact forces (W, T, 3) [N]."""
+        return self.contact_force[:, :, self.row(name)].astype(np.float64)
+
+    def weight(self, name: str) -> Floats:
+        """A body's weight in each world, (W, 1) [N]."""
+        assert self.mass is not None
+        return self.mass[:, [self.row(name)]] * self.gravity
+
+    def velocity(self, name: str) -> Floats:
+        """Velocities (W, T, 3) of an object's centre of mass [m/s]; zero of what never moves."""
+        return self.qd(name)[..., :3] if self.moves(name) else np.zeros((self.count, len(self.time), 3))
+
+    def centre(self, name: str) -> Floats:
+        """Positions (W, T, 3) of a body's origin, or (3,) of a fixed object's middle [m]."""
+        if self.moves(name):
+            return self.q(name)[..., :3]
+        prim = self.prim(name)
+        for container in self.world.containers:
+            if container.prim == prim:
+                return np.array(container.inner_center, dtype=np.float64)
+        for static in self.world.statics:
+            if static.prim == prim:
+                return np.mean([shape.position for shape in static.shapes], axis=0)
+        raise MissingError(f"{name!r} is a fluid, which has no centre; name a body, a fixed object or a point")
+
+    def centre_of_mass(self, i: int) -> Floats:
+        """Positions (W, T, 3) of the centre of mass of body i [m]."""
+        q = self.body_q[:, :, i].astype(np.float64)
+        com = np.array(self.world.bodies[i].com, dtype=np.float64)
+        return q[..., :3] + rotate(q[..., 3:], com) if com.any() else q[..., :3]
+
+    def inertia_about(self, i: int, axes: Floats) -> Floats:
+        """n . I n of body i about its centre of mass, (W, n) of axes n at the first frames (W, n, 3) [kg m^2 of n^2].
+
+        A world with another mass has it at the same places: inertia goes with mass.
+        """
+        assert self.mass is not None
+        body = self.world.bodies[i]
+        inertia = np.array(body.inertia, dtype=np.float64).reshape(3, 3)
+        if np.allclose(inertia, inertia[0, 0] * np.eye(3), rtol=1e-6, atol=1e-6 * inertia[0, 0]):
+            own = inertia[0, 0] * np.einsum("wni,wni->wn", axes, axes)  # the same about every axis
+        else:
+            q = self.body_q[:, : axes.shape[1], i, 3:].astype(np.float64)
+            own_axes = rotate(conjugate(q), axes)
+            own = np.einsum("wni,wni->wn", own_axes @ inertia, own_axes)
+        return np.asarray(own * (self.mass[:, [i]] / body.mass))
+
+    # ---- frames one by one
+    def frames(self, *names: str) -> Evidence:
+        """The poses of the named bodies in all worlds' frames behind one another, (W * T,).
+
+        For what looks at one frame at a time; `fold` gives its answers their world axis again.
+        """
+        prims = tuple(dict.fromkeys(self.prim(name) for name in names))
+        if prims not in self._frames:
+            rows = [i for i, body in enumerate(self.world.bodies) if body.prim in prims]
+            q = self.body_q[:, :, rows].reshape(-1, len(rows), 7)
+            # Nothing here is asked of velocities and forces; whatever was would come out as not known.
+            qd, force = (np.broadcast_to(np.nan, (len(q), len(rows), width)) for width in (6, 3))
+            recording = Recording(
+                path=Path(), world=self.world.model_copy(update={"bodies": [self.world.bodies[i] for i in rows]}),
+                metadata={}, time=np.tile(self.time, self.count), body_q=q, body_qd=qd, contact_force=force,
+                fluids={}, scalars={}, log=[], images={},
+            )  # fmt: skip
+            self._frames[prims] = Evidence(recording)
+        return self._frames[prims]
+
+    def fold(self, flat: NDArray[Any]) -> NDArray[Any]:
+        """Answers (W * T, ...) with their world axis, (W, T, ...)."""
+        return flat.reshape(self.count, len(self.time), *flat.shape[1:])
+
+    def solid(self, name: str) -> Solid:
+        """A body's shapes."""
+        return self.frames(name).solid(0)
+
+    def ends(self, name: str) -> tuple[Floats, Floats]:
+        """Height of a body's lowest and highest point, (W, T) each [m]."""
+        low, high = self.frames(name).ends(0)
+        return self.fold(low), self.fold(high)

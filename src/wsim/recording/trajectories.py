@@ -1,0 +1,103 @@
+"""Many copies of a world through time, as arrays: what a sweep is judged by, without a file for each copy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsim.recording.frames import LogLine
+from wsim.recording.reader import Recording
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import World
+
+    Array = NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectories:
+    """W copies of one world of B rigid bodies over T frames; rows follow `world.bodies`. Fluids are not kept.
+
+    Attributes:
+        world: What the copies share.
+        time: (T,) [s].
+        body_q: (W, T, B, 7) [x y z qx qy qz qw], world frame.
+        body_qd: (W, T, B, 6) [vx vy vz wx wy wz], of the centre of mass.
+        contact_force: (W, T, B, 3) [N].
+        penetration: (W, T) [m], the solver's deepest contact; None where it is not known.
+        mass: (W, B) [kg], where the copies differ from `world`; None where they do not.
+        problems: (W,) lists of what went wrong in a copy, as its log would say it; empty: nothing in any.
+        metadata: As of a recording.
+    """
+
+    world: World
+    time: Array
+    body_q: Array
+    body_qd: Array
+    contact_force: Array
+    penetration: Array | None = None
+    mass: Array | None = None
+    problems: list[list[str]] = field(default_factory=list)
+    metadata: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not fit one another.
+
+        Raises:
+            ValueError: Naming the array, its shape and the one that it must have.
+        """
+        worlds, frames, bodies = self.body_q.shape[:1] + self.time.shape + (len(self.world.bodies),)
+        wanted = {
+            "body_q": (worlds, frames, bodies, 7),
+            "body_qd": (worlds, frames, bodies, 6),
+            "contact_force": (worlds, frames, bodies, 3),
+            "penetration": (worlds, frames),
+            "mass": (worlds, bodies),
+        }
+        for name, shape in wanted.items():
+            array = getattr(self, name)
+            if array is not None and array.shape != shape:
+                raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
+        if self.problems and len(self.problems) != worlds:
+            raise ValueError(f"problems has {len(self.problems)} entries; it must have one for each of {worlds} worlds")
+
+    @property
+    def world_count(self) -> int:
+        """W."""
+        return len(self.body_q)
+
+    def world_of(self, k: int) -> World:
+        """World k as it was, with its own masses; inertias go with them."""
+        if self.mass is None:
+            return self.world
+        bodies = [
+            body.model_copy(
+                update={"mass": float(m), "inertia": tuple(m / body.mass * entry for entry in body.inertia)}
+            )
+            for body, m in zip(self.world.bodies, self.mass[k], strict=True)
+        ]
+        return self.world.model_copy(update={"bodies": bodies})
+
+    def recording(self, k: int) -> Recording:
+        """World k as a recording in memory."""
+        scalars = {} if self.penetration is None else {"contact/penetration": self.penetration[k].astype(np.float64)}
+        end = float(self.time[-1]) if len(self.time) else 0.0
+        problems = self.problems[k] if self.problems else []
+        return Recording(
+            path=Path(f"world-{k}"),
+            world=self.world_of(k),
+            metadata={"complete": not problems, **self.metadata},
+            time=np.asarray(self.time, dtype=np.float64),
+            body_q=self.body_q[k],
+            body_qd=self.body_qd[k],
+            contact_force=self.contact_force[k],
+            fluids={},
+            scalars=scalars,
+            log=[LogLine(end, "ERROR", problem) for problem in problems],
+            images={},
+        )

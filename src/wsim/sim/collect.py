@@ -1,0 +1,66 @@
+"""All worlds of a simulation, stepped and kept as arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.errors import UserError
+from wsim.progress import Progress, silent
+from wsim.recording.trajectories import Trajectories
+
+if TYPE_CHECKING:
+    from wsim.sim.simulation import Simulation
+
+
+def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories:
+    """Step every world through the stage's duration, and keep what the judge needs of each recorded frame.
+
+    Args:
+        simulation: At its start; left at its end.
+        progress: Told after each frame.
+
+    Returns:
+        The bodies of all worlds. A world whose contact buffers overflow, or whose state is not finite, is told of in
+        `problems`; the others are none the worse.
+
+    Raises:
+        UserError: If the world has a fluid: its particles are for a recording.
+    """
+    world, built, rigid = simulation.world, simulation.built, simulation.rigid
+    if world.fluids:
+        raise UserError(f"{world.fluids[0].prim}: worlds with fluid are not collected; record them one by one")
+    frames = round(world.duration * world.frame_rate) + 1
+    worlds, bodies = max(1, simulation.model.world_count), len(world.bodies)
+    time = np.zeros(frames)
+    q = np.zeros((worlds, frames, bodies, 7), dtype=np.float32)
+    qd = np.zeros((worlds, frames, bodies, 6), dtype=np.float32)
+    force = np.zeros((worlds, frames, bodies, 3), dtype=np.float32)
+    deepest = np.zeros((worlds, frames))
+    for frame in range(frames):
+        if frame:
+            simulation.advance_frame()
+        time[frame] = simulation.time
+        if rigid:
+            pushes, deepest[:, frame] = rigid.contacts()
+            q[:, frame] = simulation.state.body_q.numpy().reshape(worlds, -1, 7)[:, built.bodies]
+            qd[:, frame] = simulation.state.body_qd.numpy().reshape(worlds, -1, 6)[:, built.bodies]
+            force[:, frame] = pushes[:, built.bodies]
+        progress("simulating", frame, frames - 1)
+    mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
+    return Trajectories(
+        world, time, q, qd, force, deepest, mass, problems=_problems(simulation, q, qd), metadata=simulation.facts()
+    )
+
+
+def _problems(simulation: Simulation, q: np.ndarray, qd: np.ndarray) -> list[list[str]]:
+    overflowed = simulation.rigid.overflowed() if simulation.rigid else np.zeros(len(q), dtype=bool)
+    warned = simulation.rigid.problems() if simulation.rigid and simulation.rigid.on_c else []
+    broken = ~(np.isfinite(q).all(axis=(1, 2, 3)) & np.isfinite(qd).all(axis=(1, 2, 3)))
+    return [
+        warned
+        + (["contact buffers overflowed"] if full else [])
+        + (["body_q or body_qd is not finite"] if not_finite else [])
+        for full, not_finite in zip(overflowed, broken, strict=True)
+    ]

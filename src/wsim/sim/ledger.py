@@ -1,0 +1,100 @@
+"""What comes into the bodies of the first world from outside: impulses and work of fluid, control and drives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from wsim.kernels.work import accumulate_drive, accumulate_push
+
+
+@dataclass(frozen=True)
+class Entry:
+    """The sums since the last entry.
+
+    `impulse` (bodies, 3) [N s] and `work` (bodies,) [J] are those of `State.body_f`, by the model's bodies. `drives` is
+    the work of drives and joint forces [J], and `unsure` how far it may be from that; `effort` is what each degree of
+    freedom's drive gives now [N m or N].
+    """
+
+    impulse: np.ndarray
+    work: np.ndarray
+    drives: float
+    unsure: float
+    effort: np.ndarray
+
+
+class Ledger:
+    """Keeps the books of a model's bodies, step by step.
+
+    Args:
+        model: The Newton model; only its first world is read.
+        observables: The solver's, with `qfrc_actuator`, where the model has drives.
+        at_end: Whether that is the effort at the end of a step, as Runge-Kutta's last stage has it, or at its start.
+    """
+
+    def __init__(self, model: Any, observables: Any | None, at_end: bool) -> None:
+        worlds = max(1, model.world_count)
+        self.model, self.observables, self.at_end = model, observables, at_end
+        self.bodies, self.dofs = model.body_count // worlds, model.joint_dof_count // worlds
+        with wp.ScopedDevice(model.device):
+            self._twist = wp.zeros(model.body_count, dtype=wp.spatial_vector)
+            self._rate = wp.zeros(model.joint_dof_count, dtype=wp.float32)
+            self._impulse = wp.zeros(self.bodies, dtype=wp.vec3)
+            self._work = wp.zeros(self.bodies, dtype=wp.float32)
+            self._drives = wp.zeros(self.dofs, dtype=wp.float32)
+            self._unsure = wp.zeros(self.dofs, dtype=wp.float32)
+            self._last = wp.zeros(self.dofs, dtype=wp.float32)
+            self._none = wp.zeros(model.joint_dof_count, dtype=wp.float32)
+
+    def before(self, state: Any) -> None:
+        """Note the velocities that a step starts from."""
+        wp.copy(self._twist, state.body_qd)
+        if self.dofs:
+            wp.copy(self._rate, state.joint_qd)
+
+    def after(self, force: Any, state: Any, control: Any, dt: float) -> None:
+        """Add a step of `dt` [s] that ended in `state`, under the bodies' `force`."""
+        device = self.model.device
+        wp.launch(
+            accumulate_push,
+            dim=self.bodies,
+            inputs=[force, self._twist, state.body_qd, dt],
+            outputs=[self._impulse, self._work],
+            device=device,
+        )
+        if not self.dofs:
+            return
+        effort = self._none if self.observables is None else self.observables.qfrc_actuator
+        wp.launch(
+            accumulate_drive,
+            dim=self.dofs,
+            inputs=[effort, self.at_end, control.joint_f, self._rate, state.joint_qd, dt],
+            outputs=[self._last, self._drives, self._unsure],
+            device=device,
+        )
+
+    def take(self) -> Entry:
+        """The sums since the last call, which start anew."""
+        effort = self._none if self.observables is None else self.observables.qfrc_actuator
+        entry = Entry(
+            self._impulse.numpy().astype(np.float64),
+            self._work.numpy().astype(np.float64),
+            float(self._drives.numpy().sum(dtype=np.float64)),
+            float(self._unsure.numpy().sum(dtype=np.float64)),
+            effort.numpy()[: self.dofs].astype(np.float64),
+        )
+        self._empty()
+        return entry
+
+    def clear(self) -> None:
+        """Forget the sums, and the last effort: the run starts anew."""
+        self._empty()
+        self._last.zero_()
+
+    def _empty(self) -> None:
+        for array in (self._impulse, self._work, self._drives, self._unsure):
+            array.zero_()

@@ -1,0 +1,202 @@
+"""Predicates of contact: gaps, loads, rolling and collisions of balls and boxes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
+from wsim.judge.evidence import MissingError
+from wsim.judge.language import evaluate, parse
+from wsim.scene.world import Shape, World
+
+RATE = 100.0
+TIME = times(1.0, RATE)
+ONE = np.ones((len(TIME), 3))
+X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+DROP = G / RATE**2 / 2  # the fall between two frames [m]
+
+
+def margin(text, signals, world=0):
+    return evaluate(parse(text), signals).margin[world]
+
+
+def ball_and_box(world, ball, box=(0.0, 3.0, 0.2), **given):
+    return moving(world, TIME, ONE * ball, ONE * box, **given)
+
+
+def test_touches_and_never_touches_are_the_gap(tank_world):
+    # 1 m/s towards the wall, whose face is at 1 m: the ball's front gets from 0.1 to 0.95 m, 0.05 m before it.
+    near = ball_and_box(tank_world, (0.85 * TIME)[:, None] * X + 0.5 * Z)
+    assert margin("touches(ball, wall, 0.06 m)", near) == pytest.approx(0.01)
+    assert margin("touches(ball, wall, 0.04 m)", near) == pytest.approx(-0.01)
+    assert margin("never_touches(ball, wall)", near) == pytest.approx(0.05)
+    assert margin("never_touches(ball, wall, clearance 8 cm)", near) == pytest.approx(-0.03)
+    # With the way that it makes until the next frame: 0.85 m/s and a fall.
+    assert margin("touches(ball, wall)", near) == pytest.approx(0.85 / RATE + DROP - 0.05)
+    into = ball_and_box(tank_world, [0.92, 0.0, 0.5])
+    assert margin("never_touches(ball, wall)", into) == pytest.approx(-0.02)
+    assert margin("touches(ball, wall)", into) == pytest.approx(0.02 + DROP)
+
+
+def test_the_gap_of_turned_boxes_is_from_corner_to_face():
+    world = World(bodies=[solid("a", shape("box", 1.0, 1.0, 1.0)), solid("b", shape("box", 1.0, 1.0, 1.0))])
+    q = np.zeros((len(TIME), 2, 4))
+    q[:, 0, 3] = 1.0
+    q[:, 1] = about_axis("z", np.full(len(TIME), math.pi / 4))
+    signals = moving(world, TIME, 0.0 * ONE, ONE * X * 1.5, q=q)
+    assert margin("never_touches(a, b)", signals) == pytest.approx(1.5 - 0.5 - math.sqrt(0.5))
+    assert margin("never_touches(b, a)", signals) == pytest.approx(1.5 - 0.5 - math.sqrt(0.5))
+
+
+def test_what_cannot_touch_is_no_silent_success():
+    mesh = Shape(prim="/m", kind="mesh", size=(1.0, 1.0, 1.0), vertices=[(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    ghost = shape("sphere", 0.1, collides=False)
+    world = World(bodies=[solid("a", mesh), solid("b", mesh), solid("ghost", ghost)])
+    signals = moving(world, TIME, 0.0 * ONE, 5.0 * ONE, 9.0 * ONE)
+    for text, why in (("never_touches(a, b)", "both a mesh"), ("never_touches(a, ghost)", "nothing that collides"),
+                      ("never_touches(a, a)", "named twice")):  # fmt: skip
+        with pytest.raises(MissingError, match=why):
+            evaluate(parse(text), signals)
+
+
+@pytest.mark.parametrize(
+    ("height", "speed", "expected"), [(0.21, 0.0, 0.02 - 0.01), (0.25, 0.0, 0.02 - 0.05), (0.17, 0.0, 0.02 - 0.03)]
+)
+def test_rests_on_is_a_gap_from_above(tank_world, height, speed, expected):
+    # The box is 0.4 m high: 5 % is 0.02 m.
+    signals = ball_and_box(tank_world, [3.0, 0.0, 0.1], [0.0, 0.0, height], v=np.full(3, speed))
+    found = evaluate(parse("rests_on(box, ground)"), signals)
+    assert min(found.robustness[0], 1.0) == pytest.approx(expected / 0.02)
+
+
+def test_rests_on_wants_it_over_the_other_and_still(tank_world):
+    over = ball_and_box(tank_world, [0.05, 0.0, 0.5], [0.0, 0.0, 0.2])
+    assert evaluate(parse("rests_on(ball, box)"), over).satisfied[0]
+    beside = ball_and_box(tank_world, [0.25, 0.0, 0.5], [0.0, 0.0, 0.2])
+    assert not evaluate(parse("rests_on(ball, box)"), beside).satisfied[0]
+    # 5 % of sqrt(g L), L = 0.2 m, is 0.07 m/s; together they may move as they like.
+    for slip, holds in ((0.06, True), (0.08, False)):
+        v = np.zeros((len(TIME), 2, 3))
+        v[:, 0, 0], v[:, 1, 0] = 1.0 + slip, 1.0
+        found = evaluate(parse("rests_on(ball, box)"), ball_and_box(tank_world, [0.05, 0, 0.5], [0, 0, 0.2], v=v))
+        assert found.satisfied[0] == holds
+        if not holds:
+            assert found.units == ["m/s"] and found.margin[0] == pytest.approx(0.05 * math.sqrt(0.2 * G) - slip)
+
+
+def test_supported_by_is_the_load_of_what_it_touches(tank_world):
+    for share, holds in ((1.0, True), (0.51, True), (0.49, False)):
+        force = np.zeros((len(TIME), 2, 3))
+        force[:, 1, 2] = share * 2.0 * G  # the box weighs 2 kg
+        signals = ball_and_box(tank_world, [3.0, 0.0, 0.1], [0.0, 0.0, 0.2], force=force)
+        found = evaluate(parse("supported_by(box, ground)"), signals)
+        assert found.satisfied[0] == holds
+        if found.units == ["N"]:
+            assert found.margin[0] == pytest.approx((share - 0.5) * 2.0 * G)
+    assert found.units == ["N"]
+    # Carried, but not by that; and pressed down.
+    aloft = ball_and_box(tank_world, [3.0, 0.0, 0.1], [0.0, 0.0, 1.2], force=2.0 * G * Z)
+    assert margin("supported_by(box, ground)", aloft) == pytest.approx(DROP - 1.0)
+    pressed = ball_and_box(tank_world, [3.0, 0.0, 0.1], [0.0, 0.0, 0.2], force=-2.0 * G * Z)
+    assert not evaluate(parse("supported_by(box, ground)"), pressed).satisfied[0]
+    assert margin("supported_by(box, ground, share 0.9)", ball_and_box(
+        tank_world, [3.0, 0.0, 0.1], [0.0, 0.0, 0.2], force=1.9 * G * Z)) == pytest.approx(0.1 * G)  # fmt: skip
+
+
+def test_supported_by_knows_each_worlds_mass(tank_world):
+    force = np.full((3, len(TIME), 2, 3), 0.0)
+    force[..., 2] = 2.0 * G
+    mass = np.array([[1.0, 2.0], [1.0, 8.0], [1.0, 3.0]])
+    paths = [np.broadcast_to(place, (3, len(TIME), 3)) for place in ([3.0, 0.0, 0.1], [0.0, 0.0, 0.2])]
+    signals = moving(tank_world, TIME, *paths, force=force, mass=mass)
+    found = evaluate(parse("supported_by(box, ground)"), signals)
+    assert found.satisfied.tolist() == [True, False, True]
+    assert found.margin[1] == pytest.approx(2.0 * G - 4.0 * G)
+
+
+def test_settles_is_the_speed_of_the_fastest_point(tank_world):
+    # 2 % of sqrt(g L), L = 0.2 m; a turn of 0.2 rad/s moves its outside by 0.02 m/s.
+    limit = 0.02 * math.sqrt(0.2 * G)
+    spin = ball_and_box(tank_world, [0.0, 0.0, 0.1], v=np.zeros(3), w=0.2 * X)
+    assert margin("settles(ball)", spin) == pytest.approx(limit - 0.02)
+    fast = ball_and_box(tank_world, [0.0, 0.0, 0.1], v=0.02 * Z, w=0.2 * X)
+    assert margin("settles(ball)", fast) == pytest.approx(limit - 0.04)
+    assert margin("settles(ball, 0.05 m/s)", fast) == pytest.approx(0.01)
+
+
+def test_rolls_without_slip_stands_still_where_it_touches(tank_world):
+    # v = w x r: a ball of 0.1 m that rolls along +X turns about +Y.
+    rest = 0.02 * math.sqrt(0.1 * G)
+    for v, w, slip in ((1.0, 10.0, 0.0), (1.0, 9.0, 0.1), (1.0, -10.0, 2.0), (1.0, 0.0, 1.0), (0.0, 10.0, 1.0)):
+        signals = ball_and_box(tank_world, [0.0, 0.0, 0.1], v=v * X, w=w * np.array([0.0, 1.0, 0.0]))
+        assert margin("rolls_without_slip(ball)", signals) == pytest.approx(0.05 + rest - slip)
+    # Turning about the vertical, as a top does, moves nothing where it stands.
+    top = ball_and_box(tank_world, [0.0, 0.0, 0.1], v=0 * X, w=10.0 * Z)
+    assert evaluate(parse("rolls_without_slip(ball)"), top).satisfied[0]
+
+
+def test_rolls_on_a_slope():
+    slope = math.radians(30.0)
+    ramp = shape("box", 4.0, 1.0, 0.1, rotation=tuple(about_axis("y", np.array(slope))))
+    world = World(bodies=[solid("ball", shape("sphere", 0.1))], statics=[still("ramp", ramp)])
+    down = np.array([math.cos(slope), 0.0, -math.sin(slope)])
+    signals = moving(world, TIME, ONE * 0.2, v=down, w=np.array([0.0, 10.0, 0.0]))
+    assert margin("rolls_without_slip(ball, ramp)", signals) == pytest.approx(0.05 + 0.02 * math.sqrt(0.1 * G))
+    # Against level ground its contact point would be elsewhere.
+    assert not evaluate(parse("rolls_without_slip(ball)"), signals).satisfied[0]
+
+
+def bounce(restitution: float) -> tuple[np.ndarray, np.ndarray]:
+    """A ball of 0.1 m that falls from rest and comes back with a share of its speed; contact at 0.3955 s."""
+    hit = 0.3955
+    start, speed = 0.1 + G * hit**2 / 2, G * hit
+    after = TIME - hit
+    z = np.where(after < 0, start - G * TIME**2 / 2, 0.1 + restitution * speed * after - G * after**2 / 2)
+    v = np.where(after < 0, -G * TIME, restitution * speed - G * after)
+    return z[:, None] * Z, v
+
+
+@pytest.mark.parametrize("restitution", [0.9, 0.5])
+def test_collides_with_the_ground_at_its_restitution(tank_world, restitution):
+    path, speed = bounce(restitution)
+    v = np.zeros((len(TIME), 2, 3))
+    v[:, 0, 2] = speed
+    until = TIME < 0.39 + 0.06  # it falls again later
+    signals = moving(tank_world, TIME[until], path[until], (ONE * [0.0, 3.0, 0.2])[until], v=v[until])
+    found = evaluate(parse(f"collides_with(ball, ground, restitution {restitution})"), signals)
+    assert found.satisfied[0] and found.moment[0] == pytest.approx(0.3955, abs=1.5 / RATE)
+    assert evaluate(parse("collides_with(ball, ground)"), signals).satisfied[0]
+    for wrong in (restitution - 0.25, min(restitution + 0.25, 1.0) if restitution < 0.7 else 0.5):
+        assert not evaluate(parse(f"collides_with(ball, ground, restitution {wrong})"), signals).satisfied[0]
+
+
+def test_resting_and_flying_are_no_collisions(tank_world):
+    rest = ball_and_box(tank_world, [0.0, 0.0, 0.1], v=np.zeros(3))
+    found = evaluate(parse("collides_with(ball, ground)"), rest)
+    assert not found.satisfied[0] and found.units == ["m/s"]
+    by = ball_and_box(tank_world, (3.0 * TIME - 1.5)[:, None] * np.array([0.0, 1.0, 0.0]) + [0.895, 0.0, 0.5])
+    assert not evaluate(parse("collides_with(ball, wall)"), by).satisfied[0]
+
+
+def test_two_balls_collide_by_their_relative_speed():
+    world = World(
+        gravity=(0.0, 0.0, 0.0),
+        bodies=[solid(name, shape("sphere", 0.1)) for name in "ab"],
+    )
+    hit = 0.5055
+    after = np.maximum(TIME - hit, 0.0)[:, None]
+    before = np.minimum(TIME - hit, 0.0)[:, None]
+    # a comes at 2 m/s and leaves at 0.4, b from rest at 1.6: of equal mass with e = 0.6.
+    a, b = (2.0 * before + 0.4 * after) * X, 1.6 * after * X + 0.2 * X
+    late = after[:, 0] > 0.0
+    v = np.zeros((len(TIME), 2, 3))
+    v[:, 0, 0], v[:, 1, 0] = np.where(late, 0.4, 2.0), np.where(late, 1.6, 0.0)
+    signals = moving(world, TIME, a, b, v=v)
+    found = evaluate(parse("collides_with(a, b, restitution 0.6, within 0.01)"), signals)
+    assert found.satisfied[0] and found.moment[0] == pytest.approx(hit, abs=1.0 / RATE)
+    assert not evaluate(parse("collides_with(a, b, restitution 0.62, within 0.01)"), signals).satisfied[0]
+    assert not evaluate(parse("collides_with(a, b, restitution 0.58, within 0.01)"), signals).satisfied[0]
+    # Out of each other's reach the same change of speed is none of theirs.
+    apart = moving(world, TIME, a, b + 5.0 * X, v=v)
+    assert not evaluate(parse("collides_with(a, b)"), apart).satisfied[0]

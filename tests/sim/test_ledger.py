@@ -1,0 +1,85 @@
+"""The books of a run: what drives, control and water do to bodies is what changes their energy and momentum."""
+
+import numpy as np
+import pytest
+
+from wsim.judge.evidence import Evidence
+from wsim.recording import read
+from wsim.scene import Drive, Scene
+from wsim.sim import Simulation
+
+G = 9.81
+
+
+def run(tmp_path, build, **options):
+    scene = Scene()
+    build(scene)
+    simulation = Simulation(scene.save(tmp_path / "stage.usda"), device="cpu", **options)
+    simulation.run(tmp_path / "r.rrd")
+    return read(tmp_path / "r.rrd")
+
+
+def test_a_motors_work_is_the_energy_that_an_arm_gains(tmp_path):
+    def build(scene):
+        scene.simulation(duration=0.5, frame_rate=60.0)
+        arm = scene.box("arm", size=(0.6, 0.05, 0.05), density=2700.0, position=(0.3, 0.0, 1.0))
+        motor = Drive(position=-60.0, stiffness=200.0, damping=2.0)
+        scene.joint_revolute("hinge", None, arm, anchor=(0.0, 0.0, 1.0), axis="Y", drive=motor)
+
+    recording = run(tmp_path, build)
+    motion = Evidence(recording).motion
+    energy = (motion.kinetic + motion.potential)[:, 0]
+    work, unsure = (np.cumsum(recording.scalars[name]) for name in ("work/drives", "work/drives_unsure"))
+    assert np.ptp(work) > 5.0  # [J]
+    assert np.all(np.abs(energy - energy[0] - work) < 0.01 * np.ptp(work) + unsure)
+    assert unsure[-1] < 0.2 * np.ptp(work)
+    drive = recording.world.joints[0].drive
+    assert drive.stiffness == pytest.approx(200.0) and drive.damping == pytest.approx(2.0)
+    angle = Evidence(recording).joint(recording.world.joints[0]).position
+    effort = drive.stiffness * (drive.position - angle) - drive.damping * recording.body_qd[:, 0, 4]
+    assert recording.scalars["drive/hinge"][1:] == pytest.approx(effort[1:], rel=0.05, abs=2.0)
+
+
+def test_a_push_of_control_is_in_the_books(tmp_path):
+    class Push:
+        def __call__(self, t, simulation):
+            simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.0, 0.0]], dtype=np.float32))
+
+    def build(scene):
+        scene.simulation(duration=0.5)
+        scene.box("kite", size=(0.4, 0.4, 0.1), mass=2.0, position=(0.0, 0.0, 1.0))
+
+    recording = run(tmp_path, build, controller=Push())
+    motion = Evidence(recording).motion
+    time = recording.time
+    assert np.cumsum(recording.applied_impulse[:, 0], axis=0) == pytest.approx(
+        np.outer(time, [3.0, 0.0, 50.0]), abs=1e-4
+    )
+    energy = (motion.kinetic + motion.potential)[:, 0]
+    assert np.cumsum(recording.applied_work[:, 0]) == pytest.approx(energy - energy[0], abs=0.01 * np.ptp(energy))
+    assert motion.acceleration[:, 0] == pytest.approx(np.tile([0.0, 0.0, -G], (len(time) - 1, 1)), abs=1e-2)
+    assert recording.metadata["controlled"]
+
+
+def test_still_water_carries_a_block_with_its_buoyancy(tmp_path):
+    def build(scene):
+        scene.simulation(duration=0.2, frame_rate=20.0)
+        tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.3))
+        scene.fluid("water", fills=tank, level=0.18, spacing=0.03)
+        scene.box("block", size=(0.12, 0.12, 0.09), density=600.0, position=(0.0, 0.0, 0.191))
+
+    recording = run(tmp_path, build)
+    lift = recording.applied_impulse[1:, 0, 2] * 20.0
+    assert lift.mean() == pytest.approx(600.0 * 0.12 * 0.12 * 0.09 * G, rel=0.25)
+    change = 600.0 * 0.12 * 0.12 * 0.09 * (recording.body_qd[-1, 0, 2] / 0.2 + G)
+    assert lift.mean() == pytest.approx(change, rel=0.01)  # momentum: what it gained is what it was given
+
+
+def test_what_nothing_drives_keeps_no_books(tmp_path):
+    def build(scene):
+        scene.simulation(duration=0.1)
+        scene.ground()
+        scene.box("box", size=(0.2, 0.2, 0.2), mass=2.0, position=(0.0, 0.0, 0.1))
+
+    recording = run(tmp_path, build)
+    assert recording.applied_impulse is None and "work/drives" not in recording.scalars
