@@ -78,16 +78,26 @@ def _apply(node: ast.AST, what: str) -> None:
         made.elts = [item for item in made.elts if f"dropped {ast.unparse(item)}" != what]
 
 
-def try_out(mutant: Mutant) -> Mutant:
-    """Run the judge's tests on a copy of the package with the mutant in it."""
+def suite_passes(path: str = "", text: str = "") -> bool:
+    """Run the judge's tests on a copy of the project, one file of it replaced."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        shutil.copytree(ROOT / "src", copy / "src")
-        (copy / mutant.path).write_text(mutant.text, encoding="utf-8")
+        for item in ROOT.iterdir():
+            if item.name == "src":
+                shutil.copytree(item, copy / "src")
+            elif item.name not in {".git", "build", "runs"}:
+                (copy / item.name).symlink_to(item)
+        if path:
+            (copy / path).write_text(text, encoding="utf-8")
         command = [sys.executable, "-m", "pytest", "tests/judge", "-x", "-q", "-p", "no:cacheprovider"]
         environment = {**os.environ, "PYTHONPATH": str(copy / "src")}
-        ended = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, timeout=900, check=False)
-    mutant.noticed = ended.returncode != 0
+        ended = subprocess.run(command, cwd=copy, env=environment, capture_output=True, timeout=900, check=False)
+    return ended.returncode == 0
+
+
+def try_out(mutant: Mutant) -> Mutant:
+    """See whether a test fails for a mutant."""
+    mutant.noticed = not suite_passes(mutant.path, mutant.text)
     return mutant
 
 
@@ -105,7 +115,9 @@ def main() -> None:
     dropped = [mutant for mutant in every if mutant.what.startswith("dropped")]
     turned = [mutant for mutant in every if mutant not in dropped]
     chosen = random.Random(given.seed).sample(turned, min(given.count, len(turned))) + dropped * given.drops
-    print(f"{len(chosen)} of {len(every)} mutants")
+    print(f"{len(chosen)} of {len(every)} mutants", flush=True)
+    if not suite_passes():
+        sys.exit("the tests fail without any mutant: nothing can be said of mutants")
     began = time.perf_counter()
     with ThreadPoolExecutor(given.jobs) as pool:
         for done, mutant in enumerate(pool.map(try_out, chosen), 1):

@@ -91,7 +91,7 @@ def test_an_operators_example_evaluates(row, signals) -> None:
 
 
 def test_the_three_forms_are_one(signals) -> None:
-    (said,) = re.findall(r"^ {4}(.+)$", PAGE, re.MULTILINE)
+    said = re.findall(r"^ {4}(.+)$", PAGE, re.MULTILINE)[0]
     objective = Objective.model_validate(json.loads(CODE["json"][0]))
     called = eval(CODE["python"][0].strip(), vars(python).copy())
     assert parse(said) == objective.formula == called == from_json(called.model_dump_json())
