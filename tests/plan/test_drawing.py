@@ -15,6 +15,7 @@ from wsim.plan.drawing.labels import Wanted, place, together
 from wsim.plan.drawing.picture import WIDTH, draw_picture
 from wsim.plan.drawing.silhouettes import scene_of
 from wsim.plan.drawing.text import draw_text, nice
+from wsim.plan.planner import plan as plan_of
 from wsim.plan.schema import Material, Plan, PlanObject, Pose, Relation
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples" / "plans").glob("*.json"))
@@ -125,6 +126,11 @@ def test_an_empty_plan_and_one_of_a_point_are_drawn(tmp_path: Path) -> None:
     for plan in (made(), made(body("dot", "sphere", (1e-6,), (5.0, 5.0, 5.0)))):
         assert draw_text(plan)
         draw_picture(plan, tmp_path / "plan.png")
+
+
+def test_what_starts_high_over_the_ground_is_drawn(tmp_path: Path) -> None:
+    draw_picture(plan_of("A ball is thrown and flies."), tmp_path / "plan.png")
+    assert Image.open(tmp_path / "plan.png").width == WIDTH
 
 
 def test_the_picture_has_things_where_they_are(tank: Plan, tmp_path: Path) -> None:

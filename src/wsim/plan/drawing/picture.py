@@ -94,7 +94,8 @@ class _Panel:
         if self.view == "side" and self.scene.ground is not None:
             y = self._y(self.scene.ground)
             bottom = min(y + 7, self.top + self.height)
-            self.draw.rectangle(self._px(self.left_edge, y, self.right_edge, bottom), fill=(120, 116, 108, 110))
+            if y < bottom:  # what starts high in the air is drawn without the ground far below
+                self.draw.rectangle(self._px(self.left_edge, y, self.right_edge, bottom), fill=(120, 116, 108, 110))
         for one in self.scene.views[self.view]:
             self._thing(one)
         self._frame()
