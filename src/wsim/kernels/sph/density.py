@@ -10,6 +10,8 @@ from wsim.kernels.sph.records import load_record
 # drop of spray, and its density says nothing more. Without the bound a few drops that hold each other in orbit by
 # tension stretch without end. To forbid tension altogether is worse: it opens voids in the bulk that slam shut.
 LOWEST_DENSITY = wp.constant(0.9)
+# One body particle half a smoothing length inside the support, or several further out, and walls give nothing back.
+FADE = wp.constant(4.0)
 
 
 @wp.struct
@@ -69,13 +71,15 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
         # p^H_j - p^H_i = rho_0 g.(x_j - x_i): the incompressible column, within the 1 % of compression.
         weight = rho0 * gravity[world]
         period, inv_period = nb.grid.period, nb.grid.inv_period
-        total = wp.vec3(0.0, 0.0, 0.0)
+        total = wp.vec4(0.0, 0.0, 0.0, 0.0)
         for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
             total += sum_run(
                 nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, m[3], weight
             )
-        divergence, smoothing = total[0] + total[2] / p[3], total[1]
+        # What walls give back fades as a body comes within reach: see `boundary.compress`.
+        given_back = wp.max(1.0 - FADE * total[3], 0.0) * total[2]
+        divergence, smoothing = total[0] + given_back / p[3], total[1]
         c2 = method.speed_of_sound * method.speed_of_sound
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
         pressure[s] = wp.max(m[3] + dt * rate, (LOWEST_DENSITY - 1.0) * rho0 * c2)

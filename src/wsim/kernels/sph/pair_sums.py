@@ -68,11 +68,12 @@ _CONTINUITY = (
             const float slope = slope_norm * t * t * t;
             divergence += fabsf(q.w) * slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
             smoothing -= (q.w > 0.0f ? q.w : 0.0f) * slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
-            const float given_back = q.w > 0.0f ? 0.0f : n.w;
-            body += t * given_back;
-            carried += t * t * t * t * (1.0f + 4.0f * u) * given_back;
+            const float marked = q.w > 0.0f ? 0.0f : n.w;
+            const bool of_body = marked > 1.0e10f;
+            body += of_body ? t : 0.0f;
+            carried += t * t * t * t * (1.0f + 4.0f * u) * (of_body ? 0.0f : marked);
     """,
-    "return wp::vec_t<3, float>(divergence, smoothing, body < 1.0e10f ? carried : 0.0f);",
+    "return wp::vec_t<4, float>(divergence, smoothing, carried, body);",
 )
 
 _FLUX = (
@@ -155,8 +156,8 @@ class PairSums:
     """The native loops of one way of searching.
 
     Attributes:
-        continuity: Sums of V_j (v_i - v_j).grad W, of the density diffusion, and of what walls give back times W; the
-            last is 0 where a neighbour has `boundary.BODY` in its place.
+        continuity: Sums of V_j (v_i - v_j).grad W, of the density diffusion, of what walls give back times W, and of
+            1 - r / 2h over the neighbours that have `boundary.BODY` in its place.
         flux: `Flux`, over fluid neighbours; W up to a factor.
         extrapolation: `Extrapolated`, over fluid neighbours; W up to a factor.
         force: Force on a particle, per volume, from fluid and `solids` times from boundary neighbours.
@@ -209,7 +210,7 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool)
         v: wp.vec3,
         p: float,
         weight: wp.vec3,
-    ) -> wp.vec3: ...
+    ) -> wp.vec4: ...
 
     @wp.func_native(loop(_FLUX))
     def flux(
