@@ -126,3 +126,30 @@ def test_overlapping_fluids_are_refused(scene: Scene) -> None:
     with pytest.raises(SceneError, match='overlaps "w"'):
         scene.fluid("v", size=(0.5, 0.5, 0.5), position=(0, 0, 0.3), spacing=0.1)
     scene.fluid("above", size=(0.5, 0.5, 0.3), position=(0, 0, 0.67), spacing=0.1)
+
+
+def test_what_cannot_close_a_loop_is_refused() -> None:
+    """The simulator drops a closing slider and a closing drive, and cannot read a loop through two world joints."""
+
+    def chain(ground_last: bool) -> tuple[Scene, list]:
+        scene = Scene()
+        bodies = [scene.box(f"b{i}", size=(0.1, 0.1, 0.1), position=(i, 0.0, 0.0)) for i in range(3)]
+        scene.joint_revolute("a", None, bodies[0], axis="Y")
+        scene.joint_revolute("b", bodies[0], bodies[1], axis="Y")
+        if ground_last:
+            scene.joint_revolute("c", None, bodies[2], axis="Y")
+        else:
+            scene.joint_revolute("c", bodies[1], bodies[2], axis="Y")
+        return scene, bodies
+
+    scene, bodies = chain(ground_last=False)
+    with pytest.raises(SceneError, match="a slider cannot close a loop"):
+        scene.joint_prismatic("d", None, bodies[2], axis="X")
+    with pytest.raises(SceneError, match="no drive and no limits"):
+        scene.joint_revolute("d", None, bodies[2], axis="Y", drive=Drive(velocity=1.0, damping=1.0))
+    with pytest.raises(SceneError, match="no drive and no limits"):
+        scene.joint_revolute("d", None, bodies[2], axis="Y", limits_deg=(-1.0, 1.0))
+    scene.joint_revolute("d", None, bodies[2], axis="Y")
+    scene, bodies = chain(ground_last=True)
+    with pytest.raises(SceneError, match="both hang on the world"):
+        scene.joint_revolute("d", bodies[2], bodies[1], axis="Y")

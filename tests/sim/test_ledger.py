@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from wsim.judge.checks_energy import CheckEnergy
 from wsim.judge.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Drive, Scene
 from wsim.sim import Simulation
+from wsim.sim.control import ArrayController
 
 G = 9.81
 
@@ -83,3 +85,29 @@ def test_what_nothing_drives_keeps_no_books(tmp_path):
 
     recording = run(tmp_path, build)
     assert recording.applied_impulse is None and "work/drives" not in recording.scalars
+
+
+@pytest.mark.parametrize("by", ["target", "force"])
+def test_the_work_of_a_steered_joint_is_in_the_books(tmp_path, by):
+    """A target that jumps at each call makes the effort jump: it is the new one from the step's start on."""
+
+    def steer(t, state):
+        answer = {name: np.zeros((1, 1), dtype=np.float32) for name in ("joint_target", "joint_force")}
+        if by == "target":
+            answer["joint_target"][:] = 0.3 * np.sin(6.0 * t)
+        else:
+            answer["joint_force"][:] = 5.0 * np.cos(6.0 * t)
+        return {**answer, "body_force": np.zeros((1, 1, 6), dtype=np.float32)}
+
+    def build(scene):
+        scene.simulation(duration=1.0, frame_rate=60.0)
+        trolley = scene.box("trolley", size=(0.2, 0.2, 0.1), mass=2.0, position=(0.0, 0.0, 1.0))
+        motor = Drive(stiffness=2000.0, damping=120.0) if by == "target" else None
+        scene.joint_prismatic("rail", None, trolley, axis="X", drive=motor)
+
+    recording = run(tmp_path, build, controller=ArrayController(steer))
+    evidence = Evidence(recording)
+    kinetic, work = evidence.motion.kinetic[:, 0], np.cumsum(recording.scalars["work/drives"])
+    assert kinetic.max() > 0.1  # [J]
+    assert work == pytest.approx(kinetic, abs=0.02 * kinetic.max())
+    assert all(finding.passed for finding in CheckEnergy().run(evidence))

@@ -1,42 +1,132 @@
-"""Every skill: its front matter is in order, and each program in it builds a sound stage."""
+"""Every skill: its form, what its tables name, and each piece of code in it, built, simulated and judged."""
 
+import json
 import re
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
+from tests.skills.blocks import PYTHON, WHOLE, Block, blocks
+from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
+from wsim.judge.evidence import Evidence
+from wsim.judge.language import parse
+from wsim.judge.language.objective import ObjectiveFormula
+from wsim.judge.verdict import Finding, Verdict
+from wsim.pipeline import Settings, build_stage, run_program
+from wsim.plan.schema import Objective
+from wsim.recording import read
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
 from wsim.scene.world import World
+from wsim.skills import Skill, for_finding, skills
 
-SKILLS = Path(__file__).parents[2] / "skills"
-FILES = sorted(SKILLS.glob("*/SKILL.md"))
-PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+PATTERNS = {
+    "cameras-and-light", "containers-and-fluid", "control-functions", "floating-bodies", "joints-and-mechanisms",
+    "objectives", "parameters", "pendulums-and-springs", "projectiles-and-collisions", "raw-usd", "repairing",
+    "rigid-bodies", "stacks-and-contact", "time-step-and-stability", "waves-and-dam-breaks",
+}  # fmt: skip
+CHECKS = {check.name for check in [*run_checks(), *physics_checks()]} | {"CheckConverged", "ObjectiveFormula"}
+CHECKS |= {check.__name__ for check in OBJECTIVES.values()}
+LONGEST = 6600  # characters: a language model pays for each
 
-
-def front_matter(path: Path) -> dict[str, str]:
-    """The `key: value` lines between the first two lines of dashes."""
-    first, *lines = path.read_text(encoding="utf-8").splitlines()
-    assert first == "---"
-    pairs = [line.partition(": ") for line in lines[: lines.index("---")]]
-    assert all(colon and value.strip() for _, colon, value in pairs)
-    return {key: value for key, _, value in pairs}
-
-
-def programs() -> list[tuple[str, str]]:
-    """(name, source) of each block of Python in a skill."""
-    found = []
-    for path in FILES:
-        for k, source in enumerate(PROGRAM.findall(path.read_text(encoding="utf-8"))):
-            found.append((f"{path.parent.name}-{k}", source))
-    return found
+by_name = pytest.mark.parametrize("skill", skills(), ids=lambda skill: skill.name)
 
 
-def world_of(name: str, source: str, folder: Path) -> World:
+def test_each_pattern_has_a_skill() -> None:
+    assert {skill.name for skill in skills()} == PATTERNS
+
+
+@by_name
+def test_it_says_when_to_use_it_and_when_not(skill: Skill) -> None:
+    assert "Use it when" in skill.description and re.search(r"\bNot ", skill.description)
+
+
+@by_name
+def test_it_is_short_and_has_a_whole_program(skill: Skill) -> None:
+    assert len(skill.text) <= LONGEST and len(skill.text.splitlines()) < 120
+    assert max(len(line) for line in skill.body.splitlines() if not line.startswith("|")) <= 120
+    assert any(block.name.startswith(skill.name) for block in WHOLE)
+
+
+@by_name
+def test_what_it_refers_to_is_there(skill: Skill) -> None:
+    named = set(re.findall(r"\b(?:Check|Objective)[A-Z]\w*", skill.body))
+    assert named and named - {"CheckPlan"} <= CHECKS
+    for target in re.findall(r"\]\(([^)#]+)\)", skill.body):
+        assert (skill.folder / target).is_file(), target
+
+
+def test_every_check_is_treated_by_some_skill() -> None:
+    untreated = {check for check in CHECKS if not for_finding(check)}
+    assert not untreated
+
+
+def test_the_guide_from_findings_to_skills_names_skills() -> None:
+    (guide,) = [skill for skill in skills() if skill.name == "repairing"]
+    named = set(re.findall(r"\| ([a-z]+(?:-[a-z]+)+) \|$", guide.body, re.MULTILINE))
+    assert len(named) > 5 and named <= PATTERNS
+
+
+@cache
+def judged(block: Block, folder: Path) -> Verdict:
+    """A program, built in the sandbox, simulated on the CPU without pictures, and judged."""
+    folder.mkdir()
+    program = folder / "program.py"
+    program.write_text(block.program, encoding="utf-8")
+    return run_program(program, folder, settings=Settings(device="cpu", pictures=False, params=block.params))
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("runs")
+
+
+@pytest.mark.parametrize("block", PYTHON, ids=lambda block: block.name)
+def test_it_builds_a_sound_stage(block: Block, tmp_path: Path) -> None:
+    program, stage = tmp_path / "program.py", tmp_path / "stage.usda"
+    program.write_text(block.program, encoding="utf-8")
+    built = build_stage(program, stage, Settings(params=block.params))
+    assert built.ok, built
+    world = describe(stage)
+    assert world.bodies or world.fluids
+    assert block.fragment or world.cameras
+    assert all(item.line is not None for item in [*world.bodies, *world.fluids, *world.joints])
+
+
+@pytest.mark.parametrize("block", WHOLE, ids=lambda block: block.name)
+def test_the_program_is_accepted(block: Block, runs: Path) -> None:
+    verdict = judged(block, runs / block.name)
+    failed = [finding for finding in verdict.findings if not finding.passed]
+    assert verdict.status == "accepted" and len(verdict.findings) >= 10, failed
+
+
+def asked(objective: Objective, evidence: Evidence) -> list[Finding]:
+    check = ObjectiveFormula if objective.formula is not None else OBJECTIVES[objective.kind]
+    return check(objective).run(evidence)
+
+
+def test_the_objectives_hold_in_their_program(runs: Path) -> None:
+    (skill,) = [skill for skill in skills() if skill.name == "objectives"]
+    (block,) = [block for block in WHOLE if block.name.startswith("objectives")]
+    judged(block, runs / block.name)
+    evidence = Evidence(read(runs / block.name / "recording.rrd"))
+    texts = {each.language: each.source for each in blocks(skill)}
+    sentences = [
+        Objective(kind="formula", object="ball", formula=parse(line)) for line in texts["formula"].splitlines()
+    ]
+    items = [Objective.model_validate(item) for item in json.loads(texts["json"])]
+    assert len(sentences) >= 6 and len(items) >= 4
+    for objective in [*sentences, *items]:
+        findings = asked(objective, evidence)
+        assert findings and all(finding.passed for finding in findings), findings
+
+
+def world_of(block: Block, folder: Path) -> World:
     namespace: dict = {"__name__": "program"}
-    exec(compile(source, f"{name}.py", "exec"), namespace)
+    exec(compile(block.program, f"{block.name}.py", "exec"), namespace)
     scene = Scene()
     namespace["build"](scene)
     stage = scene.save(folder / "stage.usda")
@@ -44,38 +134,9 @@ def world_of(name: str, source: str, folder: Path) -> World:
     return describe(stage)
 
 
-def test_every_folder_is_a_skill_with_a_program() -> None:
-    assert FILES
-    assert [path.parent for path in FILES] == sorted(path for path in SKILLS.iterdir() if path.is_dir())
-    assert {name.rpartition("-")[0] for name, _ in programs()} == {path.parent.name for path in FILES}
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.parent.name)
-def test_front_matter(path: Path) -> None:
-    """As the Agent Skills format asks: a name that is the folder's, and a description that says when to use it."""
-    fields = front_matter(path)
-    assert fields["name"] == path.parent.name
-    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", fields["name"]) and len(fields["name"]) <= 64
-    assert len(fields["description"]) <= 1024
-    assert "Use it when" in fields["description"]
-    assert not re.search(r": |\s#|^[\"'>|&*!%@`\[{]", fields["description"]), "not a plain YAML scalar"
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.parent.name)
-def test_skill_is_short(path: Path) -> None:
-    assert len(path.read_text(encoding="utf-8").splitlines()) < 150
-
-
-@pytest.mark.parametrize(("name", "source"), programs(), ids=[name for name, _ in programs()])
-def test_program_builds_a_sound_stage(name: str, source: str, tmp_path: Path) -> None:
-    world = world_of(name, source, tmp_path)
-    assert world.bodies and world.cameras
-    assert all(body.line is not None for body in world.bodies)
-
-
 def test_program_of_floating_bodies_keeps_the_skills_own_rules(tmp_path: Path) -> None:
-    ((name, source),) = [each for each in programs() if each[0].startswith("floating-bodies")]
-    world = world_of(name, source, tmp_path)
+    (block,) = [each for each in WHOLE if each.name.startswith("floating-bodies")]
+    world = world_of(block, tmp_path)
     (water,) = world.fluids
     (tank,) = world.containers
     surface = water.center[2] + water.size[2] / 2

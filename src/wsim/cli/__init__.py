@@ -8,7 +8,7 @@ import threading
 
 import typer
 
-from wsim.cli import doctor, generate, judge, plan, run, view
+from wsim.cli import doctor, generate, judge, mcp, plan, run, tool, view
 from wsim.errors import UserError
 
 app = typer.Typer(
@@ -20,7 +20,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 STOPPED = 130  # the exit code for Ctrl-C
-for verb in (generate, plan, run, judge, view, doctor):
+for verb in (generate, plan, run, judge, tool, view, mcp, doctor):
     verb.register(app)
 
 

@@ -10,10 +10,15 @@ import typer
 from wsim.cli.options import (
     EXIT_CODES,
     Answers,
+    CoderModel,
     Device,
     Image,
     Isolation,
+    JudgeModel,
+    Model,
     Pictures,
+    PlannerModel,
+    ReviewerModel,
     Runs,
     Set,
     TimeStep,
@@ -23,7 +28,18 @@ from wsim.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from wsim.generate import Options
     from wsim.plan.schema import Plan
+
+Iterations = Annotated[int, typer.Option("--max-iterations", min=1, max=99, help="Programs that are tried.")]
+Tokens = Annotated[int, typer.Option("--max-tokens", min=0, help="Tokens that all models together may use.")]
+Seconds = Annotated[float, typer.Option("--max-seconds", min=1.0, help="Time of the whole run [s].")]
+ModelSeconds = Annotated[
+    float, typer.Option("--model-timeout", min=0.1, help="Time of one request to a model [s]; it is sent three times.")
+]
+Confirm = Annotated[
+    bool, typer.Option("--confirm/--no-confirm", help="Run an accepted program once more, bare, and compare.")
+]
 
 
 def generate(
@@ -32,6 +48,19 @@ def generate(
     plan: Annotated[Path | None, typer.Option("--plan", help="Use this plan.json in place of the planner.")] = None,
     answers: Answers = None,
     image: Image = None,
+    model: Model = None,
+    planner_model: PlannerModel = None,
+    coder_model: CoderModel = None,
+    reviewer_model: ReviewerModel = None,
+    judge_model: JudgeModel = None,
+    max_iterations: Iterations = 8,
+    max_tokens: Tokens = 200_000,
+    max_seconds: Seconds = 3600.0,
+    model_timeout: ModelSeconds = 180.0,
+    confirm: Confirm = True,
+    replay: Annotated[
+        Path | None, typer.Option("--replay", metavar="RUN", help="Make a recorded run again, offline.")
+    ] = None,
     device: Device = "auto",
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
@@ -40,39 +69,85 @@ def generate(
     verify: Verify = False,
     params: Set = None,
 ) -> None:
-    """Plan a world from a sentence, build it, simulate it, and judge it.
+    """Plan a world from a sentence, build it, simulate it, judge it, and with a model repair it until it is right.
 
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """
-    from wsim.cli.show import ConsoleProgress, console, show_verdict
+    from wsim.agents.budget import Budget
+    from wsim.agents.models import choose
     from wsim.errors import UserError
-    from wsim.generate import generate as generate_world
+    from wsim.generate import Options
     from wsim.pipeline import Settings
 
+    if replay is not None:
+        _replay(replay, runs, device)
     if not prompt and plan is None:
         raise UserError(
             'give a sentence, such as wsim generate "A cork ball floats in a tank of water.", or --plan FILE'
         )
-    settings = Settings(
-        device=device,
-        isolation=isolation,
-        pictures=pictures,
-        time_step=time_step,
-        verify=verify,
-        params=parse_params(params),
+    options = Options(
+        settings=Settings(
+            device=device,
+            isolation=isolation,
+            pictures=pictures,
+            time_step=time_step,
+            verify=verify,
+            params=parse_params(params),
+        ),
+        models=choose(model, planner=planner_model, coder=coder_model, reviewer=reviewer_model, judge=judge_model),
+        budget=Budget(max_iterations, max_tokens, max_seconds, model_timeout),
+        image=image,
+        confirm=confirm,
     )
-    settings.check()
-    refuse_image(image)
-    chosen = _agreed(prompt, plan, answers, yes)
-    if chosen is None:
+    options.settings.check()
+    _generate(prompt, options, runs, plan, answers, yes)
+
+
+def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answers: Path | None, yes: bool) -> None:
+    from wsim.agents.models import BUILTIN
+    from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
+    from wsim.generate import generate as generate_world
+
+    builtin = options.models.planner == BUILTIN or path is not None
+    if builtin:
+        refuse_image(options.image)
+    chosen = _agreed(prompt, path, answers, yes) if builtin else None
+    if builtin and chosen is None:
         console.print("nothing was built")
         raise typer.Exit(0)
-    said = prompt if plan is not None and prompt else chosen.prompt  # with answers in it, the sentence is another
+    said = prompt if chosen is None or (path is not None and prompt) else chosen.prompt  # answers are in the sentence
+    progress = ConsoleProgress()
+
+    def approve(plan: Plan) -> bool:
+        if builtin:
+            return True
+        with progress.aside():
+            show_plan(plan)
+            return yes or typer.confirm("build it?")
+
+    with progress:
+        done = generate_world(said, runs, options, approve, chosen, progress)
+    if done.verdict is None:
+        console.print("nothing was built")
+        raise typer.Exit(0)
+    show_verdict(done.verdict, done.run.path, done.report)
+    show_usage(done.run.facts())
+    raise typer.Exit(EXIT_CODES[done.verdict.status])
+
+
+def _replay(recorded: Path, runs: Path, device: str) -> None:
+    from wsim.cli.show import ConsoleProgress, console, show_verdict
+    from wsim.replay import replay
+
     with ConsoleProgress() as progress:
-        done = generate_world(said, runs, settings, plan=chosen, progress=progress)
+        again = replay(recorded, runs, progress, None if device == "auto" else device)
+    done = again.generated
     assert done.verdict is not None
     show_verdict(done.verdict, done.run.path, done.report)
-    raise typer.Exit(EXIT_CODES[done.verdict.status])
+    for line in (*again.divergences, *again.differing):
+        console.print(f"otherwise: {line}", markup=False)
+    console.print(f"replayed: {again.same} files are byte for byte as recorded, {len(again.differing)} are not")
+    raise typer.Exit(EXIT_CODES[done.verdict.status] if not again.differing else 1)
 
 
 def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool) -> Plan | None:

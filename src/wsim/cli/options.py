@@ -40,6 +40,16 @@ Image = Annotated[Path | None, typer.Option("--image", help="A picture of what t
 Set = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the program.")]
 
 
+Model = Annotated[
+    str | None,
+    typer.Option("--model", metavar="MODEL", help="Language model of every role: provider:model, or model@base-url."),
+]
+PlannerModel = Annotated[str | None, typer.Option("--planner-model", metavar="MODEL", help="Model that plans.")]
+CoderModel = Annotated[str | None, typer.Option("--coder-model", metavar="MODEL", help="Model that repairs programs.")]
+ReviewerModel = Annotated[str | None, typer.Option("--reviewer-model", metavar="MODEL", help="Model that looks.")]
+JudgeModel = Annotated[str | None, typer.Option("--judge-model", metavar="MODEL", help="Model that judges.")]
+
+
 def parse_params(pairs: list[str] | None) -> dict[str, float]:
     """`--set name=value` options as numbers.
 
@@ -76,6 +86,6 @@ def refuse_image(path: Path | None) -> None:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is not a picture"
         raise UserError(f"--image {path}: {reason}; give a PNG or a JPEG") from error
     raise UserError(
-        f"--image {path}: the builtin planner does not see pictures; leave --image out and say it in the sentence, or "
-        "write the plan yourself and pass it with --plan FILE"
+        f"--image {path}: the builtin planner does not see pictures; name a model that does with --planner-model, or "
+        "leave --image out and say it in the sentence"
     )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -51,6 +52,15 @@ class ConsoleProgress:
     def __exit__(self, *error: Any) -> None:
         """Leave the finished bars on the screen."""
         self._bars.__exit__(*error)
+
+    @contextlib.contextmanager
+    def aside(self) -> Iterator[None]:
+        """Take the bars away while something else is shown, or asked."""
+        self._bars.stop()
+        try:
+            yield
+        finally:
+            self._bars.start()
 
     def __call__(self, stage: str, done: float, total: float) -> None:
         """Move the stage's bar."""
@@ -132,6 +142,20 @@ def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> 
     console.print(f"run:    {folder}", soft_wrap=True)
     if report:
         console.print(f"report: {report}", soft_wrap=True)
+
+
+def show_usage(facts: dict[str, Any]) -> None:
+    """Print what models were asked and what it cost, where any was."""
+    by_role = facts.get("usage", {}).get("by_role", {})
+    for role, used in by_role.items():
+        asked = f"{used['requests']} requests, {used['cached']} from the cache, {used['failed']} failed"
+        cost = f", {used['dollars']:.3f} dollars" if "dollars" in used else ""
+        tokens = f"{used['input_tokens']} + {used['output_tokens']} tokens, {used['seconds']:.0f} s"
+        console.print(f"{role}: {asked}; {tokens}{cost}", markup=False)
+    if by_role:
+        console.print(f"tokens: {facts['usage']['tokens']} in all, in {len(facts.get('iterations', []))} iterations")
+    for note in facts.get("notes", []):
+        console.print(f"note: {note}", markup=False)
 
 
 def _row(finding: Finding) -> list[Text]:

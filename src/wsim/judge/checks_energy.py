@@ -42,12 +42,15 @@ class CheckEnergy(Check):
             energy = energy - motion.applied_work
         energy = energy - self._chattered(evidence)
         stored = self._stored(evidence)
+        none = np.zeros(len(evidence.time))
+        worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
+        # The work on joints, by drives or by a controller, is not known of each mechanism.
         found = (
-            [] if any(joint.drive for joint in evidence.world.joints) else self._by_mechanism(evidence, energy, stored)
+            []
+            if any(joint.drive for joint in evidence.world.joints) or np.any(worked)
+            else self._by_mechanism(evidence, energy, stored)
         )
-        together = energy.sum(axis=1)
-        for name in ("work/drives", "work/drives_unsure"):
-            together = together - np.nancumsum(evidence.recording.scalars.get(name, np.zeros(len(evidence.time))))
+        together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
         return [*found, self._finding(evidence, np.arange(len(motion.mass)), together, stored)]
 
     @staticmethod

@@ -25,8 +25,19 @@ def load(path: str | Path) -> Plan:
         UserError: the file cannot be read, is not JSON, is not a plan, or cannot be laid out; one line that names the
             place in the file.
     """
-    path = Path(path)
-    plan = read(path)
+    return _placed(read(path), Path(path))
+
+
+def made(data: Any, where: Path) -> Plan:
+    """A plan of parsed JSON, validated and laid out as `load` does; `where` names it in errors.
+
+    Raises:
+        UserError: As `load`.
+    """
+    return _placed(_validated(data, where), where)
+
+
+def _placed(plan: Plan, path: Path) -> Plan:
     try:
         if all(item.pose is not None or item.primitive in ("ground", "fluid") for item in plan.objects):
             return _with_cameras(write_out_fluids(plan))
@@ -54,7 +65,10 @@ def read(path: str | Path) -> Plan:
         UserError: the file cannot be read, is not JSON, or is not a plan.
     """
     path = Path(path)
-    data = _parse(path, _text(path))
+    return _validated(_parse(path, _text(path)), path)
+
+
+def _validated(data: Any, path: Path) -> Plan:
     version = data.get("version", PLAN_VERSION) if isinstance(data, dict) else PLAN_VERSION
     # Asked before all else: a plan of another version is wrong in every line, and only this one says why.
     if type(version) is int and version != PLAN_VERSION:

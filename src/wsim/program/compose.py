@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from wsim.errors import UserError
-from wsim.plan.schema import CameraPlan, FromAsset, Joint, Material, Plan, PlanObject
+from wsim.plan.schema import CameraPlan, FromAsset, Joint, JointDrive, Material, Plan, PlanObject
 
 _WIDTH = 88  # columns; a call that does not fit has one argument a line, which any formatter's settings keep
 _AXES = "xyz"
@@ -40,7 +40,9 @@ def compose(plan: Plan) -> str:
 @dataclass
 class _Composer:
     plan: Plan
-    names: set[str] = field(default_factory=lambda: {"scene", "build", "Scene", "run", "i", *_AXES, "position"})
+    names: set[str] = field(
+        default_factory=lambda: {"scene", "build", "Scene", "Drive", "run", "i", *_AXES, "position"}
+    )
     materials: dict[str, str] = field(default_factory=dict)  # a material as JSON: its variable
     handles: dict[str, str] = field(default_factory=dict)  # an object's name: its variable
 
@@ -57,7 +59,7 @@ class _Composer:
         lines = [
             *self._docstring(),
             "",
-            "from wsim.scene import Scene",
+            f"from wsim.scene import {'Drive, ' if any(joint.drive for joint in self.plan.joints) else ''}Scene",
             "",
             "",
             "def build(scene: Scene) -> None:",
@@ -229,6 +231,8 @@ class _Composer:
                 arguments.append(f'axis="{joint.axis}"')
             if joint.limits is not None:
                 arguments.append(f"{_LIMITS[joint.kind]}={_tuple(joint.limits)}")
+            if joint.drive is not None:
+                arguments.append(f"drive={_drive(joint.drive)}")
             lines += _call(f"scene.joint_{_JOINTS[joint.kind]}", arguments)
         return lines
 
@@ -328,6 +332,12 @@ def _anchor(child: PlanObject, joint: Joint) -> tuple[float, float, float]:
     x, y = x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) + y * math.cos(yaw)
     at = _position(child)
     return (at[0] + x, at[1] + y, at[2] + z)
+
+
+def _drive(drive: JointDrive) -> str:
+    """The `Drive` of a joint, with what it has of its own."""
+    given = {name: value for name, value in drive.model_dump().items() if value}
+    return f"Drive({', '.join(f'{name}={_number(value)}' for name, value in given.items())})"
 
 
 def _container(item: PlanObject) -> str | None:

@@ -40,6 +40,21 @@ def second_parent(stage: Usd.Stage, parent: Sdf.Path, child: Sdf.Path) -> Sdf.Pa
     return tree.holder(child) if tree.root(parent) != tree.root(child) else None
 
 
+def closes_loop(stage: Usd.Stage, parent: Sdf.Path, child: Sdf.Path) -> str:
+    """Whether a joint from `parent` to `child` would close a loop, and where: "", "world" or "bodies".
+
+    Newton's importer reads a loop that is closed at the world, and none that runs through two joints to the world
+    otherwise.
+    """
+    tree = _Forest()
+    for prim in stage.Traverse():
+        if prim.IsA(UsdPhysics.Joint):
+            tree.add(*joint_ends(UsdPhysics.Joint(prim)), prim.GetPath())
+    if tree.holder(child) is None or tree.root(parent) != tree.root(child):
+        return ""
+    return "bodies" if parent != WORLD_END and tree.top(parent) != tree.top(child) else "world"
+
+
 def joint_ends(joint: UsdPhysics.Joint) -> tuple[Sdf.Path, Sdf.Path]:
     """Paths of a joint's parent and child as authored; the world's is `WORLD_END`, and the world is never the child."""
     ends = []
@@ -60,7 +75,7 @@ class _Forest:
 
     def add(self, parent: Sdf.Path, child: Sdf.Path, joint: Sdf.Path) -> bool:
         """Hang `child` on `parent`; False, and nothing done, where that would give it two parents or close a loop."""
-        if child in self._parent or self._top(parent) == child:
+        if child in self._parent or self.top(parent) == child:
             return False
         self._parent[child] = parent
         if parent == WORLD_END:
@@ -76,15 +91,16 @@ class _Forest:
 
     def root(self, path: Sdf.Path) -> Sdf.Path:
         """What a body's tree stands on: the world, or the topmost body."""
-        top = self._top(path)
+        top = self.top(path)
         return WORLD_END if top in self._anchor else top
 
     def roots(self) -> list[Sdf.Path]:
         """The prim that roots each tree: a joint to the world, or the topmost body."""
-        tops = dict.fromkeys(self._top(path) for path in self._bodies)
+        tops = dict.fromkeys(self.top(path) for path in self._bodies)
         return [self._anchor.get(top, top) for top in tops]
 
-    def _top(self, path: Sdf.Path) -> Sdf.Path:
+    def top(self, path: Sdf.Path) -> Sdf.Path:
+        """The topmost body of a body's tree."""
         while self._parent.get(path, WORLD_END) != WORLD_END:
             path = self._parent[path]
         return path

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
-from wsim.scene.articulation import WORLD_END, mark_articulations, second_parent
+from wsim.scene.articulation import WORLD_END, closes_loop, mark_articulations, second_parent
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.limits import MAX_POSITION
 from wsim.scene.validate import Call, shown
@@ -67,7 +67,8 @@ class Joints(Author):
         call = Call("joint_revolute", name)
         limits = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
         motor = _checked(call, drive, 36000.0)
-        handle = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis)
+        driven = motor is not None or limits is not None
+        handle = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis, driven=driven)
         self._limit(handle, limits)
         if motor is not None:
             # USD counts an angular drive's gains per degree.
@@ -115,6 +116,8 @@ class Joints(Author):
         child: Handle | str,
         anchor: Sequence[float] | None,
         axis: str | Sequence[float] | None,
+        *,
+        driven: bool = False,
     ) -> Handle:
         path = self._path(call)
         child_prim = self._body(call, "child", child)
@@ -126,6 +129,7 @@ class Joints(Author):
         if parent_prim is not None and not parent_prim.HasAPI(UsdPhysics.RigidBodyAPI):
             parent_prim = None  # what never moves is the world
         self._check_one_parent(call, parent_prim, child_prim)
+        self._check_closing(call, parent_prim, child_prim, kind, driven)
         position, turn = world_pose(child_prim)
         point = position if anchor is None else Gf.Vec3d(*call.position("anchor", anchor))
         token, frame = _axis(call, axis)
@@ -158,6 +162,20 @@ class Joints(Author):
         call.fail(
             f"child = {name} already hangs on {holder}; swap them: parent={name}, child={shown(parent.GetName())}"
         )
+
+    def _check_closing(self, call: Call, parent: Usd.Prim | None, child: Usd.Prim, kind: type, driven: bool) -> None:
+        """What closes a loop is a constraint; the solver has one for hinges, ball joints and fixed ones alone."""
+        above, below = (WORLD_END if prim is None else prim.GetPath() for prim in (parent, child))
+        closed = closes_loop(self._stage, above, below)
+        if closed == "bodies":
+            call.fail(
+                f"{shown(child.GetName())} and its parent both hang on the world: a loop is one chain from the world "
+                "round to its last body, closed by a last joint with parent=None"
+            )
+        if closed and kind is UsdPhysics.PrismaticJoint:
+            call.fail("a slider cannot close a loop: make it the first joint of the chain, and close with a hinge")
+        if closed and driven:
+            call.fail("the hinge that closes a loop can have no drive and no limits: put them on another joint of it")
 
     def _body(self, call: Call, field: str, what: Handle | str) -> Usd.Prim:
         prim = self._find(call, field, what)

@@ -51,6 +51,8 @@ class ArrayController:
                 "joint_target": targets[target],
             },
         )
+        if simulation.rigid and simulation.rigid.ledger:
+            simulation.rigid.ledger.retarget(dof[0], answer["joint_target"][0] - targets[target][0])
         targets[target] = answer["joint_target"]
         control.joint_target_q.assign(targets)
         forces = control.joint_f.numpy()

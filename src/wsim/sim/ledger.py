@@ -77,6 +77,22 @@ class Ledger:
             device=device,
         )
 
+    def retarget(self, dofs: np.ndarray, moved: np.ndarray) -> None:
+        """Note that drives' targets jumped between two steps, and their efforts with them.
+
+        Args:
+            dofs: Degrees of freedom of the first world.
+            moved: By how much each target did [rad or m].
+        """
+        if not len(dofs) or not moved.any():
+            return
+        stiffness, strength = (
+            array.numpy()[dofs] for array in (self.model.joint_target_ke, self.model.joint_effort_limit)
+        )
+        last = self._last.numpy()
+        last[dofs] = np.clip(last[dofs] + stiffness * moved, -strength, strength)
+        self._last.assign(last)
+
     def take(self) -> Entry:
         """The sums since the last call, which start anew."""
         effort = self._none if self.observables is None else self.observables.qfrc_actuator

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.progress import Progress
+from wsim.sim.seen import ObjectPixels, still_name, write_png
 
 if TYPE_CHECKING:
     from wsim.recording import RecordingWriter
@@ -53,10 +54,7 @@ class Pictures:
         self.still_frames = {round(k * frames / (STILLS - 1)) for k in range(STILLS)}
         self.stills: list[Path] = []
         self.seen: list[dict[str, Any]] = []
-        names, self.object_of = np.unique(
-            np.array([_object_of(prim) for prim in self.renderer.shape_prims], dtype=str), return_inverse=True
-        )
-        self.objects = [str(name) for name in names]
+        self.objects = ObjectPixels(self.renderer.shape_prims)
         self.recorded = {camera.prim for camera in simulation.world.cameras}
 
     def __enter__(self) -> Pictures:
@@ -97,25 +95,13 @@ class Pictures:
 
     def _shares(self, image: CameraImage) -> dict[str, float]:
         """The share of a picture that each object takes up; 0 for one that is not to be seen."""
-        shown = image.shape_index[image.shape_index >= 0]
-        pixels = np.bincount(self.object_of[shown], minlength=len(self.objects))
-        return {prim: float(n) / image.shape_index.size for prim, n in zip(self.objects, pixels, strict=True)}
+        return {prim: n / image.shape_index.size for prim, n in self.objects.count(image.shape_index).items()}
 
     def _keep(self, camera: str, image: CameraImage, shares: dict[str, float]) -> None:
-        import cv2
-
         time = self.simulation.time
         shown = {prim: round(share, 5) for prim, share in shares.items() if share}
         self.seen.append({"camera": camera, "time": round(time, 4), "objects": shown})
         if self.frames_dir:
-            self.frames_dir.mkdir(parents=True, exist_ok=True)
-            path = self.frames_dir / f"{camera.rsplit('/', 1)[-1]}_{time:06.3f}s.png"
-            partial = path.with_name(path.name + ".partial")
-            partial.write_bytes(cv2.imencode(".png", image.rgb[:, :, ::-1])[1].tobytes())
-            partial.replace(path)
+            path = self.frames_dir / still_name(camera, time)
+            write_png(path, image.rgb)
             self.stills.append(path)
-
-
-def _object_of(prim: str) -> str:
-    """/World/tank/floor -> /World/tank: the plan's objects are the children of the root."""
-    return "/".join(prim.split("/")[:3])

@@ -43,6 +43,25 @@ class ReferenceImage(Strict):
     hints: ImageHints = Field(default_factory=ImageHints)
 
 
+class JointDrive(Strict):
+    """A motor or spring on a joint: force = stiffness (position - q) + damping (velocity - q'), at most `max_force`.
+
+    A hinge: [deg], [deg/s], [N m/rad], [N m s/rad], [N m]. A slider: [m], [m/s], [N/m], [N s/m], [N].
+    """
+
+    position: Number = 0.0
+    velocity: Number = 0.0
+    stiffness: NotNegative = 0.0
+    damping: NotNegative = 0.0
+    max_force: Positive | None = None
+
+    @model_validator(mode="after")
+    def _acts(self) -> JointDrive:
+        if self.stiffness == 0.0 and self.damping == 0.0:
+            raise ValueError("a drive needs stiffness to hold a position, or damping to hold a velocity")
+        return self
+
+
 class Joint(Strict):
     """What holds two bodies together; without `parent` the child is held by the world."""
 
@@ -53,6 +72,13 @@ class Joint(Strict):
     anchor: Vec3 | None = None  # [m], from the child's centre, before it is turned; its centre if left out
     axis: Literal["X", "Y", "Z"] = "Y"
     limits: tuple[Number, Number] | None = None  # [deg] of a hinge, [m] of a slider
+    drive: JointDrive | None = None
+
+    @model_validator(mode="after")
+    def _can_be_driven(self) -> Joint:
+        if self.drive is not None and self.kind not in ("hinge", "slider"):
+            raise ValueError(f"joint {self.name}: a {self.kind} joint has no drive; a hinge or a slider has")
+        return self
 
 
 class CameraPlan(Strict):

@@ -1,0 +1,156 @@
+"""Ask a role's model for one thing, checked: what is wrong goes back to it, a few times."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from wsim.agents.budget import BudgetError, Ledger
+from wsim.agents.failures import ModelError
+from wsim.agents.models import Models, connect
+from wsim.agents.transcript import Transcript
+from wsim.errors import UserError
+
+if TYPE_CHECKING:
+    from wsim.agents.relay import Replay
+    from wsim.tools import Tool, Workspace
+
+T = TypeVar("T")
+RETRIES = 4  # answers that are sent back with what is wrong with them
+CALLS = 8  # of tools, for one answer
+_FENCE = re.compile(r"```(?:json|JSON)?[ \t]*\n(.*?)\n[ \t]*```", re.DOTALL)
+
+
+class UnusableError(UserError):
+    """An answer that cannot be used: what is wrong with it, for the model to read."""
+
+
+@dataclass
+class Desk:
+    """What the roles of a run share."""
+
+    models: Models
+    transcript: Transcript
+    ledger: Ledger
+    replay: Replay | None = None
+
+    def ask(
+        self,
+        role: str,
+        request: str,
+        accept: Callable[[str], T],
+        *,
+        pictures: Sequence[bytes] = (),
+        tools: Sequence[Tool] = (),
+        workspace: Workspace | None = None,
+    ) -> T:
+        """What `accept` makes of the model's answer.
+
+        Args:
+            role: Whose model is asked, by its prompt in prompts/.
+            request: What it is to do.
+            accept: Reads the answer; raises UserError with what is wrong, which goes back to the model.
+            pictures: JPEGs that it sees.
+            tools: What it may call, in `workspace`.
+            workspace: The run that the tools work on.
+
+        Raises:
+            ModelError: If it gave nothing that can be used.
+            BudgetError: If tokens or time ran out.
+        """
+        from pydantic_ai import Agent, BinaryContent, ModelRetry, TextOutput
+        from pydantic_ai.exceptions import UnexpectedModelBehavior, UsageLimitExceeded
+        from pydantic_ai.usage import UsageLimits
+
+        from wsim.agents.relay import Relay
+
+        self.ledger.check()
+        wrong: list[str] = []
+
+        def read(text: str) -> T:
+            try:
+                return accept(text)
+            except UserError as error:
+                wrong.append(str(error))
+                raise ModelRetry(str(error)) from error
+
+        name = self.models[role]
+        model = Relay(
+            connect(name, role) if self.replay is None else None, name, role, self.transcript, self.ledger, self.replay
+        )
+        agent: Agent[None, T] = Agent(
+            model,
+            output_type=TextOutput(read),
+            instructions=instructions(role),
+            tools=[_offered(tool, workspace) for tool in tools if workspace is not None],
+            retries={"output": RETRIES, "tools": RETRIES},
+            model_settings={"max_retries": 0, "parallel_tool_calls": True},
+        )
+        content: Any = [request, *(BinaryContent(picture, media_type="image/jpeg") for picture in pictures)]
+        limits = UsageLimits(request_limit=RETRIES + CALLS + 1, tool_calls_limit=CALLS)
+        try:
+            return agent.run_sync(content if pictures else request, usage_limits=limits, infer_name=False).output
+        except (ModelError, BudgetError):
+            raise
+        except UsageLimitExceeded as error:
+            raise ModelError("unusable", f"it went on calling tools: {error}", role) from error
+        except UnexpectedModelBehavior as error:
+            last = wrong[-1] if wrong else " ".join(str(error).split())[:300]
+            raise ModelError("unusable", f"{len(wrong)} answers could not be used; the last: {last}", role) from error
+
+
+def _offered(tool: Tool, workspace: Workspace | None) -> Any:
+    """One of wsim's tools, as the model's."""
+    from pydantic_ai import Tool as Offered
+
+    def call(**given: Any) -> str:
+        assert workspace is not None
+        return tool(workspace, **given).text
+
+    return Offered.from_schema(call, tool.name, tool.description, _schema(tool.arguments.model_json_schema()))
+
+
+def _schema(schema: dict[str, Any]) -> dict[str, Any]:
+    """A JSON schema without titles, which cost tokens and say nothing."""
+    return {
+        key: {name: _schema(value) for name, value in part.items()}
+        if key in ("properties", "$defs")
+        else _schema(part)
+        if isinstance(part, dict)
+        else part
+        for key, part in schema.items()
+        if key not in ("title", "additionalProperties", "default")
+    }
+
+
+@cache
+def instructions(role: str) -> str:
+    """The prompt of a role."""
+    return (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
+
+
+def object_in(text: str) -> dict[str, Any]:
+    """The JSON object of an answer, in a fence or bare.
+
+    Raises:
+        UnusableError: If there is none, or it is not whole.
+    """
+    fenced = _FENCE.findall(text)
+    body = max(fenced, key=len) if fenced else text[text.find("{") : text.rfind("}") + 1]
+    if not body.strip():
+        raise UnusableError("no JSON object in the answer; give one, between ```json and ```")
+    try:
+        found = json.loads(body)
+    except ValueError as error:
+        end = (
+            " (it breaks off: the answer was cut; give a shorter one)" if "{" in text and "}" not in text[-40:] else ""
+        )
+        raise UnusableError(f"not JSON: {error}{end}; give one whole JSON object between ```json and ```") from error
+    if not isinstance(found, dict):
+        raise UnusableError("the answer must be one JSON object")
+    return found

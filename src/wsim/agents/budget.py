@@ -1,0 +1,105 @@
+"""What a run may use, and what it has used, by role."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+
+class BudgetError(Exception):
+    """Tokens or time have run out: the run ends here, with the best that it has."""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What a run may use.
+
+    Attributes:
+        iterations: Programs that are tried.
+        tokens: In requests and replies of all roles together.
+        seconds: Wall time [s].
+        request_seconds: Wall time of one request to a model [s].
+        attempts: How often a request is sent before it has failed.
+    """
+
+    iterations: int = 8
+    tokens: int = 200_000
+    seconds: float = 3600.0
+    request_seconds: float = 180.0
+    attempts: int = 3
+
+
+@dataclass
+class Account:
+    """What one role has used."""
+
+    requests: int = 0
+    cached: int = 0
+    failed: int = 0
+    input_tokens: int = 0
+    output_tokens: int = 0
+    seconds: float = 0.0
+    dollars: float | None = None  # None: no price is known
+
+    def facts(self) -> dict[str, Any]:
+        """For run.json."""
+        known = {} if self.dollars is None else {"dollars": round(self.dollars, 5)}
+        return {
+            "requests": self.requests,
+            "cached": self.cached,
+            "failed": self.failed,
+            "input_tokens": self.input_tokens,
+            "output_tokens": self.output_tokens,
+            "seconds": round(self.seconds, 1),
+            **known,
+        }
+
+
+@dataclass
+class Ledger:
+    """The accounts of a run, held against its budget."""
+
+    budget: Budget = field(default_factory=Budget)
+    accounts: dict[str, Account] = field(default_factory=dict)
+    started: float = field(default_factory=time.monotonic)
+
+    def account(self, role: str) -> Account:
+        """A role's account."""
+        return self.accounts.setdefault(role, Account())
+
+    @property
+    def tokens(self) -> int:
+        """Used by all roles."""
+        return sum(account.input_tokens + account.output_tokens for account in self.accounts.values())
+
+    @property
+    def seconds_left(self) -> float:
+        """Of the run's time [s]."""
+        return self.budget.seconds - (time.monotonic() - self.started)
+
+    def check(self) -> None:
+        """Look whether there is anything left.
+
+        Raises:
+            BudgetError: If not.
+        """
+        if self.tokens >= self.budget.tokens:
+            raise BudgetError(f"token limit: {self.tokens} of {self.budget.tokens} tokens are used")
+        self.check_time()
+
+    def check_time(self) -> None:
+        """Look whether there is time left.
+
+        Raises:
+            BudgetError: If not.
+        """
+        if self.seconds_left <= 0.0:
+            raise BudgetError(f"time limit: {self.budget.seconds:g} s are over")
+
+    def facts(self) -> dict[str, Any]:
+        """For run.json: by role and in all."""
+        return {
+            "tokens": self.tokens,
+            "by_role": {role: account.facts() for role, account in sorted(self.accounts.items())},
+        }

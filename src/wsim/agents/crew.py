@@ -1,0 +1,148 @@
+"""Who fills the roles of a run: a model where one is named, else what wsim has built in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from wsim.agents import coder, judge, planner, reviewer
+from wsim.agents.ask import Desk
+from wsim.agents.failures import ModelError
+from wsim.agents.models import BUILTIN
+from wsim.attempt import Attempt, Reached
+from wsim.judge.verdict import Verdict
+from wsim.tools import TOOLS, Workspace
+from wsim.tools.verdict import verdict_lines
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan
+
+SHOWN_DIFF = 14  # lines of a patch that did not help
+
+
+@dataclass
+class Crew:
+    """The roles of one run.
+
+    Attributes:
+        desk: Asks models.
+        workspace: The run's folder.
+        notes: What was done without a model that failed, a line each.
+        skills: What was picked for each repair, by the iteration that it made.
+    """
+
+    desk: Desk
+    workspace: Workspace
+    notes: list[str] = field(default_factory=list)
+    skills: dict[int, list[str]] = field(default_factory=dict)
+
+    def has(self, role: str) -> bool:
+        """Whether a model fills a role."""
+        return self.desk.models[role] != BUILTIN
+
+    def plan(self, prompt: str, pictures: Sequence[bytes] = (), image: str = "") -> Plan:
+        """A prompt's plan.
+
+        Raises:
+            UserError: If the builtin planner does not take the prompt.
+            ModelError: If the planner's model gave no plan.
+            BudgetError: If tokens or time ran out.
+        """
+        if self.has("planner"):
+            return planner.plan_with(self.desk, prompt, pictures, image)
+        from wsim.plan.planner import plan
+
+        return plan(prompt)
+
+    def look(self, tried: Attempt, plan: Plan) -> None:
+        """Review an attempt that passed all checks; without a model the facts are the review."""
+        if not (tried.folder / "review.json").is_file():
+            return
+        seen = None
+        if self.has("reviewer"):
+            try:
+                seen = reviewer.review(self.desk, plan, tried.folder, self._plan_lines())
+                tried.review = seen.text
+            except ModelError as error:
+                self.notes.append(f"iteration {tried.number} was reviewed by facts alone: {error}")
+        tried.review = tried.review or "\n".join(reviewer.facts(tried.folder))
+        reviewer.keep(tried.folder, seen, self.desk.models["reviewer"] if seen else BUILTIN)
+
+    def judge(self, tried: Attempt, plan: Plan) -> None:
+        """Let the judge's model name what to mend, or object. Checks that failed stay failed."""
+        if not self.has("judge") or tried.reached < Reached.PHYSICS:
+            return
+        try:
+            held = judge.opinion(
+                self.desk, plan, self._plan_lines(), verdict_lines(tried.folder / "verdict.json"), tried.review
+            )
+        except ModelError as error:
+            self.notes.append(f"iteration {tried.number} was judged by the checks alone: {error}")
+            return
+        tried.repair = held.repair.sentence if held.repair else ""
+        passed = tried.verdict.status == "accepted"
+        tried.verdict = judge.decide(tried.verdict, held)
+        if passed and tried.verdict.status != "accepted":
+            tried.reached = Reached.REVIEW
+        elif held.accept and not passed:
+            self.notes.append(f"iteration {tried.number}: the judge's model would accept; failed checks stay failed")
+
+    def repair(self, best: Attempt, undone: Sequence[Attempt], plan: Plan) -> str:
+        """The best program so far, with the coder's edits made.
+
+        Raises:
+            ModelError: If no answer became a program.
+            BudgetError: If tokens or time ran out.
+        """
+        situation = coder.Situation(
+            program=best.program,
+            verdict=[*verdict_lines(best.folder / "verdict.json"), *_quoted(best)],
+            plan=self._plan_lines(),
+            repair=best.repair,
+            review=best.review,
+            history=[_told(tried) for tried in undone],
+            tried={tried.program: tried.number for tried in (best, *undone)},
+        )
+        number = max(tried.number for tried in (best, *undone)) + 1
+        self.skills[number] = [skill.name for skill in coder.pick(situation)]
+        return coder.repair(self.desk, situation, plan, self.workspace)
+
+    def facts(self) -> dict[str, Any]:
+        """For run.json."""
+        skills = {f"{number:02d}": names for number, names in self.skills.items()}
+        return {"models": self.desk.models.facts(), "usage": self.desk.ledger.facts(), "skills": skills} | (
+            {"notes": self.notes} if self.notes else {}
+        )
+
+    def _plan_lines(self) -> list[str]:
+        return TOOLS["read_plan"](self.workspace).text.splitlines()
+
+
+def _quoted(tried: Attempt) -> list[str]:
+    """The lines of the program that failed findings point at."""
+    lines = tried.program.splitlines()
+    found = {}
+    for finding in tried.verdict.failures:
+        number = (finding.line or "").rpartition(":")[2]
+        if number.isdigit() and 0 < int(number) <= len(lines):
+            found[finding.line] = f"{finding.line}: {lines[int(number) - 1].strip()}"
+    return list(found.values())
+
+
+def _told(tried: Attempt) -> str:
+    """An attempt that was undone, as the coder reads of it."""
+    path = tried.folder / "patch.diff"
+    patch = path.read_text(encoding="utf-8").splitlines()[2:] if path.is_file() else []
+    changed = [line for line in patch if line[:1] in "+-"][:SHOWN_DIFF]
+    failed = "; ".join(dict.fromkeys(f"{f.check}: {f.message}" for f in tried.verdict.failures[:4]))
+    return "\n".join([f"iteration {tried.number}, it failed at {tried.reached.name.lower()}: {failed}", *changed])
+
+
+def verdict_of(best: Attempt, cause: str) -> Verdict:
+    """The verdict on a run that ends without an accepted world: why, and the best that there is."""
+    return Verdict(
+        status="blocked",
+        summary=f"{cause}. Best so far: iteration {best.number}: {best.verdict.summary}",
+        findings=best.verdict.findings,
+    )

@@ -1,0 +1,115 @@
+"""The judge's model: what to mend first, and whether what was seen is what was asked for.
+
+It may object to a world that passes every check. It cannot accept one that fails a check: `decide` sees to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from wsim.agents.ask import UnusableError, object_in
+from wsim.judge.verdict import Finding, RepairKind, RepairTarget, Verdict
+
+if TYPE_CHECKING:
+    from wsim.agents.ask import Desk
+    from wsim.plan.schema import Plan
+
+ROOT = "/World/"
+
+
+class Objection(BaseModel):
+    """Something of the plan or the prompt that the world does not show."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    object: str
+    what: str = Field(max_length=400)
+
+
+class Repair(BaseModel):
+    """What to mend first."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    kind: RepairKind
+    object: str = ""
+    parameter: str = Field("", max_length=80)
+    why: str = Field(max_length=600)
+
+    @property
+    def sentence(self) -> str:
+        """For the coder."""
+        what = " of ".join(part for part in (self.parameter, self.object) if part)
+        return f"{self.kind}{f' ({what})' if what else ''}: {self.why}"
+
+
+class Opinion(BaseModel):
+    """What the judge's model holds of a world."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    accept: bool
+    why: str = Field("", max_length=800)
+    repair: Repair | None = None
+    objections: list[Objection] = Field(default_factory=list, max_length=10)
+
+
+def opinion(desk: Desk, plan: Plan, plan_lines: Sequence[str], verdict_lines: Sequence[str], seen: str) -> Opinion:
+    """Ask the judge's model.
+
+    Raises:
+        ModelError: If no answer is an opinion.
+        BudgetError: If tokens or time ran out.
+    """
+    names = {item.name for item in plan.objects}
+    review = seen or "nobody has looked at pictures yet"
+    request = "\n\n".join(
+        [
+            f"Prompt: {plan.prompt}", "# Plan", "\n".join(plan_lines), "# Checks", "\n".join(verdict_lines),
+            "# Review", review,
+        ]
+    )  # fmt: skip
+    return desk.ask("judge", request, lambda text: _read(text, names))
+
+
+def _read(text: str, names: set[str]) -> Opinion:
+    try:
+        found = Opinion.model_validate(object_in(text))
+    except ValidationError as error:
+        problem = error.errors(include_url=False)[0]
+        hint = f"; kinds are {', '.join(get_args(RepairKind))}" if "kind" in problem["loc"] else ""
+        raise UnusableError(f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}{hint}") from error
+    for objection in found.objections:
+        if objection.object not in names:
+            raise UnusableError(
+                f"objections: the plan has no object {objection.object!r}; it has {', '.join(sorted(names))}"
+            )
+    if not found.accept and not found.objections and found.repair is None:
+        raise UnusableError("not accepted, and neither a repair nor an objection; say what is wrong")
+    return found
+
+
+def decide(verdict: Verdict, held: Opinion) -> Verdict:
+    """The verdict with the model's objections in it. A failed check stays failed, whatever the model says."""
+    if held.accept or not held.objections:
+        return verdict
+    objections = [
+        Finding(
+            check="JudgeObjection",
+            passed=False,
+            message=f"{one.object}: {one.what}",
+            prim=ROOT + one.object,
+            limit_from="the judge's model, from the review",
+            target=RepairTarget(kind="visual mismatch", prim=ROOT + one.object, why=one.what),
+        )
+        for one in held.objections
+    ]
+    findings = [*verdict.findings, *objections]
+    failed = sum(not finding.passed for finding in findings)
+    return Verdict(
+        status="rejected", summary=f"{failed} of {len(findings)} findings fail, {len(objections)} by review.",
+        findings=findings,
+    )  # fmt: skip

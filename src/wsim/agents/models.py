@@ -1,0 +1,117 @@
+"""Which model each role has: options, then the environment, then the configuration file, then none."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wsim.errors import UserError
+
+if TYPE_CHECKING:
+    from pydantic_ai.models import Model
+
+BUILTIN = "builtin"
+ROLES = ("planner", "coder", "reviewer", "judge")
+CONFIG = "wsim.toml"
+_HELP = (
+    'give "builtin", a provider and a model such as "anthropic:MODEL", or a model of an OpenAI-compatible server as '
+    '"MODEL@http://127.0.0.1:8000/v1"'
+)
+
+
+@dataclass(frozen=True)
+class Models:
+    """The name of each role's model; "builtin" uses no model."""
+
+    planner: str = BUILTIN
+    coder: str = BUILTIN
+    reviewer: str = BUILTIN
+    judge: str = BUILTIN
+
+    def __getitem__(self, role: str) -> str:
+        return str(getattr(self, role))
+
+    @property
+    def any(self) -> bool:
+        """Whether a role has one."""
+        return any(self[role] != BUILTIN for role in ROLES)
+
+    def facts(self) -> dict[str, str]:
+        """For run.json."""
+        return {role: self[role] for role in ROLES}
+
+
+def choose(default: str | None = None, **by_role: str | None) -> Models:
+    """The models that were asked for.
+
+    Args:
+        default: For every role that is not named: `--model`.
+        by_role: By role: `--planner-model` and so on.
+
+    Raises:
+        UserError: If the configuration file is not one, or a name is no model's.
+    """
+    models = Models()
+    for given in (_configured(Path(CONFIG)), _environment(), {"model": default, **by_role}):
+        if given.get("model"):
+            models = Models(*[str(given["model"])] * len(ROLES))
+        models = replace(models, **{role: str(given[role]) for role in ROLES if given.get(role)})
+    for field in fields(models):
+        _check(getattr(models, field.name), field.name)
+    return models
+
+
+def _environment() -> dict[str, Any]:
+    named = {role: os.environ.get(f"WSIM_{role.upper()}_MODEL") for role in ROLES}
+    return {"model": os.environ.get("WSIM_MODEL"), **named}
+
+
+def _configured(path: Path) -> dict[str, Any]:
+    """[models] of wsim.toml in the folder where wsim is run: model, planner, coder, reviewer, judge."""
+    if not path.is_file():
+        return {}
+    try:
+        found = tomllib.loads(path.read_text(encoding="utf-8")).get("models", {})
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise UserError(f"{path}: {error}") from error
+    unknown = [key for key in found if key not in ("model", *ROLES)] if isinstance(found, dict) else ["models"]
+    if unknown:
+        raise UserError(f"{path}: [models] knows model, {', '.join(ROLES)}; not {unknown[0]!r}")
+    return found
+
+
+def _check(name: str, role: str) -> None:
+    if name == BUILTIN:
+        return
+    model, _, url = name.partition("@")
+    if (url and not url.startswith(("http://", "https://"))) or not model or (not url and ":" not in model):
+        raise UserError(f"model of the {role}: {name!r} is none; {_HELP}")
+
+
+def connect(name: str, role: str) -> Model:
+    """A model by its name: `provider:model` of pydantic-ai, or `model@base-url` of an OpenAI-compatible server.
+
+    Raises:
+        UserError: If there is no such provider, or it lacks its key.
+    """
+    from pydantic_ai.exceptions import UserError as ModelUserError
+    from pydantic_ai.models import infer_model
+
+    model, _, url = name.partition("@")
+    base = os.environ.get("OPENAI_BASE_URL")
+    if not url and base and model.startswith("openai:"):
+        model, url = model.removeprefix("openai:"), base
+    try:
+        if url:
+            from pydantic_ai.models.openai import OpenAIChatModel
+            from pydantic_ai.providers.openai import OpenAIProvider
+
+            key = os.environ.get("OPENAI_API_KEY") or "none"
+            return OpenAIChatModel(model, provider=OpenAIProvider(base_url=url, api_key=key))
+        return infer_model(name)
+    except (ModelUserError, ImportError, ValueError) as error:
+        first = str(error).strip().splitlines()[0]
+        raise UserError(f"model of the {role}: {name}: {first}; {_HELP}") from error

@@ -1,0 +1,96 @@
+"""The planner: a prompt, and a picture if there is one, become a plan; what the layout refuses goes back to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wsim.agents.ask import object_in
+from wsim.errors import UserError
+
+if TYPE_CHECKING:
+    from wsim.agents.ask import Desk
+    from wsim.plan.schema import Plan
+
+ASSETS = 6  # of the catalogue that are offered
+
+
+def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: str = "") -> Plan:
+    """The model's plan of a prompt, laid out.
+
+    Args:
+        desk: Asks the planner's model.
+        prompt: What the world must be.
+        pictures: JPEGs of what it must look like.
+        image: Name of the picture's file, for the plan.
+
+    Raises:
+        ModelError: If no answer became a plan.
+        BudgetError: If tokens or time ran out.
+    """
+    request = [f"Prompt: {prompt}"]
+    if pictures:
+        request.append(f"A reference picture is attached ({image}); fill reference_image.hints from it.")
+    request.append(_catalogue(prompt))
+    return desk.ask("planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt), pictures=pictures)
+
+
+def read_plan(answer: dict[str, Any], prompt: str) -> Plan:
+    """A plan from a model's answer: shorthand is written out, sentences become formulas, places are worked out.
+
+    Raises:
+        UserError: What is wrong with it, with its path in the plan.
+    """
+    from wsim.plan.store import made
+    from wsim.program.compose import compose
+
+    data = {"title": prompt[:80], **answer, "prompt": prompt}
+    if isinstance(data.get("objects"), list):
+        data["objects"] = [_written_out(item) if isinstance(item, dict) else item for item in data["objects"]]
+    objectives = data.get("objectives")
+    for number, objective in enumerate(objectives if isinstance(objectives, list) else []):
+        if isinstance(objective, dict) and objective.get("kind") == "formula" and "formula" not in objective:
+            objective["formula"] = _formula(str(objective.get("sentence", "")), f"objectives.{number}.sentence")
+    plan = made(data, Path("plan"))
+    if not plan.objectives:
+        raise UserError("plan: objectives: none; say what must happen, so that the judge can hold the world to it")
+    compose(plan)  # what no program can be written for is the planner's to mend
+    return plan
+
+
+def _written_out(item: dict[str, Any]) -> dict[str, Any]:
+    """An object whose `primitive` and `size`, or `asset`, and `relations` may stand at its top."""
+    full = dict(item)
+    if "construction" not in full:
+        if "asset" in full:
+            full["construction"] = {"kind": "asset", "asset": full.pop("asset")}
+        elif "primitive" in full:
+            full["construction"] = {"primitive": full.pop("primitive"), "size": full.pop("size", [])}
+    if isinstance(full.get("construction"), dict):
+        full["construction"] = {"kind": "proxy", **full["construction"]}
+    if "relations" in full and "topology" not in full:
+        full["topology"] = {"relation": full.pop("relations")}
+    if isinstance(full.get("position"), list) and "pose" not in full:
+        full["pose"] = {"position": full.pop("position"), "rotation_deg": full.pop("rotation_deg", [0, 0, 0])}
+    return full
+
+
+def _formula(sentence: str, where: str) -> dict[str, Any]:
+    from wsim.judge.language import parse
+
+    try:
+        return parse(sentence).model_dump(mode="json", exclude_none=True)
+    except ValueError as error:
+        raise UserError(f"{where}: {error}") from error
+
+
+def _catalogue(prompt: str) -> str:
+    """What the catalogue has for the prompt's words."""
+    from wsim.assets import search
+
+    lines = []
+    for hit in search(prompt, ASSETS):
+        size = " x ".join(f"{edge:.3g}" for edge in hit.asset.size)
+        lines.append(f"{hit.asset.id}: {hit.asset.names[0]}, {size} m")
+    return "Assets of the catalogue that may fit:\n" + ("\n".join(lines) or "none")

@@ -1,0 +1,206 @@
+"""The one way to a model: asked live, from the cache, or from a recorded run; all of it is written down."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic_ai.messages import ModelMessage, ModelResponse
+from pydantic_ai.models import Model, ModelRequestParameters
+from pydantic_ai.models.wrapper import WrapperModel
+from pydantic_ai.settings import ModelSettings
+
+from wsim.agents import cache
+from wsim.agents.budget import Ledger
+from wsim.agents.exchange import Asked, asked, response_of, said
+from wsim.agents.failures import AGAIN, ModelError, failure
+from wsim.agents.transcript import Exchange, Transcript, read
+
+LONGEST_PAUSE = 30.0  # between two attempts [s]
+
+
+@dataclass
+class Replay:
+    """A recorded run that answers in place of models, in its order.
+
+    Attributes:
+        left: Exchanges that were not asked for yet.
+        divergences: Where what was asked differs from what was recorded, a line each.
+    """
+
+    left: deque[Exchange]
+    divergences: list[str] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, folder: Path) -> Replay:
+        """The transcript of a run's folder."""
+        return cls(deque(read(folder)))
+
+    def next(self, role: str, request: Asked) -> Exchange:
+        """The recorded answer to this request, and a note where the request is another one.
+
+        Raises:
+            ModelError: If none is left, or the next one was another role's.
+        """
+        if not self.left:
+            raise ModelError("end of transcript", "the recorded run asked nothing more", role)
+        exchange = self.left.popleft()
+        if exchange.role != role:
+            self.divergences.append(f"exchange {exchange.number}: the {role} asks, where the {exchange.role} did")
+            raise ModelError("end of transcript", self.divergences[-1], role)
+        where = _difference(exchange.messages, request.messages)
+        if where:
+            self.divergences.append(f"exchange {exchange.number}, {role}: {where}")
+        return exchange
+
+
+class Relay(WrapperModel):
+    """A model behind the transcript, the cache and the budget.
+
+    Args:
+        wrapped: The model; None in a replay.
+        name: What it is called in the transcript.
+        role: Who asks.
+        transcript: Gets every exchange.
+        ledger: Is charged.
+        replay: Answers in place of the model.
+        sleep: Waits between attempts [s].
+    """
+
+    def __init__(
+        self,
+        wrapped: Model | None,
+        name: str,
+        role: str,
+        transcript: Transcript,
+        ledger: Ledger,
+        replay: Replay | None = None,
+        sleep: Callable[[float], Any] = asyncio.sleep,
+    ) -> None:
+        super().__init__(wrapped if wrapped is not None else _absent())
+        self.name, self.role, self.transcript, self.ledger, self.replay = name, role, transcript, ledger, replay
+        self.sleep = sleep
+
+    async def request(
+        self,
+        messages: list[ModelMessage],
+        model_settings: ModelSettings | None,
+        model_request_parameters: ModelRequestParameters,
+    ) -> ModelResponse:
+        """Answer a request.
+
+        Raises:
+            ModelError: If every attempt failed.
+            BudgetError: If nothing is left to ask with.
+        """
+        request = asked(messages, model_request_parameters)
+        if self.replay is not None:
+            return self._replayed(request)
+        key = request.digest(self.name)
+        known = cache.get(key)
+        if known is not None:
+            self.ledger.account(self.role).cached += 1
+            self.transcript.add(self.role, self.name, request, reply=known, cached=True)
+            return response_of(known, self.name, {})
+        response = await self._live(request, messages, model_settings, model_request_parameters)
+        cache.put(key, said(response))
+        return response
+
+    async def _live(self, request: Asked, messages: Any, settings: Any, parameters: Any) -> ModelResponse:
+        budget, account = self.ledger.budget, self.ledger.account(self.role)
+        for attempt in range(1, budget.attempts + 1):
+            self.ledger.check()
+            started = time.monotonic()
+            patience = max(min(budget.request_seconds, self.ledger.seconds_left), 0.01)
+            try:
+                response = await asyncio.wait_for(self.wrapped.request(messages, settings, parameters), patience)
+            except Exception as error:  # whatever a client raises is a failed attempt
+                seconds = time.monotonic() - started
+                failed = failure(error)
+                account.failed += 1
+                account.seconds += seconds
+                self.transcript.add(
+                    self.role, self.name, request, error={"kind": failed.kind, "message": str(failed)}, seconds=seconds
+                )
+                if failed.kind not in AGAIN or attempt == budget.attempts:
+                    raise ModelError(failed.kind, str(failed), self.role) from error
+                await self.sleep(min(2.0**attempt, LONGEST_PAUSE, max(self.ledger.seconds_left, 0.0)))
+                continue
+            self._charge(request, response, time.monotonic() - started)
+            return response
+        raise AssertionError("unreachable")
+
+    def _charge(self, request: Asked, response: ModelResponse, seconds: float) -> None:
+        account = self.ledger.account(self.role)
+        usage = {"input_tokens": response.usage.input_tokens, "output_tokens": response.usage.output_tokens}
+        account.requests += 1
+        account.input_tokens += usage["input_tokens"]
+        account.output_tokens += usage["output_tokens"]
+        account.seconds += seconds
+        price = _price(response)
+        if price is not None:
+            account.dollars = (account.dollars or 0.0) + price
+        self.transcript.add(self.role, self.name, request, reply=said(response), usage=usage, seconds=seconds)
+
+    def _replayed(self, request: Asked) -> ModelResponse:
+        assert self.replay is not None
+        while True:
+            exchange = self.replay.next(self.role, request)
+            account = self.ledger.account(self.role)
+            account.seconds += exchange.seconds
+            self.transcript.add(
+                self.role, exchange.model, request, reply=exchange.reply, error=exchange.error, usage=exchange.usage,
+                seconds=exchange.seconds, cached=exchange.cached,
+            )  # fmt: skip
+            if exchange.reply is not None:
+                account.cached += exchange.cached
+                account.requests += not exchange.cached
+                account.input_tokens += exchange.usage.get("input_tokens", 0)
+                account.output_tokens += exchange.usage.get("output_tokens", 0)
+                return response_of(exchange.reply, exchange.model, exchange.usage)
+            account.failed += 1
+            error = exchange.error or {}
+            following = self.replay.left[0] if self.replay.left else None
+            again = following is not None and following.role == self.role and following.messages == exchange.messages
+            if not again:
+                raise ModelError(error.get("kind", "server"), error.get("message", ""), self.role)  # type: ignore[arg-type]
+
+
+def _difference(recorded: list[dict[str, Any]], now: list[dict[str, Any]]) -> str:
+    """Where two conversations part, in one line; empty if nowhere."""
+    if len(recorded) != len(now):
+        return f"{len(now)} messages, where there were {len(recorded)}"
+    for k, (old, new) in enumerate(zip(recorded, now, strict=True), start=1):
+        if old == new:
+            continue
+        before, after = (_text(message).splitlines() for message in (old, new))
+        pairs = zip([*before, *[""] * len(after)], [*after, *[""] * len(before)], strict=True)
+        first = next(((a, b) for a, b in pairs if a != b), ("", ""))
+        return f"message {k}: {first[1][:120]!r}, where it was {first[0][:120]!r}"
+    return ""
+
+
+def _text(message: dict[str, Any]) -> str:
+    content = message.get("content", message.get("text", message.get("arguments", "")))
+    if isinstance(content, list):
+        return "\n".join(one if isinstance(one, str) else str(one) for one in content)
+    return content if isinstance(content, str) else str(content)
+
+
+def _price(response: ModelResponse) -> float | None:
+    """In dollars; None where no price is known, as of a model of one's own."""
+    try:
+        return float(response.cost().total_price)
+    except Exception:  # noqa: BLE001 - a price list that lacks a model must not end a run
+        return None
+
+
+def _absent() -> Model:
+    from pydantic_ai.models.test import TestModel
+
+    return TestModel()

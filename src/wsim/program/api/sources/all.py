@@ -1,0 +1,109 @@
+"""All that the index is made of, and what tells one installation from another."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from importlib import metadata
+from pathlib import Path
+
+from wsim.program.api.entry import Entry
+
+Part = str  # "programs" or "lower"
+PACKAGES = {
+    "programs": ("numpy", "usd-core", "newton-usd-schemas", "griffe"),
+    "lower": ("newton", "warp-lang", "griffe"),
+}
+_FORMAT = "1"
+
+
+def key(part: Part) -> str:
+    """Changes with what is installed and with what reads it; of what programs may use, with wsim's own files too."""
+    parts = [_FORMAT, sys.version]
+    for name in PACKAGES[part]:
+        try:
+            parts.append(f"{name} {metadata.version(name)}")
+        except metadata.PackageNotFoundError:
+            parts.append(f"{name} -")
+    home = Path(__file__).parents[3]
+    files = sorted((home / "program" / "api").rglob("*.py"))
+    if part == "programs":
+        files += sorted((home / "scene").rglob("*"))
+        files += [home / "program" / "control_world.py", *sorted((home / "assets").glob("*.py"))]
+    for file in files:
+        if file.suffix in (".py", ".usda", ".json") and file.is_file():
+            parts.append(hashlib.sha256(file.read_bytes()).hexdigest())
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
+
+
+def entries(part: Part, progress: Callable[[str], None]) -> Iterator[Entry]:
+    """Every entry of a part; of two with one name the first counts."""
+    for title, read in _SOURCES[part].items():
+        progress(f"API index: reading {title}")
+        yield from read()
+
+
+def _scene() -> Iterator[Entry]:
+    from wsim.program.api.sources.python_source import Package
+
+    package = Package("wsim", "wsim")
+    names = ("wsim.scene", "wsim.program.control_world", "wsim.assets")
+    yield from _without(package.entries(*names, private=True), ("wsim.scene.check", "wsim.scene.describe"))
+    yield Entry("wsim", "module", "wsim")
+    yield from package._member("wsim.run", package.modules["wsim.run"])
+
+
+def _without(found: Iterable[Entry], modules: tuple[str, ...]) -> Iterator[Entry]:
+    return (entry for entry in found if not entry.name.startswith(modules))
+
+
+def _pxr() -> Iterator[Entry]:
+    from wsim.program.api.sources import pxr_bindings
+
+    return pxr_bindings.entries()
+
+
+def _schemas() -> Iterator[Entry]:
+    from wsim.program.api.sources import usd_schemas
+
+    return usd_schemas.entries()
+
+
+def _numpy() -> Iterator[Entry]:
+    from wsim.program.api.sources import python_package
+
+    return python_package.entries(python_package.NUMPY, "numpy")
+
+
+def _standard() -> Iterator[Entry]:
+    from wsim.program.api.sources import python_package
+
+    return python_package.entries(python_package.STANDARD, "python")
+
+
+def _lower(name: str) -> Callable[[], Iterator[Entry]]:
+    def read() -> Iterator[Entry]:
+        from wsim.program.api.sources.python_source import Package
+
+        try:
+            package = Package(name, name, programs=False)
+        except (ImportError, OSError):
+            return
+        for entry in package.entries(name):
+            yield dataclasses.replace(entry, doc=entry.doc[:1500])
+
+    return read
+
+
+_SOURCES: dict[Part, dict[str, Callable[[], Iterator[Entry]]]] = {
+    "programs": {
+        "wsim.scene": _scene,
+        "USD's schemas": _schemas,
+        "pxr": _pxr,
+        "NumPy": _numpy,
+        "the standard library": _standard,
+    },
+    "lower": {"Newton": _lower("newton"), "Warp": _lower("warp")},
+}

@@ -1,0 +1,66 @@
+"""The USD schemas that are installed: their attributes, types, defaults and documentation, from USD's own registry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from wsim.program.api.docstring import summary, unit
+from wsim.program.api.entry import Entry
+
+INSTANCE = "__INSTANCE_NAME__"
+
+
+def entries() -> Iterator[Entry]:
+    """Each schema by its name, `PhysicsMassAPI`, and its own attributes by theirs, `PhysicsMassAPI.physics:mass`."""
+    from pxr import Usd
+
+    import wsim.scene  # noqa: F401 - registers wsim's schema, before USD reads its schemas
+
+    try:
+        import newton_usd_schemas  # noqa: F401 - registers Newton's
+    except ImportError:
+        pass
+    registry = Usd.SchemaRegistry()
+    for name, bases in sorted(_names().items()):
+        definition = registry.FindConcretePrimDefinition(name) or registry.FindAppliedAPIPrimDefinition(name)
+        if not definition:
+            definition = registry.FindAbstractPrimDefinition(name)
+        if not definition:
+            continue
+        doc = _plain(definition.GetDocumentation())
+        kind = str(registry.GetSchemaKind(name)).rpartition(".")[2]
+        yield Entry(name, "schema", "schema", bases=bases, summary=summary(doc), doc=doc, extra={"kind": kind})
+        for attribute in definition.GetPropertyNames():
+            yield _attribute(name, attribute, definition)
+
+
+def _names() -> dict[str, tuple[str, ...]]:
+    """Schema names, with those of the schemas they inherit from."""
+    from pxr import Plug, Tf, Usd
+
+    registry = Usd.SchemaRegistry
+    found = {}
+    for kind in Plug.Registry().GetAllDerivedTypes(Tf.Type.FindByName("UsdSchemaBase")):
+        name = registry.GetSchemaTypeName(kind)
+        above = [registry.GetSchemaTypeName(base) for base in kind.GetAllAncestorTypes()[1:]]
+        if name:
+            found[name] = tuple(base for base in above if base)
+    return found
+
+
+def _attribute(schema: str, name: str, definition: Any) -> Entry:
+    doc = _plain(definition.GetPropertyDocumentation(name))
+    found = definition.GetAttributeDefinition(name)
+    kind, default = "rel", None
+    if found:
+        kind, default = str(found.GetTypeName()), found.GetFallbackValue()
+    extra = {"default": str(default)} if default is not None else {}
+    return Entry(
+        f"{schema}.{name.replace(INSTANCE, '*')}", "schema attribute", "schema", returns=kind,
+        summary=summary(doc), doc=doc, extra=extra | ({"unit": unit(doc)} if unit(doc) else {}),
+    )  # fmt: skip
+
+
+def _plain(doc: str) -> str:
+    return "\n".join(line.strip() for line in (doc or "").splitlines()).strip()

@@ -1,0 +1,228 @@
+"""The scene that a program builds, as far as its calls are known: they are made again on a scene of the validator's own.
+
+What `wsim.scene` refuses there it refuses in the program. A call of which all is known is made as it stands, as long as
+all before it was known too. Of any other call each known argument is tried by itself, in a call that is otherwise good.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from typing import Any
+
+from wsim.program.validator.values import Const, Instance, NotKnownError, Value, plain
+
+_MOST_CALLS = 400
+_SHAPE = {"size": (1.0, 1.0, 1.0)}
+_ROUND = {"radius": 0.1, "height": 0.2}
+_JOINT: dict[str, Any] = {"parent": None}
+# What a call needs beside the argument that is tried.
+_NEEDS: dict[str, dict[str, Any]] = {
+    "ground": {}, "box": _SHAPE, "sphere": {"radius": 0.1}, "cylinder": _ROUND, "capsule": _ROUND,
+    "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
+    "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
+    "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
+}  # fmt: skip
+BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "asset")
+JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
+OBJECTS = (*BODIES, "ground", "tank", "fluid")
+# Arguments whose rightness hangs on what else is in the scene.
+_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high")
+# Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
+_TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
+             "eye", "target")  # fmt: skip
+_VECTORS = ("size", "inner_size", "position", "rotation_deg", "velocity", "angular_velocity_deg", "eye", "target",
+            "anchor", "color", "direction", "gravity")  # fmt: skip
+
+
+class World:
+    """What is known of the prims of a program's scene.
+
+    Attributes:
+        names: Prims under /World that are made for sure: the name, and the call that makes it.
+        others: Names that may be made besides: in a branch, by USD itself.
+        looks: Names of materials and parameters, which do not stand under /World itself.
+        open: Prims of unknown names may be made besides.
+        trusted: The scene here is the program's own, prim for prim.
+    """
+
+    def __init__(self) -> None:
+        from wsim.scene import Scene
+
+        self._scene, self._probe = Scene(), Scene()
+        self._probe_body = self._probe.box("probe_body", size=(1.0, 1.0, 1.0))
+        self._numbers = itertools.count()
+        self._tried: dict[tuple[str, str, str], str] = {}
+        self._calls = 0
+        self.names: dict[str, str] = {}
+        self.others: set[str] = set()
+        self.places: dict[str, Any] = {}  # the nodes of the calls that make `names`
+        self.looks: set[str] = set()
+        self.open = False
+        self.trusted = True
+
+    def touched(self) -> None:
+        """The program reaches for the stage itself: from here on it may hold more."""
+        self.trusted = False
+
+    def call(self, method: str, arguments: Mapping[str, Value], *, certain: bool) -> tuple[Value | None, str, str]:
+        """Make a call that a program makes.
+
+        Args:
+            method: Of `Scene`.
+            arguments: By parameter.
+            certain: Whether the program makes it for sure, and once.
+
+        Returns:
+            What it returns, if that is known; what is refused, if something is, and the argument that it is about.
+        """
+        name = _known(arguments.get("name"))
+        self._calls += 1
+        if self._calls > _MOST_CALLS:
+            certain, self.trusted = False, False
+        whole = self._whole(arguments) if certain and self.trusted else None
+        if whole is not None and method in _NEEDS:
+            try:
+                made = getattr(self._scene, method)(**whole)
+            except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
+                self.trusted = False
+                self.note(method, name, certain=certain)
+                return (None, *self._blame(method, arguments, _refusal(error)))
+            self.note(method, name, certain=certain)
+            return Const(made), "", ""
+        if certain and method in (*OBJECTS, *JOINTS, "camera", "light", "material", "param"):
+            self.trusted = False
+        self.note(method, name, certain=certain)
+        field, refusal = self._try(method, arguments)
+        return None, refusal, field
+
+    def note(self, method: str, name: object, *, certain: bool) -> None:
+        """Remember the prim that a call makes."""
+        if method in ("simulation", "save"):
+            return
+        if not isinstance(name, str):
+            self.open = self.open or method not in ("material", "param")
+            return
+        if method in ("material", "param"):
+            self.looks.add(f"{method} {name}")
+        elif certain:
+            self.names.setdefault(name, method)
+        else:
+            self.others.add(name)
+
+    def taken(self, method: str, name: str) -> bool:
+        """Whether a name is taken for sure by an earlier call."""
+        if method in ("material", "param"):
+            return False  # an object's own look may have taken it, or not; the scene itself tells
+        return name in self.names
+
+    def _whole(self, arguments: Mapping[str, Value]) -> dict[str, Any] | None:
+        try:
+            return {name: plain(value) for name, value in arguments.items()}
+        except NotKnownError:
+            return None
+
+    def _blame(self, method: str, arguments: Mapping[str, Value], refusal: str) -> tuple[str, str]:
+        """The refusal, and the argument that it names."""
+        text = refusal.partition(": ")[2]
+        field = next((name for name in arguments if text.startswith((f"{name} ", f"{name}[", f"{name}."))), "")
+        return refusal, field or next((name for name in arguments if f"{name} = " in text), "")
+
+    def _try(self, method: str, arguments: Mapping[str, Value]) -> tuple[str, str]:
+        """Try each known argument by itself, then all together; the one that is refused, and why."""
+        kind = "box" if method == "mesh" else method
+        if kind not in _NEEDS or kind == "asset":
+            return "", ""
+        if method == "mesh" and (refusal := _mesh(arguments)):
+            return "collision", refusal
+        for field, value in arguments.items():
+            if field in _TIED or (method == "mesh" and field in ("scale", "up_axis", "collision")):
+                continue
+            for known in _parts(field, value):
+                refusal = self._refuses(kind, {field: known})
+                if refusal:
+                    return field, refusal
+        if method == "mesh":
+            return "", ""
+        together = {f: v for f in _TOGETHER if f in arguments and (v := _known(arguments[f])) is not None}
+        if len(together) == len([f for f in _TOGETHER if f in arguments]) and len(together) > 1:
+            return "", self._refuses(kind, together)
+        return "", ""
+
+    def _refuses(self, method: str, given: dict[str, Any]) -> str:
+        """What the scene says to these arguments in a call that is otherwise good."""
+        key = (method, repr(sorted(given)), repr(given))
+        if key not in self._tried:
+            self._tried[key] = self._attempt(method, given)
+        return self._tried[key]
+
+    def _attempt(self, method: str, given: dict[str, Any]) -> str:
+        number = next(self._numbers)
+        needs: dict[str, Any] = dict(_NEEDS[method])
+        if method != "simulation":
+            needs["name"] = f"probe_{number}"
+        if method.startswith("joint_"):
+            needs["child"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
+        if method == "fluid":
+            edges = given.get("size", (1.0, 1.0, 1.0))
+            place = given.get("position", (0.0, 0.0, -5000.0 + 3.0 * number))
+            try:
+                spacing = min(abs(float(edge)) for edge in edges) / 4 or 0.1
+            except (TypeError, ValueError):
+                spacing = 0.1
+            needs |= {"size": edges, "position": place, "spacing": spacing}
+        if method == "camera" and ("eye" in given) != ("target" in given):
+            other = "target" if "eye" in given else "eye"
+            needs[other] = (-123.4, 56.7, 8.9)
+        scene = self._probe
+        if method == "fluid":
+            from wsim.scene import Scene
+
+            scene = Scene()
+        try:
+            getattr(scene, method)(**(needs | given))
+        except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
+            return _refusal(error)
+        return ""
+
+
+def _mesh(arguments: Mapping[str, Value]) -> str:
+    """What is wrong with how a mesh collides. Its file is not read: it need not be there yet."""
+    from wsim.scene.mesh_file import APPROXIMATIONS
+
+    collision, static = _known(arguments.get("collision")), _known(arguments.get("static", Const(False)))
+    if isinstance(collision, str) and collision not in APPROXIMATIONS:
+        return f'mesh: collision = "{collision}" must be one of {", ".join(APPROXIMATIONS)}'
+    if collision == "none" and static is False:
+        return 'mesh: collision = "none" needs static=True'
+    return ""
+
+
+def _refusal(error: Exception) -> str:
+    from wsim.scene import SceneError
+
+    return str(error) if isinstance(error, SceneError) else ""
+
+
+def _known(value: Value | None) -> Any:
+    if value is None:
+        return None
+    try:
+        return plain(value)
+    except NotKnownError:
+        return None
+
+
+def _parts(field: str, value: Value) -> list[Any]:
+    """A value, or, of a vector that is known in part, one with good numbers in the other places."""
+    from wsim.program.validator.values import Items
+
+    try:
+        return [plain(value)]
+    except NotKnownError:
+        pass
+    if field not in _VECTORS or not isinstance(value, Items) or not value.exact:
+        return []
+    if isinstance(value, Instance):
+        return []
+    return [tuple(0.5 if (known := _known(item)) is None else known for item in value.items)]

@@ -1,0 +1,156 @@
+"""USD's strings: names of attributes and schemas, paths of prims, and values of attributes."""
+
+from __future__ import annotations
+
+import ast
+import re
+from difflib import get_close_matches
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from wsim.program.api.entry import Entry
+from wsim.program.api.lookup import Index
+from wsim.program.validator.arguments import Arguments
+from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, Value
+
+if TYPE_CHECKING:
+    from wsim.program.validator.calls import Calls
+
+_NAMESPACES = ("physics:", "newton:", "wsim:", "drive:", "limit:", "primvars:display", "inputs:diffuse")
+_READS = ("GetAttribute", "HasAttribute", "CreateAttribute", "GetRelationship", "CreateRelationship", "GetProperty")
+_APPLIES = ("ApplyAPI", "AddAppliedSchema", "HasAPI", "RemoveAPI", "CanApplyAPI")
+_MAKES = re.compile(r"^(Define|DefinePrim|OverridePrim|CreateClassPrim)$")
+_SPREADS = ("GetRootLayer", "GetEditTarget", "GetReferences", "GetPayloads", "RemovePrim", "GetSessionLayer")
+# Attributes that cannot be below zero.
+_NOT_NEGATIVE = re.compile(
+    r"^Create(Mass|Density|Radius|Height|Size|Width|Length|StaticFriction|DynamicFriction|Restitution|Intensity"
+    r"|FocalLength|GravityMagnitude|Damping|Stiffness|MaxForce)Attr$"
+)
+_NUMBERS = ("float", "double", "int", "half", "uint")
+
+
+def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> None:
+    """What USD itself would find out only when the program runs."""
+    first = arguments.given[0] if arguments.given else next(iter(arguments.named.values()), (UNKNOWN, arguments.call))
+    if entry.short in _READS and entry.parent.startswith("pxr.Usd.Prim"):
+        _attribute_name(reader, *first)
+    elif entry.short in _APPLIES:
+        _schema_name(reader, entry.short, *first)
+    elif _MAKES.match(entry.short):
+        _makes(reader, entry, bound, arguments)
+    elif entry.short == "GetPrimAtPath" and isinstance(owner, Instance) and owner.type == "pxr.Usd.Stage":
+        _finds(reader, *first)
+    elif entry.short in _SPREADS:
+        reader.world.open = True
+    elif entry.short.startswith("Create") and entry.short.endswith("Attr"):
+        _value(reader, entry, *first)
+
+
+def _attribute_name(reader: Calls, value: Value, node: ast.AST) -> None:
+    if not isinstance(value, Const) or not isinstance(value.value, str):
+        return
+    name = value.value
+    if not name.startswith(_NAMESPACES) or reader.written.count(name) > 1:
+        return
+    known, patterns = _attributes(reader.index)
+    if name in known or any(pattern.fullmatch(name) for pattern in patterns):
+        return
+    close = get_close_matches(name, known, n=1, cutoff=0.75)
+    if close:  # a namespace takes attributes of one's own too
+        reader.problems.add(node, "attribute", f'no schema has an attribute "{name}"', f'"{close[0]}"')
+
+
+@lru_cache(maxsize=2)
+def _attributes(index: Index) -> tuple[frozenset[str], tuple[re.Pattern[str], ...]]:
+    """The attributes of all schemas, and patterns of those of which one schema has several."""
+    names = [name for name in index.programs.schema_attributes()]
+    patterns = tuple(re.compile(re.escape(name).replace(r"\*", r"[\w:]+")) for name in names if "*" in name)
+    return frozenset(name for name in names if "*" not in name), patterns
+
+
+def _schema_name(reader: Calls, call: str, value: Value, node: ast.AST) -> None:
+    if not isinstance(value, Const) or not isinstance(value.value, str):
+        return
+    entry = reader.entry(value.value.partition(":")[0])
+    if entry is None or entry.kind != "schema":
+        known = reader.index.programs.schemas()
+        close = get_close_matches(value.value, known, n=1, cutoff=0.6)
+        if call == "AddAppliedSchema" and not get_close_matches(value.value, known, n=1, cutoff=0.88):
+            return  # a stage may name schemas that are not installed
+        reader.problems.add(node, "name", f'no schema "{value.value}" is installed', f'"{close[0]}"' if close else "")
+
+
+def _makes(reader: Calls, entry: Entry, bound: dict[str, Any], arguments: Arguments) -> None:
+    """A prim that is made without the scene's calls."""
+    world = reader.world
+    world.touched()
+    value, node = bound.get("path", (UNKNOWN, arguments.call))
+    text = value.value if isinstance(value, Const) else None
+    if not isinstance(text, str):
+        world.open = True
+    else:
+        world.others.update(text.removeprefix("/World/").split("/")[:1])
+        if not re.fullmatch(r"(/[A-Za-z_]\w*)+", text) and text != "/":
+            message = f'"{text}" is no path of a prim; it starts with / and has letters, digits and _ only'
+            reader.problems.add(node, "value", message, '"/World/name"')
+    kind, kind_node = bound.get("typeName", (UNKNOWN, arguments.call))
+    if entry.short == "DefinePrim" and isinstance(kind, Const) and isinstance(kind.value, str) and kind.value:
+        found = reader.entry(kind.value)
+        if found is None or found.kind != "schema":
+            close = get_close_matches(kind.value, reader.index.programs.schemas(), n=1, cutoff=0.6)
+            if close:
+                reader.problems.add(kind_node, "name", f'no schema "{kind.value}" is installed', f'"{close[0]}"')
+
+
+def _finds(reader: Calls, value: Value, node: ast.AST) -> None:
+    """A prim that is looked for by its path: one that is spelt nearly like one that is there, and is not, is a slip."""
+    world, text = reader.world, value.value if isinstance(value, Const) else None
+    if not isinstance(text, str) or not text.startswith("/World/") or world.open or not reader.certain:
+        return
+    name = text.removeprefix("/World/").split("/")[0]
+    known = {*world.names, *world.others, "Looks", "Parameters", "PhysicsScene"}
+    if name in known:
+        return
+    close = get_close_matches(name, known, n=1, cutoff=0.7)
+    if close and reader.written.count(name) == 0:
+        reader.problems.add(node, "prim", f'no prim "{text}" has been made', f'"/World/{close[0]}"')
+
+
+def _value(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
+    """The first value of an attribute."""
+    if not isinstance(value, (Const, Items)):
+        return
+    if isinstance(value, Const) and isinstance(value.value, (int, float)) and not isinstance(value.value, bool):
+        if _NOT_NEGATIVE.match(entry.short) and value.value < 0:
+            reader.problems.add(node, "value", f"{entry.short}({value.value:g}): it must not be below 0", entry.signature)
+            return
+    kind = _kind(reader, entry)
+    wrong = (
+        (kind in _NUMBERS and (isinstance(value, Items) or isinstance(value.value, str)))
+        or (re.fullmatch(r"(float|double|half|vector|point|color|normal)3[fdh]?", kind) and not _three(value))
+        or (kind in ("token", "string") and not (isinstance(value, Const) and isinstance(value.value, str)))
+    )
+    if wrong and not (isinstance(value, Const) and value.value is None):
+        reader.problems.add(node, "argument", f"{entry.short}() takes a {kind}", entry.signature)
+
+
+def _three(value: Const | Items) -> bool:
+    if isinstance(value, Items):
+        return not value.exact or len(value.items) == 3
+    return not isinstance(value.value, (int, float, str))
+
+
+def _kind(reader: Calls, entry: Entry) -> str:
+    """The type of the attribute that a schema class's call creates; "" if it is not found."""
+    module, _, kind = entry.parent.removeprefix("pxr.").partition(".")
+    short = entry.short.removeprefix("Create").removesuffix("Attr")
+    attribute = short[:1].lower() + short[1:]
+    prefix = {"UsdPhysics": "Physics", "UsdGeom": "", "UsdLux": ""}.get(module)
+    if prefix is None:
+        return ""
+    for schema in (f"{prefix}{kind}", kind):
+        for name in (attribute, f"physics:{attribute}", f"inputs:{attribute}"):
+            found = reader.entry(f"{schema}.{name}")
+            if found is not None:
+                return found.returns
+    return ""

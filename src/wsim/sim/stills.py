@@ -1,0 +1,117 @@
+"""Stills of a world: as it starts, or as a recording has it at some time. Nothing is simulated for them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from wsim.recording import Recording
+    from wsim.scene.world import Camera, World
+
+
+@dataclass(frozen=True)
+class Still:
+    """One camera's picture of one moment.
+
+    Attributes:
+        camera: Who looks.
+        time: Of the moment [s].
+        rgb: (H, W, 3) uint8, sRGB.
+        pixels: How many pixels each object has, by prim, those with none as well. Glass and water are looked through,
+            and have none.
+    """
+
+    camera: Camera
+    time: float
+    rgb: np.ndarray
+    pixels: dict[str, int]
+
+
+class Stills:
+    """Draws a stage's cameras.
+
+    Args:
+        stage: USD file, checked.
+        device: "cpu", "cuda:0", or "auto".
+        camera: The only one to draw, of the stage's or another; all of the stage's by default, and where it has none
+            the default view.
+        progress: Told about compilation.
+    """
+
+    def __init__(
+        self, stage: str | Path, device: str = "auto", camera: Camera | None = None, progress: Progress = silent
+    ) -> None:
+        import newton
+
+        from wsim.scene.describe import describe
+        from wsim.sim.cameras import CameraRenderer
+        from wsim.sim.devices import pick_device
+        from wsim.sim.model import build_model
+        from wsim.sim.seen import ObjectPixels
+
+        world = describe(Path(stage))
+        self.world = world if camera is None else world.model_copy(update={"cameras": [camera]})
+        self._built = build_model(Path(stage), self.world, pick_device(device))
+        model = self._built.model
+        self._state = model.state()
+        newton.eval_fk(model, self._state.joint_q, self._state.joint_qd, self._state)
+        self._renderer = CameraRenderer(model, self.world, progress=progress)
+        self._objects = ObjectPixels(self._renderer.shape_prims)
+
+    def draw_start(self) -> list[Still]:
+        """The world as the stage states it, one still a camera."""
+        particles = self._state.particle_q.numpy() if self._built.fluids else np.zeros((0, 3))
+        return self._draw(0.0, {prim: particles[part] for prim, part in self._built.fluids.items()})
+
+    def draw(self, recording: Recording, time: float) -> list[Still]:
+        """The world as a recording of it has it at its frame nearest to a time [s], one still a camera.
+
+        Raises:
+            ValueError: The recording has no frames, or is of another world.
+        """
+        prims = [body.prim for body in self.world.bodies]
+        recorded = [body.prim for body in recording.world.bodies]
+        if prims != recorded:
+            raise ValueError(f"the stage has the bodies {prims}, the recording {recorded}")
+        frame = frame_to_draw(recording, time)
+        if prims:
+            q = self._state.body_q.numpy()
+            q[self._built.bodies] = recording.body_q[frame]
+            self._state.body_q.assign(q)
+        at = float(recording.time[frame])
+        fluids = {
+            prim: track.position[int(np.argmin(np.abs(track.time - at)))]
+            for prim, track in recording.fluids.items()
+            if len(track.time)
+        }
+        return self._draw(at, fluids)
+
+    def _draw(self, time: float, fluids: dict[str, np.ndarray]) -> list[Still]:
+        images = self._renderer.render(self._state, fluids)
+        return [
+            Still(camera, time, image.rgb, self._objects.count(image.shape_index))
+            for camera, image in zip(self._renderer.cameras, images.values(), strict=True)
+        ]
+
+
+def frame_to_draw(recording: Recording, time: float) -> int:
+    """The frame nearest to a time [s]; in a world with fluid, of those at which its particles were recorded."""
+    times = np.asarray(recording.time)
+    for track in recording.fluids.values():
+        if len(track.time):
+            times = track.time
+    nearest = float(times[int(np.argmin(np.abs(times - time)))]) if len(times) else time
+    return recording.frame_index(nearest)
+
+
+def cameras_of(world: World) -> list[Camera]:
+    """The cameras that a world is drawn with: its own, or the default view."""
+    from wsim.sim import render_views
+
+    return world.cameras or [render_views.default_camera(world)]

@@ -1,0 +1,185 @@
+"""Tools that read and write the plan."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from wsim.errors import UserError
+from wsim.tools.base import Arguments, Result, Tool, Workspace
+from wsim.tools.iterations import numbered
+from wsim.tools.text import number, numbers, table
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan
+
+Part = Literal["all", "objects", "relations", "joints", "cameras", "objectives", "assumptions", "steps"]
+SIDE_NAME = "plan.json.new"
+
+
+class ReadPlan(Arguments):
+    """A part of the plan."""
+
+    part: Part = Field("all", description="which rows; all of them by default, but assumptions and steps")
+    object: str = Field("", description="only rows that name this object", max_length=200)
+
+
+class WritePlan(Arguments):
+    """A whole plan."""
+
+    plan: str | dict[str, Any] = Field(
+        description="the plan as JSON, all of it; the layout works out places that it leaves out"
+    )
+
+
+def read_plan(workspace: Workspace, asked: ReadPlan) -> Result:
+    """The plan as tables."""
+    plan = workspace.plan
+    if plan is None:
+        raise UserError("the run has no plan; write one with write_plan")
+    if asked.object and asked.object not in [item.name for item in plan.objects]:
+        raise UserError(f"object: no {asked.object[:60]!r}; the plan has {_names(plan)}")
+    return Result("\n".join(_show(plan, asked.part, asked.object)))
+
+
+def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
+    """Check a plan, lay it out, and make it the run's."""
+    from wsim.plan.store import load, save
+
+    judged = [folder.name for folder in numbered(workspace.run) if (folder / "verdict.json").is_file()]
+    if judged:
+        raise UserError(
+            f"iteration {judged[0]} was judged by the plan that is there: it stays; another plan needs another run"
+        )
+    try:
+        text = asked.plan if isinstance(asked.plan, str) else json.dumps(asked.plan)
+    except RecursionError as error:
+        raise UserError("plan: nested too deep; a plan has about ten levels") from error
+    side = workspace.run.path / SIDE_NAME
+    side.write_bytes(text.encode("utf-8", "surrogatepass"))  # what is no text, the reader says
+    try:
+        plan = load(side)
+    except UserError as error:
+        return Result(f"not written: {str(error).removeprefix(f'{side}: ')}", ok=False)
+    finally:
+        side.unlink()
+    save(plan, workspace.run.path / "plan.json")
+    return Result("\n".join(["plan.json written, laid out:", *_show(plan, "all", "")]))
+
+
+def _names(plan: Plan) -> str:
+    names = [item.name for item in plan.objects]
+    return ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")
+
+
+def _show(plan: Plan, part: Part, name: str) -> list[str]:
+    """The rows of a part, and of one object alone where it is named."""
+    parts: dict[str, Callable[[Plan, str], list[str]]] = {
+        "objects": _objects,
+        "relations": _relations,
+        "objectives": _objectives,
+        "joints": _joints,
+        "cameras": _cameras,
+        "assumptions": _assumptions,
+        "steps": _steps,
+    }
+    if part != "all":
+        return parts[part](plan, name) or [f"no {part}" + (f" that name {name}" if name else "")]
+    run = plan.simulation
+    lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s"]
+    for key in ("objects", "relations", "objectives", "joints", "cameras"):
+        lines += parts[key](plan, name)
+    rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
+    return [*lines, *([f"also: {', '.join(rest)}"] if rest else [])]
+
+
+def _objects(plan: Plan, name: str) -> list[str]:
+    rows = []
+    for item in plan.objects:
+        if name not in ("", item.name):
+            continue
+        what = f"asset {item.construction.asset}" if item.construction.kind == "asset" else item.primitive
+        pose, weight = item.pose, item.registration
+        density = weight.density or (item.material.density if item.material and not weight.mass else None)
+        rows.append([
+            item.name, what, item.state, item.material.name if item.material else "", number(density),
+            number(weight.mass), numbers(item.size, " x "), numbers(pose.position) if pose else "",
+            numbers(pose.rotation_deg) if pose and any(pose.rotation_deg) else "",
+            numbers(item.velocity) if any(item.velocity) else "",
+        ])  # fmt: skip
+    head = ("object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s")
+    return table(head, rows) if rows else []
+
+
+def _relations(plan: Plan, name: str) -> list[str]:
+    shown = (item for item in plan.objects if item.relations and _about(name, item.name, *_refs(item)))
+    return [f"where: {item.name}: {'; '.join(row.sentence() for row in item.relations)}" for item in shown]
+
+
+def _refs(item: Any) -> list[str]:
+    return [ref for row in item.relations for _, ref in row.refs()]
+
+
+def _about(name: str, *named: str | None) -> bool:
+    return not name or name in named
+
+
+def _objectives(plan: Plan, name: str) -> list[str]:
+    rows = []
+    for objective in plan.objectives:
+        if _about(name, objective.object, objective.ref):
+            words = objective.sentence or " ".join(filter(None, (objective.object, objective.kind, objective.ref)))
+            rows.append([objective.kind, objective.object, objective.ref or "", words])
+    return table(("must", "object", "ref", "sentence"), rows) if rows else []
+
+
+def _joints(plan: Plan, name: str) -> list[str]:
+    rows = [
+        [
+            joint.name, joint.kind, joint.parent or "the world", joint.child, joint.axis,
+            numbers(joint.anchor) if joint.anchor else "", numbers(joint.limits) if joint.limits else "",
+        ]
+        for joint in plan.joints
+        if _about(name, joint.child, joint.parent)
+    ]  # fmt: skip
+    head = ("joint", "kind", "parent", "child", "axis", "anchor from the child [m]", "limits")
+    return table(head, rows) if rows else []
+
+
+def _cameras(plan: Plan, name: str) -> list[str]:
+    rows = [
+        [
+            camera.name, camera.view or "", camera.of or "", numbers(camera.eye) if camera.eye else "",
+            numbers(camera.target) if camera.target else "",
+        ]
+        for camera in plan.cameras
+        if _about(name, camera.of)
+    ]  # fmt: skip
+    return table(("camera", "view", "of", "eye [m]", "target [m]"), rows) if rows else []
+
+
+def _assumptions(plan: Plan, name: str) -> list[str]:
+    return [f"assumed: {a.subject}: {a.choice} ({a.why})" for a in plan.assumptions if _about(name, a.subject)]
+
+
+def _steps(plan: Plan, name: str) -> list[str]:
+    return [
+        f"step {k}: {step.title}: {', '.join(step.objects)}; shows {step.shows}"
+        for k, step in enumerate(plan.steps, start=1)
+        if _about(name, *step.objects)
+    ]
+
+
+TOOLS = (
+    Tool(
+        "read_plan", "The plan: objects, where they are, joints, cameras and what must happen, as tables.", ReadPlan,
+        read_plan, narrow="ask for one part, or one object",
+    ),
+    Tool(
+        "write_plan", "Check a plan, lay it out and keep it; the answer says what is wrong with it, or its places.",
+        WritePlan, write_plan, writes=True, narrow="read_plan with one part shows the rest",
+    ),
+)  # fmt: skip

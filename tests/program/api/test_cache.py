@@ -1,0 +1,65 @@
+"""The cache: whole or absent, by what is installed, and not needed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from wsim.program.api.entry import Entry, Parameter
+from wsim.program.api.lookup import _folder
+from wsim.program.api.sources import all as sources
+from wsim.program.api.store import Store
+
+ENTRIES = [
+    Entry("a.hinge", "function", "wsim", ((Parameter("axis", "keyword", "str", "'Z'", "", "of it"),),), doc="Joins two."),
+    Entry("a.Thing", "class", "wsim", bases=("a.Base",), summary="A thing.", extra={"partial": True}),
+    Entry("a.b.water", "function", "pxr", doc="Fills a tank.", programs=False),
+    Entry("a.hinge", "function", "numpy", doc="Of the same name, and later."),
+]
+
+
+@pytest.fixture
+def store() -> Store:
+    return Store.of(ENTRIES)
+
+
+def test_what_is_saved_is_what_is_opened(store: Store, tmp_path: Path) -> None:
+    file = tmp_path / "deep" / "index.sqlite"
+    assert store.save(file)
+    opened = Store.open(file)
+    assert opened is not None
+    for name in ("a.hinge", "a.Thing", "a.b.water"):
+        assert opened.find(name) == store.find(name) == next(e for e in ENTRIES if e.name == name)
+    assert opened.find("a.none") is None
+    assert opened.children("a") == {"hinge", "Thing"}
+    assert (opened.meaning() == store.meaning()).all()
+    assert [path.name for path in file.parent.iterdir()] == ["index.sqlite"], "a side file was left"
+
+
+def test_a_broken_file_counts_as_none(tmp_path: Path) -> None:
+    file = tmp_path / "index.sqlite"
+    assert Store.open(file) is None
+    file.write_bytes(b"SQLite format 3\0" + b"\0" * 5000)
+    assert Store.open(file) is None
+
+
+def test_a_folder_that_cannot_be_written_is_no_error(store: Store, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    assert not store.save(tmp_path / "file" / "index.sqlite")
+
+
+def test_key_follows_the_versions(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = {part: sources.key(part) for part in sources.PACKAGES}
+    assert before == {part: sources.key(part) for part in sources.PACKAGES}
+    real = sources.metadata.version
+    monkeypatch.setattr(sources.metadata, "version", lambda name: "0" if name == "newton" else real(name))
+    assert sources.key("lower") != before["lower"]
+    assert sources.key("programs") == before["programs"]
+
+
+def test_cache_lies_where_the_environment_says(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert _folder() == tmp_path / "wsim" / "api"
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    assert _folder() == Path("~/.cache/wsim/api").expanduser()
