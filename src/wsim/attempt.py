@@ -101,13 +101,24 @@ def attempt(
     looks = [_framed, _moved] if settings.pictures else []
     passes = [_validated, _built, *looks, _recorded] if cheap_first else [_built, _recorded]
     for run in passes:
-        verdict = run(made, plan, settings, progress)
+        try:
+            verdict = run(made, plan, settings, progress)
+        except (ValueError, RuntimeError, LookupError, ArithmeticError) as error:
+            if not cheap_first:
+                raise
+            verdict = _broken(error)  # a stage that passed its check and breaks the simulator is the coder's to mend
         if verdict is not None:
             made.verdict = conclude(folder, verdict)
             if verdict.status != "accepted":
                 return made
     made.reached = Reached.ALL
     return made
+
+
+def _broken(error: Exception) -> Verdict:
+    text = " ".join(str(error).split())[:400]
+    message = f"the simulator cannot run this stage: {type(error).__name__}: {text}"
+    return reject(Finding(check="simulation", passed=False, message=message), "The simulator cannot run this stage.")
 
 
 def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:

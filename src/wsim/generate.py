@@ -87,7 +87,7 @@ def generate(
     try:
         plan = _plan(run, crew, prompt, plan, options.image)
         if not approve(plan):
-            run.record(status="not approved")
+            run.record(status="not approved", **crew.facts())
             return Generated(run, plan, None, None)
         verdict = _loop(run, crew, plan, options)
     except (ModelError, BudgetError) as error:  # of the planner: there is nothing to keep but the transcript

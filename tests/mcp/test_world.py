@@ -51,3 +51,9 @@ async def test_a_world_from_plan_to_accepted(talk) -> None:
         assert "accepted" in (run / "iterations" / "03" / "verdict.json").read_text()
         assert "rejected" in (run / "iterations" / "02" / "verdict.json").read_text()
         assert "3 iterations, the newest accepted" in await world.good("open_run")
+
+        # accepted: run again, compared, stamped
+        assert "rejected" in await world.bad("accept", iteration=2)
+        assert "0 m off" in await world.good("accept")
+        assert (run / "accepted" / "program.py").read_text() == (run / "iterations" / "03" / "program.py").read_text()
+        assert len((run / "accepted" / "SHA256SUMS").read_text().splitlines()) == 2

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 RETRIES = 4  # answers that are sent back with what is wrong with them
-CALLS = 8  # of tools, for one answer
+CALLS = 10  # of tools, for one answer; then they answer that it is time to
+ROUNDS = 8  # of calls, for one answer
 _FENCE = re.compile(r"```(?:json|JSON)?[ \t]*\n(.*?)\n[ \t]*```", re.DOTALL)
 
 
@@ -79,6 +80,7 @@ class Desk:
                 wrong.append(str(error))
                 raise ModelRetry(str(error)) from error
 
+        called: list[str] = []
         name = self.models[role]
         model = Relay(
             connect(name, role) if self.replay is None else None, name, role, self.transcript, self.ledger, self.replay
@@ -87,12 +89,12 @@ class Desk:
             model,
             output_type=TextOutput(read),
             instructions=instructions(role),
-            tools=[_offered(tool, workspace) for tool in tools if workspace is not None],
+            tools=[_offered(tool, workspace, called) for tool in tools if workspace is not None],
             retries={"output": RETRIES, "tools": RETRIES},
             model_settings={"max_retries": 0, "parallel_tool_calls": True},
         )
         content: Any = [request, *(BinaryContent(picture, media_type="image/jpeg") for picture in pictures)]
-        limits = UsageLimits(request_limit=RETRIES + CALLS + 1, tool_calls_limit=CALLS)
+        limits = UsageLimits(request_limit=RETRIES + ROUNDS + 1)
         try:
             return agent.run_sync(content if pictures else request, usage_limits=limits, infer_name=False).output
         except (ModelError, BudgetError):
@@ -104,12 +106,15 @@ class Desk:
             raise ModelError("unusable", f"{len(wrong)} answers could not be used; the last: {last}", role) from error
 
 
-def _offered(tool: Tool, workspace: Workspace | None) -> Any:
-    """One of wsim's tools, as the model's."""
+def _offered(tool: Tool, workspace: Workspace | None, called: list[str]) -> Any:
+    """One of wsim's tools, as the model's; `called` is what was called for this answer."""
     from pydantic_ai import Tool as Offered
 
     def call(**given: Any) -> str:
         assert workspace is not None
+        called.append(tool.name)
+        if len(called) > CALLS:
+            return f"no more calls: {CALLS} were made for this answer; give it now, with what you know"
         return tool(workspace, **given).text
 
     return Offered.from_schema(call, tool.name, tool.description, _schema(tool.arguments.model_json_schema()))

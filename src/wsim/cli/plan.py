@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from wsim.cli.options import Answers, Image, refuse_image
+from wsim.cli.options import Answers, Image, Model, PlannerModel, Runs, refuse_image
 from wsim.errors import UserError
 
 if TYPE_CHECKING:
+    from wsim.agents.models import Models
     from wsim.plan.schema import Plan
 
 
@@ -24,15 +25,23 @@ def plan(
     schema: Annotated[bool, typer.Option("--schema", help="Print the JSON Schema of a plan, and stop.")] = False,
     answers: Answers = None,
     image: Image = None,
+    model: Model = None,
+    planner_model: PlannerModel = None,
+    runs: Runs = Path("runs"),
 ) -> None:
     """Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two drawings."""
+    from wsim.agents.models import BUILTIN, choose
     from wsim.runs import write_whole
 
     if schema:
         print(_schema())
         return
-    refuse_image(image)
-    made = _plan(prompt, file, answers)
+    models = choose(model, planner=planner_model)
+    if models.planner == BUILTIN or file is not None:
+        refuse_image(image)
+        made = _plan(prompt, file, answers)
+    else:
+        made = _plan_with(models, prompt, image, runs)
     text = made.model_dump_json(indent=2)
     if output:
         try:
@@ -42,7 +51,7 @@ def plan(
     if json:
         print(text)
     else:
-        _show(made, output, planned=file is None)
+        _show(made, output, planned=file is None and models.planner == BUILTIN)
 
 
 def _schema() -> str:
@@ -65,6 +74,22 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
     if file is not None:
         return with_answers(load(file), None, answers)
     return with_answers(make_plan(prompt), make_plan, answers)
+
+
+def _plan_with(models: Models, prompt: str, image: Path | None, runs: Path) -> Plan:
+    """A model's plan; its run's folder keeps what was asked and answered."""
+    from wsim.cli.show import ConsoleProgress, console, show_usage
+    from wsim.generate import Options, generate
+
+    if not prompt:
+        raise UserError('give a sentence, such as wsim plan "A crank drives a piston." --planner-model MODEL')
+    with ConsoleProgress() as progress:
+        done = generate(prompt, runs, Options(models=models, image=image), lambda plan: False, progress=progress)
+    if done.plan is None:
+        raise UserError(f"no plan: {done.run.facts().get('summary', '')}; {done.run.path} has what was asked")
+    console.print(f"run:    {done.run.path}", soft_wrap=True)
+    show_usage(done.run.facts())
+    return done.plan
 
 
 def _show(made: Plan, output: Path | None, planned: bool) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
+from wsim.report.records import Acceptance, Loop, Review, review_of, sums_of
 from wsim.runs import RunFolder
 
 if TYPE_CHECKING:
@@ -28,11 +29,18 @@ class Iteration:
     verdict: Verdict | None
     checks: dict[str, Any]
     program: str | None
+    patch: str | None  # what it changes in the one that it was made from
+    review: Review | None
 
     @property
     def number(self) -> str:
         """The folder's name: 01, 02, …"""
         return self.folder.name
+
+    @property
+    def index(self) -> int:
+        """Its number, from 1."""
+        return int(self.folder.name)
 
     def build(self) -> dict[str, Any]:
         """What checks.json says of the build, empty if nothing."""
@@ -57,16 +65,24 @@ class RunContents:
     iterations: list[Iteration]
     recording: Recording | None
     notes: list[str] = field(default_factory=list)
+    loop: Loop = field(default_factory=Loop)
+    shown: Iteration | None = None  # the one that is reported: the best, else the newest
+    acceptance: Acceptance | None = None
 
     @property
-    def last(self) -> Iteration | None:
-        """The newest iteration: the one that is reported."""
+    def newest(self) -> Iteration | None:
+        """The newest iteration."""
         return self.iterations[-1] if self.iterations else None
 
     @property
     def verdict(self) -> Verdict | None:
-        """The newest iteration's verdict."""
-        return self.last.verdict if self.last else None
+        """The verdict of the iteration that is reported."""
+        return self.shown.verdict if self.shown else None
+
+    @property
+    def target(self) -> Path:
+        """What commands are given: the run's folder, or the reported iteration's where they would take another."""
+        return self.run.path if self.shown is None or self.shown is self.newest else self.shown.folder
 
 
 def gather(run_dir: Path) -> RunContents:
@@ -78,20 +94,26 @@ def gather(run_dir: Path) -> RunContents:
     if not run_dir.is_dir():
         raise UserError(f"{run_dir} is not a folder; give the folder of a run")
     notes: list[str] = []
-    folders = sorted(path for path in (run_dir / "iterations").glob("[0-9]*") if path.is_dir())
-    recording = None
-    if folders:
-        recording = _read(folders[-1] / "recording.rrd", _recording, notes)
-        if recording is not None and not recording.complete:
-            error = recording.metadata.get("error") or "the run ended early"
-            notes.append(f"The recording is incomplete: {_short(error)}")
+    folders = [path for path in (run_dir / "iterations").glob("[0-9]*") if path.is_dir() and path.name.isdecimal()]
+    iterations = [_iteration(folder, notes) for folder in sorted(folders, key=lambda folder: int(folder.name))]
+    facts = _read(run_dir / "run.json", _object, notes) or {}
+    loop = _read(run_dir / "run.json", _loop, notes) if facts else None
+    best = [item for item in iterations if loop is not None and item.index == loop.best]
+    shown = next(iter(best), iterations[-1] if iterations else None)
+    recording = _read(shown.folder / "recording.rrd", _recording, notes) if shown is not None else None
+    if recording is not None and not recording.complete:
+        error = recording.metadata.get("error") or "the run ended early"
+        notes.append(f"The recording is incomplete: {_short(error)}")
     return RunContents(
         run=RunFolder(run_dir),
-        facts=_read(run_dir / "run.json", _object, notes) or {},
+        facts=facts,
         plan=_read(run_dir / "plan.json", _plan, notes),
-        iterations=[_iteration(folder, notes) for folder in folders],
+        iterations=iterations,
         recording=recording,
         notes=notes,
+        loop=loop or Loop(),
+        shown=shown,
+        acceptance=_read(run_dir / "accepted" / "acceptance.json", _acceptance, notes),
     )
 
 
@@ -101,6 +123,8 @@ def _iteration(folder: Path, notes: list[str]) -> Iteration:
         verdict=_read(folder / "verdict.json", _verdict, notes),
         checks=_read(folder / "checks.json", _object, notes) or {},
         program=_read(folder / "program.py", _text, notes),
+        patch=_read(folder / "patch.diff", _text, notes),
+        review=_read(folder / "review.json", _review, notes),
     )
 
 
@@ -128,6 +152,20 @@ def _object(path: Path) -> dict[str, Any]:
 
 def _verdict(path: Path) -> Verdict:
     return Verdict.model_validate_json(_text(path))
+
+
+def _loop(path: Path) -> Loop:
+    return Loop.model_validate(_object(path))
+
+
+def _review(path: Path) -> Review | None:
+    return review_of(_object(path))
+
+
+def _acceptance(path: Path) -> Acceptance:
+    folder = path.parent
+    stamped = {"program": _text(folder / "program.py"), "sums": sums_of(_text(folder / "SHA256SUMS"))}
+    return Acceptance.model_validate(_object(path) | stamped)
 
 
 def _plan(path: Path) -> Plan:

@@ -10,7 +10,9 @@ from wsim.report.text import duration, plain
 if TYPE_CHECKING:
     from wsim.report.contents import RunContents
 
-HIDDEN = {"prompt", "title", "status", "summary", "seconds"}  # of run.json: shown elsewhere on the page
+# Of run.json: what is shown elsewhere on the page; of a run with a loop also what tells of it, and how it was started.
+HIDDEN = {"prompt", "title", "status", "summary", "seconds"}
+OF_LOOP = {"iterations", "best", "usage", "skills", "notes", "cause", "budget", "settings", "confirm"}
 
 
 def make_facts(contents: RunContents) -> list[tuple[str, list[tuple[str, str]]]]:
@@ -41,7 +43,7 @@ def make_parameters(contents: RunContents) -> list[dict[str, str]]:
 
 
 def _simulation(contents: RunContents) -> list[tuple[str, str]]:
-    checked = contents.last.simulation() if contents.last else {}
+    checked = contents.shown.simulation() if contents.shown else {}
     recording = contents.recording
     metadata: dict[str, Any] = recording.metadata if recording else {}
     known = {**metadata, **checked}
@@ -67,14 +69,15 @@ def _simulation(contents: RunContents) -> list[tuple[str, str]]:
 
 
 def _seconds(contents: RunContents) -> list[tuple[str, str]]:
-    stages = contents.last.seconds() if contents.last else {}
+    stages = contents.shown.seconds() if contents.shown else {}
     rows = [(str(name), duration(_float(value))) for name, value in stages.items()]
     return [*rows, ("whole run", duration(_float(contents.facts.get("seconds"))))]
 
 
 def _run(contents: RunContents) -> list[tuple[str, str]]:
-    rows = [(str(name).replace("_", " "), plain(value)) for name, value in contents.facts.items() if name not in HIDDEN]
-    build = contents.last.build() if contents.last else {}
+    hidden = HIDDEN | (OF_LOOP if contents.loop.looped else set()) | ({"models"} if contents.loop.usage else set())
+    rows = [(str(name).replace("_", " "), plain(value)) for name, value in contents.facts.items() if name not in hidden]
+    build = contents.shown.build() if contents.shown else {}
     return [*rows, ("isolation", plain(build.get("isolation")))]
 
 

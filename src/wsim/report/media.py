@@ -61,6 +61,12 @@ def find_stills(folder: Path) -> list[Picture]:
     return [picture for picture in pictures if picture]
 
 
+def find_reference(root: Path) -> Picture | None:
+    """The picture that the world was to look like, if the run was given one."""
+    path = root / "reference.jpg"
+    return _thumbnail(path.read_bytes(), "the reference picture") if path.is_file() else None
+
+
 def find_moment(recording: Recording, finding: Finding) -> Picture | None:
     """The picture nearest to a finding's time, its prim ringed, by the first camera that has the prim in view."""
     cameras = [camera for camera in recording.world.cameras if len(recording.images.get(camera.prim, ()))]

@@ -14,11 +14,14 @@ from markupsafe import Markup
 from wsim.judge.targets_objectives import sentence_of
 from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
+from wsim.report.attempts import make_attempts, which_is_shown
 from wsim.report.chart import Chart
 from wsim.report.contents import RunContents, gather
+from wsim.report.cost import make_cost, why_it_ended
+from wsim.report.diff import Diff, difference
 from wsim.report.facts import make_facts, make_parameters
 from wsim.report.fixes import command, describe, make_fixes
-from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_stills, find_video
+from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_reference, find_stills, find_video
 from wsim.report.source import SourceLine, source_lines, statement
 from wsim.runs import write_whole
 
@@ -56,18 +59,20 @@ def write_page(run_dir: Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path:
 
 def render(values: dict[str, Any]) -> str:
     """The template with its values."""
-    from jinja2 import Environment, StrictUndefined
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
 
-    package = files("wsim.report")
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string(package.joinpath("template.html").read_text(encoding="utf-8"))
-    style = Markup(package.joinpath("style.css").read_text(encoding="utf-8"))
-    return template.render(style=style, text=text, **values)
+    def source(name: str) -> str:
+        return files("wsim.report").joinpath(name).read_text(encoding="utf-8")
+
+    environment = Environment(
+        loader=FunctionLoader(source), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    return environment.get_template("template.html").render(style=Markup(source("style.css")), text=text, **values)
 
 
 def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
     """What the template is given."""
-    last, verdict, recording = contents.last, contents.verdict, contents.recording
+    shown, verdict, recording = contents.shown, contents.verdict, contents.recording
     rows = make_rows(contents)
     # A measured objective says more to a person than a check that fails beside it.
     failed = sorted(
@@ -81,43 +86,50 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         charts = make_charts(recording, [row.finding for row in rows])
     cards = _illustrated(failed[:MOST_CARDS], contents)
     world = recording.world if recording is not None else None
-    status = verdict.status if verdict else str(contents.facts.get("status") or "unfinished")
+    status = _status(contents)
     return {
         "title": _title(contents),
         "status": status,
         "badge": STATUS_WORDS.get(status, status.capitalize()),
         "summary": _summary(verdict, failed) if verdict else _unjudged(contents, status),
         "prompt": str(contents.facts.get("prompt") or (contents.plan.prompt if contents.plan else "")),
+        "cause": why_it_ended(contents.loop, contents.facts),
+        "which": which_is_shown(contents),
         "notes": contents.notes,
         "rows": rows,
         "failed": failed,
         "passed": [row for row in rows if row.finding.passed],
         "closest": _closest(rows),
         "cards": cards,
-        "fixes": make_fixes([(row.index, row.finding) for row in failed], world, contents.run.path),
-        "video": find_video(last.folder, contents.run.path, most_video_bytes) if last else None,
-        "stills": find_stills(last.folder) if last else [],
+        "fixes": make_fixes([(row.index, row.finding) for row in failed], world, contents.target),
+        "video": find_video(shown.folder, contents.run.path, most_video_bytes) if shown else None,
+        "reference": find_reference(contents.run.path),
+        "stills": find_stills(shown.folder) if shown else [],
         "charts": charts,
         "plan": contents.plan,
         "objectives": _objectives(contents),
         "source": _source(contents, failed),
-        "output": str(last.build().get("log") or "") if last else "",
+        "output": str(shown.build().get("log") or "") if shown else "",
         "log": [line for line in recording.log if line.level not in ("TRACE", "DEBUG")] if recording else [],
         "facts": make_facts(contents),
         "parameters": make_parameters(contents),
-        "iterations": contents.iterations,
-        "shown": last.number if last else "",
+        "attempts": make_attempts(contents),
+        "review": shown.review if shown else None,
+        "acceptance": contents.acceptance,
+        "stripped": _stripped(contents),
+        "cost": make_cost(contents.loop, status),
+        "model_notes": contents.loop.notes,
         "view": _view(contents),
         "folder": contents.run.path.resolve().name,
     }
 
 
 def make_rows(contents: RunContents) -> list[Row]:
-    """The findings of the newest verdict, in its order."""
+    """The findings of the verdict that is reported, in its order."""
     if contents.verdict is None:
         return []
     findings = contents.verdict.findings
-    program = (contents.last.program or "") if contents.last else ""
+    program = (contents.shown.program or "") if contents.shown else ""
     count = len(program.splitlines())
     world = contents.recording.world if contents.recording is not None else None
     # A program that ran in its author's process keeps its own name.
@@ -136,7 +148,7 @@ def make_rows(contents: RunContents) -> list[Row]:
                 code=statement(program, line) if line else "",
                 command=f"{_view(contents)} --finding {index}" if _view(contents) else "",
                 fix=describe([finding.target]) if finding.target is not None else "",
-                try_it=command(finding.target, world, contents.run.path) if finding.target is not None else "",
+                try_it=command(finding.target, world, contents.target) if finding.target is not None else "",
             )
         )
     return rows
@@ -172,17 +184,25 @@ def _closest(rows: list[Row]) -> Row | None:
 
 
 def _view(contents: RunContents) -> str:
-    return f"wsim view {shlex.quote(str(contents.run.path))}" if contents.recording is not None else ""
+    return f"wsim view {shlex.quote(str(contents.target))}" if contents.recording is not None else ""
 
 
 def _source(contents: RunContents, failed: list[Row]) -> list[SourceLine]:
-    if contents.last is None or contents.last.program is None:
+    if contents.shown is None or contents.shown.program is None:
         return []
     named: dict[int, list[int]] = {}
     for row in failed:
         if row.line is not None:
             named.setdefault(row.line, []).append(row.index)
-    return source_lines(contents.last.program, named)
+    return source_lines(contents.shown.program, named)
+
+
+def _stripped(contents: RunContents) -> Diff | None:
+    """What acceptance took from the program; None where it took nothing."""
+    accepted, shown = contents.acceptance, contents.shown
+    if accepted is None or not accepted.stripped or shown is None:
+        return None
+    return difference(shown.program or "", accepted.program)
 
 
 def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
@@ -198,10 +218,18 @@ def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
     return rows
 
 
+def _status(contents: RunContents) -> str:
+    """How the run ended: as the iteration that is shown was judged, unless it went on and did not come to an end."""
+    said = str(contents.facts.get("status") or "unfinished")
+    cut_short = bool(contents.loop.cause) or (contents.loop.looped and said not in STATUS_WORDS)
+    return contents.verdict.status if contents.verdict and not cut_short else said
+
+
 def _title(contents: RunContents) -> str:
     title = contents.facts.get("title") or (contents.plan.title if contents.plan else None)
     program = contents.facts.get("program")
-    return str(title or (Path(str(program)).name if program else None) or contents.run.path.resolve().name)
+    name = Path(str(program)).name if program else contents.facts.get("prompt")
+    return str(title or name or contents.run.path.resolve().name)
 
 
 def _summary(verdict: Verdict, cards: list[Row]) -> str:
@@ -215,7 +243,7 @@ def _summary(verdict: Verdict, cards: list[Row]) -> str:
 def _unjudged(contents: RunContents, status: str) -> str:
     if status == "not approved":
         return "The plan was not approved: nothing was built."
-    if contents.last is None:
+    if contents.shown is None:
         return "The run ended before its program was written."
     if contents.recording is None:
         return "The run ended before its world was simulated and judged."

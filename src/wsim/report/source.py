@@ -88,10 +88,11 @@ def _kind(item: tokenize.TokenInfo) -> str:
 def _colored(line: str, spans: list[tuple[int, int, str]]) -> Markup:
     parts, at = [], 0
     for start, end, kind in spans:
-        parts += [_plain(line[at:start]), Markup('<span class="{}">{}</span>').format(kind, _plain(line[start:end]))]
+        parts += [visible(line[at:start]), Markup('<span class="{}">{}</span>').format(kind, visible(line[start:end]))]
         at = end
-    return Markup("").join([*parts, _plain(line[at:])])
+    return Markup("").join([*parts, visible(line[at:])])
 
 
-def _plain(text: str) -> Markup:
+def visible(text: str) -> Markup:
+    """Text as HTML, with the characters that would change its order named."""
     return Markup(BIDI.sub(lambda match: f"<mark>U+{ord(match[0]):04X}</mark>", str(escape(text))))

@@ -9,13 +9,13 @@ Each takes checked arguments and answers in a few lines. docs/tools.md shows wha
 
 from __future__ import annotations
 
-from wsim.tools import catalogue, plan, program, query, reference, run, stills, verdict
+from wsim.tools import acceptance, catalogue, plan, program, query, reference, run, stills, verdict
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 
 __all__ = ["TOOLS", "Arguments", "Result", "Tool", "Workspace"]
 
 TOOLS: dict[str, Tool] = {
     tool.name: tool
-    for module in (catalogue, reference, plan, program, run, query, stills, verdict)
+    for module in (catalogue, reference, plan, program, run, query, stills, verdict, acceptance)
     for tool in module.TOOLS
 }

@@ -12,7 +12,9 @@ from wsim.program.api.sources import all as sources
 from wsim.program.api.store import Store
 
 ENTRIES = [
-    Entry("a.hinge", "function", "wsim", ((Parameter("axis", "keyword", "str", "'Z'", "", "of it"),),), doc="Joins two."),
+    Entry(
+        "a.hinge", "function", "wsim", ((Parameter("axis", "keyword", "str", "'Z'", "", "of it"),),), doc="Joins two."
+    ),
     Entry("a.Thing", "class", "wsim", bases=("a.Base",), summary="A thing.", extra={"partial": True}),
     Entry("a.b.water", "function", "pxr", doc="Fills a tank.", programs=False),
     Entry("a.hinge", "function", "numpy", doc="Of the same name, and later."),

@@ -37,7 +37,9 @@ def test_finds_by_words_and_by_meaning(api: Index, words: str, name: str) -> Non
 
 def test_how_heavy_finds_density_or_mass(api: Index) -> None:
     best = api.search("how heavy", 3)
-    assert any({"density", "mass"} & {p.name for p in hit.entry.parameters} or "density" in hit.entry.name for hit in best)
+    assert any(
+        {"density", "mass"} & {p.name for p in hit.entry.parameters} or "density" in hit.entry.name for hit in best
+    )
 
 
 def test_hits_are_ordered_and_limited(api: Index) -> None:
@@ -116,7 +118,9 @@ def test_usd_calls_have_the_arguments_that_the_bindings_take(api: Index) -> None
         Gf.Vec3d(1.0, 2.0)
 
 
-@pytest.mark.parametrize("kind", [Usd.Prim, Usd.Stage, UsdPhysics.RevoluteJoint, Gf.Quatd, np.ndarray, np.random.Generator])
+@pytest.mark.parametrize(
+    "kind", [Usd.Prim, Usd.Stage, UsdPhysics.RevoluteJoint, Gf.Quatd, np.ndarray, np.random.Generator]
+)
 def test_classes_have_all_their_public_members(api: Index, kind: type) -> None:
     entry = api.show(f"{kind.__module__.partition('._')[0]}.{kind.__qualname__}")
     known = set().union(*(api.programs.children(each) for each in (entry.name, *entry.bases)))

@@ -95,8 +95,16 @@ class Entry:
         name = self._shown()
         if not self.overloads:
             returned = self.returns.rpartition(".")[2]
-            return f"{name}: {returned}" if self.kind in ("property", "attribute", "schema attribute") and returned else name
-        arrow = f" -> {self.returns.rpartition('.')[2] if '[' not in self.returns else self.returns}" if self.returns else ""
+            return (
+                f"{name}: {returned}"
+                if self.kind in ("property", "attribute", "schema attribute") and returned
+                else name
+            )
+        arrow = (
+            f" -> {self.returns.rpartition('.')[2] if '[' not in self.returns else self.returns}"
+            if self.returns
+            else ""
+        )
         return f"{name}({', '.join(_written(self.parameters))}){arrow}"
 
     def _shown(self) -> str:

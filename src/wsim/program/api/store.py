@@ -126,7 +126,9 @@ class Store:
 
     def schema_attributes(self) -> list[str]:
         """Names of the attributes of all schemas, without the schemas'; * stands for the name of an instance."""
-        rows = self._base.execute("SELECT substr(name, length(parent) + 2) FROM entries WHERE kind = 'schema attribute'")
+        rows = self._base.execute(
+            "SELECT substr(name, length(parent) + 2) FROM entries WHERE kind = 'schema attribute'"
+        )
         return sorted({row[0] for row in rows})
 
     def sorts(self) -> list[tuple[str, str]]:
@@ -143,7 +145,10 @@ class Store:
         if row is None:
             return None
         return Term(
-            np.frombuffer(row[0], np.int32), np.frombuffer(row[1], np.float32), row[2], np.frombuffer(row[3], np.float32)
+            np.frombuffer(row[0], np.int32),
+            np.frombuffer(row[1], np.float32),
+            row[2],
+            np.frombuffer(row[3], np.float32),
         )
 
     def meaning(self) -> Floats:

@@ -7,9 +7,84 @@ from collections.abc import Iterable
 
 _PART = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 _STOP = frozenset(
-    "a an the of to in on at by is are be was it its this that these those and or if as for from with what which how do "
-    "does i me my we you your can may will one use used using get gets set value values return returns given give not "
-    "no than then so when where see also default optional none true false type object name must should such e g i".split()
+    [
+        "a",
+        "an",
+        "the",
+        "of",
+        "to",
+        "in",
+        "on",
+        "at",
+        "by",
+        "is",
+        "are",
+        "be",
+        "was",
+        "it",
+        "its",
+        "this",
+        "that",
+        "these",
+        "those",
+        "and",
+        "or",
+        "if",
+        "as",
+        "for",
+        "from",
+        "with",
+        "what",
+        "which",
+        "how",
+        "do",
+        "does",
+        "i",
+        "me",
+        "my",
+        "we",
+        "you",
+        "your",
+        "can",
+        "may",
+        "will",
+        "one",
+        "use",
+        "used",
+        "using",
+        "get",
+        "gets",
+        "set",
+        "value",
+        "values",
+        "return",
+        "returns",
+        "given",
+        "give",
+        "not",
+        "no",
+        "than",
+        "then",
+        "so",
+        "when",
+        "where",
+        "see",
+        "also",
+        "default",
+        "optional",
+        "none",
+        "true",
+        "false",
+        "type",
+        "object",
+        "name",
+        "must",
+        "should",
+        "such",
+        "e",
+        "g",
+        "i",
+    ]
 )
 _ENDINGS = (
     "ations", "ation", "ities", "ments", "ment", "ness", "able", "ible", "ings", "ing", "ions", "ion", "ies", "ied",
@@ -77,6 +152,11 @@ def stem(word: str) -> str:
 def words(text: str) -> list[str]:
     """The stemmed words of a text; names are split where their case or an underscore does it."""
     return [stem(part) for part in _PART.findall(text) if len(part) > 1 and part.lower() not in _STOP]
+
+
+def parts(name: str) -> set[str]:
+    """The stemmed words of a name, those too that say little in a text."""
+    return {stem(part) for part in _PART.findall(name)}
 
 
 def related(word: str) -> frozenset[str]:

@@ -1,9 +1,9 @@
 """The static validator: reads a program without running it.
 
-    from wsim.program.validator import validate
+from wsim.program.validator import validate
 
-    for problem in validate(text):
-        print(problem.sentence)
+for problem in validate(text):
+    print(problem.sentence)
 """
 
 from __future__ import annotations

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import ast
+import math
+from importlib import import_module
 
 from wsim.program.api.entry import Entry
 from wsim.program.validator import imports
 from wsim.program.validator.state import State
 from wsim.program.validator.types import class_of
-from wsim.program.validator.values import UNKNOWN, Const, Dict, Instance, Items, Named, Value
+from wsim.program.validator.values import UNKNOWN, Const, Dict, Instance, Items, Named, Value, wrapped
 
 _SCENE = "wsim.scene.Scene"
 _SHOWN = ("wsim.scene", "wsim.assets", "wsim.program.control_world")
@@ -67,8 +69,6 @@ class Attributes(State):
         if found.kind in ("module", "class", "function", "method"):
             return Named(found.name)
         if found.name in ("math.pi", "math.tau", "math.e", "math.inf", "math.nan", "numpy.pi", "numpy.e", "numpy.inf"):
-            import math
-
             return Const(getattr(math, found.short))
         return self._typed(found, None)
 
@@ -98,8 +98,6 @@ class Attributes(State):
             if not hasattr(value.value, name):
                 self._missing(node, kind, name)
                 return UNKNOWN
-            from wsim.program.validator.values import wrapped
-
             return wrapped(getattr(value.value, name))
         if not hasattr(type(value.value), name):
             self._missing(node, kind, name)
@@ -109,6 +107,10 @@ class Attributes(State):
     def _typed(self, found: Entry, world: object) -> Value:
         """An attribute of the class that it holds, if that is one of the index."""
         returns = found.returns
+        if returns in ("float", "int", "str", "bool") and found.source == "wsim":
+            return Instance(f"builtins.{returns}")
+        if returns.endswith(".Vec3") and found.source == "wsim":
+            return Items(tuple, [Instance("builtins.float")] * 3)
         if returns and self.entry(returns) is not None and returns.startswith(("wsim.", "pxr.", "numpy.")):
             holder = self.entry(returns)
             if holder is not None and holder.kind == "class":
@@ -146,9 +148,9 @@ def _former(holder: str, name: str) -> str:
     import numpy as np
 
     try:
-        from numpy._expired_attrs_2_0 import __expired_attributes__ as expired
-    except ImportError:
+        expired: dict[str, str] = import_module("numpy._expired_attrs_2_0").__expired_attributes__
+    except (ImportError, AttributeError):
         expired = {}
-    told = expired.get(name) or getattr(np, "__former_attrs__", {}).get(name, "")
+    told = str(expired.get(name) or getattr(np, "__former_attrs__", {}).get(name, ""))
     lines = [line for line in told.splitlines() if "has no attribute" not in line]
     return " ".join(" ".join(lines).split(". ")[:2]).strip().rstrip(".")[:240]

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from typing import Any
 
 from wsim.program.api.entry import Entry
 from wsim.program.validator import constants, imports, units, usd
-from wsim.program.validator.arguments import Arguments, misfit
+from wsim.program.validator.arguments import Arguments, Misfit, misfit
 from wsim.program.validator.attributes import Attributes
-from wsim.program.validator.types import fits
+from wsim.program.validator.types import fits, type_of
 from wsim.program.validator.values import (
     UNKNOWN,
     Const,
@@ -39,21 +40,47 @@ class Calls(Attributes):
             return self.run(called, arguments)
         if not isinstance(called, Named):
             self._hand_over(arguments)
-            if isinstance(called, (Const, Items, Dict)) and self.certain and not _callable(called):
+            plain_value = isinstance(called, Instance) and called.type.startswith("builtins.")
+            if (plain_value or isinstance(called, (Const, Items, Dict))) and self.certain and not _callable(called):
                 self.problems.add(arguments.call, "attribute", "this is no function; it cannot be called")
             return UNKNOWN
         entry = self.entry(called.name)
         if entry is None or entry.kind not in ("class", "function", "method"):
             return self._unlisted(called, arguments)
         self._check_program(entry, arguments)
-        wrong = misfit(arguments, entry, lambda value, annotation: fits(value, annotation, self.index))
-        if entry.kind == "method" and called.owner is None and not entry.extra.get("static"):
-            wrong = None  # called on its class, with what it is a method of as first argument
+        wrong = self._misfit(entry, called, arguments)
         if wrong is not None:
             self.problems.add(wrong.node, "argument", wrong.message, entry.signature)
         elif entry.deprecated:
             self.problems.add(arguments.call, "deprecated", f"{entry.short} is deprecated: {entry.deprecated}")
         return self._result(entry, called, arguments, fitting=wrong is None)
+
+    def _misfit(self, entry: Entry, called: Named, arguments: Arguments) -> Misfit | None:
+        def may_be(value: Value, annotation: str) -> bool:
+            return fits(value, annotation, self.index)
+
+        if entry.kind != "method" or called.owner is not None or entry.extra.get("static"):
+            return misfit(arguments, entry, may_be)
+        if entry.source not in ("wsim", "pxr") or arguments.open:
+            return None
+        # Called on its class: what it is a method of is the first argument.
+        kind = entry.parent.rpartition(".")[2]
+        first = type_of(arguments.values[0]) if arguments.given else "builtins.NoneType"
+        base = self.entry(first)
+        if first.startswith(("builtins.", "wsim.")) and first != entry.parent and not _inherits(base, entry.parent):
+            text = f"{entry.short}() is called on the class {kind}; call it on an object: {kind}(...).{entry.short}()"
+            return Misfit(arguments.call, text)
+        rest = Arguments(arguments.call, arguments.given[1:], arguments.named)
+        return misfit(rest, entry, may_be)
+
+    def tried(self, node: ast.AST, compute: Callable[[], Value]) -> Value:
+        """A value that is computed from known ones; a problem where that fails, as it will when the program runs."""
+        try:
+            return compute()
+        except constants.FailsError as error:
+            if self.certain:
+                self.problems.add(node, "value", f"this fails: {error}")
+            return UNKNOWN
 
     def run(self, function: Function, arguments: Arguments) -> Value:
         """What a function of the program returns; see `Statements`."""
@@ -74,8 +101,9 @@ class Calls(Attributes):
             return _drive(bound) if not arguments.open else Instance(entry.name)
         if entry.name == "builtins.open":
             self._opens(arguments)
-        if not arguments.open:
-            found = constants.pure(entry.name, arguments.values, {k: v for k, (v, _) in arguments.named.items()})
+        if not arguments.open and fitting:
+            named = {key: value for key, (value, _) in arguments.named.items()}
+            found = self.tried(arguments.call, lambda: constants.pure(entry.name, arguments.values, named))
             if found is not UNKNOWN:
                 return found
         self._hand_over(arguments)
@@ -151,7 +179,9 @@ class Calls(Attributes):
                 continue
             later = self.written.count(name) > 1
             why = "is made only later" if later else "is not in the scene"
-            self.problems.add(node, "order" if later else "prim", f'{field} = "{text}" {why}', _spelt(name, world.names))
+            self.problems.add(
+                node, "order" if later else "prim", f'{field} = "{text}" {why}', _spelt(name, world.names)
+            )
             return True
         return False
 
@@ -160,7 +190,9 @@ class Calls(Attributes):
         if isinstance(value, Items) and value.exact and len(value.items) == 3:
             up = value.items[2]
             if isinstance(up, Const) and isinstance(up.value, (int, float)) and up.value > 0:
-                self.problems.add(node, "value", f"gravity points up: z = {up.value:g} m/s^2; down is (0.0, 0.0, -9.81)")
+                self.problems.add(
+                    node, "value", f"gravity points up: z = {up.value:g} m/s^2; down is (0.0, 0.0, -9.81)"
+                )
 
     def _on_control(self, entry: Entry, owner: Value | None, bound: dict[str, Any]) -> None:
         """A name that `control` asks for."""
@@ -190,7 +222,9 @@ class Calls(Attributes):
         if entry.name in _TURNS and bound:
             _, node = next(iter(bound.values()))
             if units.said(node, self.unit_of) == "deg":
-                self.problems.add(node, "unit", f"{entry.name}() takes radians, and is given degrees; convert with math.radians")
+                self.problems.add(
+                    node, "unit", f"{entry.name}() takes radians, and is given degrees; convert with math.radians"
+                )
             return
         if not entry.name.startswith("wsim."):
             return
@@ -256,7 +290,9 @@ class Calls(Attributes):
             if name not in ("get", "copy"):
                 blur(owner)
             return UNKNOWN
-        return constants.method(owner, name, arguments.values) if owner is not None else UNKNOWN
+        if owner is None or arguments.named or arguments.open:
+            return UNKNOWN
+        return self.tried(arguments.call, lambda: constants.method(owner, name, arguments.values))
 
     def _unlisted(self, called: Named, arguments: Arguments) -> Value:
         if isinstance(called.owner, (Const, Items, Dict)):
@@ -271,6 +307,10 @@ class Calls(Attributes):
             if isinstance(value, Instance) and value.world is not None:
                 value.world.touched()
                 value.world.open = True
+
+
+def _inherits(entry: Entry | None, base: str) -> bool:
+    return entry is not None and base in entry.bases
 
 
 def _callable(value: Value) -> bool:

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from wsim.program.validator.values import UNKNOWN, Const, Items, NotKnownError, Value, plain, wrapped
+from wsim.program.validator.values import UNKNOWN, Const, Items, NotKnownError, Value, elements, plain, wrapped
 
+_FAILS = (TypeError, ValueError, ZeroDivisionError, IndexError, KeyError, AttributeError)
 _MOST = 10_000  # items, characters or bits of what is made
 _BINARY: dict[type, Callable[[Any, Any], Any]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
@@ -35,8 +36,22 @@ _NUMPY = (
 _TEXT = ("lower", "upper", "title", "strip", "replace", "capitalize", "zfill", "removeprefix", "removesuffix", "split")
 
 
+class FailsError(Exception):
+    """The operation fails when the program runs: all that it is given is known, and this is what Python says."""
+
+
+def _failing(error: Exception) -> FailsError:
+    if isinstance(error, KeyError):
+        return FailsError(f"there is no key {error}")
+    return FailsError(str(error) or type(error).__name__)
+
+
 def binary(op: ast.operator, left: Value, right: Value) -> Value:
-    """The value of `left op right`."""
+    """The value of `left op right`.
+
+    Raises:
+        FailsError: If Python cannot do it.
+    """
     if isinstance(left, Items) and isinstance(right, Items) and isinstance(op, ast.Add) and left.kind is right.kind:
         if left.exact and right.exact and len(left.items) + len(right.items) <= _MOST:
             return Items(left.kind, left.items + right.items)
@@ -49,6 +64,8 @@ def binary(op: ast.operator, left: Value, right: Value) -> Value:
             return wrapped(_BINARY[type(op)](a, b))
     except NotKnownError:
         return UNKNOWN
+    except _FAILS as error:
+        raise _failing(error) from None
     except Exception:  # noqa: BLE001 - the values' own operators raise what they like
         return UNKNOWN
 
@@ -97,12 +114,20 @@ def truth(value: Value) -> bool | None:
 
 
 def subscript(value: Value, index: Value) -> Value:
-    """The value of `value[index]`."""
+    """The value of `value[index]`.
+
+    Raises:
+        FailsError: If there is no such item.
+    """
     if isinstance(value, Items):
         if not value.exact:
             return value.each
         try:
             found = value.items[plain(index)] if value.kind is not set else UNKNOWN
+        except NotKnownError:
+            return UNKNOWN
+        except _FAILS as error:
+            raise _failing(error) from None
         except Exception:  # noqa: BLE001 - an index of any kind
             return UNKNOWN
         return Items(value.kind, found) if isinstance(found, list) else found
@@ -113,7 +138,11 @@ def subscript(value: Value, index: Value) -> Value:
 
 
 def pure(name: str, arguments: Sequence[Value], keywords: dict[str, Value]) -> Value:
-    """The result of a function of the index that has no effect; unknown if it is not one of those."""
+    """The result of a function of the index that has no effect; unknown if it is not one of those.
+
+    Raises:
+        FailsError: If it fails on these arguments, all of them known.
+    """
     built = _BUILTINS.get(name)
     if built is not None:
         return built(arguments) if not keywords else _sorted_or_known(name, arguments, keywords)
@@ -127,6 +156,10 @@ def pure(name: str, arguments: Sequence[Value], keywords: dict[str, Value]) -> V
             return UNKNOWN
         with np.errstate(all="ignore"):
             result = function(*given, **named)
+    except NotKnownError:
+        return UNKNOWN
+    except _FAILS as error:
+        raise _failing(error) from None
     except Exception:  # noqa: BLE001 - wrong arguments are told of elsewhere
         return UNKNOWN
     return UNKNOWN if isinstance(result, np.ndarray) and result.size > _MOST else wrapped(result)
@@ -135,12 +168,12 @@ def pure(name: str, arguments: Sequence[Value], keywords: dict[str, Value]) -> V
 def _function(name: str) -> Callable[..., Any] | None:
     module, _, short = name.partition(".")
     if module == "math" and short not in _LONG:
-        return getattr(math, short, None)
+        return getattr(math, short, None)  # type: ignore[no-any-return]
     if module == "numpy" and short in _NUMPY:
         found: Any = np
         for part in short.split("."):
             found = getattr(found, part)
-        return found  # type: ignore[no-any-return]
+        return found
     return None
 
 
@@ -168,8 +201,6 @@ def _sorted_or_known(name: str, arguments: Sequence[Value], keywords: dict[str, 
 
 
 def _enumerate(arguments: Sequence[Value]) -> Value:
-    from wsim.program.validator.values import elements
-
     items = elements(arguments[0]) if arguments else None
     start = arguments[1].value if len(arguments) > 1 and isinstance(arguments[1], Const) else 0
     if items is None or not isinstance(start, int) or (len(arguments) > 1 and not isinstance(arguments[1], Const)):
@@ -178,8 +209,6 @@ def _enumerate(arguments: Sequence[Value]) -> Value:
 
 
 def _zip(arguments: Sequence[Value]) -> Value:
-    from wsim.program.validator.values import elements
-
     found = [elements(argument) for argument in arguments]
     lists = [items for items in found if items is not None]
     if len(lists) != len(found):
@@ -190,14 +219,16 @@ def _zip(arguments: Sequence[Value]) -> Value:
 def _range(arguments: Sequence[Value]) -> Value:
     try:
         return Const(range(*(plain(argument) for argument in arguments)))
+    except NotKnownError:
+        return UNKNOWN
+    except _FAILS as error:
+        raise _failing(error) from None
     except Exception:  # noqa: BLE001 - wrong arguments are told of elsewhere
         return UNKNOWN
 
 
 def _listed(kind: type) -> Callable[[Sequence[Value]], Value]:
     def make(arguments: Sequence[Value]) -> Value:
-        from wsim.program.validator.values import elements
-
         if not arguments:
             return Items(kind, [])
         items = elements(arguments[0])
@@ -207,8 +238,6 @@ def _listed(kind: type) -> Callable[[Sequence[Value]], Value]:
 
 
 def _reversed(arguments: Sequence[Value]) -> Value:
-    from wsim.program.validator.values import elements
-
     items = elements(arguments[0]) if arguments else None
     return UNKNOWN if items is None else Items(list, items[::-1])
 
@@ -227,6 +256,10 @@ def _applied(function: Callable[..., Any]) -> Callable[[Sequence[Value]], Value]
             if any(isinstance(each, (str, range)) and len(each) > 1000 for each in given):
                 return UNKNOWN
             return wrapped(function(*given))
+        except NotKnownError:
+            return UNKNOWN
+        except _FAILS as error:
+            raise _failing(error) from None
         except Exception:  # noqa: BLE001 - wrong arguments are told of elsewhere
             return UNKNOWN
 

@@ -27,8 +27,17 @@ from wsim.program.validator.values import (
     plain,
 )
 
-_GIVEN = {"__name__", "__file__", "__doc__", "__builtins__", "__spec__", "__package__", "__loader__", "__annotations__",
-          "__path__"}
+_GIVEN = {
+    "__name__",
+    "__file__",
+    "__doc__",
+    "__builtins__",
+    "__spec__",
+    "__package__",
+    "__loader__",
+    "__annotations__",
+    "__path__",
+}
 _GUARDS = {"hasattr", "isinstance", "issubclass", "callable", "type", "getattr", "platform"}
 _MOST = 400  # items of a comprehension that are read one by one
 
@@ -64,7 +73,9 @@ class Expressions(Calls):
                 self._not_yet(node, scope)
             return UNKNOWN
         if built:
-            return Const(getattr(builtins, name)) if name in ("NotImplemented", "Ellipsis") else Named(f"builtins.{name}")
+            return (
+                Const(getattr(builtins, name)) if name in ("NotImplemented", "Ellipsis") else Named(f"builtins.{name}")
+            )
         if name not in _GIVEN and not self.module.open:
             self.problems.add(node, "name", f'the name "{name}" is not defined', self._spelt(name))
         return UNKNOWN
@@ -152,7 +163,7 @@ class Expressions(Calls):
 
     def _binop(self, node: ast.BinOp) -> Value:
         left, right = self.value(node.left), self.value(node.right)
-        found = constants.binary(node.op, left, right)
+        found = self.tried(node, lambda: constants.binary(node.op, left, right))
         if found is UNKNOWN and isinstance(left, Instance) and left.type == "numpy.ndarray":
             return left
         return found
@@ -217,15 +228,20 @@ class Expressions(Calls):
     def _subscript(self, node: ast.Subscript) -> Value:
         value = self.value(node.value)
         if isinstance(node.slice, ast.Slice):
-            parts = [self.value(part) for part in (node.slice.lower, node.slice.upper, node.slice.step) if part is not None]
+            parts = [
+                self.value(part) for part in (node.slice.lower, node.slice.upper, node.slice.step) if part is not None
+            ]
             return self._sliced(value, node.slice) if all(isinstance(part, Const) for part in parts) else UNKNOWN
         index = self.value(node.slice)
         if isinstance(value, Dict):
             try:
-                return value.pairs.get(plain(index), UNKNOWN) if value.exact else UNKNOWN
+                key = plain(index)
+                if value.exact and key not in value.pairs and self.certain:
+                    self.problems.add(node, "value", f"this fails: there is no key {key!r}")
+                return value.pairs.get(key, UNKNOWN) if value.exact else UNKNOWN
             except (NotKnownError, TypeError):
                 return UNKNOWN
-        return constants.subscript(value, index)
+        return self.tried(node, lambda: constants.subscript(value, index))
 
     def _sliced(self, value: Value, node: ast.Slice) -> Value:
         bounds = [None if part is None else self.value(part) for part in (node.lower, node.upper, node.step)]
@@ -317,9 +333,7 @@ class Expressions(Calls):
         finally:
             self.scope = before
 
-    def _round(
-        self, generators: list[ast.comprehension], depth: int, source: Value, read: Callable[[], None]
-    ) -> bool:
+    def _round(self, generators: list[ast.comprehension], depth: int, source: Value, read: Callable[[], None]) -> bool:
         if depth == len(generators):
             read()
             return True

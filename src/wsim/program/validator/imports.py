@@ -6,12 +6,30 @@ import sys
 from importlib.machinery import PathFinder
 from typing import Any
 
-_NETWORK = (
-    "socket socketserver ssl http urllib ftplib smtplib poplib imaplib nntplib telnetlib xmlrpc asyncio select "
-    "selectors webbrowser wsgiref asyncore asynchat smtpd"
-).split()
-_PROCESS = "subprocess multiprocessing pty signal _posixsubprocess posix".split()
-_MACHINE = "ctypes resource mmap fcntl termios tty code codeop pdb runpy".split()
+_NETWORK = [
+    "socket",
+    "socketserver",
+    "ssl",
+    "http",
+    "urllib",
+    "ftplib",
+    "smtplib",
+    "poplib",
+    "imaplib",
+    "nntplib",
+    "telnetlib",
+    "xmlrpc",
+    "asyncio",
+    "select",
+    "selectors",
+    "webbrowser",
+    "wsgiref",
+    "asyncore",
+    "asynchat",
+    "smtpd",
+]
+_PROCESS = ["subprocess", "multiprocessing", "pty", "signal", "_posixsubprocess", "posix"]
+_MACHINE = ["ctypes", "resource", "mmap", "fcntl", "termios", "tty", "code", "codeop", "pdb", "runpy"]
 _WHY = (
     dict.fromkeys(_NETWORK, "programs have no network")
     | dict.fromkeys(_PROCESS, "programs start no processes")
@@ -19,8 +37,7 @@ _WHY = (
 )
 _FORBIDDEN_CALLS = {
     **dict.fromkeys(
-        ("system popen fork forkpty posix_spawn posix_spawnp startfile execv execve execl execle execlp execvp execvpe "
-         "spawnl spawnle spawnlp spawnv spawnve spawnvp").split(),
+        ["system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "startfile", "execv", "execve", "execl", "execle", "execlp", "execvp", "execvpe", "spawnl", "spawnle", "spawnlp", "spawnv", "spawnve", "spawnvp"],
         "programs start no processes",
     ),
     **dict.fromkeys(("kill", "killpg", "abort", "_exit"), "programs end no processes"),

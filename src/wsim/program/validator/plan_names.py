@@ -29,7 +29,9 @@ def check(reader: Reader, plan: Plan) -> None:
                 spare = [each for each in made if each not in wanted]
                 close = get_close_matches(name, spare, n=1, cutoff=0.6)
                 hint = f'"{close[0]}" is made' if close else ""
-                reader.problems.add(node, f"plan {name}", f'the plan has the {what} "{name}", and no prim has that name', hint)
+                reader.problems.add(
+                    node, f"plan {name}", f'the plan has the {what} "{name}", and no prim has that name', hint
+                )
     for name, method in world.names.items():
         if method in (*OBJECTS, *JOINTS) and name not in wanted:
             place = world.places.get(name, node)

@@ -41,7 +41,7 @@ class Reader(Statements):
         for function in list(self.functions):
             if function.node not in self.called:
                 with self.unsure():
-                    self._guarded(lambda f=function: self.enter(f, {}, called=False))  # type: ignore[misc]
+                    self._guarded(lambda f=function: self.enter(f, {}, called=False))
 
     def _enter(self, function: Function, name: str, needs: str, first: Value) -> None:
         node = function.node
@@ -52,7 +52,9 @@ class Reader(Statements):
         fits = required <= wanted and (len(places) >= wanted or a.vararg is not None)
         fits = fits and all(default is not None for default in a.kw_defaults)
         if not fits or isinstance(node, ast.AsyncFunctionDef):
-            self.problems.add(node, name, f"{name} must be {needs}: it is called with {wanted} argument" + "s" * (wanted > 1))
+            self.problems.add(
+                node, name, f"{name} must be {needs}: it is called with {wanted} argument" + "s" * (wanted > 1)
+            )
         given: dict[str, Any] = {}
         if places:
             given[places[0].arg] = first

@@ -10,7 +10,7 @@ import itertools
 from collections.abc import Mapping
 from typing import Any
 
-from wsim.program.validator.values import Const, Instance, NotKnownError, Value, plain
+from wsim.program.validator.values import Const, Instance, Items, NotKnownError, Unknown, Value, plain
 
 _MOST_CALLS = 400
 _SHAPE = {"size": (1.0, 1.0, 1.0)}
@@ -50,7 +50,6 @@ class World:
         from wsim.scene import Scene
 
         self._scene, self._probe = Scene(), Scene()
-        self._probe_body = self._probe.box("probe_body", size=(1.0, 1.0, 1.0))
         self._numbers = itertools.count()
         self._tried: dict[tuple[str, str, str], str] = {}
         self._calls = 0
@@ -135,6 +134,11 @@ class World:
             return "", ""
         if method == "mesh" and (refusal := _mesh(arguments)):
             return "collision", refusal
+        name = _known(arguments.get("name"))
+        if isinstance(name, str) and (refusal := self._refuses(kind, {"name": name}, once=True)):
+            return "name", refusal
+        if method == "fluid" and (refusal := self._refuses_set(arguments)):
+            return "", refusal
         for field, value in arguments.items():
             if field in _TIED or (method == "mesh" and field in ("scale", "up_axis", "collision")):
                 continue
@@ -149,14 +153,35 @@ class World:
             return "", self._refuses(kind, together)
         return "", ""
 
-    def _refuses(self, method: str, given: dict[str, Any]) -> str:
-        """What the scene says to these arguments in a call that is otherwise good."""
+    def _refuses(self, method: str, given: dict[str, Any], *, once: bool = False) -> str:
+        """What the scene says to these arguments in a call that is otherwise good; `once`: on a scene of its own."""
         key = (method, repr(sorted(given)), repr(given))
         if key not in self._tried:
-            self._tried[key] = self._attempt(method, given)
+            self._tried[key] = self._attempt(method, given, alone=once)
         return self._tried[key]
 
-    def _attempt(self, method: str, given: dict[str, Any]) -> str:
+    def _refuses_set(self, arguments: Mapping[str, Value]) -> str:
+        """What the scene says to a fluid with these of its arguments, whatever their values."""
+        from wsim.scene import Scene
+
+        scene = Scene()
+        good: dict[str, Any] = {
+            "fills": scene.tank("tank", inner_size=(1.0, 1.0, 1.0)), "level": 0.5, "size": (0.5, 0.5, 0.5),
+            "position": (0.0, 0.0, 0.5), "container": None,
+        }  # fmt: skip
+        none = [f for f in good if f in arguments and _is_none(arguments[f])]
+        given = {f: value for f, value in good.items() if f in arguments and f not in none}
+        if "container" in given:
+            given["container"] = good["fills"]
+        if _may_be_none(arguments, given):
+            return ""
+        try:
+            scene.fluid("fluid", spacing=0.1, **given)
+        except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
+            return _refusal(error)
+        return ""
+
+    def _attempt(self, method: str, given: dict[str, Any], *, alone: bool) -> str:
         number = next(self._numbers)
         needs: dict[str, Any] = dict(_NEEDS[method])
         if method != "simulation":
@@ -175,10 +200,12 @@ class World:
             other = "target" if "eye" in given else "eye"
             needs[other] = (-123.4, 56.7, 8.9)
         scene = self._probe
-        if method == "fluid":
+        if alone or method == "fluid":
             from wsim.scene import Scene
 
             scene = Scene()
+            if method.startswith("joint_"):
+                needs["child"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
         try:
             getattr(scene, method)(**(needs | given))
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
@@ -204,6 +231,15 @@ def _refusal(error: Exception) -> str:
     return str(error) if isinstance(error, SceneError) else ""
 
 
+def _is_none(value: Value) -> bool:
+    return isinstance(value, Const) and value.value is None
+
+
+def _may_be_none(arguments: Mapping[str, Value], given: Mapping[str, Any]) -> bool:
+    """Whether an argument is not known at all: it may be None, and then counts as not given."""
+    return any(isinstance(arguments[field], Unknown) for field in given)
+
+
 def _known(value: Value | None) -> Any:
     if value is None:
         return None
@@ -215,8 +251,6 @@ def _known(value: Value | None) -> Any:
 
 def _parts(field: str, value: Value) -> list[Any]:
     """A value, or, of a vector that is known in part, one with good numbers in the other places."""
-    from wsim.program.validator.values import Items
-
     try:
         return [plain(value)]
     except NotKnownError:

@@ -10,7 +10,7 @@ from typing import Any
 
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index, rank
-from wsim.program.api.words import related, stem, words
+from wsim.program.api.words import parts, related, stem
 from wsim.program.validator.problem import Problems
 from wsim.program.validator.values import UNKNOWN, Named, Scope, Value
 
@@ -53,6 +53,7 @@ class State:
         self.aside.touched()
         self.certain, self.own = True, False
         self.steps = _MOST_STEPS
+        self.module_read = False  # whether the top level has been read to its end
         self.depth = 0
         self.branches = 0  # how many tests that are not known stand around what is read now
         self.called: set[ast.AST] = set()
@@ -155,7 +156,7 @@ def assigned(body: list[Any]) -> frozenset[str]:
 def _nearness(name: str, other: str) -> float:
     """How likely one name is meant by another: by its spelling, its words, and words of the same meaning."""
     spelling = SequenceMatcher(None, name.lower(), other.lower()).ratio()
-    one, two = set(words(name)) - _VERBS, set(words(other)) - _VERBS
+    one, two = parts(name) - _VERBS, parts(other) - _VERBS
     if not one or not two:
         return spelling
     alike = {word for word in one if word in two or related(word) & two}

@@ -33,8 +33,6 @@ _DEEPEST = 12
 class Statements(Expressions):
     """Reads statements."""
 
-    module_read = False  # whether the top level has been read to its end
-
     def block(self, body: list[ast.stmt]) -> Flow:
         """Read statements in order, until one leaves."""
         for statement in body:
@@ -80,7 +78,7 @@ class Statements(Expressions):
                 else:
                     blur(left)
                 return
-            self.bind(node.target, constants.binary(node.op, left, right))
+            self.bind(node.target, self.tried(node, lambda: constants.binary(node.op, left, right)))
         elif isinstance(node.target, ast.Attribute):
             owner = self.value(node.target.value)
             self.attribute(owner, node.target.attr, node.target)
@@ -451,7 +449,7 @@ class Statements(Expressions):
         """Read a function's body with these arguments; where it is not `called` here, the others may be anything."""
         node = function.node
         self.called.add(node)
-        body = [ast.Return(node.body)] if isinstance(node, ast.Lambda) else node.body
+        body: list[ast.stmt] = [ast.Return(node.body)] if isinstance(node, ast.Lambda) else node.body
         scope = Scope(assigned(body) | frozenset(each.arg for each in ast.walk(node.args) if isinstance(each, ast.arg)))
         scope.outer = function.scope
         for each in ast.walk(node.args):

@@ -74,14 +74,18 @@ def _fits(value: Value, wanted: str, index: Index) -> bool:
     kind = type_of(value)
     if isinstance(value, (Function, Named)):
         plain = wanted in _NUMBER | _TEXT or wanted in _CPP or bool(_SEQUENCE.match(wanted))
-        known = isinstance(value, Function) or value.name.startswith(("wsim.", "pxr.")) and _is_called(value.name, index)
+        known = isinstance(value, Function) or (
+            value.name.startswith(("wsim.", "pxr.")) and _is_called(value.name, index)
+        )
         return not (plain and known)
     if not kind:
         return True
     if wanted in ("None", "NoneType"):
         return isinstance(value, Const) and value.value is None
     if isinstance(value, Const) and value.value is None:
-        return wanted not in {"str", "float", "int", "double", "SdfPath", "string", "TfToken"} and not _SEQUENCE.match(wanted)
+        return wanted not in {"str", "float", "int", "double", "SdfPath", "string", "TfToken"} and not _SEQUENCE.match(
+            wanted
+        )
     if wanted in _NUMBER:
         return _may_be_number(value, kind)
     if wanted in _TEXT:
@@ -119,7 +123,8 @@ def _may_be_number(value: Value, kind: str) -> bool:
 def _may_be_sequence(value: Value, kind: str) -> bool:
     if isinstance(value, Const):
         return not isinstance(value.value, (numbers.Number, str)) and not kind.startswith("wsim.scene.")
-    return not (isinstance(value, Dict) or kind.startswith(("wsim.", "pxr.Usd")))
+    plain = kind in ("builtins.float", "builtins.int", "builtins.bool", "builtins.str")
+    return not (plain or isinstance(value, Dict) or kind.startswith(("wsim.", "pxr.Usd")))
 
 
 def _may_be_cpp(kind: str, wanted: str, index: Index) -> bool:

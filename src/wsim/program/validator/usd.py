@@ -55,15 +55,17 @@ def _attribute_name(reader: Calls, value: Value, node: ast.AST) -> None:
     known, patterns = _attributes(reader.index)
     if name in known or any(pattern.fullmatch(name) for pattern in patterns):
         return
-    close = get_close_matches(name, known, n=1, cutoff=0.75)
+    space, _, last = name.rpartition(":")
+    beside = [each.rpartition(":")[2] for each in known if each.rpartition(":")[0] == space]
+    close = get_close_matches(last, beside, n=1, cutoff=0.75)
     if close:  # a namespace takes attributes of one's own too
-        reader.problems.add(node, "attribute", f'no schema has an attribute "{name}"', f'"{close[0]}"')
+        reader.problems.add(node, "attribute", f'no schema has an attribute "{name}"', f'"{space}:{close[0]}"')
 
 
 @lru_cache(maxsize=2)
 def _attributes(index: Index) -> tuple[frozenset[str], tuple[re.Pattern[str], ...]]:
     """The attributes of all schemas, and patterns of those of which one schema has several."""
-    names = [name for name in index.programs.schema_attributes()]
+    names = index.programs.schema_attributes()
     patterns = tuple(re.compile(re.escape(name).replace(r"\*", r"[\w:]+")) for name in names if "*" in name)
     return frozenset(name for name in names if "*" not in name), patterns
 
@@ -75,7 +77,7 @@ def _schema_name(reader: Calls, call: str, value: Value, node: ast.AST) -> None:
     if entry is None or entry.kind != "schema":
         known = reader.index.programs.schemas()
         close = get_close_matches(value.value, known, n=1, cutoff=0.6)
-        if call == "AddAppliedSchema" and not get_close_matches(value.value, known, n=1, cutoff=0.88):
+        if call != "ApplyAPI" and not get_close_matches(value.value, known, n=1, cutoff=0.88):
             return  # a stage may name schemas that are not installed
         reader.problems.add(node, "name", f'no schema "{value.value}" is installed', f'"{close[0]}"' if close else "")
 
@@ -111,7 +113,7 @@ def _finds(reader: Calls, value: Value, node: ast.AST) -> None:
     known = {*world.names, *world.others, "Looks", "Parameters", "PhysicsScene"}
     if name in known:
         return
-    close = get_close_matches(name, known, n=1, cutoff=0.7)
+    close = get_close_matches(name, known, n=1, cutoff=0.6)
     if close and reader.written.count(name) == 0:
         reader.problems.add(node, "prim", f'no prim "{text}" has been made', f'"/World/{close[0]}"')
 
@@ -122,12 +124,16 @@ def _value(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
         return
     if isinstance(value, Const) and isinstance(value.value, (int, float)) and not isinstance(value.value, bool):
         if _NOT_NEGATIVE.match(entry.short) and value.value < 0:
-            reader.problems.add(node, "value", f"{entry.short}({value.value:g}): it must not be below 0", entry.signature)
+            reader.problems.add(
+                node, "value", f"{entry.short}({value.value:g}): it must not be below 0", entry.signature
+            )
             return
     kind = _kind(reader, entry)
     wrong = (
         (kind in _NUMBERS and (isinstance(value, Items) or isinstance(value.value, str)))
         or (re.fullmatch(r"(float|double|half|vector|point|color|normal)3[fdh]?", kind) and not _three(value))
+        or (kind in ("quatf", "quatd", "quath") and isinstance(value, (Items, Const)))
+        or (re.fullmatch(r"\w+3[fdh]?\[\]", kind) and isinstance(value, Items) and _has_numbers(value))
         or (kind in ("token", "string") and not (isinstance(value, Const) and isinstance(value.value, str)))
     )
     if wrong and not (isinstance(value, Const) and value.value is None):
@@ -136,8 +142,14 @@ def _value(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
 
 def _three(value: Const | Items) -> bool:
     if isinstance(value, Items):
-        return not value.exact or len(value.items) == 3
+        # USD makes a vector of a tuple, and not of a list.
+        return value.kind is tuple and (not value.exact or len(value.items) == 3)
     return not isinstance(value.value, (int, float, str))
+
+
+def _has_numbers(value: Items) -> bool:
+    """Whether its items are numbers, where they must be vectors."""
+    return any(isinstance(each, Const) and isinstance(each.value, (int, float)) for each in value.items)
 
 
 def _kind(reader: Calls, entry: Entry) -> str:

@@ -149,7 +149,7 @@ def _parameter(text: str) -> Parameter:
     declared, equals, default = text.partition("=")
     declared = declared.replace("{lvalue}", "").strip()
     kind, _, name = declared.rpartition(" ")
-    if not kind or not re.fullmatch(r"\w+", name) or declared.startswith("unsigned") and kind == "unsigned":
+    if not kind or not re.fullmatch(r"\w+", name) or (declared.startswith("unsigned") and kind == "unsigned"):
         kind, name = declared, ""
     if name in ("int", "long", "char", "double", "short", "const"):
         kind, name = declared, ""

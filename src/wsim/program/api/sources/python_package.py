@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import inspect
 import re
@@ -69,10 +70,9 @@ def _of_module(module: ModuleType, name: str, source: str) -> Iterator[Entry]:
 
 def _of_class(value: type, name: str, source: str) -> Iterator[Entry]:
     doc = clean(value.__doc__)
-    try:
+    overloads: tuple[tuple[Parameter, ...], ...] = ()
+    with contextlib.suppress(ValueError, TypeError):
         overloads = (_parameters(value, doc),)
-    except (ValueError, TypeError):
-        overloads = ()
     yield Entry(name, "class", source, overloads, doc=doc, summary=summary(doc), extra={"type": _qualified(value)})
     for key in dir(value):
         if key.startswith("_"):
@@ -88,11 +88,10 @@ def _of_class(value: type, name: str, source: str) -> Iterator[Entry]:
 def function_entry(value: Any, name: str, source: str, kind: EntryKind, *, bound: bool = False) -> Entry:
     """The entry of something that can be called; `bound` drops its first parameter."""
     doc = clean(getattr(value, "__doc__", ""))
-    try:
+    overloads: tuple[tuple[Parameter, ...], ...] = ()
+    with contextlib.suppress(ValueError, TypeError):
         parameters = _parameters(value, doc)
         overloads = (parameters[1:] if bound else parameters,)
-    except (ValueError, TypeError):
-        overloads = ()
     found = _DEPRECATED.match(doc)
     deprecated = getattr(value, "__deprecated__", "") or (" ".join(found[1].split()) if found else "")
     native = source == "numpy" and not inspect.isfunction(inspect.unwrap(value))

@@ -221,7 +221,8 @@ class Package:
         return Entry(
             name, kind, self.source, calls, returns, bases, summary(doc), doc[:4000], told, programs=self.programs,
             extra=({"unit": unit(summary(doc))} if unit(summary(doc)) else {})
-            | ({"writable": True} if "writable" in member.labels else {}),
+            | ({"writable": True} if "writable" in member.labels else {})
+            | ({"static": True} if {"staticmethod", "classmethod"} & member.labels else {}),
         )  # fmt: skip
 
     def _annotation(self, annotation: Any) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -17,10 +19,8 @@ def entries() -> Iterator[Entry]:
 
     import wsim.scene  # noqa: F401 - registers wsim's schema, before USD reads its schemas
 
-    try:
-        import newton_usd_schemas  # noqa: F401 - registers Newton's
-    except ImportError:
-        pass
+    with contextlib.suppress(ImportError):
+        importlib.import_module("newton_usd_schemas")  # registers Newton's
     registry = Usd.SchemaRegistry()
     for name, bases in sorted(_names().items()):
         definition = registry.FindConcretePrimDefinition(name) or registry.FindAppliedAPIPrimDefinition(name)
