@@ -9,6 +9,7 @@ import pytest
 from wsim.judge import judge
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Objective
+from wsim.scene.world import Joint
 
 BLOCK, BALL, TANK, WATER = "/World/wooden_block", "/World/steel_ball", "/World/tank", "/World/water"
 
@@ -388,3 +389,26 @@ def test_judging_takes_less_than_two_seconds(pool):
     start = time.perf_counter()
     judge(case.recording, case.plan)
     assert time.perf_counter() - start < 2.0
+
+
+def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):
+    """The block's lower half of 900 kg/m^3 and its upper half of 300 float as the whole of 600 does."""
+    case = pool()
+    block, ball = case.recording.world.bodies
+    half = (*block.shapes[0].size[:2], block.shapes[0].size[2] / 2)
+    shape = block.shapes[0].model_copy(update={"size": half})
+    lower, upper = (
+        block.model_copy(update={"prim": prim, "shapes": [shape], "mass": block.mass * share})
+        for prim, share in ((BLOCK, 0.75), ("/World/upper", 0.25))
+    )
+    q, qd, force = (
+        np.concatenate([a, a[:, :1]], axis=1)
+        for a in (case.recording.body_q, case.recording.body_qd, case.recording.contact_force)
+    )
+    q[:, 0, 2] -= half[2] / 2
+    q[:, 2, 2] += half[2] / 2
+    glue = Joint(prim="/World/glue", kind="fixed", parent=BLOCK, child="/World/upper")
+    apart = case.changed(body_q=q, body_qd=qd, contact_force=force).world(bodies=[lower, ball, upper])
+    joined = apart.world(joints=[glue])
+    assert only(judge(joined.recording, joined.plan), "ObjectiveFloats").passed
+    assert not only(judge(apart.recording, apart.plan), "ObjectiveFloats").passed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ SKILLS = 2  # that go into a request; the model may read others
 TOOLS = (
     "search_api", "show_api", "search_skills", "show_skill", "search_catalogue", "show_asset", "query_recording",
 )  # fmt: skip
+_PROGRAM = re.compile(r"^## A complete program\n.*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
 PROBLEMS = 8  # of a patched program that are sent back at once
 
 
@@ -107,5 +109,10 @@ def request(situation: Situation, skills: Sequence[Any]) -> str:
     ):
         parts += [title, text] if text else []
     for skill in skills:
-        parts += [f"# Skill {skill.name}", skill.body.strip()]
+        parts += [f"# Skill {skill.name}", _rules(skill.body)]
     return "\n\n".join(parts)
+
+
+def _rules(body: str) -> str:
+    """A skill without its program, which is half of it: there is one to edit already, and show_skill has the other."""
+    return _PROGRAM.sub("", body).strip()

@@ -30,8 +30,9 @@ class _Afloat:
     level: Level
     draft: float  # depth of its lowest point below the surface [m]
     height: float  # its vertical extent [m]
-    ratio: float  # its mean density over the fluid's
-    needed: float  # volume it must displace to float [m^3]
+    ratio: float  # mean density over the fluid's, of it and of what is fixed to it
+    needed: float  # volume that they must displace to float [m^3]
+    joined: list[int]  # the bodies that fixed joints make one with it, itself too
 
 
 @dataclass
@@ -39,7 +40,8 @@ class ObjectiveFloats(ObjectiveCheck):
     """The body floats as deep as Archimedes says.
 
     Its mean depth over the final window is held against the still-water draft of its own shape at its own mean
-    rotation: the depth at which the volume under the surface weighs, as fluid, what the body weighs.
+    rotation: the depth at which the volume under the surface weighs, as fluid, what the body weighs. Bodies that fixed
+    joints hold to it float with it: then both are of all of them together.
     """
 
     share: float = 0.1  # tolerance: of the body's height,
@@ -60,9 +62,7 @@ class ObjectiveFloats(ObjectiveCheck):
             return [away]
         if a.ratio >= 1.0:
             return [self._too_heavy(evidence, a, tolerance)]
-        _, rotation = evidence.resting_pose(a.i)
-        solid = evidence.solid(a.i)
-        expected = solid.draft(rotation, min(a.needed, solid.volume))
+        expected = _still_draft(evidence, a)
         prim = evidence.world.bodies[a.i].prim
         low, _ = evidence.ends(a.i)
         wrong = np.abs(a.level.height - low - expected) > tolerance
@@ -117,7 +117,7 @@ class ObjectiveFloats(ObjectiveCheck):
 
     def _as_planned(self, evidence: Evidence, a: _Afloat) -> str:
         """The depth that the plan's own material would have given."""
-        if evidence.plan is None:
+        if evidence.plan is None or len(a.joined) > 1:
             return ""
         material = evidence.plan.object(self.objective.object).material
         if material is None or material.density >= a.fluid.density:
@@ -245,14 +245,41 @@ def _afloat(evidence: Evidence, name: str, ref: str) -> _Afloat:
     level = evidence.level(fluid)
     low, high = evidence.ends(i)
     here = evidence.window
-    body = evidence.world.bodies[i]
-    needed = body.mass / fluid.density
+    joined = _joined(evidence, i)
+    needed = sum(evidence.world.bodies[j].mass for j in joined) / fluid.density
     return _Afloat(
         i,
         fluid,
         level,
         draft=level.height - float(low[here].mean()),
         height=float((high - low)[here].mean()),
-        ratio=needed / evidence.solid(i).volume,
+        ratio=needed / sum(evidence.solid(j).volume for j in joined),
         needed=needed,
+        joined=joined,
     )
+
+
+def _joined(evidence: Evidence, i: int) -> list[int]:
+    """A body and those that fixed joints, one after another, hold to it."""
+    index = {body.prim: k for k, body in enumerate(evidence.world.bodies)}
+    fixed = [(index.get(j.parent or ""), index.get(j.child)) for j in evidence.world.joints if j.kind == "fixed"]
+    found = {i}
+    while more := {k for pair in fixed if found & {*pair} for k in pair if k is not None} - found:
+        found |= more
+    return sorted(found)
+
+
+def _still_draft(evidence: Evidence, a: _Afloat) -> float:
+    """Depth of the body's lowest point in still water [m], as it and what is joined to it are turned at the end."""
+    _, rotation = evidence.resting_pose(a.i)
+    if len(a.joined) == 1:
+        solid = evidence.solid(a.i)
+        return solid.draft(rotation, min(a.needed, solid.volume))
+    poses = {j: evidence.resting_pose(j) for j in a.joined}
+    ends = np.array([[end[evidence.window].mean() for end in evidence.ends(j)] for j in a.joined])
+    low, high = float(ends[:, 0].min()), float(ends[:, 1].max())
+    for _ in range(40):
+        middle = (low + high) / 2
+        under = sum(evidence.solid(j).volume_below(q, float(at[2]), middle) for j, (at, q) in poses.items())
+        low, high = (middle, high) if under < a.needed else (low, middle)
+    return (low + high) / 2 - float(evidence.ends(a.i)[0][evidence.window].mean())

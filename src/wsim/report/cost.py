@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 ROLES = ("planner", "coder", "reviewer", "judge")
 # What a cause of run.json means, and what allows more.
 LIMITS = {
-    "iteration limit": ("It tried as many programs as it may, and none was accepted", "--max-iterations"),
-    "token limit": ("It used up its tokens before a world was accepted", "--max-tokens"),
-    "time limit": ("Its time was over before a world was accepted", "--max-seconds"),
+    "iteration limit": ("it may try no more", "--max-iterations"),
+    "token limit": ("its tokens are used up", "--max-tokens"),
+    "time limit": ("its time is over", "--max-seconds"),
 }
 
 
@@ -59,10 +59,11 @@ def why_it_ended(loop: Loop, facts: dict[str, Any]) -> tuple[str, str, str]:
         stopped = facts.get("status") == "stopped" and loop.looped
         return ("The run was stopped", str(facts.get("summary") or ""), "") if stopped else ("", "", "")
     kind, _, detail = loop.cause.partition(": ")
+    state = "No program was accepted" if loop.iterations else "Nothing was built"
     if kind in LIMITS:
         words, option = LIMITS[kind]
-        return words, detail, option
-    return "A language model gave nothing that could be used", loop.cause, ""
+        return f"{state}, and {words}", detail, option
+    return f"{state}: a language model gave nothing that could be used", loop.cause, ""
 
 
 def _name(loop: Loop, role: str) -> str:

@@ -102,6 +102,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "closest": _closest(rows),
         "cards": cards,
         "fixes": make_fixes([(row.index, row.finding) for row in failed], world, contents.target),
+        "judged": _judged(contents, status),
         "video": find_video(shown.folder, contents.run.path, most_video_bytes) if shown else None,
         "reference": find_reference(contents.run.path),
         "stills": find_stills(shown.folder) if shown else [],
@@ -216,6 +217,12 @@ def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
         answers = [finding.passed for finding in findings if finding.objective == sentence]
         rows.append((sentence, all(answers) if answers else None))
     return rows
+
+
+def _judged(contents: RunContents, status: str) -> str:
+    """What the judge's model wants mended first in the iteration that is shown."""
+    tried = contents.loop.tried(contents.shown.index) if contents.shown else None
+    return tried.repair if tried is not None and status != "accepted" else ""
 
 
 def _status(contents: RunContents) -> str:

@@ -10,7 +10,7 @@ from wsim.program.api.entry import Entry
 from wsim.program.validator import imports
 from wsim.program.validator.state import State
 from wsim.program.validator.types import class_of
-from wsim.program.validator.values import UNKNOWN, Const, Dict, Instance, Items, Named, Value, wrapped
+from wsim.program.validator.values import UNKNOWN, Class, Const, Dict, Instance, Items, Named, Object, Value, wrapped
 
 _SCENE = "wsim.scene.Scene"
 _SHOWN = ("wsim.scene", "wsim.assets", "wsim.program.control_world")
@@ -23,7 +23,7 @@ class Attributes(State):
 
     def attribute(self, value: Value, name: str, node: ast.Attribute) -> Value:
         """What `value.name` is; a problem if there is no such thing."""
-        if name.startswith("_"):
+        if name.startswith("_") and not isinstance(value, (Object, Class)):
             return UNKNOWN
         if isinstance(value, Named) and value.owner is None:
             return self._of_named(value.name, name, node)
@@ -31,12 +31,18 @@ class Attributes(State):
             return self._of_instance(value, name, node)
         if isinstance(value, Const):
             return self._of_const(value, name, node)
+        if isinstance(value, (Object, Class)):
+            return self.of_object(value, name, node)
         if isinstance(value, (Items, Dict)):
             kind = value.kind if isinstance(value, Items) else dict
             if not hasattr(kind, name):
                 self._missing(node, f"builtins.{kind.__name__}", name)
             return Named(f"builtins.{kind.__name__}.{name}", value)
         return UNKNOWN
+
+    def of_object(self, value: Object | Class, name: str, node: ast.Attribute) -> Value:
+        """What an attribute of a program's own object or class is; see `Objects`."""
+        raise NotImplementedError
 
     def store(self, value: Value, name: str, node: ast.Attribute) -> None:
         """`value.name = ...`: only some attributes of wsim's own classes may be set."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from wsim.program.api.entry import Entry
@@ -13,6 +14,7 @@ from wsim.program.validator.attributes import Attributes
 from wsim.program.validator.types import fits, type_of
 from wsim.program.validator.values import (
     UNKNOWN,
+    Class,
     Const,
     Dict,
     Function,
@@ -38,6 +40,8 @@ class Calls(Attributes):
         """What a call returns."""
         if isinstance(called, Function):
             return self.run(called, arguments)
+        if isinstance(called, Class):
+            return self.construct(called, arguments)
         if not isinstance(called, Named):
             self._hand_over(arguments)
             plain_value = isinstance(called, Instance) and called.type.startswith("builtins.")
@@ -54,6 +58,10 @@ class Calls(Attributes):
         elif entry.deprecated:
             self.problems.add(arguments.call, "deprecated", f"{entry.short} is deprecated: {entry.deprecated}")
         return self._result(entry, called, arguments, fitting=wrong is None)
+
+    def construct(self, kind: Class, arguments: Arguments) -> Value:
+        """The object that a call of a program's own class makes; see `Objects`."""
+        raise NotImplementedError
 
     def _misfit(self, entry: Entry, called: Named, arguments: Arguments) -> Misfit | None:
         def may_be(value: Value, annotation: str) -> bool:
@@ -93,6 +101,12 @@ class Calls(Attributes):
             return self._on_scene(entry, called.owner, bound, arguments, fitting=fitting)
         if entry.source == "pxr" and fitting:
             usd.check(self, entry, called.owner, bound, arguments)
+            path = usd.path_of(entry, called.owner, bound, arguments)
+            if path and entry.returns == "pxr.Sdf.Path":
+                return constants.pure("pxr.Sdf.Path", [Const(path)], {})
+            if path:
+                made = self._returned(entry, called)
+                return replace(made, path=path) if isinstance(made, Instance) else made
         if entry.name.startswith("wsim.program.control_world.ControlWorld.") and fitting:
             self._on_control(entry, called.owner, bound)
         if called.owner is not None and isinstance(called.owner, (Const, Items, Dict)):

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from wsim.program.validator.values import UNKNOWN, Const, Items, NotKnownError, Value, elements, plain, wrapped
+from wsim.program.validator.values import UNKNOWN, Const, Dict, Items, NotKnownError, Value, elements, plain, wrapped
 
 _FAILS = (TypeError, ValueError, ZeroDivisionError, IndexError, KeyError, AttributeError)
 _MOST = 10_000  # items, characters or bits of what is made
@@ -32,6 +32,9 @@ _NUMPY = (
     "array", "asarray", "linspace", "arange", "radians", "deg2rad", "degrees", "rad2deg", "sin", "cos", "tan", "sqrt",
     "abs", "cross", "dot", "hypot", "zeros", "ones", "round", "floor", "ceil", "clip", "float64", "float32", "arctan2",
     "linalg.norm",
+)  # fmt: skip
+_PATH = (
+    "AppendChild", "AppendPath", "AppendProperty", "AppendElementString", "GetParentPath", "GetPrimPath", "ReplaceName",
 )  # fmt: skip
 _TEXT = ("lower", "upper", "title", "strip", "replace", "capitalize", "zfill", "removeprefix", "removesuffix", "split")
 
@@ -143,6 +146,13 @@ def pure(name: str, arguments: Sequence[Value], keywords: dict[str, Value]) -> V
     Raises:
         FailsError: If it fails on these arguments, all of them known.
     """
+    if name == "builtins.dict":
+        return _dictionary(arguments, keywords)
+    if name == "pxr.Sdf.Path":
+        from pxr import Sdf
+
+        text = arguments[0].value if len(arguments) == 1 and isinstance(arguments[0], Const) else None
+        return Const(Sdf.Path(text)) if isinstance(text, str) and Sdf.Path.IsValidPathString(text) else UNKNOWN
     built = _BUILTINS.get(name)
     if built is not None:
         return built(arguments) if not keywords else _sorted_or_known(name, arguments, keywords)
@@ -165,10 +175,17 @@ def pure(name: str, arguments: Sequence[Value], keywords: dict[str, Value]) -> V
     return UNKNOWN if isinstance(result, np.ndarray) and result.size > _MOST else wrapped(result)
 
 
+def _dictionary(arguments: Sequence[Value], keywords: dict[str, Value]) -> Value:
+    if not arguments:
+        return Dict(dict(keywords))
+    first = arguments[0]
+    return Dict(first.pairs | keywords) if isinstance(first, Dict) and first.exact else Dict({}, exact=False)
+
+
 def _function(name: str) -> Callable[..., Any] | None:
     module, _, short = name.partition(".")
     if module == "math" and short not in _LONG:
-        return getattr(math, short, None)  # type: ignore[no-any-return]
+        return getattr(math, short, None)
     if module == "numpy" and short in _NUMPY:
         found: Any = np
         for part in short.split("."):
@@ -280,7 +297,9 @@ _BUILTINS: dict[str, Callable[[Sequence[Value]], Value]] = {
 
 
 def method(value: Value, name: str, arguments: Sequence[Value]) -> Value:
-    """The result of a string's method that only makes another string."""
+    """The result of a method of a string, or of a path of USD's, that only makes another one."""
+    if isinstance(value, Const) and type(value.value).__name__ == "Path" and name in _PATH:
+        return _applied(getattr(value.value, name))(arguments)
     if isinstance(value, Const) and isinstance(value.value, str) and name in _TEXT:
         return _applied(getattr(value.value, name))(arguments) if len(value.value) < _MOST else UNKNOWN
     return UNKNOWN

@@ -9,7 +9,7 @@ from typing import Any
 
 from wsim.program.validator import constants
 from wsim.program.validator.arguments import Arguments
-from wsim.program.validator.calls import Calls
+from wsim.program.validator.objects import Objects
 from wsim.program.validator.state import assigned
 from wsim.program.validator.values import (
     UNKNOWN,
@@ -42,7 +42,7 @@ _GUARDS = {"hasattr", "isinstance", "issubclass", "callable", "type", "getattr",
 _MOST = 400  # items of a comprehension that are read one by one
 
 
-class Expressions(Calls):
+class Expressions(Objects):
     """Reads expressions."""
 
     def value(self, node: ast.expr | None) -> Value:
@@ -273,9 +273,11 @@ class Expressions(Calls):
             return None
         if not isinstance(value.value, (str, int, float, bool)):
             return None
-        convert = {115: str, 114: repr, 97: ascii}.get(node.conversion)
+        shown: dict[int, Callable[[object], str]] = {115: str, 114: repr, 97: ascii}
         try:
-            return format(convert(value.value) if convert else value.value, form.value)
+            if node.conversion in shown:
+                return format(shown[node.conversion](value.value), form.value)
+            return format(value.value, form.value)
         except (ValueError, TypeError):
             return None
 
@@ -342,8 +344,10 @@ class Expressions(Calls):
         self.steps -= len(items or ())
         if items is None or self.steps <= 0:
             each = source.each if isinstance(source, Items) else UNKNOWN
+            self.rounds += 1
             with self.unsure():
                 self._one(generators, depth, each, read)
+            self.rounds -= 1
             return False
         return all([self._one(generators, depth, item, read) for item in items])
 

@@ -17,6 +17,8 @@ from wsim.program.validator.values import UNKNOWN, Named, Scope, Value
 _NEAR = 0.55
 # Names of older versions whose new ones are spelt otherwise.
 _RENAMED = {
+    "math.deg2rad": "math.radians", "math.rad2deg": "math.degrees", "math.arctan2": "math.atan2",
+    "math.arctan": "math.atan", "math.arcsin": "math.asin", "math.arccos": "math.acos",
     "numpy.in1d": "numpy.isin", "numpy.trapz": "numpy.trapezoid", "numpy.product": "numpy.prod",
     "numpy.cumproduct": "numpy.cumprod", "numpy.sometrue": "numpy.any", "numpy.alltrue": "numpy.all",
     "numpy.row_stack": "numpy.vstack", "numpy.random.Generator.rand": "numpy.random.Generator.random",
@@ -24,7 +26,7 @@ _RENAMED = {
     "numpy.random.Generator.randn": "numpy.random.Generator.standard_normal",
     "numpy.random.Generator.random_sample": "numpy.random.Generator.random",
 }  # fmt: skip
-_VERBS = {stem(word) for word in ("add", "create", "make", "new", "attr", "define")}
+_VERBS = {stem(word) for word in ("add", "create", "make", "new", "attr", "define", "set", "get")}
 _MOST_STEPS = 6000  # statements that are read, those of loops each time round
 
 
@@ -61,7 +63,16 @@ class State:
         # What functions assign for others: at any time it may hold anything.
         told = [n.names for n in ast.walk(tree) if isinstance(n, (ast.Global, ast.Nonlocal))]
         self.shared = frozenset(name for names in told for name in names)
+        # Attributes that are set: of a program's own object they may be there, and may change from round to round.
+        self.stored = frozenset(
+            n.attr for n in ast.walk(tree) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)
+        )
+        self.rounds = 0  # how many loops of unknown length stand around what is read now
         self.written = [n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
+
+    def value(self, node: ast.expr | None) -> Value:
+        """What an expression gives; see `Expressions`."""
+        raise NotImplementedError
 
     @contextmanager
     def unsure(self) -> Iterator[None]:
@@ -105,14 +116,16 @@ class State:
         if not best or _nearness(name, best) < _NEAR:
             best = self._taking(name, holder, names)
         entry = self.member(holder, best) if best else None
-        return entry.signature if entry is not None else ""
+        if entry is not None:
+            return entry.signature
+        return "" if holder.startswith("builtins.") else self.elsewhere(name)
 
     def _taking(self, name: str, holder: str, names: list[str]) -> str:
         """The member of one of wsim's classes that has a parameter of this name."""
         if holder.startswith("wsim."):
             for each in names:
                 entry = self.member(holder, each)
-                if entry is not None and any(p.name == name for p in entry.parameters):
+                if entry is not None and any(stem(p.name) in parts(name) - _VERBS for p in entry.parameters):
                     return each
         return ""
 

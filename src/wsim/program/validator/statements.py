@@ -18,6 +18,7 @@ from wsim.program.validator.values import (
     Items,
     Named,
     NotKnownError,
+    Object,
     Scope,
     Value,
     blur,
@@ -81,7 +82,13 @@ class Statements(Expressions):
             self.bind(node.target, self.tried(node, lambda: constants.binary(node.op, left, right)))
         elif isinstance(node.target, ast.Attribute):
             owner = self.value(node.target.value)
-            self.attribute(owner, node.target.attr, node.target)
+            held = self.attribute(owner, node.target.attr, node.target)
+            if isinstance(owner, Object):
+                blur(held)
+                kept: Value = held if isinstance(held, (Items, Dict)) else UNKNOWN
+                if isinstance(held, Const):
+                    kept = self.tried(node, lambda: constants.binary(node.op, held, right))
+                self.store_in(owner, node.target.attr, kept)
             self._units_of_target(node.target, node.value, units.said(node.value, self.unit_of))
         elif isinstance(node.target, ast.Subscript):
             blur(self.value(node.target.value))
@@ -104,7 +111,11 @@ class Statements(Expressions):
         elif isinstance(target, ast.Starred):
             self.bind(target.value, UNKNOWN)
         elif isinstance(target, ast.Attribute):
-            self.store(self.value(target.value), target.attr, target)
+            owner = self.value(target.value)
+            if isinstance(owner, Object):
+                self.store_in(owner, target.attr, value)
+            else:
+                self.store(owner, target.attr, target)
         elif isinstance(target, ast.Subscript):
             self._put(self.value(target.value), self.value(target.slice), value)
 
@@ -323,11 +334,14 @@ class Statements(Expressions):
                 blur(holder.values[name])
                 holder.values[name] = UNKNOWN
         self._blur_used(node.body)
+        self.rounds += 1
         with self.unsure():
             if target is not None:
                 self.bind(target, each)
             start = dict(self.scope.values)
             self.block(node.body)
+        self.rounds -= 1
+        with self.unsure():
             self.scope.values = _joined([start, self.scope.values])
             self.block(node.orelse)
         for name in changed & self.scope.local:
@@ -386,14 +400,12 @@ class Statements(Expressions):
             self.module.values.setdefault(name, UNKNOWN)
 
     def _do_classdef(self, node: ast.ClassDef) -> None:
-        for each in (*node.decorator_list, *node.bases):
-            self.value(each)
+        bases = [self.value(each) for each in node.bases]
         inner = Scope(assigned(node.body), self.scope, of_class=True)
         before, self.scope = self.scope, inner
-        with self.unsure():
-            self.block(node.body)
+        self.block(node.body)
         self.scope = before
-        self.bind(ast.Name(node.name), UNKNOWN)
+        self.bind(ast.Name(node.name), self.made_class(node, inner.values, bases))
 
     # -- functions -----------------------------------------------------------------------------------------------
 
@@ -405,7 +417,7 @@ class Statements(Expressions):
         takers = [*node.args.posonlyargs, *node.args.args]
         pairs = [*zip(takers[len(takers) - len(node.args.defaults) :], node.args.defaults, strict=True)]
         pairs += [(a, d) for a, d in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True) if d is not None]
-        simple = not node.decorator_list and isinstance(node, ast.FunctionDef) and not _yields(node)
+        simple = not node.decorator_list and isinstance(node, ast.FunctionDef) and not self.yields(node)
         made = Function(node, self.scope, {a.arg: values[id(d)] for a, d in pairs}, simple)
         self.functions.append(made)
         self.bind(ast.Name(node.name), made)
@@ -424,6 +436,9 @@ class Statements(Expressions):
         """The function's arguments by name; a problem where they do not fit."""
         a = function.node.args
         places = [each.arg for each in (*a.posonlyargs, *a.args)]
+        bound: dict[str, Value] = {}
+        if function.owner is not None and places:
+            bound, places = {places[0]: function.owner}, places[1:]
         keywords = [each.arg for each in (*a.args, *a.kwonlyargs)]
         name = getattr(function.node, "name", "lambda")
         given = dict(zip(places, arguments.values, strict=False))
@@ -443,7 +458,7 @@ class Statements(Expressions):
         if missing and not arguments.open:
             names = ", ".join(f'"{p}"' for p in missing)
             self.problems.add(arguments.call, "argument", f"{name}() lacks {names}")
-        return given
+        return given | bound
 
     def enter(self, function: Function, given: dict[str, Value], *, called: bool = True) -> Value:
         """Read a function's body with these arguments; where it is not `called` here, the others may be anything."""
@@ -511,10 +526,6 @@ def _is_main(test: ast.expr) -> bool:
 
 def _leaves(body: list[ast.stmt]) -> bool:
     return any(isinstance(each, (ast.Return, ast.Break)) for statement in body for each in ast.walk(statement))
-
-
-def _yields(node: ast.AST) -> bool:
-    return any(isinstance(each, (ast.Yield, ast.YieldFrom, ast.Await)) for each in ast.walk(node))
 
 
 def _at(alias: ast.alias) -> ast.Attribute:

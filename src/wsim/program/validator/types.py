@@ -90,6 +90,8 @@ def _fits(value: Value, wanted: str, index: Index) -> bool:
         return _may_be_number(value, kind)
     if wanted in _TEXT:
         return kind in ("builtins.str", "pxr.Sdf.Path") if _is_told(kind) else True
+    if re.fullmatch(r"\w+::\w+", wanted) and kind.startswith(("pxr.Gf.", "wsim.")):
+        return False  # a nested class of USD's, an enumeration mostly
     if _SEQUENCE.match(wanted):
         return _may_be_sequence(value, kind)
     if wanted in _CPP:

@@ -87,8 +87,8 @@ def _makes(reader: Calls, entry: Entry, bound: dict[str, Any], arguments: Argume
     world = reader.world
     world.touched()
     value, node = bound.get("path", (UNKNOWN, arguments.call))
-    text = value.value if isinstance(value, Const) else None
-    if not isinstance(text, str):
+    text = _path(value)
+    if not text:
         world.open = True
     else:
         world.others.update(text.removeprefix("/World/").split("/")[:1])
@@ -104,10 +104,31 @@ def _makes(reader: Calls, entry: Entry, bound: dict[str, Any], arguments: Argume
                 reader.problems.add(kind_node, "name", f'no schema "{kind.value}" is installed', f'"{close[0]}"')
 
 
+def path_of(entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> str:
+    """Where the prim is that a call makes, finds or speaks of; "" if that is not known."""
+    if entry.short in ("GetPrim", "GetPath", "GetPrimPath") and isinstance(owner, Instance):
+        return owner.path
+    if entry.short == "GetDefaultPrim" and isinstance(owner, Instance) and owner.world is not None:
+        return "/World"
+    if _MAKES.match(entry.short) or entry.short == "GetPrimAtPath":
+        return _path(bound.get("path", (UNKNOWN, None))[0])
+    first = arguments.values[0] if arguments.given else UNKNOWN
+    if isinstance(first, Instance) and first.path and (entry.kind == "class" or entry.short in ("Apply", "Get")):
+        return first.path
+    return ""
+
+
+def _path(value: Value) -> str:
+    """A path that is given as text or as a path; "" if it is not known."""
+    if isinstance(value, Const) and (isinstance(value.value, str) or type(value.value).__name__ == "Path"):
+        return str(value.value)
+    return ""
+
+
 def _finds(reader: Calls, value: Value, node: ast.AST) -> None:
     """A prim that is looked for by its path: one that is spelt nearly like one that is there, and is not, is a slip."""
-    world, text = reader.world, value.value if isinstance(value, Const) else None
-    if not isinstance(text, str) or not text.startswith("/World/") or world.open or not reader.certain:
+    world, text = reader.world, _path(value)
+    if not text.startswith("/World/") or world.open or not reader.certain:
         return
     name = text.removeprefix("/World/").split("/")[0]
     known = {*world.names, *world.others, "Looks", "Parameters", "PhysicsScene"}

@@ -63,11 +63,13 @@ class Instance:
         type: Whole name of the class.
         world: What a scene, or what stands for it in `control`, belongs to.
         loose: It may be of a class that inherits from that one: all that is known is an annotation.
+        path: Of a prim, or of a schema on one: where it is; "" if that is not known.
     """
 
     type: str
     world: Any = None
     loose: bool = False
+    path: str = ""
 
 
 @dataclass(frozen=True)
@@ -86,9 +88,35 @@ class Function:
     scope: Scope
     defaults: dict[str, Value] = field(default_factory=dict)
     plain: bool = True  # no decorator, no yield: what it returns is what its body says
+    owner: Object | None = None  # of a method that is bound
 
 
-Value: TypeAlias = "Unknown | Const | Items | Dict | Instance | Named | Function"
+@dataclass(eq=False)
+class Class:
+    """A class of the program itself.
+
+    Attributes:
+        node: Its text.
+        members: What its body binds, that of its bases too.
+        fields: Of a dataclass: its fields in order, with their defaults.
+        whole: It inherits from nothing that is not read, and nothing but `dataclass` changes it.
+    """
+
+    node: ast.ClassDef
+    members: dict[str, Value]
+    fields: dict[str, Value | None] | None = None
+    whole: bool = True
+
+
+@dataclass(eq=False)
+class Object:
+    """An object of a class of the program."""
+
+    kind: Class
+    fields: dict[str, Value] = field(default_factory=dict)
+
+
+Value: TypeAlias = "Unknown | Const | Items | Dict | Instance | Named | Function | Class | Object"
 
 
 class Scope:
@@ -127,6 +155,8 @@ def merged(one: Value, other: Value) -> Value:
         return one
     if isinstance(one, (Instance, Named)) and one == other:
         return one
+    if isinstance(one, Instance) and isinstance(other, Instance) and one.type == other.type:
+        return Instance(one.type, one.world if one.world is other.world else None, one.loose or other.loose)
     return UNKNOWN
 
 
@@ -141,7 +171,9 @@ def _same(one: Any, other: Any) -> bool:
 
 def blur(value: Value) -> None:
     """What was handed to code that is not read may have been changed by it."""
-    if isinstance(value, (Items, Dict)) and not (isinstance(value, Items) and value.kind is tuple):
+    if isinstance(value, Object):
+        value.fields = dict.fromkeys(value.fields, UNKNOWN)
+    elif isinstance(value, (Items, Dict)) and not (isinstance(value, Items) and value.kind is tuple):
         value.blur()
 
 
