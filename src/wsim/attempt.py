@@ -134,7 +134,7 @@ def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: P
             passed=False,
             message=problem.sentence,
             line=f"program.py:{problem.line}",
-            target=RepairTarget(kind="program", why=problem.nearest),
+            target=RepairTarget(kind="program"),
         )
         for problem in problems
     ]

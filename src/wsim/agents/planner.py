@@ -44,6 +44,7 @@ def read_plan(answer: dict[str, Any], prompt: str) -> Plan:
     """
     from wsim.plan.store import made
     from wsim.program.compose import compose
+    from wsim.program.validator import validate
 
     data = {"title": prompt[:80], **answer, "prompt": prompt}
     if isinstance(data.get("objects"), list):
@@ -55,7 +56,9 @@ def read_plan(answer: dict[str, Any], prompt: str) -> Plan:
     plan = made(data, Path("plan"))
     if not plan.objectives:
         raise UserError("plan: objectives: none; say what must happen, so that the judge can hold the world to it")
-    compose(plan)  # what no program can be written for is the planner's to mend
+    problems = validate(compose(plan), plan)  # what no program can be written for is the planner's to mend
+    if problems:
+        raise UserError(f"plan: no program can build it: {problems[0].message}")
     return plan
 
 

@@ -50,20 +50,6 @@ def make_attempts(contents: RunContents) -> list[AttemptRow]:
     return [_row(contents, item) for item in contents.iterations]
 
 
-def which_is_shown(contents: RunContents) -> str:
-    """Which iteration the page is about, where that is not plain."""
-    shown, newest, loop = contents.shown, contents.newest, contents.loop
-    if shown is None or newest is None or not loop.looped:
-        return ""
-    count = len(contents.iterations)
-    if shown is not newest:
-        became = "was no better and was undone" if loop.tried(newest.index) else "was not finished"
-        return f"Shown is iteration {shown.number}, the best of {count}; the newest, {newest.number}, {became}."
-    if loop.tried(shown.index) is None:
-        return f"Iteration {shown.number} was not finished; shown is what it left."
-    return f"Shown is iteration {shown.number}, the newest of {count} and the best." if count > 1 else ""
-
-
 def _row(contents: RunContents, item: Iteration) -> AttemptRow:
     loop, verdict = contents.loop, item.verdict
     tried = loop.tried(item.index)

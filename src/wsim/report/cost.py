@@ -1,9 +1,9 @@
-"""What models were asked in a run, and what it cost; why the run ended, where a limit or a model ended it."""
+"""What models were asked in a run, and what it cost."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from wsim.report.numbers import NARROW_SPACE, number
 from wsim.report.records import BUILTIN, Account
@@ -13,12 +13,6 @@ if TYPE_CHECKING:
     from wsim.report.records import Loop
 
 ROLES = ("planner", "coder", "reviewer", "judge")
-# What a cause of run.json means, and what allows more.
-LIMITS = {
-    "iteration limit": ("it may try no more", "--max-iterations"),
-    "token limit": ("its tokens are used up", "--max-tokens"),
-    "time limit": ("its time is over", "--max-seconds"),
-}
 
 
 @dataclass(frozen=True)
@@ -50,20 +44,7 @@ def make_cost(loop: Loop, status: str) -> Cost | None:
     words = "for this accepted world" if status == "accepted" else "and no world was accepted"
     tokens = f"{_count(loop.usage.tokens)} tokens in all{' ' if status == 'accepted' else ', '}{words}"
     tokens += f"; {_count(allowed)} were allowed" if allowed is not None else ""
-    return Cost(rows, CostRow("all", "", _numbers(_sum(list(used.values())))), tokens + ".")
-
-
-def why_it_ended(loop: Loop, facts: dict[str, Any]) -> tuple[str, str, str]:
-    """Why a run ended without a verdict of its own: in plain words, as it was noted, and the option that allows more."""
-    if not loop.cause:
-        stopped = facts.get("status") == "stopped" and loop.looped
-        return ("The run was stopped", str(facts.get("summary") or ""), "") if stopped else ("", "", "")
-    kind, _, detail = loop.cause.partition(": ")
-    state = "No program was accepted" if loop.iterations else "Nothing was built"
-    if kind in LIMITS:
-        words, option = LIMITS[kind]
-        return f"{state}, and {words}", detail, option
-    return f"{state}: a language model gave nothing that could be used", loop.cause, ""
+    return Cost(rows, CostRow("all", "", _total(list(used.values()))), tokens + ".")
 
 
 def _name(loop: Loop, role: str) -> str:
@@ -78,16 +59,22 @@ def _numbers(account: Account | None) -> list[str]:
     return [
         *(_count(x) for x in (account.requests, account.cached, account.failed, *tokens)),
         duration(account.seconds),
-        "not known" if account.dollars is None else f"{number(account.dollars)}\N{NO-BREAK SPACE}$",
+        "not known" if account.dollars is None else _dollars(account.dollars),
     ]
 
 
-def _sum(accounts: list[Account]) -> Account:
+def _total(accounts: list[Account]) -> list[str]:
+    """The numbers of all roles together; of the cost, what is known of it."""
     names = ("requests", "cached", "failed", "input_tokens", "output_tokens", "seconds")
+    known = [account.dollars for account in accounts if account.dollars is not None]
     sums = {name: sum(getattr(account, name) for account in accounts) for name in names}
-    prices = [account.dollars for account in accounts if account.requests]
-    known = [price for price in prices if price is not None]
-    return Account(**sums, dollars=sum(known) if known and len(known) == len(prices) else None)
+    numbers = _numbers(Account(**sums, dollars=sum(known) if known else None))
+    partly = known and len(known) < sum(account.requests > 0 for account in accounts)
+    return [*numbers[:-1], f"at least {numbers[-1]}" if partly else numbers[-1]]
+
+
+def _dollars(x: float) -> str:
+    return f"{number(x)}\N{NO-BREAK SPACE}$"
 
 
 def _count(x: float) -> str:

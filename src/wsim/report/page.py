@@ -14,11 +14,12 @@ from markupsafe import Markup
 from wsim.judge.targets_objectives import sentence_of
 from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
-from wsim.report.attempts import make_attempts, which_is_shown
+from wsim.report.attempts import make_attempts
 from wsim.report.chart import Chart
 from wsim.report.contents import RunContents, gather
-from wsim.report.cost import make_cost, why_it_ended
+from wsim.report.cost import make_cost
 from wsim.report.diff import Diff, difference
+from wsim.report.ending import which_is_shown, why_it_ended
 from wsim.report.facts import make_facts, make_parameters
 from wsim.report.fixes import command, describe, make_fixes
 from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_reference, find_stills, find_video
@@ -93,7 +94,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "badge": STATUS_WORDS.get(status, status.capitalize()),
         "summary": _summary(verdict, failed) if verdict else _unjudged(contents, status),
         "prompt": str(contents.facts.get("prompt") or (contents.plan.prompt if contents.plan else "")),
-        "cause": why_it_ended(contents.loop, contents.facts),
+        "ending": why_it_ended(contents),
         "which": which_is_shown(contents),
         "notes": contents.notes,
         "rows": rows,

@@ -42,7 +42,7 @@ def accept(workspace: Workspace, asked: Accept) -> Result:
 
 TOOLS = (
     Tool(
-        "accept", "Accept an iteration that passed: take out what only served the review, run it again, compare, stamp.",
+        "accept", "Accept an iteration that passed: strip what only served the review, run again, compare, stamp.",
         Accept, accept, writes=True,
     ),
 )  # fmt: skip

@@ -14,7 +14,7 @@ from wsim.tools.iterations import numbered
 from wsim.tools.text import number, numbers, table
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Plan
+    from wsim.plan.schema import Joint, Plan
 
 Part = Literal["all", "objects", "relations", "joints", "cameras", "objectives", "assumptions", "steps"]
 SIDE_NAME = "plan.json.new"
@@ -141,12 +141,18 @@ def _joints(plan: Plan, name: str) -> list[str]:
         [
             joint.name, joint.kind, joint.parent or "the world", joint.child, joint.axis,
             numbers(joint.anchor) if joint.anchor else "", numbers(joint.limits) if joint.limits else "",
+            _driven(joint),
         ]
         for joint in plan.joints
         if _about(name, joint.child, joint.parent)
     ]  # fmt: skip
-    head = ("joint", "kind", "parent", "child", "axis", "anchor from the child [m]", "limits")
+    head = ("joint", "kind", "parent", "child", "axis", "anchor from the child [m]", "limits", "drive")
     return table(head, rows) if rows else []
+
+
+def _driven(joint: Joint) -> str:
+    given = joint.drive.model_dump() if joint.drive else {}
+    return ", ".join(f"{name} {number(value)}" for name, value in given.items() if value)
 
 
 def _cameras(plan: Plan, name: str) -> list[str]:

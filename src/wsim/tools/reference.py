@@ -44,7 +44,7 @@ class Skill(Arguments):
     """A skill, or one section of it."""
 
     name: str = Field(description="the skill's name, as search_skills gives it", min_length=1, max_length=100)
-    section: str = Field("", description="one of its headings; the whole of it by default", max_length=200)
+    section: str = Field("", description="a heading, or references/FILE.md; the whole by default", max_length=200)
     from_line: int = Field(1, ge=1, description="first line to show")
 
 
@@ -99,8 +99,11 @@ def show_skill(workspace: Workspace, asked: Skill) -> Result:
     if asked.name not in known:
         near = get_close_matches(asked.name, known, n=3) or list(known)
         return Result(f"no skill {asked.name[:60]!r}; there are {', '.join(near)}", ok=False)
-    lines = known[asked.name].body.strip().splitlines()
+    skill = known[asked.name]
+    lines = skill.body.strip().splitlines()
     sections = _sections(lines)
+    for path in sorted((skill.folder / "references").glob("*.md")):
+        sections[f"references/{path.name}"] = path.read_text(encoding="utf-8").strip().splitlines()
     if asked.section:
         wanted = asked.section.strip("# ").lower()
         chosen = next((title for title in sections if title.lower() == wanted), None)

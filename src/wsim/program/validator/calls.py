@@ -101,7 +101,7 @@ class Calls(Attributes):
             return self._on_scene(entry, called.owner, bound, arguments, fitting=fitting)
         if entry.source == "pxr" and fitting:
             usd.check(self, entry, called.owner, bound, arguments)
-            path = usd.path_of(entry, called.owner, bound, arguments)
+            path = usd.path_of(self, entry, called.owner, bound, arguments)
             if path and entry.returns == "pxr.Sdf.Path":
                 return constants.pure("pxr.Sdf.Path", [Const(path)], {})
             if path:
@@ -121,6 +121,9 @@ class Calls(Attributes):
             if found is not UNKNOWN:
                 return found
         self._hand_over(arguments)
+        several = bound.get("size", (Const(None), None))[0] not in (Const(None), UNKNOWN)
+        if entry.parent == "numpy.random.Generator" and several and entry.short not in ("choice", "integers"):
+            return Instance("numpy.ndarray")
         return self._returned(entry, called)
 
     def _returned(self, entry: Entry, called: Named) -> Value:

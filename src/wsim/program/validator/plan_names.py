@@ -32,9 +32,10 @@ def check(reader: Reader, plan: Plan) -> None:
                 reader.problems.add(
                     node, f"plan {name}", f'the plan has the {what} "{name}", and no prim has that name', hint
                 )
-    for name, method in world.names.items():
+    besides = {name: "box" for name in world.raw if name not in world.names}
+    for name, method in (world.names | besides).items():
         if method in (*OBJECTS, *JOINTS) and name not in wanted:
-            place = world.places.get(name, node)
+            place = (world.raw | world.places).get(name, node)
             what = "joint" if method in JOINTS else "object"
             missing = [each for each in wanted if each not in made]
             close = get_close_matches(name, missing, n=1, cutoff=0.6)

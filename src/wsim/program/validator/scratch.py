@@ -55,6 +55,7 @@ class World:
         self._calls = 0
         self.names: dict[str, str] = {}
         self.others: set[str] = set()
+        self.raw: dict[str, Any] = {}  # of bodies that USD itself makes under /World: the name, and where that is said
         self.places: dict[str, Any] = {}  # the nodes of the calls that make `names`
         self.looks: set[str] = set()
         self.open = False
@@ -133,7 +134,7 @@ class World:
         if kind not in _NEEDS or kind == "asset":
             return "", ""
         if method == "mesh" and (refusal := _mesh(arguments)):
-            return "collision", refusal
+            return refusal.partition(": ")[2].partition(" = ")[0], refusal
         name = _known(arguments.get("name"))
         if isinstance(name, str) and (refusal := self._refuses(kind, {"name": name}, once=True)):
             return "name", refusal
@@ -214,9 +215,16 @@ class World:
 
 
 def _mesh(arguments: Mapping[str, Value]) -> str:
-    """What is wrong with how a mesh collides. Its file is not read: it need not be there yet."""
-    from wsim.scene.mesh_file import APPROXIMATIONS
+    """What is wrong with how a mesh is read and collides. Its file is not opened: it need not be there yet."""
+    from pathlib import PurePath
 
+    from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
+
+    file, up = _known(arguments.get("file")), _known(arguments.get("up_axis"))
+    if isinstance(file, str) and PurePath(file).suffix.lower() not in FORMATS:
+        return f'mesh: file = "{file}" must end in one of {", ".join(FORMATS)}'
+    if isinstance(up, str) and up.upper() not in ("Y", "Z"):
+        return f'mesh: up_axis = "{up}" must be "Z" or "Y"'
     collision, static = _known(arguments.get("collision")), _known(arguments.get("static", Const(False)))
     if isinstance(collision, str) and collision not in APPROXIMATIONS:
         return f'mesh: collision = "{collision}" must be one of {", ".join(APPROXIMATIONS)}'

@@ -26,7 +26,7 @@ _RENAMED = {
     "numpy.random.Generator.randn": "numpy.random.Generator.standard_normal",
     "numpy.random.Generator.random_sample": "numpy.random.Generator.random",
 }  # fmt: skip
-_VERBS = {stem(word) for word in ("add", "create", "make", "new", "attr", "define", "set", "get")}
+_VERBS = {stem(word) for word in ("add", "create", "make", "new", "attr", "set", "get")}
 _MOST_STEPS = 6000  # statements that are read, those of loops each time round
 
 
@@ -118,7 +118,7 @@ class State:
         entry = self.member(holder, best) if best else None
         if entry is not None:
             return entry.signature
-        return "" if holder.startswith("builtins.") else self.elsewhere(name)
+        return "" if holder.startswith("builtins.") else self.elsewhere(name, holder)
 
     def _taking(self, name: str, holder: str, names: list[str]) -> str:
         """The member of one of wsim's classes that has a parameter of this name."""
@@ -129,10 +129,10 @@ class State:
                     return each
         return ""
 
-    def elsewhere(self, name: str) -> str:
-        """An entry of that very name in another place; "" if there is none."""
+    def elsewhere(self, name: str, holder: str = "") -> str:
+        """An entry of that very name in another place, within the holder before the rest; "" if there is none."""
         found = [each for each in self.index.programs.ending(name) if each.rpartition(".")[2] == name]
-        entry = self.entry(min(found, key=rank)) if found else None
+        entry = self.entry(min(found, key=lambda n: (not n.startswith(f"{holder}."), rank(n)))) if found else None
         return entry.signature if entry is not None and entry.kind != "attribute" else ""
 
 

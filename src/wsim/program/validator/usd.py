@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index
 from wsim.program.validator.arguments import Arguments
+from wsim.program.validator.types import class_of
 from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, Value
 
 if TYPE_CHECKING:
@@ -22,10 +23,12 @@ _APPLIES = ("ApplyAPI", "AddAppliedSchema", "HasAPI", "RemoveAPI", "CanApplyAPI"
 _MAKES = re.compile(r"^(Define|DefinePrim|OverridePrim|CreateClassPrim)$")
 _SPREADS = ("GetRootLayer", "GetEditTarget", "GetReferences", "GetPayloads", "RemovePrim", "GetSessionLayer")
 # Attributes that cannot be below zero.
-_NOT_NEGATIVE = re.compile(
-    r"^Create(Mass|Density|Radius|Height|Size|Width|Length|StaticFriction|DynamicFriction|Restitution|Intensity"
-    r"|FocalLength|GravityMagnitude|Damping|Stiffness|MaxForce)Attr$"
-)
+_NOT_NEGATIVE = (
+    "mass", "density", "radius", "height", "size", "width", "length", "staticFriction", "dynamicFriction",
+    "restitution", "intensity", "focalLength", "damping", "stiffness", "maxForce",
+)  # fmt: skip
+_ATTRIBUTE = re.compile(r"^(Create|Get)\w+Attr$")
+_FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ", "distance", "linear", "angular")
 _NUMBERS = ("float", "double", "int", "half", "uint")
 
 
@@ -42,8 +45,22 @@ def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any
         _finds(reader, *first)
     elif entry.short in _SPREADS:
         reader.world.open = True
-    elif entry.short.startswith("Create") and entry.short.endswith("Attr"):
-        _value(reader, entry, *first)
+    elif entry.short.startswith("Create") and _ATTRIBUTE.match(entry.short) and (arguments.given or arguments.named):
+        _value(reader, entry, _attribute_of(reader, entry), *bound.get("defaultValue", first))
+    elif entry.name == "pxr.Usd.Attribute.Set" and isinstance(owner, Instance) and "value" in bound:
+        _value(reader, entry, reader.entry(owner.path), *bound["value"])
+    elif entry.short == "Apply":
+        _applied(reader, entry, first[0], arguments.call)
+        if "name" in bound:
+            _instance_name(reader, entry, *bound["name"])
+
+
+def _applied(reader: Calls, entry: Entry, prim: Value, node: ast.AST) -> None:
+    """A prim of USD's own that collides or moves is an object of the world."""
+    if entry.parent.endswith(("RigidBodyAPI", "CollisionAPI")) and isinstance(prim, Instance) and reader.certain:
+        name = prim.path.removeprefix("/World/")
+        if prim.path != name and name and "/" not in name:
+            reader.world.raw.setdefault(name, node)
 
 
 def _attribute_name(reader: Calls, value: Value, node: ast.AST) -> None:
@@ -104,8 +121,21 @@ def _makes(reader: Calls, entry: Entry, bound: dict[str, Any], arguments: Argume
                 reader.problems.add(kind_node, "name", f'no schema "{kind.value}" is installed', f'"{close[0]}"')
 
 
-def path_of(entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> str:
-    """Where the prim is that a call makes, finds or speaks of; "" if that is not known."""
+def _schema_attribute(reader: Calls, name: str) -> str:
+    """The whole name of the schema attribute of this name, if there is one alone."""
+    found = [each for each in reader.index.programs.ending(name) if each.rpartition(".")[2] == name]
+    return found[0] if len(found) == 1 else ""
+
+
+def path_of(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> str:
+    """Where the prim is that a call makes, finds or speaks of; of an attribute, its name in the index; "" if unknown."""
+    if entry.returns == "pxr.Usd.Attribute":
+        if _ATTRIBUTE.match(entry.short):
+            found = _attribute_of(reader, entry)
+            return found.name if found is not None else ""
+        name = bound.get("attrName", (UNKNOWN, None))[0]
+        known = isinstance(name, Const) and isinstance(name.value, str) and entry.short == "GetAttribute"
+        return _schema_attribute(reader, name.value) if known and isinstance(name, Const) else ""
     if entry.short in ("GetPrim", "GetPath", "GetPrimPath") and isinstance(owner, Instance):
         return owner.path
     if entry.short == "GetDefaultPrim" and isinstance(owner, Instance) and owner.world is not None:
@@ -139,26 +169,52 @@ def _finds(reader: Calls, value: Value, node: ast.AST) -> None:
         reader.problems.add(node, "prim", f'no prim "{text}" has been made', f'"/World/{close[0]}"')
 
 
-def _value(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
-    """The first value of an attribute."""
-    if not isinstance(value, (Const, Items)):
+def _value(reader: Calls, entry: Entry, attribute: Entry | None, value: Value, node: ast.AST) -> None:
+    """A value that an attribute is given."""
+    if not isinstance(value, (Const, Items)) or (isinstance(value, Const) and value.value is None):
         return
-    if isinstance(value, Const) and isinstance(value.value, (int, float)) and not isinstance(value.value, bool):
-        if _NOT_NEGATIVE.match(entry.short) and value.value < 0:
-            reader.problems.add(
-                node, "value", f"{entry.short}({value.value:g}): it must not be below 0", entry.signature
-            )
-            return
-    kind = _kind(reader, entry)
-    wrong = (
-        (kind in _NUMBERS and (isinstance(value, Items) or isinstance(value.value, str)))
-        or (re.fullmatch(r"(float|double|half|vector|point|color|normal)3[fdh]?", kind) and not _three(value))
-        or (kind in ("quatf", "quatd", "quath") and isinstance(value, (Items, Const)))
-        or (re.fullmatch(r"\w+3[fdh]?\[\]", kind) and isinstance(value, Items) and _has_numbers(value))
-        or (kind in ("token", "string") and not (isinstance(value, Const) and isinstance(value.value, str)))
-    )
-    if wrong and not (isinstance(value, Const) and value.value is None):
-        reader.problems.add(node, "argument", f"{entry.short}() takes a {kind}", entry.signature)
+    number = isinstance(value, Const) and isinstance(value.value, (int, float)) and not isinstance(value.value, bool)
+    base = attribute.short.rpartition(":")[2] if attribute is not None else ""
+    if number and isinstance(value, Const) and base in _NOT_NEGATIVE and value.value < 0:
+        message = f'"{base}" = {value.value:g} must not be below 0'
+        reader.problems.add(node, "value", message, entry.signature)
+        return
+    kind = attribute.returns if attribute is not None else ""
+    if _is_wrong(kind, value):
+        reader.problems.add(node, "argument", f'"{base}" takes a {kind}', entry.signature)
+        return
+    allowed = attribute.extra.get("allowed") if attribute is not None else None
+    if allowed and isinstance(value, Const) and value.value not in allowed:
+        close = get_close_matches(str(value.value), allowed, n=1, cutoff=0.5)
+        message = f'"{base}" = "{value.value}" must be one of {", ".join(allowed)}'
+        reader.problems.add(node, "value", message, f'"{close[0]}"' if close else "")
+
+
+def _is_wrong(kind: str, value: Const | Items) -> bool:
+    """Whether USD takes no such value for an attribute of a kind."""
+    text = isinstance(value, Const) and isinstance(value.value, str)
+    if kind in _NUMBERS:
+        return isinstance(value, Items) or text
+    if re.fullmatch(r"(float|double|half|vector|point|color|normal)3[fdh]?", kind):
+        return not _three(value)
+    if kind in ("quatf", "quatd", "quath"):
+        return isinstance(value, Items) or class_of(value.value).startswith("builtins.")
+    if re.fullmatch(r"\w+3[fdh]?\[\]", kind):
+        return isinstance(value, Items) and _has_numbers(value)
+    return kind in ("token", "string") and not text
+
+
+def _instance_name(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
+    """The name of one of several applications of a schema, such as the "angular" of a drive."""
+    if not isinstance(value, Const) or not isinstance(value.value, str):
+        return
+    schema = _schema_of(reader, entry.parent)
+    from pxr import Usd
+
+    if schema and not Usd.SchemaRegistry.IsAllowedAPISchemaInstanceName(schema, value.value):
+        known = [axis for axis in _FREEDOMS if Usd.SchemaRegistry.IsAllowedAPISchemaInstanceName(schema, axis)]
+        hint = f"; it takes {', '.join(known)}" if known else ""
+        reader.problems.add(node, "value", f'{schema} has no instance "{value.value}"{hint}', entry.signature)
 
 
 def _three(value: Const | Items) -> bool:
@@ -173,17 +229,23 @@ def _has_numbers(value: Items) -> bool:
     return any(isinstance(each, Const) and isinstance(each.value, (int, float)) for each in value.items)
 
 
-def _kind(reader: Calls, entry: Entry) -> str:
-    """The type of the attribute that a schema class's call creates; "" if it is not found."""
-    module, _, kind = entry.parent.removeprefix("pxr.").partition(".")
-    short = entry.short.removeprefix("Create").removesuffix("Attr")
+def _attribute_of(reader: Calls, entry: Entry) -> Entry | None:
+    """The attribute that a schema class's call gets or creates, such as `CreateMassAttr`; None if it is not found."""
+    short = re.sub(r"^(Create|Get)|Attr$", "", entry.short)
     attribute = short[:1].lower() + short[1:]
-    prefix = {"UsdPhysics": "Physics", "UsdGeom": "", "UsdLux": ""}.get(module)
-    if prefix is None:
-        return ""
-    for schema in (f"{prefix}{kind}", kind):
-        for name in (attribute, f"physics:{attribute}", f"inputs:{attribute}"):
-            found = reader.entry(f"{schema}.{name}")
-            if found is not None:
-                return found.returns
+    schema = _schema_of(reader, entry.parent)
+    for name in (attribute, f"physics:{attribute}", f"inputs:{attribute}") if schema else ():
+        found = reader.entry(f"{schema}.{name}") or reader.entry(f"{schema}.drive:*:{name}")
+        if found is not None:
+            return found
+    return None
+
+
+def _schema_of(reader: Calls, kind: str) -> str:
+    """The schema of a class of pxr: `pxr.UsdPhysics.MassAPI` is "PhysicsMassAPI"; "" if it has none."""
+    module, _, short = kind.removeprefix("pxr.").partition(".")
+    for name in (f"{module.removeprefix('Usd')}{short}", short):
+        found = reader.entry(name)
+        if found is not None and found.kind == "schema":
+            return name
     return ""

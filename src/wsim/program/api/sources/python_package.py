@@ -16,10 +16,13 @@ from wsim.program.api.entry import Entry, EntryKind, Parameter, ParameterKind
 
 NUMPY = ("numpy", "numpy.linalg", "numpy.random", "numpy.fft", "numpy.polynomial", "numpy.typing", "numpy.testing")
 STANDARD = (
-    "abc", "array", "bisect", "cmath", "collections", "collections.abc", "contextlib", "copy", "dataclasses", "datetime",
-    "decimal", "enum", "fractions", "functools", "heapq", "itertools", "json", "logging", "math", "numbers", "operator",
-    "os", "os.path", "pathlib", "pprint", "random", "re", "statistics", "string", "sys", "textwrap", "time", "types",
-    "typing", "uuid", "warnings", "weakref", "zlib", "csv", "io", "hashlib", "struct", "builtins",
+    "abc", "argparse", "array", "ast", "base64", "bisect", "builtins", "calendar", "cmath", "collections",
+    "collections.abc", "colorsys", "contextlib", "copy", "csv", "dataclasses", "datetime", "decimal", "difflib", "enum",
+    "fnmatch", "fractions", "functools", "glob", "graphlib", "hashlib", "heapq", "inspect", "io", "itertools", "json",
+    "keyword", "logging", "math", "numbers", "operator", "os", "os.path", "pathlib", "pickle", "platform", "pprint",
+    "queue", "random", "re", "secrets", "shutil", "statistics", "string", "struct", "sys", "tempfile", "textwrap",
+    "threading", "time", "timeit", "tomllib", "traceback", "types", "typing", "unicodedata", "uuid", "warnings",
+    "weakref", "zlib",
 )  # fmt: skip
 _KINDS: dict[Any, ParameterKind] = {
     inspect.Parameter.POSITIONAL_ONLY: "positional",
@@ -35,9 +38,17 @@ _ARRAYS = (
     "stack", "concatenate", "vstack", "hstack", "column_stack", "zeros_like", "ones_like", "full_like", "empty_like",
     "reshape", "tile", "asarray",
 )  # fmt: skip
-_RETURNS = {f"numpy.{name}": "numpy.ndarray" for name in _ARRAYS} | {
-    "numpy.random.default_rng": "numpy.random.Generator",
-}
+_METHODS = (
+    "reshape", "astype", "copy", "ravel", "flatten", "transpose", "clip", "round", "cumsum", "cumprod", "repeat",
+    "squeeze", "swapaxes", "T",
+)  # fmt: skip
+_RETURNS = (
+    {f"numpy.ndarray.{name}": "numpy.ndarray" for name in _METHODS}
+    | {f"numpy.{name}": "numpy.ndarray" for name in _ARRAYS}
+    | {
+        "numpy.random.default_rng": "numpy.random.Generator",
+    }
+)
 
 
 def entries(modules: tuple[str, ...], source: str) -> Iterator[Entry]:
@@ -80,7 +91,7 @@ def _of_class(value: type, name: str, source: str) -> Iterator[Entry]:
         member = inspect.getattr_static(value, key, None)
         static = isinstance(member, (staticmethod, classmethod))
         if isinstance(member, (property, type(None))) or not callable(getattr(value, key, None)):
-            yield Entry(f"{name}.{key}", "property", source)
+            yield Entry(f"{name}.{key}", "property", source, returns=_RETURNS.get(f"{name}.{key}", ""))
         else:
             yield function_entry(getattr(value, key), f"{name}.{key}", source, "method", bound=not static)
 

@@ -55,7 +55,10 @@ def _attribute(schema: str, name: str, definition: Any) -> Entry:
     kind, default = "rel", None
     if found:
         kind, default = str(found.GetTypeName()), found.GetFallbackValue()
-    extra = {"default": str(default)} if default is not None else {}
+    extra: dict[str, Any] = {"default": str(default)} if default is not None else {}
+    allowed = found.GetMetadata("allowedTokens") if found else None
+    if allowed:
+        extra["allowed"] = [str(token) for token in allowed]
     return Entry(
         f"{schema}.{name.replace(INSTANCE, '*')}", "schema attribute", "schema", returns=kind,
         summary=summary(doc), doc=doc, extra=extra | ({"unit": unit(doc)} if unit(doc) else {}),
