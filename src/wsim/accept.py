@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import shutil
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -47,51 +48,55 @@ class Trajectory:
         return cls(np.asarray(found.time), np.asarray(found.body_q), ends)
 
     def distance(self, other: Trajectory) -> float:
-        """Largest distance [m] of a body at one frame, or of a particle at the end; infinite if not comparable."""
+        """Largest distance [m]; infinite if not comparable, and not a number where one is none.
+
+        Of a body at one frame, or of a point on it 1 m from its centre, which also turns; of a particle at the end.
+        """
         pairs = [(self.body_q[..., :3], other.body_q[..., :3])]
+        pairs += [(2.0 * self.body_q[..., 3:], 2.0 * other.body_q[..., 3:])]  # small angles are 2 |q - q'|
         pairs += [(end, other.particles.get(prim, end[:0])) for prim, end in self.particles.items()]
-        if any(a.shape != b.shape for a, b in pairs):
+        if self.particles.keys() != other.particles.keys() or any(a.shape != b.shape for a, b in pairs):
             return float("inf")
-        return max(float(np.linalg.norm(a - b, axis=-1).max(initial=0.0)) for a, b in pairs)
+        return float(np.max([np.linalg.norm(a - b, axis=-1).max(initial=0.0) for a, b in pairs]))
 
 
 def bare(program: str) -> str:
     """A program without its prints, and without cameras and lights named review_...; the text itself if it has none."""
-    lines = program.splitlines(keepends=True)
-    for node in reversed([node for node in ast.walk(ast.parse(program)) if isinstance(node, ast.stmt)]):
-        if not _serves_review(node):
-            continue
-        indent = lines[node.lineno - 1][: node.col_offset]
-        alone = sum(isinstance(other, ast.stmt) for other in _siblings(program, node)) <= 1
-        lines[node.lineno - 1 : node.end_lineno] = [f"{indent}pass\n"] if alone else []
-    return "".join(lines)
+    tree = ast.parse(program)
+    used = Counter(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
+    lines = program.encode().splitlines(keepends=True)  # ast counts columns in bytes
+    blocks = [block for parent in ast.walk(tree) for block in _blocks(parent)]
+    going = [(node, block) for block in blocks for node in block if _serves_review(node, used)]
+    for node, block in sorted(going, key=lambda pair: (pair[0].lineno, pair[0].col_offset), reverse=True):
+        first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
+        before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
+        alone = not before.strip() and after.strip()[:1] in (b"", b"#")
+        if alone and any(not _serves_review(other, used) for other in block):
+            lines[first : last + 1] = []
+        else:
+            lines[first : last + 1] = [before + b"pass" + after]
+    return b"".join(lines).decode()
 
 
-def _serves_review(node: ast.stmt) -> bool:
+def _blocks(parent: ast.AST) -> list[list[ast.stmt]]:
+    found = [getattr(parent, field, None) for field in ("body", "orelse", "finalbody")]
+    return [block for block in found if isinstance(block, list)]
+
+
+def _serves_review(node: ast.stmt, used: Counter[str]) -> bool:
     call = node.value if isinstance(node, ast.Expr | ast.Assign) else None
     if not isinstance(call, ast.Call):
         return False
     if isinstance(node, ast.Expr) and isinstance(call.func, ast.Name) and call.func.id == "print":
         return True
-    first = call.args[0] if call.args else None
+    if isinstance(node, ast.Assign) and not all(isinstance(to, ast.Name) and used[to.id] == 1 for to in node.targets):
+        return False  # what it is kept in is used
+    named = [*call.args[:1], *(word.value for word in call.keywords if word.arg == "name")]
     return (
         isinstance(call.func, ast.Attribute)
         and call.func.attr in _LOOKING
-        and isinstance(first, ast.Constant)
-        and str(first.value).startswith(REVIEW)
+        and any(isinstance(name, ast.Constant) and str(name.value).startswith(REVIEW) for name in named)
     )
-
-
-def _siblings(program: str, node: ast.stmt) -> list[ast.stmt]:
-    """The statements of the block that a statement stands in, itself too."""
-    for parent in ast.walk(ast.parse(program)):
-        for field in ("body", "orelse", "finalbody"):
-            block = getattr(parent, field, None)
-            if isinstance(block, list) and any(
-                (one.lineno, one.col_offset) == (node.lineno, node.col_offset) for one in block
-            ):
-                return [one for one in block if not _serves_review(one)] + [node]
-    return [node]
 
 
 def accept(
@@ -115,13 +120,28 @@ def accept(
     Returns:
         The bare world's verdict; rejected, with the finding `CheckReproduced`, if it goes another way.
     """
-    settings = settings or Settings()
-    text = (iteration / "program.py").read_text(encoding="utf-8")
-    stripped = bare(text)
-    first = Trajectory.of(iteration / "recording.rrd")
     partial = run.path / "accepted.partial"
     shutil.rmtree(partial, ignore_errors=True)
     partial.mkdir()
+    try:
+        return _confirmed(run, iteration, partial, plan, settings or Settings(), progress, earlier)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)  # once it is stamped, it has another name
+
+
+def _confirmed(
+    run: RunFolder,
+    iteration: Path,
+    partial: Path,
+    plan: Plan | None,
+    settings: Settings,
+    progress: Progress,
+    earlier: Trajectory | None,
+) -> Verdict:
+    """The verdict on the bare program, run in the folder `partial`, which becomes accepted/ if it goes the same way."""
+    text = (iteration / "program.py").read_text(encoding="utf-8")
+    stripped = bare(text)
+    first = Trajectory.of(iteration / "recording.rrd")
     verdict = Verdict.model_validate_json((iteration / "verdict.json").read_text(encoding="utf-8"))
     if earlier is not None and stripped == text:
         second = earlier
@@ -132,13 +152,11 @@ def accept(
         quiet = replace(settings, pictures=False, verify=False)
         verdict = run_program(partial / "program.py", partial, plan, quiet, progress)
         if not (partial / "recording.rrd").is_file():
-            shutil.rmtree(partial)
             return verdict
         second = Trajectory.of(partial / "recording.rrd")
     apart = first.distance(second)
     found = _reproduced(apart, exact=_on_cpu(settings))
     if verdict.status != "accepted" or not found.passed:
-        shutil.rmtree(partial)
         findings = [*verdict.findings, found]
         failed = sum(not finding.passed for finding in findings)
         return Verdict(status="rejected", summary=f"The bare program: {failed} findings fail.", findings=findings)

@@ -44,6 +44,7 @@ class Attempt:
         verdict: Of that pass.
         earlier: The trajectory of the pass without pictures, where there was one.
         review: What the reviewer saw, as text.
+        seen: The differences from the plan that a reviewer's model saw; None: none looked.
         repair: What the judge wants mended first, as text.
     """
 
@@ -53,6 +54,7 @@ class Attempt:
     verdict: Verdict = field(default_factory=lambda: Verdict(status="blocked", summary="not tried"))
     earlier: Trajectory | None = None
     review: str = ""
+    seen: list[str] | None = None
     repair: str = ""
 
     @property

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 
+REFERENCE = "reference.jpg"  # the small picture that the planner saw, in the run's folder
+
+
 @dataclass
 class Generated:
     """A finished run."""
@@ -74,18 +77,22 @@ def generate(
 
     Raises:
         NotUnderstood: If the builtin planner cannot ground the prompt; nothing is left behind.
-        UserError: If a model cannot be reached by its name.
+        UserError: If a model cannot be reached by its name, or the picture is none; nothing is left behind.
     """
+    from wsim.agents.models import reach
     from wsim.report import write as write_report
 
     options = options or Options()
+    if options.replay is None:
+        reach(options.models)
+    reference = _reference(options)
     if plan is None and options.models.planner == BUILTIN:
         plan = make_plan(prompt)  # refused before there is a folder
     run = RunFolder.create(runs, plan.title if plan else prompt)
     crew = _crew(run, options, progress)
     _note_inputs(run, prompt, options)
     try:
-        plan = _plan(run, crew, prompt, plan, options.image)
+        plan = _plan(run, crew, prompt, plan, reference)
         if not approve(plan):
             run.record(status="not approved", **crew.facts())
             return Generated(run, plan, None, None)
@@ -131,34 +138,47 @@ def _candidates(crew: Crew, best: Attempt, undone: Sequence[Attempt], plan: Plan
 
 def _try(run: RunFolder, crew: Crew, plan: Plan, options: Options, best: Attempt | None, text: str) -> Attempt:
     """One program through all passes, the review, the judge, and acceptance."""
-    from wsim.accept import accept
     from wsim.attempt import Reached, attempt
+    from wsim.judge.verdict import Verdict
     from wsim.pipeline import conclude
     from wsim.tools.iterations import add
 
-    progress = crew.workspace.progress
     folder = add(run, text, best.program if best else None)
-    tried = attempt(folder, plan, options.settings, progress, cheap_first=crew.has("coder"))
-    if tried.verdict.status == "accepted":
-        crew.look(tried, plan)
-    crew.judge(tried, plan)
-    if tried.verdict.status == "accepted" and options.confirm:
-        tried.verdict = accept(run, folder, plan, options.settings, progress, tried.earlier)
-    elif tried.verdict.status == "accepted":
-        run.accept(folder)
+    tried = attempt(folder, plan, options.settings, crew.workspace.progress, cheap_first=crew.has("coder"))
+    try:
+        _assess(run, crew, plan, options, tried)
+    except BudgetError as error:  # what was tried is kept, and what was found of it
+        run.record(cause=str(error))
+        if tried.verdict.status == "accepted":
+            summary = f"{error}, before it was confirmed. {tried.verdict.summary}"
+            tried.verdict = Verdict(status="blocked", summary=summary, findings=tried.verdict.findings)
     if tried.verdict.status != "accepted" and tried.reached == Reached.ALL:
         tried.reached = Reached.REVIEW
     conclude(folder, tried.verdict)
     return tried
 
 
-def _plan(run: RunFolder, crew: Crew, prompt: str, plan: Plan | None, image: Path | None) -> Plan:
+def _assess(run: RunFolder, crew: Crew, plan: Plan, options: Options, tried: Attempt) -> None:
+    """The review, the judge, and acceptance of a program that was tried."""
+    from wsim.accept import accept
+
+    if tried.verdict.status == "accepted":
+        crew.look(tried, plan)
+    crew.judge(tried, plan)
+    if tried.verdict.status == "accepted" and options.confirm:
+        tried.verdict = accept(run, tried.folder, plan, options.settings, crew.workspace.progress, tried.earlier)
+    elif tried.verdict.status == "accepted":
+        run.accept(tried.folder)
+
+
+def _plan(run: RunFolder, crew: Crew, prompt: str, plan: Plan | None, reference: bytes | None) -> Plan:
     """The plan, kept in the run's folder with its drawing."""
     from wsim.plan.drawing.picture import draw_picture
 
     if plan is None:
-        pictures, name = _reference(run, image)
-        plan = crew.plan(prompt, pictures, name)
+        if reference is not None:
+            (run.path / REFERENCE).write_bytes(reference)
+        plan = crew.plan(prompt, [reference] if reference else [], REFERENCE if reference else "")
         run.record(title=plan.title)
     else:
         crew.desk.transcript.builtin("planner", prompt, plan.model_dump(mode="json"))
@@ -231,15 +251,13 @@ def _blocked(
     return verdict_of(best, cause)
 
 
-def _reference(run: RunFolder, image: Path | None) -> tuple[list[bytes], str]:
-    """A reference picture as a small JPEG, with a copy in the run's folder."""
-    if image is None:
-        return [], ""
+def _reference(options: Options) -> bytes | None:
+    """A reference picture as a small JPEG; the recorded one, byte for byte, in a replay."""
+    if options.image is None:
+        return None
     from wsim.agents.pictures import small_jpeg
 
-    data = small_jpeg(image)
-    (run.path / "reference.jpg").write_bytes(data)
-    return [data], "reference.jpg"
+    return small_jpeg(options.image) if options.replay is None else options.image.read_bytes()
 
 
 def make_plan(prompt: str) -> Plan:

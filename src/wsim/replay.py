@@ -50,16 +50,15 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
         UserError: If the folder is no such run.
     """
     from wsim.agents.relay import Replay
-    from wsim.generate import Options, generate
+    from wsim.generate import REFERENCE, Options, generate
     from wsim.plan.store import load
 
-    facts = RunFolder.open(recorded).facts()
-    if "models" not in facts or "budget" not in facts:
-        raise UserError(f"{recorded}: run.json lacks models and budget; give a run that wsim generate made")
+    recorded = RunFolder.open(recorded).path
+    facts = _facts(recorded)
     models = Models(**{role: facts["models"].get(role, BUILTIN) for role in ROLES})
     settings = Settings(**_known(Settings, facts.get("settings", {})) | ({"device": device} if device else {}))
     answers = Replay.of(recorded)
-    reference = recorded / "reference.jpg"
+    reference = recorded / REFERENCE
     options = Options(
         settings=settings,
         models=models,
@@ -68,12 +67,24 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
         confirm=facts.get("confirm", True),
         replay=answers,
     )
-    plan = load(recorded / "plan.json") if models.planner == BUILTIN else None
+    given = not any(exchange.role == "planner" for exchange in answers.left)  # the builtin planner's, or a file's
+    plan = load(recorded / "plan.json") if given and (recorded / "plan.json").is_file() else None
     generated = generate(facts["prompt"], runs, options, plan=plan, progress=progress)
     if answers.left:
         answers.divergences.append(f"{len(answers.left)} recorded exchanges were not asked for")
     differing, same = _compare(recorded, generated.run.path)
     return Replayed(generated, answers.divergences, differing, same)
+
+
+def _facts(recorded: Path) -> dict[str, Any]:
+    try:
+        facts = RunFolder(recorded).facts()
+    except ValueError as error:
+        raise UserError(f"{recorded}: run.json: not JSON: {error}") from error
+    missing = [name for name in ("prompt", "models", "budget") if name not in facts]
+    if missing:
+        raise UserError(f"{recorded}: run.json lacks {', '.join(missing)}; give a run that wsim generate made")
+    return facts
 
 
 def _known(kind: Any, given: dict[str, Any]) -> dict[str, Any]:

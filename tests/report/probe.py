@@ -1,4 +1,4 @@
-"""Opens a page in headless Chromium and asks it what it shows."""
+"""Reads a page: its elements, and what headless Chromium shows of it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 from html import unescape
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -36,12 +37,56 @@ addEventListener("load", () => {  // which waits for the video's first frame
     video: video && {duration: video.duration, width: video.videoWidth, state: video.readyState,
                      muted: video.muted, loop: video.loop, error: video.error && video.error.message},
     broken: images.filter(image => !image.naturalWidth).length, images: images.length,
+    ending: box(document.querySelector("#ending")), why: box(document.querySelector("#why")),
+    attempts: [...document.querySelectorAll(".attempt")].map(row => row.innerText),
+    shades: ["added", "removed", "same"].map(kind => {
+      const line = document.querySelector(".diff ." + kind);
+      return line && getComputedStyle(line).backgroundColor;
+    }),
     charts: document.querySelectorAll("svg").length, page: document.body.innerText,
   });
   document.body.append(out);
 });
 </script>
 """
+
+
+class Elements(HTMLParser):
+    """Every element's tag and attributes, and the page's text."""
+
+    def __init__(self, page: Path) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.data: list[str] = []
+        self.html = page.read_text(encoding="utf-8")
+        self.feed(self.html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.data.append(data)
+
+    @property
+    def text(self) -> str:
+        """All text as it stands in the page."""
+        return "".join(self.data)
+
+    @property
+    def words(self) -> str:
+        """All text, elements and words one space apart."""
+        return " ".join(" ".join(self.data).split())
+
+    def all(self, tag: str, **wanted: str) -> list[dict[str, str | None]]:
+        """Attributes of the elements of a tag whose attributes contain these words."""
+        return [
+            attrs
+            for name, attrs in self.found
+            if name == tag and all(word in (attrs.get(key.rstrip("_")) or "").split() for key, word in wanted.items())
+        ]
+
+    def links(self) -> list[str]:
+        return [attrs[key] or "" for _, attrs in self.found for key in ("src", "href", "poster") if key in attrs]
 
 
 def probe(page: Path, profile: Path, width: int = 1280, policy: bool = True) -> dict[str, Any]:

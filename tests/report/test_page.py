@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import importlib.util
 import re
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -21,47 +20,10 @@ assert _spec is not None and _spec.loader is not None
 browser = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(browser)
 
+Elements = browser.Elements
 needs_chromium = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium to open the page with")
 BLOCK_LINE, BALL_LINE = 11, 12
 HOSTILE = "</blockquote><script>document.title = 'owned'</script><img src=x onerror=alert(1)>"
-
-
-class Elements(HTMLParser):
-    """Every element's tag and attributes, and the page's text."""
-
-    def __init__(self, page: Path) -> None:
-        super().__init__()
-        self.found: list[tuple[str, dict[str, str | None]]] = []
-        self.data: list[str] = []
-        self.html = page.read_text(encoding="utf-8")
-        self.feed(self.html)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.found.append((tag, dict(attrs)))
-
-    def handle_data(self, data: str) -> None:
-        self.data.append(data)
-
-    @property
-    def text(self) -> str:
-        """All text as it stands in the page."""
-        return "".join(self.data)
-
-    @property
-    def words(self) -> str:
-        """All text, elements and words one space apart."""
-        return " ".join(" ".join(self.data).split())
-
-    def all(self, tag: str, **wanted: str) -> list[dict[str, str | None]]:
-        """Attributes of the elements of a tag whose attributes contain these words."""
-        return [
-            attrs
-            for name, attrs in self.found
-            if name == tag and all(word in (attrs.get(key.rstrip("_")) or "").split() for key, word in wanted.items())
-        ]
-
-    def links(self) -> list[str]:
-        return [attrs[key] or "" for _, attrs in self.found for key in ("src", "href", "poster") if key in attrs]
 
 
 def test_the_reason_comes_first(rejected: Path) -> None:

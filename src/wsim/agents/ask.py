@@ -24,7 +24,7 @@ T = TypeVar("T")
 RETRIES = 4  # answers that are sent back with what is wrong with them
 CALLS = 10  # of tools, for one answer; then they answer that it is time to
 ROUNDS = 8  # of calls, for one answer
-_FENCE = re.compile(r"```(?:json|JSON)?[ \t]*\n(.*?)\n[ \t]*```", re.DOTALL)
+_FENCE = re.compile(r"```[ \t]*(\w*)[ \t\r]*$")
 
 
 class UnusableError(UserError):
@@ -65,7 +65,7 @@ class Desk:
             BudgetError: If tokens or time ran out.
         """
         from pydantic_ai import Agent, BinaryContent, ModelRetry, TextOutput
-        from pydantic_ai.exceptions import UnexpectedModelBehavior, UsageLimitExceeded
+        from pydantic_ai.exceptions import ContentFilterError, UnexpectedModelBehavior, UsageLimitExceeded
         from pydantic_ai.usage import UsageLimits
 
         from wsim.agents.relay import Relay
@@ -99,9 +99,13 @@ class Desk:
             return agent.run_sync(content if pictures else request, usage_limits=limits, infer_name=False).output
         except (ModelError, BudgetError):
             raise
+        except ContentFilterError as error:
+            raise ModelError("refused", "the model's provider withheld its answer", role) from error
         except UsageLimitExceeded as error:
+            model.forget()
             raise ModelError("unusable", f"it went on calling tools: {error}", role) from error
         except UnexpectedModelBehavior as error:
+            model.forget()
             last = wrong[-1] if wrong else " ".join(str(error).split())[:300]
             raise ModelError("unusable", f"{len(wrong)} answers could not be used; the last: {last}", role) from error
 
@@ -145,13 +149,12 @@ def object_in(text: str) -> dict[str, Any]:
     Raises:
         UnusableError: If there is none, or it is not whole.
     """
-    fenced = _FENCE.findall(text)
-    body = max(fenced, key=len) if fenced else text[text.find("{") : text.rfind("}") + 1]
+    body = max(_fenced(text), key=len, default="") or _bare(text)
     if not body.strip():
         raise UnusableError("no JSON object in the answer; give one, between ```json and ```")
     try:
         found = json.loads(body)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         end = (
             " (it breaks off: the answer was cut; give a shorter one)" if "{" in text and "}" not in text[-40:] else ""
         )
@@ -159,3 +162,26 @@ def object_in(text: str) -> dict[str, Any]:
     if not isinstance(found, dict):
         raise UnusableError("the answer must be one JSON object")
     return found
+
+
+def _fenced(text: str) -> list[str]:
+    """What stands in the fences of an answer that are of JSON, or say nothing."""
+    found: list[str] = []
+    inside: list[str] | None = None
+    language = ""
+    for line in text.split("\n"):
+        if inside is not None and line.lstrip().startswith("```"):
+            if language in ("", "json"):
+                found.append("\n".join(inside))
+            inside = None
+        elif inside is not None:
+            inside.append(line)
+        elif opening := _FENCE.search(line):
+            inside, language = [], opening[1].lower()
+    return found
+
+
+def _bare(text: str) -> str:
+    """From the first brace to the last; to the end, where none closes."""
+    begin, end = text.find("{"), text.rfind("}") + 1
+    return "" if begin < 0 else text[begin : end if end > begin else len(text)]

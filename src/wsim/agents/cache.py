@@ -24,6 +24,12 @@ def get(key: str) -> dict[str, Any] | None:
     return found if isinstance(found, dict) and "text" in found else None
 
 
+def drop(key: str) -> None:
+    """Forget a reply."""
+    with contextlib.suppress(OSError):
+        (folder() / f"{key}.json").unlink(missing_ok=True)
+
+
 def put(key: str, reply: dict[str, Any]) -> None:
     """Keep a reply; where nothing can be written, nothing is kept."""
     path = folder() / f"{key}.json"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,6 +21,10 @@ TOOLS = (
     "search_api", "show_api", "search_skills", "show_skill", "search_catalogue", "show_asset", "query_recording",
 )  # fmt: skip
 _PROGRAM = re.compile(r"^## A complete program\n.*?(?=^## |\Z)", re.DOTALL | re.MULTILINE)
+NOT_HIS = ("objectives", "repairing")  # the plan says what must happen; how to repair is in his prompt
+SKILL_OF = {"controller": "control-functions", "camera": "cameras-and-light", "time step": "time-step-and-stability"}
+CANNOT = re.compile(r"^\W*CANNOT\W+(.+)", re.DOTALL)
+REASON = 400  # characters of what edits are for
 PROBLEMS = 8  # of a patched program that are sent back at once
 
 
@@ -46,8 +51,19 @@ class Situation:
     tried: Mapping[str, int] = field(default_factory=dict)
 
 
-def repair(desk: Desk, situation: Situation, plan: Plan | None, workspace: Workspace) -> str:
+@dataclass(frozen=True)
+class Patched:
+    """A program with edits made, and what they are for in the coder's words; or why there can be none."""
+
+    program: str
+    why: str
+
+
+def repair(desk: Desk, situation: Situation, plan: Plan | None, workspace: Workspace) -> Patched:
     """The program with the coder's edits made.
+
+    Returns:
+        The new program; an empty one where the coder says that none can keep to the plan and pass.
 
     Raises:
         ModelError: If no answer became a program that validates.
@@ -55,8 +71,12 @@ def repair(desk: Desk, situation: Situation, plan: Plan | None, workspace: Works
     """
     from wsim.tools import TOOLS as ALL
 
-    def accept(answer: str) -> str:
-        return _patched(answer, situation, plan)
+    def accept(answer: str) -> Patched:
+        given_up = CANNOT.match(answer)
+        if given_up:
+            return Patched("", " ".join(given_up[1].split())[:REASON])
+        why = " ".join(answer.partition("<<<<<")[0].split())[:REASON]
+        return Patched(_patched(answer, situation, plan), why)
 
     return desk.ask(
         "coder", request(situation, pick(situation)), accept, tools=[ALL[name] for name in TOOLS], workspace=workspace
@@ -74,9 +94,10 @@ def _patched(answer: str, situation: Situation, plan: Plan | None) -> str:
     text = apply(situation.program, parse(answer))
     if text == situation.program:
         raise UnusableError("the edits change nothing; replace by something else than what is there")
-    if text in situation.tried:
-        number = situation.tried[text]
-        raise UnusableError(f"this very program was iteration {number}, and it was not better; try another")
+    same = [number for program, number in situation.tried.items() if _runs_alike(program, text)]
+    if same:
+        number = same[0]
+        raise UnusableError(f"but for comments this is the program of iteration {number}; try another, or say CANNOT")
     problems = validate(text, plan)
     if problems:
         shown = "\n".join(problem.sentence for problem in problems[:PROBLEMS])
@@ -84,12 +105,24 @@ def _patched(answer: str, situation: Situation, plan: Plan | None) -> str:
     return text
 
 
-def pick(situation: Situation) -> list[Any]:
-    """The skills for a situation: what mends the checks that fail, then what the plan is about."""
-    from wsim.skills import pick as by_words
+def _runs_alike(one: str, other: str) -> bool:
+    """Whether two programs differ in comments and layout alone."""
+    try:
+        return ast.dump(ast.parse(one)) == ast.dump(ast.parse(other))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return one == other
 
-    words = "\n".join((*situation.verdict, *situation.plan))
-    return [picked.skill for picked in by_words(words, SKILLS)]
+
+def pick(situation: Situation) -> list[Any]:
+    """The skills for a situation: what mends that which fails, then what the plan is about."""
+    from wsim.skills import pick as by_words
+    from wsim.skills import skills
+
+    wanted = situation.repair or "\n".join(line for line in situation.verdict if not line.startswith("passed:"))
+    found = [skill for skill in skills() if skill.name == SKILL_OF.get(situation.repair.partition(" (")[0])]
+    for words in (wanted, "\n".join(situation.plan)):
+        found += [picked.skill for picked in by_words(words, SKILLS + 1) if picked.skill.name not in NOT_HIS][:SKILLS]
+    return list({skill.name: skill for skill in found}.values())[:SKILLS]
 
 
 def request(situation: Situation, skills: Sequence[Any]) -> str:

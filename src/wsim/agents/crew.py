@@ -12,7 +12,8 @@ from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN
 from wsim.attempt import Attempt, Reached
 from wsim.judge.verdict import Verdict
-from wsim.tools import TOOLS, Workspace
+from wsim.tools import Workspace
+from wsim.tools.plan import plan_lines
 from wsim.tools.verdict import verdict_lines
 
 if TYPE_CHECKING:
@@ -30,12 +31,15 @@ class Crew:
         workspace: The run's folder.
         notes: What was done without a model that failed, a line each.
         skills: What was picked for each repair, by the iteration that it made.
+        tried: All programs that a repair started from or left behind, with their iterations.
     """
 
     desk: Desk
     workspace: Workspace
     notes: list[str] = field(default_factory=list)
     skills: dict[int, list[str]] = field(default_factory=dict)
+    tried: dict[str, int] = field(default_factory=dict)
+    reasons: dict[int, str] = field(default_factory=dict)  # of each patch, in the coder's words
 
     def has(self, role: str) -> bool:
         """Whether a model fills a role."""
@@ -62,26 +66,30 @@ class Crew:
         seen = None
         if self.has("reviewer"):
             try:
-                seen = reviewer.review(self.desk, plan, tried.folder, self._plan_lines())
-                tried.review = seen.text
+                seen = reviewer.review(self.desk, plan, tried.folder, plan_lines(plan))
+                tried.review, tried.seen = seen.text, [one.what for one in seen.differences]
             except ModelError as error:
                 self.notes.append(f"iteration {tried.number} was reviewed by facts alone: {error}")
         tried.review = tried.review or "\n".join(reviewer.facts(tried.folder))
         reviewer.keep(tried.folder, seen, self.desk.models["reviewer"] if seen else BUILTIN)
 
     def judge(self, tried: Attempt, plan: Plan) -> None:
-        """Let the judge's model name what to mend, or object. Checks that failed stay failed."""
-        if not self.has("judge") or tried.reached < Reached.PHYSICS:
+        """Let the judge's model name what to mend, or object. Checks that failed stay failed.
+
+        Where every check passed and a reviewer saw no difference there is nothing to ask.
+        """
+        settled = tried.verdict.status == "accepted" and tried.seen is not None and not tried.seen
+        if not self.has("judge") or tried.reached < Reached.PHYSICS or settled:
             return
+        passed = tried.verdict.status == "accepted"
         try:
             held = judge.opinion(
-                self.desk, plan, self._plan_lines(), verdict_lines(tried.folder / "verdict.json"), tried.review
+                self.desk, plan, plan_lines(plan), verdict_lines(tried.folder / "verdict.json"), tried.review, passed
             )
         except ModelError as error:
             self.notes.append(f"iteration {tried.number} was judged by the checks alone: {error}")
             return
         tried.repair = held.repair.sentence if held.repair else ""
-        passed = tried.verdict.status == "accepted"
         tried.verdict = judge.decide(tried.verdict, held)
         if passed and tried.verdict.status != "accepted":
             tried.reached = Reached.REVIEW
@@ -95,29 +103,30 @@ class Crew:
             ModelError: If no answer became a program.
             BudgetError: If tokens or time ran out.
         """
+        self.tried |= {tried.program: tried.number for tried in (best, *undone)}
         situation = coder.Situation(
             program=best.program,
             verdict=[*verdict_lines(best.folder / "verdict.json"), *_quoted(best)],
-            plan=self._plan_lines(),
+            plan=plan_lines(plan),
             repair=best.repair,
             review=best.review,
-            history=[_told(tried) for tried in undone],
-            tried={tried.program: tried.number for tried in (best, *undone)},
+            history=[_told(tried, self.reasons.get(tried.number, "")) for tried in undone],
+            tried=self.tried,
         )
         number = max(tried.number for tried in (best, *undone)) + 1
         self.skills[number] = [skill.name for skill in coder.pick(situation)]
-        return coder.repair(self.desk, situation, plan, self.workspace)
+        made = coder.repair(self.desk, situation, plan, self.workspace)
+        if not made.program:
+            raise ModelError("gave up", made.why, "coder")
+        self.reasons[number] = made.why
+        return made.program
 
     def facts(self) -> dict[str, Any]:
         """For run.json."""
         skills = {f"{number:02d}": names for number, names in self.skills.items()}
-        return {"models": self.desk.models.facts(), "usage": self.desk.ledger.facts(), "skills": skills} | (
-            {"notes": self.notes} if self.notes else {}
-        )
-
-    def _plan_lines(self) -> list[str]:
-        return TOOLS["read_plan"](self.workspace).text.splitlines()
-
+        reasons = {f"{number:02d}": why for number, why in self.reasons.items()}
+        facts = {"models": self.desk.models.facts(), "usage": self.desk.ledger.facts(), "skills": skills}
+        return facts | {"reasons": reasons} | ({"notes": self.notes} if self.notes else {})
 
 def _quoted(tried: Attempt) -> list[str]:
     """The lines of the program that failed findings point at."""
@@ -130,13 +139,14 @@ def _quoted(tried: Attempt) -> list[str]:
     return list(found.values())
 
 
-def _told(tried: Attempt) -> str:
+def _told(tried: Attempt, why: str) -> str:
     """An attempt that was undone, as the coder reads of it."""
     path = tried.folder / "patch.diff"
     patch = path.read_text(encoding="utf-8").splitlines()[2:] if path.is_file() else []
     changed = [line for line in patch if line[:1] in "+-"][:SHOWN_DIFF]
     failed = "; ".join(dict.fromkeys(f"{f.check}: {f.message}" for f in tried.verdict.failures[:4]))
-    return "\n".join([f"iteration {tried.number}, it failed at {tried.reached.name.lower()}: {failed}", *changed])
+    head = f"iteration {tried.number}: {why} It failed at {tried.reached.name.lower()}: {failed}"
+    return "\n".join([head, *changed])
 
 
 def verdict_of(best: Attempt, cause: str) -> Verdict:

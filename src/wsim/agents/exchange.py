@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from pydantic_ai.models import ModelRequestParameters
 
 Message = dict[str, Any]
+LONGEST = 200_000  # characters of a reply that are kept: no plan, patch or review comes near
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,7 @@ def asked(messages: list[ModelMessage], parameters: ModelRequestParameters) -> A
         instructions = getattr(message, "instructions", None)
         if instructions and not plain:
             plain.append({"role": "system", "text": instructions})
-        for part in message.parts:
-            plain.append(_part(part, pictures))
+        plain += [_part(part, pictures) for part in message.parts]
     tools = [
         {"name": tool.name, "description": tool.description, "parameters": tool.parameters_json_schema}
         for tool in (*parameters.function_tools, *parameters.output_tools)
@@ -67,7 +67,7 @@ def _part(part: Any, pictures: dict[str, bytes]) -> Message:
         return {"role": "model", "call": part.tool_name, "arguments": _arguments(part.args)}
     if kind == "tool-return":
         return {"role": "tool", "name": part.tool_name, "text": part.model_response_str()}
-    if kind == "retry-prompt":
+    if kind in ("retry-prompt", "retry-feedback"):
         return {"role": "retry", "text": part.model_response()}
     return {"role": "model", "other": kind}
 
@@ -91,24 +91,35 @@ def _arguments(given: Any) -> Any:
         return given
     try:
         return json.loads(given)
-    except ValueError:
+    except (ValueError, RecursionError):
         return given
 
 
 def said(response: ModelResponse) -> dict[str, Any]:
-    """A reply as plain data."""
-    texts = [part.content for part in response.parts if part.part_kind == "text"]
+    """A reply as plain data: its text and its calls, without what the model thought; cut where it is endless."""
+    text = "\n".join(part.content for part in response.parts if part.part_kind == "text")
     calls = [
-        {"name": part.tool_name, "arguments": part.args, "id": part.tool_call_id}
+        {"name": _clean(part.tool_name), "arguments": _sent(part.args), "id": _clean(part.tool_call_id)}
         for part in response.parts
         if part.part_kind == "tool-call"
     ]
-    reply: dict[str, Any] = {"text": "\n".join(texts)}
+    reply: dict[str, Any] = {"text": _clean(text)}
     if calls:
         reply["calls"] = calls
-    if response.finish_reason not in (None, "stop", "tool_call"):
+    if len(text) > LONGEST:
+        reply["finish"] = "length"
+    elif response.finish_reason not in (None, "stop", "tool_call"):
         reply["finish"] = response.finish_reason
     return reply
+
+
+def _sent(arguments: Any) -> Any:
+    return _clean(arguments) if isinstance(arguments, str) else arguments
+
+
+def _clean(text: str) -> str:
+    """A text that can be written as UTF-8, not longer than any answer need be."""
+    return text[:LONGEST].encode("utf-8", "replace").decode("utf-8")
 
 
 def response_of(reply: dict[str, Any], model: str, usage: dict[str, int]) -> ModelResponse:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-Failure = Literal["timeout", "rate limit", "server", "connection", "refused", "unusable", "end of transcript"]
+Failure = Literal[
+    "timeout", "rate limit", "server", "connection", "refused", "unusable", "gave up", "end of transcript"
+]
 AGAIN: frozenset[str] = frozenset({"timeout", "rate limit", "server", "connection"})
 
 
@@ -21,6 +23,11 @@ class ModelError(Exception):
         self.kind: Failure = kind
         self.role = role
 
+    def __str__(self) -> str:
+        """What happened, and to whom, where that is known."""
+        message = super().__str__()
+        return f"the {self.role}'s model: {self.kind}: {message}" if self.role else message
+
 
 def failure(error: BaseException) -> ModelError:
     """What a client's exception means; anything unknown is the server's."""
@@ -28,7 +35,8 @@ def failure(error: BaseException) -> ModelError:
 
     text = " ".join(str(error).split())[:300] or type(error).__name__
     if isinstance(error, TimeoutError | exceptions.ModelTimeoutError | exceptions.ModelRequestTimeout):
-        return ModelError("timeout", text)
+        said = str(error).strip()
+        return ModelError("timeout", text if said else "no answer in time; --model-timeout gives it more")
     if isinstance(error, exceptions.ModelHTTPError):
         if error.status_code == 429:
             return ModelError("rate limit", text)

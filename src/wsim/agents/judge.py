@@ -57,8 +57,18 @@ class Opinion(BaseModel):
     objections: list[Objection] = Field(default_factory=list, max_length=10)
 
 
-def opinion(desk: Desk, plan: Plan, plan_lines: Sequence[str], verdict_lines: Sequence[str], seen: str) -> Opinion:
+def opinion(
+    desk: Desk, plan: Plan, plan_lines: Sequence[str], verdict_lines: Sequence[str], seen: str, passed: bool
+) -> Opinion:
     """Ask the judge's model.
+
+    Args:
+        desk: Asks it.
+        plan: What the world is to be.
+        plan_lines: The same, to read.
+        verdict_lines: What the checks found.
+        seen: The review; empty if nobody looked.
+        passed: Every check passed, so that only an objection can keep the world back.
 
     Raises:
         ModelError: If no answer is an opinion.
@@ -72,10 +82,10 @@ def opinion(desk: Desk, plan: Plan, plan_lines: Sequence[str], verdict_lines: Se
             "# Review", review,
         ]
     )  # fmt: skip
-    return desk.ask("judge", request, lambda text: _read(text, names))
+    return desk.ask("judge", request, lambda text: _read(text, names, passed))
 
 
-def _read(text: str, names: set[str]) -> Opinion:
+def _read(text: str, names: set[str], passed: bool) -> Opinion:
     try:
         found = Opinion.model_validate(object_in(text))
     except ValidationError as error:
@@ -87,6 +97,8 @@ def _read(text: str, names: set[str]) -> Opinion:
             raise UnusableError(
                 f"objections: the plan has no object {objection.object!r}; it has {', '.join(sorted(names))}"
             )
+    if not found.accept and not found.objections and passed:
+        raise UnusableError("every check passed: accept, or object to an object of the plan; a repair is not enough")
     if not found.accept and not found.objections and found.repair is None:
         raise UnusableError("not accepted, and neither a repair nor an objection; say what is wrong")
     return found

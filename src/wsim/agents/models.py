@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -74,10 +75,13 @@ def _configured(path: Path) -> dict[str, Any]:
     if not path.is_file():
         return {}
     try:
-        found = tomllib.loads(path.read_text(encoding="utf-8")).get("models", {})
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        whole = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
         raise UserError(f"{path}: {error}") from error
-    unknown = [key for key in found if key not in ("model", *ROLES)] if isinstance(found, dict) else ["models"]
+    found = whole.pop("models", {})
+    if whole or not isinstance(found, dict):
+        raise UserError(f"{path}: it has one table, [models]; not {next(iter(whole), 'models = ...')!r}")
+    unknown = [key for key in found if key not in ("model", *ROLES)]
     if unknown:
         raise UserError(f"{path}: [models] knows model, {', '.join(ROLES)}; not {unknown[0]!r}")
     return found
@@ -86,9 +90,26 @@ def _configured(path: Path) -> dict[str, Any]:
 def _check(name: str, role: str) -> None:
     if name == BUILTIN:
         return
-    model, _, url = name.partition("@")
-    if (url and not url.startswith(("http://", "https://"))) or not model or (not url and ":" not in model):
+    model, url = _parted(name)
+    if not model.strip(":") or (not url and ":" not in model):
         raise UserError(f"model of the {role}: {name!r} is none; {_HELP}")
+
+
+def _parted(name: str) -> tuple[str, str]:
+    """A model and the URL of its server, empty if it has none; the name of a model may have an @ of its own."""
+    model, url = re.fullmatch(r"(.*?)(?:@(https?://.*))?", name, re.DOTALL).groups(default="")  # type: ignore[union-attr]
+    return model, url
+
+
+def reach(models: Models) -> None:
+    """Look whether every model can be reached by its name, before a run's folder is made; nothing is asked.
+
+    Raises:
+        UserError: If one cannot: no such provider, or it lacks its key.
+    """
+    for role in ROLES:
+        if models[role] != BUILTIN:
+            connect(models[role], role)
 
 
 def connect(name: str, role: str) -> Model:
@@ -100,7 +121,7 @@ def connect(name: str, role: str) -> Model:
     from pydantic_ai.exceptions import UserError as ModelUserError
     from pydantic_ai.models import infer_model
 
-    model, _, url = name.partition("@")
+    model, url = _parted(name)
     base = os.environ.get("OPENAI_BASE_URL")
     if not url and base and model.startswith("openai:"):
         model, url = model.removeprefix("openai:"), base

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import time
 from collections import deque
 from collections.abc import Callable
@@ -21,6 +22,8 @@ from wsim.agents.exchange import Asked, asked, response_of, said
 from wsim.agents.failures import AGAIN, ModelError, failure
 from wsim.agents.transcript import Exchange, Transcript, read
 
+Reply = dict[str, Any]
+Usage = dict[str, int]
 LONGEST_PAUSE = 30.0  # between two attempts [s]
 
 
@@ -85,6 +88,7 @@ class Relay(WrapperModel):
         super().__init__(wrapped if wrapped is not None else _absent())
         self.name, self.role, self.transcript, self.ledger, self.replay = name, role, transcript, ledger, replay
         self.sleep = sleep
+        self._kept: list[str] = []
 
     async def request(
         self,
@@ -102,16 +106,23 @@ class Relay(WrapperModel):
         if self.replay is not None:
             return self._replayed(request)
         key = request.digest(self.name)
+        self._kept.append(key)
         known = cache.get(key)
         if known is not None:
             self.ledger.account(self.role).cached += 1
             self.transcript.add(self.role, self.name, request, reply=known, cached=True)
             return response_of(known, self.name, {})
-        response = await self._live(request, messages, model_settings, model_request_parameters)
-        cache.put(key, said(response))
-        return response
+        reply, usage = await self._live(request, messages, model_settings, model_request_parameters)
+        if "finish" not in reply and (reply["text"] or "calls" in reply):  # what was cut or withheld is asked again
+            cache.put(key, reply)
+        return response_of(reply, self.name, usage)  # as the cache and a replay give it, so that all go on alike
 
-    async def _live(self, request: Asked, messages: Any, settings: Any, parameters: Any) -> ModelResponse:
+    def forget(self) -> None:
+        """Drop the replies of this conversation from the cache: they came to nothing."""
+        for key in self._kept:
+            cache.drop(key)
+
+    async def _live(self, request: Asked, messages: Any, settings: Any, parameters: Any) -> tuple[Reply, Usage]:
         budget, account = self.ledger.budget, self.ledger.account(self.role)
         for attempt in range(1, budget.attempts + 1):
             self.ledger.check()
@@ -131,13 +142,15 @@ class Relay(WrapperModel):
                     raise ModelError(failed.kind, str(failed), self.role) from error
                 await self.sleep(min(2.0**attempt, LONGEST_PAUSE, max(self.ledger.seconds_left, 0.0)))
                 continue
-            self._charge(request, response, time.monotonic() - started)
-            return response
+            return self._charge(request, response, time.monotonic() - started)
         raise AssertionError("unreachable")
 
-    def _charge(self, request: Asked, response: ModelResponse, seconds: float) -> None:
+    def _charge(self, request: Asked, response: ModelResponse, seconds: float) -> tuple[Reply, Usage]:
         account = self.ledger.account(self.role)
+        reply = said(response)
         usage = {"input_tokens": response.usage.input_tokens, "output_tokens": response.usage.output_tokens}
+        if not any(usage.values()):  # a server that does not count
+            usage = {"input_tokens": _tokens(request.messages, request.tools), "output_tokens": _tokens(reply)}
         account.requests += 1
         account.input_tokens += usage["input_tokens"]
         account.output_tokens += usage["output_tokens"]
@@ -145,7 +158,8 @@ class Relay(WrapperModel):
         price = _price(response)
         if price is not None:
             account.dollars = (account.dollars or 0.0) + price
-        self.transcript.add(self.role, self.name, request, reply=said(response), usage=usage, seconds=seconds)
+        self.transcript.add(self.role, self.name, request, reply=reply, usage=usage, seconds=seconds)
+        return reply, usage
 
     def _replayed(self, request: Asked) -> ModelResponse:
         assert self.replay is not None
@@ -190,6 +204,11 @@ def _text(message: dict[str, Any]) -> str:
     if isinstance(content, list):
         return "\n".join(one if isinstance(one, str) else str(one) for one in content)
     return content if isinstance(content, str) else str(content)
+
+
+def _tokens(*data: Any) -> int:
+    """About how many tokens some plain data is: four characters each."""
+    return -(-sum(len(json.dumps(one, ensure_ascii=False)) for one in data) // 4)
 
 
 def _price(response: ModelResponse) -> float | None:

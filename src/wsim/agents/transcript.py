@@ -121,12 +121,12 @@ def read(folder: Path) -> list[Exchange]:
 
 
 def _lines(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    text = path.read_text(encoding="utf-8")
-    whole = text[: text.rfind("\n") + 1]  # a run that was killed may have left half a line
-    for number, line in enumerate(whole.splitlines(), start=1):
+    written = path.read_bytes()
+    whole = written[: written.rfind(b"\n") + 1]  # a run that was killed may have left half a line
+    for number, line in enumerate(whole.split(b"\n")[:-1], start=1):
         try:
             data = json.loads(line)
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise UserError(f"{path}:{number}: not JSON: {error}") from error
         if not isinstance(data, dict):
             raise UserError(f"{path}:{number}: a line holds one exchange as a JSON object")

@@ -105,9 +105,7 @@ def _replace(text: str, edit: Edit, which: str) -> str:
             f"{which}: these lines are not in the program: {_quote(wanted)}; nearest: {_near(bare, wanted)}"
         )
     numbers = ", ".join(str(k + 1) for k in at[:5])
-    raise PatchError(
-        f"{which}: found more than once, at lines {numbers}; give more lines around the one that is meant"
-    )
+    raise PatchError(f"{which}: found more than once, at lines {numbers}; give more lines around the one that is meant")
 
 
 def _lines(text: str) -> list[str]:

@@ -31,14 +31,15 @@ def why_it_ended(contents: RunContents) -> Ending | None:
     if not loop.cause:
         stopped = loop.looped and facts.get("status") == "stopped"
         return Ending("The run was stopped", str(facts.get("summary") or "")) if stopped else None
-    kind, _, detail = loop.cause.partition(": ")
+    cause = loop.cause.rstrip(".")
+    kind, _, detail = cause.partition(": ")
     if kind in LIMITS:
         words, option = LIMITS[kind]
         return Ending(f"No program was accepted, and {words}", detail, option)
     # A reviewer or a judge that fails is done without; only these two end a run.
     if loop.iterations:
-        return Ending("No program was accepted, and the coder's model gave no patch that could be used", loop.cause)
-    return Ending("Nothing was built: the planner's model gave no plan that could be used", loop.cause)
+        return Ending("No program was accepted, and the coder's model gave no patch that could be used", cause)
+    return Ending("Nothing was built: the planner's model gave no plan that could be used", cause)
 
 
 def which_is_shown(contents: RunContents) -> str:

@@ -116,6 +116,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "facts": make_facts(contents),
         "parameters": make_parameters(contents),
         "attempts": make_attempts(contents),
+        "looped": contents.loop.looped,
         "review": shown.review if shown else None,
         "acceptance": contents.acceptance,
         "stripped": _stripped(contents),

@@ -70,6 +70,11 @@ def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
     return Result("\n".join(["plan.json written, laid out:", *_show(plan, "all", "")]))
 
 
+def plan_lines(plan: Plan) -> list[str]:
+    """All of a plan as tables, the steps too, however long; a step says what no other row has room for."""
+    return [*_show(plan, "all", "")[: -1 if plan.assumptions or plan.steps else None], *_steps(plan, "")]
+
+
 def _names(plan: Plan) -> str:
     names = [item.name for item in plan.objects]
     return ", ".join(names[:20]) + (f" and {len(names) - 20} more" if len(names) > 20 else "")

@@ -106,6 +106,18 @@ OTHERS = {
     "x = len(3, 4)": ("argument", "len()", "len("),
     "x = [1, 2].push(3)": ("attribute", "push", ""),
     "a, b = (1, 2, 3)": ("value", "2 names are given 3", ""),
+    "x = np.row_stack(([1], [2]))": ("deprecated", "vstack", ""),
+    "x = np.zeros(3, dtype='flaot')": ("value", "flaot", ""),
+    "x = tank.inner_size / 2": ("value", "fails", ""),
+    "x = water.surface()": ("attribute", "no function", ""),
+    "for i in range(scene.param('n', 3)): pass": ("value", "fails", ""),
+    "scene.box('a', **dict(size=(1, 1, 1), frictions=0.5))": ("argument", '"friction"', "Scene.box("),
+    "UsdPhysics.MassAPI.CreateMassAttr(3.0)": ("argument", "on the class", ""),
+    "UsdPhysics.RevoluteJoint.Define(scene.stage, '/World/j').CreateAxisAttr('W')": ("value", '"axis" = "W"', ""),
+    "UsdPhysics.RevoluteJoint.Define(scene.stage, '/World/j').CreateLocalPos0Attr([0, 0, 1])": (
+        "argument", "point3f", "",
+    ),
+    "UsdPhysics.DriveAPI.Apply(scene.stage.GetPrimAtPath('/World/arm'), 'rotary')": ("value", "rotary", ""),
     "for i in range(3): scene.box('b', size=(1, 1, 1))": ("prim", "already used", ""),
     "for i in range(3): scene.box(f'b{i}', size=(i, 1, 1))": ("value", "size[0] = 0", "Scene.box("),
 }  # fmt: skip
@@ -145,6 +157,44 @@ def test_is_found_at_its_line(statement: str, stage: bool) -> None:
 )
 def test_what_is_wrong_with_a_whole_program(text: str, line: int, code: str) -> None:
     assert (line, code) in [(p.line, p.code) for p in validate(text)]
+
+
+CLASSES = """\
+class Chain:
+    length = 0.2
+
+    def __init__(self, scene, name):
+        self.scene, self.name, self.links = scene, name, []
+
+    def grow(self, count):
+        for i in range(count):
+            self.links.append(self.scene.capsule(f"{self.name}_{i}", radius=0.02, height=self.length))
+        return self
+
+
+def build(scene):
+    chain = Chain(scene, "chain").grow(3)
+    scene.joint_fixed("end", None, chain.links[-1])
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "line", "code"),
+    [
+        ("height=self.length", "length=self.length", 9, "argument"),
+        ("{self.name}_{i}", "{self.name}", 9, "prim"),
+        ("height=self.length", "height=-self.length", 9, "value"),
+        ("height=self.length", "height=self.lenght", 9, "attribute"),
+        (".grow(3)", ".grow()", 14, "argument"),
+        ('Chain(scene, "chain")', "Chain(scene)", 14, "argument"),
+        (".grow(3)", ".extend(3)", 14, "attribute"),
+        ("links[-1]", "links[3]", 15, "value"),
+    ],
+)
+def test_mistakes_in_classes(right: str, wrong: str, line: int, code: str) -> None:
+    assert validate(CLASSES) == []
+    assert CLASSES.count(right) == 1
+    assert (line, code) in [(p.line, p.code) for p in validate(CLASSES.replace(right, wrong))]
 
 
 CONTROL = """\

@@ -91,7 +91,7 @@ class Calls(Attributes):
             return UNKNOWN
 
     def run(self, function: Function, arguments: Arguments) -> Value:
-        """What a function of the program returns; see `Statements`."""
+        """What a function of the program returns; see `Functions`."""
         raise NotImplementedError
 
     def _result(self, entry: Entry, called: Named, arguments: Arguments, *, fitting: bool) -> Value:
@@ -109,6 +109,8 @@ class Calls(Attributes):
                 return replace(made, path=path) if isinstance(made, Instance) else made
         if entry.name.startswith("wsim.program.control_world.ControlWorld.") and fitting:
             self._on_control(entry, called.owner, bound)
+        if entry.source == "numpy" and "dtype" in bound:
+            self._dtype(*bound["dtype"])
         if called.owner is not None and isinstance(called.owner, (Const, Items, Dict)):
             return self._on_value(called, arguments)
         if entry.name == "wsim.scene.Drive" and fitting:
@@ -171,6 +173,8 @@ class Calls(Attributes):
             return typed
         if text is not None:
             mine.places.setdefault(text, bound["name"][1] if "name" in bound else arguments.call)
+        if world is not None and not world.trusted:
+            self._lacks_material(world, bound)
         made, refusal, field = mine.call(method, values, certain=certain)
         if refusal:
             node = bound[field][1] if field in bound else arguments.call
@@ -202,6 +206,16 @@ class Calls(Attributes):
             return True
         return False
 
+    def _lacks_material(self, world: Any, bound: dict[str, Any]) -> None:
+        """Whether a material is asked for that nothing makes; each object has one of its own name, too."""
+        value, node = bound.get("material", (UNKNOWN, None))
+        text = value.value if isinstance(value, Const) else None
+        if not isinstance(text, str) or world.looks_open or text in world.names or text in world.others:
+            return
+        known = [name.partition(" ")[2] for name in world.looks if name.startswith("material ")]
+        if text not in known:
+            self.problems.add(node, "prim", f'material = "{text}" is not in the scene', _spelt(text, known))
+
     def _gravity(self, bound: dict[str, Any]) -> None:
         value, node = bound.get("gravity", (UNKNOWN, None))
         if isinstance(value, Items) and value.exact and len(value.items) == 3:
@@ -212,7 +226,12 @@ class Calls(Attributes):
                 )
 
     def _on_control(self, entry: Entry, owner: Value | None, bound: dict[str, Any]) -> None:
-        """A name that `control` asks for."""
+        """A name that `control` asks for, and the vectors that it gives."""
+        for field in ("force", "torque"):
+            vector, place = bound.get(field, (UNKNOWN, None))
+            if isinstance(vector, Items) and vector.exact and len(vector.items) != 3 and _are_numbers(vector):
+                text = f'"{field}" has {len(vector.items)} numbers; it must be 3: (x, y, z)'
+                self.problems.add(place, "value", text, entry.signature)
         world = owner.world if isinstance(owner, Instance) else None
         value, node = bound.get("name", (UNKNOWN, None))
         if world is None or world.open or world.others or not isinstance(value, Const):
@@ -248,7 +267,7 @@ class Calls(Attributes):
         for parameter in entry.parameters:
             if parameter.name not in bound or not parameter.unit:
                 continue
-            value, node = bound[parameter.name]
+            _, node = bound[parameter.name]
             degrees = parameter.unit in ("deg", "deg/s")
             for part in node.elts if isinstance(node, (ast.Tuple, ast.List)) else [node]:
                 told = units.said(part, self.unit_of)
@@ -264,6 +283,16 @@ class Calls(Attributes):
         """The unit of what was assigned to a name."""
         holder = self.scope.holder(name)
         return holder.units.get(name, "") if holder is not None else ""
+
+    def _dtype(self, value: Value, node: ast.AST) -> None:
+        """The name of a type of numbers."""
+        import numpy as np
+
+        if isinstance(value, Const) and isinstance(value.value, str):
+            try:
+                np.dtype(value.value)
+            except TypeError:
+                self.problems.add(node, "value", f'NumPy has no type "{value.value}"')
 
     def _opens(self, arguments: Arguments) -> None:
         """`open(path, "w")` on a path that is not the program's own."""
@@ -342,6 +371,10 @@ def _drive(bound: dict[str, Any]) -> Value:
         return Const(Drive(**{name: plain(value) for name, (value, _) in bound.items()}))
     except (NotKnownError, TypeError):
         return Instance("wsim.scene.Drive")
+
+
+def _are_numbers(items: Items) -> bool:
+    return all(isinstance(each, Const) and isinstance(each.value, (int, float)) for each in items.items)
 
 
 def _spelt(name: str, known: Any) -> str:

@@ -22,6 +22,7 @@ from wsim.program.validator.values import (
     NotKnownError,
     Scope,
     Value,
+    each_of,
     elements,
     merged,
     plain,
@@ -228,9 +229,8 @@ class Expressions(Objects):
     def _subscript(self, node: ast.Subscript) -> Value:
         value = self.value(node.value)
         if isinstance(node.slice, ast.Slice):
-            parts = [
-                self.value(part) for part in (node.slice.lower, node.slice.upper, node.slice.step) if part is not None
-            ]
+            bounds = (node.slice.lower, node.slice.upper, node.slice.step)
+            parts = [self.value(part) for part in bounds if part is not None]
             return self._sliced(value, node.slice) if all(isinstance(part, Const) for part in parts) else UNKNOWN
         index = self.value(node.slice)
         if isinstance(value, Dict):
@@ -339,17 +339,17 @@ class Expressions(Objects):
         if depth == len(generators):
             read()
             return True
-        generator = generators[depth]
         items = elements(source, _MOST)
         self.steps -= len(items or ())
         if items is None or self.steps <= 0:
-            each = source.each if isinstance(source, Items) else UNKNOWN
+            each = each_of(source)
             self.rounds += 1
             with self.unsure():
                 self._one(generators, depth, each, read)
             self.rounds -= 1
             return False
-        return all([self._one(generators, depth, item, read) for item in items])
+        exact = [self._one(generators, depth, item, read) for item in items]
+        return all(exact)
 
     def _one(self, generators: list[ast.comprehension], depth: int, item: Value, read: Callable[[], None]) -> bool:
         self.bind(generators[depth].target, item)

@@ -6,28 +6,10 @@ import sys
 from importlib.machinery import PathFinder
 from typing import Any
 
-_NETWORK = [
-    "socket",
-    "socketserver",
-    "ssl",
-    "http",
-    "urllib",
-    "ftplib",
-    "smtplib",
-    "poplib",
-    "imaplib",
-    "nntplib",
-    "telnetlib",
-    "xmlrpc",
-    "asyncio",
-    "select",
-    "selectors",
-    "webbrowser",
-    "wsgiref",
-    "asyncore",
-    "asynchat",
-    "smtpd",
-]
+_NETWORK = (
+    "socket", "socketserver", "ssl", "http", "urllib", "ftplib", "smtplib", "poplib", "imaplib", "nntplib", "telnetlib",
+    "xmlrpc", "asyncio", "select", "selectors", "webbrowser", "wsgiref", "asyncore", "asynchat", "smtpd",
+)  # fmt: skip
 _PROCESS = ["subprocess", "multiprocessing", "pty", "signal", "_posixsubprocess", "posix"]
 _MACHINE = ["ctypes", "resource", "mmap", "fcntl", "termios", "tty", "code", "codeop", "pdb", "runpy"]
 _WHY = (
@@ -37,7 +19,10 @@ _WHY = (
 )
 _FORBIDDEN_CALLS = {
     **dict.fromkeys(
-        ["system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "startfile", "execv", "execve", "execl", "execle", "execlp", "execvp", "execvpe", "spawnl", "spawnle", "spawnlp", "spawnv", "spawnve", "spawnvp"],
+        (
+            "system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "startfile", "execv", "execve", "execl",
+            "execle", "execlp", "execvp", "execvpe", "spawnl", "spawnle", "spawnlp", "spawnv", "spawnve", "spawnvp",
+        ),
         "programs start no processes",
     ),
     **dict.fromkeys(("kill", "killpg", "abort", "_exit"), "programs end no processes"),

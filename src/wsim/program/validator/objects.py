@@ -30,7 +30,7 @@ class Objects(Calls):
             )
         if _DATACLASS in decorators:
             for each in node.body:
-                if isinstance(each, ast.AnnAssign) and isinstance(each.target, ast.Name):
+                if isinstance(each, ast.AnnAssign) and isinstance(each.target, ast.Name) and not _shared(each):
                     # A default that is `field(...)` says only that there is one.
                     given = members.get(each.target.id, UNKNOWN) if each.value is not None else None
                     fields[each.target.id] = UNKNOWN if isinstance(each.value, ast.Call) else given
@@ -39,7 +39,8 @@ class Objects(Calls):
 
     def decorator(self, node: ast.expr) -> str:
         """The whole name of a decorator; "" if it is not one of the index."""
-        value = self.value(node.func if isinstance(node, ast.Call) else node)
+        with self.problems.quiet():  # it was read where it stands; here its names may not be in scope
+            value = self.value(node.func if isinstance(node, ast.Call) else node)
         return value.name if isinstance(value, Named) else ""
 
     def construct(self, kind: Class, arguments: Arguments) -> Value:
@@ -83,6 +84,8 @@ class Objects(Calls):
     def of_object(self, value: Object | Class, name: str, node: ast.Attribute) -> Value:
         """What an attribute of a program's own object or class is."""
         kind = value if isinstance(value, Class) else value.kind
+        if not kind.whole:
+            return UNKNOWN
         if isinstance(value, Object) and name in value.fields:
             return UNKNOWN if self.rounds and name in self.stored else value.fields[name]
         found = kind.members.get(name)
@@ -126,3 +129,8 @@ class Objects(Calls):
     def yields(node: ast.AST) -> bool:
         """Whether a function is a generator or a coroutine."""
         return any(isinstance(each, (ast.Yield, ast.YieldFrom, ast.Await)) for each in ast.walk(node))
+
+
+def _shared(node: ast.AnnAssign) -> bool:
+    """Whether a dataclass takes an annotated name for the class's own, and not for a field."""
+    return "ClassVar" in ast.dump(node.annotation)

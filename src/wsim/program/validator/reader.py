@@ -6,19 +6,18 @@ import ast
 from typing import Any
 
 from wsim.program.api.lookup import Index
-from wsim.program.validator.statements import Statements
+from wsim.program.validator.functions import Functions
 from wsim.program.validator.values import UNKNOWN, Function, Instance, Value
 
 _SCENE = "wsim.scene.Scene"
 _CONTROL_WORLD = "wsim.program.control_world.ControlWorld"
 
 
-class Reader(Statements):
+class Reader(Functions):
     """One reading of one program."""
 
     def __init__(self, index: Index, tree: ast.Module) -> None:
         super().__init__(index, tree)
-        self.functions = []
         self.whole = True  # nothing was left unread
 
     def read(self) -> None:

@@ -1,4 +1,4 @@
-"""The scene that a program builds, as far as its calls are known: they are made again on a scene of the validator's own.
+"""The scene that a program builds, as far as its calls are known: they are made again on a scene kept for that.
 
 What `wsim.scene` refuses there it refuses in the program. A call of which all is known is made as it stands, as long as
 all before it was known too. Of any other call each known argument is tried by itself, in a call that is otherwise good.
@@ -42,6 +42,7 @@ class World:
         names: Prims under /World that are made for sure: the name, and the call that makes it.
         others: Names that may be made besides: in a branch, by USD itself.
         looks: Names of materials and parameters, which do not stand under /World itself.
+        looks_open: Materials of unknown names may be made.
         open: Prims of unknown names may be made besides.
         trusted: The scene here is the program's own, prim for prim.
     """
@@ -58,7 +59,7 @@ class World:
         self.raw: dict[str, Any] = {}  # of bodies that USD itself makes under /World: the name, and where that is said
         self.places: dict[str, Any] = {}  # the nodes of the calls that make `names`
         self.looks: set[str] = set()
-        self.open = False
+        self.open = self.looks_open = False
         self.trusted = True
 
     def touched(self) -> None:
@@ -102,6 +103,7 @@ class World:
             return
         if not isinstance(name, str):
             self.open = self.open or method not in ("material", "param")
+            self.looks_open = self.looks_open or method != "param"
             return
         if method in ("material", "param"):
             self.looks.add(f"{method} {name}")
@@ -131,8 +133,10 @@ class World:
     def _try(self, method: str, arguments: Mapping[str, Value]) -> tuple[str, str]:
         """Try each known argument by itself, then all together; the one that is refused, and why."""
         kind = "box" if method == "mesh" else method
-        if kind not in _NEEDS or kind == "asset":
+        if kind not in _NEEDS:
             return "", ""
+        if kind == "asset":
+            return "id", _no_asset(_known(arguments.get("id")))
         if method == "mesh" and (refusal := _mesh(arguments)):
             return refusal.partition(": ")[2].partition(" = ")[0], refusal
         name = _known(arguments.get("name"))
@@ -212,6 +216,17 @@ class World:
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
             return _refusal(error)
         return ""
+
+
+def _no_asset(identifier: object) -> str:
+    """What the catalogue says to an id that it does not have."""
+    from wsim.assets import AssetError, get
+
+    try:
+        get(identifier) if isinstance(identifier, str) else None
+    except AssetError as error:
+        return f"asset: {error}"
+    return ""
 
 
 def _mesh(arguments: Mapping[str, Value]) -> str:

@@ -12,7 +12,7 @@ from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index, rank
 from wsim.program.api.words import parts, related, stem
 from wsim.program.validator.problem import Problems
-from wsim.program.validator.values import UNKNOWN, Named, Scope, Value
+from wsim.program.validator.values import UNKNOWN, Function, Named, Scope, Value
 
 _NEAR = 0.55
 # Names of older versions whose new ones are spelt otherwise.
@@ -58,6 +58,7 @@ class State:
         self.module_read = False  # whether the top level has been read to its end
         self.depth = 0
         self.branches = 0  # how many tests that are not known stand around what is read now
+        self.functions: list[Function] = []
         self.called: set[ast.AST] = set()
         self.returned: list[list[Value]] = []
         # What functions assign for others: at any time it may hold anything.

@@ -5,33 +5,31 @@ from __future__ import annotations
 import ast
 from typing import Literal
 
-from wsim.program.validator import constants, imports, units
-from wsim.program.validator.arguments import Arguments
-from wsim.program.validator.expressions import Expressions, guards
+from wsim.program.validator import constants, units
+from wsim.program.validator.expressions import guards
+from wsim.program.validator.importing import Importing
 from wsim.program.validator.state import assigned
 from wsim.program.validator.values import (
     UNKNOWN,
     Const,
     Dict,
-    Function,
     Instance,
     Items,
-    Named,
     NotKnownError,
     Object,
     Scope,
     Value,
     blur,
+    each_of,
     elements,
     merged,
     plain,
 )
 
 Flow = Literal["on", "break", "continue", "return", "raise"]
-_DEEPEST = 12
 
 
-class Statements(Expressions):
+class Statements(Importing):
     """Reads statements."""
 
     def block(self, body: list[ast.stmt]) -> Flow:
@@ -126,8 +124,7 @@ class Statements(Expressions):
             counts = f"{len(target.elts)} names are given {len(items)} values"
             self.problems.add(target, "value", counts)
         if items is None or starred or len(items) != len(target.elts):
-            each = value.each if isinstance(value, Items) and not value.exact else UNKNOWN
-            items = [each] * len(target.elts)
+            items = [each_of(value)] * len(target.elts)
         for part, item in zip(target.elts, items, strict=True):
             self.bind(part, item)
 
@@ -149,85 +146,6 @@ class Statements(Expressions):
                 self.scope.values[target.id] = UNKNOWN
             else:
                 blur(self.value(getattr(target, "value", None)))
-
-    # -- imports -------------------------------------------------------------------------------------------------
-
-    def _do_import(self, node: ast.Import) -> None:
-        for alias in node.names:
-            found = self._import(alias.name, node)
-            top = alias.name.partition(".")[0]
-            self.bind(ast.Name(alias.asname or top), found if alias.asname else self._listed(top))
-
-    def _do_importfrom(self, node: ast.ImportFrom) -> None:
-        module = node.module or ""
-        if node.level:
-            self.problems.add(node, "import", "a program stands alone; it has no modules beside it to import from")
-        known = self._import(module, node) if not node.level else UNKNOWN
-        for alias in node.names:
-            if alias.name == "*":
-                self._import_all(module, known)
-                continue
-            value: Value = UNKNOWN
-            if isinstance(known, Named):
-                value = self._from(known.name, alias)
-            self.bind(ast.Name(alias.asname or alias.name), value)
-
-    def _import(self, module: str, node: ast.AST) -> Value:
-        """A module; a problem if it is not for programs, or not there."""
-        why = "" if self.own else imports.refused(module)
-        if why:
-            self.problems.add(node, "import", f'"{module}" cannot be imported: {why}', self._module_like(module))
-            return UNKNOWN
-        top = module.partition(".")[0]
-        if self.entry(module) is None and top in ("wsim", "pxr", "numpy") and not imports.is_there(module):
-            self.problems.add(node, "import", f'there is no module "{module}"', self._module_like(module))
-            return UNKNOWN
-        return self._listed(module)
-
-    def _listed(self, module: str) -> Value:
-        entry = self.entry(module)
-        return Named(module) if entry is not None or self.index.programs.children(module) else UNKNOWN
-
-    def _from(self, module: str, alias: ast.alias) -> Value:
-        whole = f"{module}.{alias.name}"
-        entry = self.entry(whole)
-        if entry is not None:
-            if entry.kind in ("module", "class", "function"):
-                return Named(whole)
-            return self.attribute(Named(module), alias.name, _at(alias))
-        if self.index.programs.children(whole):
-            return Named(whole)
-        holder = self.entry(module)
-        if holder is None or holder.kind != "module" or alias.name.startswith("_") or imports.is_there(whole):
-            return UNKNOWN
-        moved = self.index.programs.ending(alias.name)
-        shown = [name for name in moved if name == f"wsim.scene.{alias.name}"]
-        if shown and module.startswith("wsim.scene"):
-            return Named(shown[0])
-        before = len(self.problems.sorted())
-        self.attribute(Named(module), alias.name, _at(alias))
-        if len(self.problems.sorted()) == before:
-            self.problems.add(alias, "import", f"{module} has no {alias.name}")
-        return UNKNOWN
-
-    def _import_all(self, module: str, known: Value) -> None:
-        names = [name for name in self.index.programs.children(module) if not name.startswith("_")]
-        if not isinstance(known, Named) or not names:
-            self.module.open = True
-            return
-        self.module.open = self.module.open or not module.startswith("wsim.scene")
-        for name in names:
-            self.module.values.setdefault(name, self._from(module, ast.alias(name)))
-
-    def _module_like(self, module: str) -> str:
-        """What is meant by a module that cannot be imported: one of that name, or what it was asked for, elsewhere."""
-        if module.startswith(("wsim", "world")):
-            return "from wsim.scene import Scene"
-        from difflib import get_close_matches
-
-        known = [f"pxr.{name}" for name in self.index.programs.children("pxr")] or self.index.programs.modules()
-        found = get_close_matches(module, known, n=1, cutoff=0.6)
-        return f"import {found[0]}" if found else ""
 
     # -- flow ----------------------------------------------------------------------------------------------------
 
@@ -297,8 +215,7 @@ class Statements(Expressions):
         source = self.value(node.iter)
         items = elements(source)
         if items is None or self.steps <= 0:
-            each = source.each if isinstance(source, Items) else UNKNOWN
-            return self._unknown_rounds(node, node.target, each)
+            return self._unknown_rounds(node, node.target, each_of(source))
         before = self.certain
         flow: Flow = "on"
         for item in items:
@@ -322,7 +239,7 @@ class Statements(Expressions):
         self.value(node.test)
         return self._unknown_rounds(node, None, UNKNOWN)
 
-    def _unknown_rounds(self, node: ast.For | ast.While, target: ast.expr | None, each: Value) -> Flow:
+    def _unknown_rounds(self, node: ast.For | ast.AsyncFor | ast.While, target: ast.expr | None, each: Value) -> Flow:
         """A loop of which it is not known how often it runs: its body once, with nothing known that it changes."""
         before = self.certain
         changed = assigned(node.body)
@@ -388,6 +305,12 @@ class Statements(Expressions):
                 self.bind(item.optional_vars, UNKNOWN)
         return self.block(node.body)
 
+    _do_asyncwith = _do_with
+
+    def _do_asyncfor(self, node: ast.AsyncFor) -> Flow:
+        self.value(node.iter)
+        return self._unknown_rounds(node, node.target, UNKNOWN)
+
     def _do_match(self, node: ast.Match) -> Flow:
         self.value(node.subject)
         for case in node.cases:
@@ -401,111 +324,13 @@ class Statements(Expressions):
 
     def _do_classdef(self, node: ast.ClassDef) -> None:
         bases = [self.value(each) for each in node.bases]
+        for each in node.decorator_list:
+            self.value(each)
         inner = Scope(assigned(node.body), self.scope, of_class=True)
         before, self.scope = self.scope, inner
         self.block(node.body)
         self.scope = before
         self.bind(ast.Name(node.name), self.made_class(node, inner.values, bases))
-
-    # -- functions -----------------------------------------------------------------------------------------------
-
-    def _do_functiondef(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
-        for each in node.decorator_list:
-            self.value(each)
-        defaults = [*node.args.defaults, *(each for each in node.args.kw_defaults if each is not None)]
-        values = {id(each): self.value(each) for each in defaults}
-        takers = [*node.args.posonlyargs, *node.args.args]
-        pairs = [*zip(takers[len(takers) - len(node.args.defaults) :], node.args.defaults, strict=True)]
-        pairs += [(a, d) for a, d in zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True) if d is not None]
-        simple = not node.decorator_list and isinstance(node, ast.FunctionDef) and not self.yields(node)
-        made = Function(node, self.scope, {a.arg: values[id(d)] for a, d in pairs}, simple)
-        self.functions.append(made)
-        self.bind(ast.Name(node.name), made)
-
-    _do_asyncfunctiondef = _do_functiondef
-
-    def run(self, function: Function, arguments: Arguments) -> Value:
-        """Read a function of the program as it is called here, and give what it returns."""
-        if not function.plain or self.depth >= _DEEPEST or self.steps <= 0:
-            self._hand_over(arguments)
-            return UNKNOWN
-        given = self._given(function, arguments)
-        return self.enter(function, given)
-
-    def _given(self, function: Function, arguments: Arguments) -> dict[str, Value]:
-        """The function's arguments by name; a problem where they do not fit."""
-        a = function.node.args
-        places = [each.arg for each in (*a.posonlyargs, *a.args)]
-        bound: dict[str, Value] = {}
-        if function.owner is not None and places:
-            bound, places = {places[0]: function.owner}, places[1:]
-        keywords = [each.arg for each in (*a.args, *a.kwonlyargs)]
-        name = getattr(function.node, "name", "lambda")
-        given = dict(zip(places, arguments.values, strict=False))
-        if len(arguments.given) > len(places) and a.vararg is None:
-            node = arguments.given[len(places)][1]
-            text = f"{name}() takes {len(places)} positional arguments, and is given {len(arguments.given)}"
-            self.problems.add(node, "argument", text)
-        for key, (value, node) in arguments.named.items():
-            if key not in keywords and a.kwarg is None:
-                self.problems.add(node, "argument", f'{name}() has no argument "{key}"')
-            elif key in keywords:
-                given[key] = value
-        required = [p for p in (*places, *(each.arg for each in a.kwonlyargs)) if p not in function.defaults]
-        if isinstance(function.node, ast.Lambda):
-            required = [] if a.defaults or a.kw_defaults else required
-        missing = [p for p in required if p not in given]
-        if missing and not arguments.open:
-            names = ", ".join(f'"{p}"' for p in missing)
-            self.problems.add(arguments.call, "argument", f"{name}() lacks {names}")
-        return given | bound
-
-    def enter(self, function: Function, given: dict[str, Value], *, called: bool = True) -> Value:
-        """Read a function's body with these arguments; where it is not `called` here, the others may be anything."""
-        node = function.node
-        self.called.add(node)
-        body: list[ast.stmt] = [ast.Return(node.body)] if isinstance(node, ast.Lambda) else node.body
-        scope = Scope(assigned(body) | frozenset(each.arg for each in ast.walk(node.args) if isinstance(each, ast.arg)))
-        scope.outer = function.scope
-        for each in ast.walk(node.args):
-            if isinstance(each, ast.arg):
-                default = function.defaults.get(each.arg) if called else None
-                scope.values[each.arg] = given.get(each.arg) or default or self._annotated(each)
-        before = self.scope, self.certain
-        self.scope = scope
-        self.depth += 1
-        self.returned.append([])
-        try:
-            flow = self.block(body)
-        finally:
-            self.scope, self.certain = before
-            self.depth -= 1
-            returned = self.returned.pop()
-        if flow == "on":
-            returned.append(Const(None))
-        result = returned[0] if returned else UNKNOWN
-        for each_value in returned[1:]:
-            result = merged(result, each_value)
-        return result
-
-    def _annotated(self, argument: ast.arg) -> Value:
-        """What an argument is by its annotation alone."""
-        if argument.annotation is None:
-            return UNKNOWN
-        with self.problems.quiet():
-            if isinstance(argument.annotation, ast.Constant) and isinstance(argument.annotation.value, str):
-                try:
-                    found = self.value(ast.parse(argument.annotation.value, mode="eval").body)
-                except SyntaxError:
-                    return UNKNOWN
-            else:
-                found = self.value(argument.annotation)
-        entry = self.entry(found.name) if isinstance(found, Named) else None
-        if entry is None or entry.kind != "class" or entry.source not in ("wsim", "pxr"):
-            return UNKNOWN
-        return Instance(entry.name, loose=True)
-
-    functions: list[Function]
 
 
 def _joined(ends: list[dict[str, Value]]) -> dict[str, Value]:
@@ -526,9 +351,3 @@ def _is_main(test: ast.expr) -> bool:
 
 def _leaves(body: list[ast.stmt]) -> bool:
     return any(isinstance(each, (ast.Return, ast.Break)) for statement in body for each in ast.walk(statement))
-
-
-def _at(alias: ast.alias) -> ast.Attribute:
-    """A node to hang a problem on, where an import stands."""
-    node = ast.Attribute(ast.Name("", ast.Load()), alias.name, ast.Load())
-    return ast.copy_location(node, alias) if hasattr(alias, "lineno") else node

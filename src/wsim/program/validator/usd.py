@@ -36,7 +36,7 @@ def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any
     """What USD itself would find out only when the program runs."""
     first = arguments.given[0] if arguments.given else next(iter(arguments.named.values()), (UNKNOWN, arguments.call))
     if entry.short in _READS and entry.parent.startswith("pxr.Usd.Prim"):
-        _attribute_name(reader, *first)
+        _attribute_name(reader, entry.short, *first)
     elif entry.short in _APPLIES:
         _schema_name(reader, entry.short, *first)
     elif _MAKES.match(entry.short):
@@ -49,10 +49,20 @@ def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any
         _value(reader, entry, _attribute_of(reader, entry), *bound.get("defaultValue", first))
     elif entry.name == "pxr.Usd.Attribute.Set" and isinstance(owner, Instance) and "value" in bound:
         _value(reader, entry, reader.entry(owner.path), *bound["value"])
+    elif entry.name == "pxr.Sdf.ValueTypeNames.Find":
+        _value_type(reader, *first)
     elif entry.short == "Apply":
         _applied(reader, entry, first[0], arguments.call)
         if "name" in bound:
             _instance_name(reader, entry, *bound["name"])
+
+
+def _value_type(reader: Calls, value: Value, node: ast.AST) -> None:
+    """The name of a type of attributes."""
+    from pxr import Sdf
+
+    if isinstance(value, Const) and isinstance(value.value, str) and not Sdf.ValueTypeNames.Find(value.value):
+        reader.problems.add(node, "value", f'USD has no type "{value.value}"')
 
 
 def _applied(reader: Calls, entry: Entry, prim: Value, node: ast.AST) -> None:
@@ -63,10 +73,15 @@ def _applied(reader: Calls, entry: Entry, prim: Value, node: ast.AST) -> None:
             reader.world.raw.setdefault(name, node)
 
 
-def _attribute_name(reader: Calls, value: Value, node: ast.AST) -> None:
+def _attribute_name(reader: Calls, call: str, value: Value, node: ast.AST) -> None:
     if not isinstance(value, Const) or not isinstance(value.value, str):
         return
     name = value.value
+    if call != "CreateAttribute" and f"inputs:{name}" in _attributes(reader.index)[0]:
+        if name not in _attributes(reader.index)[0] and reader.written.count(name) == 1:
+            message = f'no schema has an attribute "{name}"'
+            reader.problems.add(node, "attribute", message, f'"inputs:{name}"')
+        return
     if not name.startswith(_NAMESPACES) or reader.written.count(name) > 1:
         return
     known, patterns = _attributes(reader.index)
@@ -128,13 +143,17 @@ def _schema_attribute(reader: Calls, name: str) -> str:
 
 
 def path_of(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> str:
-    """Where the prim is that a call makes, finds or speaks of; of an attribute, its name in the index; "" if unknown."""
+    """Where the prim is that a call makes, finds or speaks of; of an attribute, its name in the index; or ""."""
     if entry.returns == "pxr.Usd.Attribute":
         if _ATTRIBUTE.match(entry.short):
             found = _attribute_of(reader, entry)
             return found.name if found is not None else ""
         name = bound.get("attrName", (UNKNOWN, None))[0]
-        known = isinstance(name, Const) and isinstance(name.value, str) and entry.short == "GetAttribute"
+        known = (
+            isinstance(name, Const)
+            and isinstance(name.value, str)
+            and entry.short in ("GetAttribute", "CreateAttribute")
+        )
         return _schema_attribute(reader, name.value) if known and isinstance(name, Const) else ""
     if entry.short in ("GetPrim", "GetPath", "GetPrimPath") and isinstance(owner, Instance):
         return owner.path

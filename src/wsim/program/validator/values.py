@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -218,4 +217,10 @@ def elements(value: Value, most: int = 400) -> list[Value] | None:
     return None
 
 
-PureCall: TypeAlias = Callable[..., Any]
+def each_of(value: Value) -> Value:
+    """What any item is that a loop over a value goes through."""
+    if isinstance(value, Items) and not value.exact:
+        return value.each
+    if isinstance(value, Instance) and value.type == "pxr.Usd.PrimRange":
+        return Instance("pxr.Usd.Prim")
+    return UNKNOWN

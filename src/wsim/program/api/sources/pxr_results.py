@@ -63,6 +63,7 @@ class _Looker:
                 except Exception:  # noqa: BLE001 - what cannot be made plainly is left out
                     continue
         self.cube = cube
+        self.made = 0
         self.found: dict[str, set[str]] = {}
 
     def look(self) -> dict[str, str]:
@@ -98,7 +99,8 @@ class _Looker:
 
         known: dict[type, Any] = {
             Usd.Stage: self.by_cpp["UsdStage"], Usd.Prim: self.by_cpp["UsdPrim"], Usd.Object: self.by_cpp["UsdPrim"],
-            Usd.Attribute: self.cube.GetSizeAttr(), Usd.Property: self.cube.GetSizeAttr(), Sdf.Path: self.by_cpp["SdfPath"],
+            Usd.Attribute: self.cube.GetSizeAttr(), Usd.Property: self.cube.GetSizeAttr(),
+            Sdf.Path: self.by_cpp["SdfPath"],
             Usd.Relationship: self.by_cpp["UsdPrim"].CreateRelationship("other"), Sdf.Layer: self.by_cpp["SdfLayer"],
         }  # fmt: skip
         if kind is UsdGeom.XformOp:
@@ -107,6 +109,9 @@ class _Looker:
             return known[kind]
         if kind.__module__ == "pxr.Gf":
             return self.by_cpp.get(f"Gf{kind.__qualname__}")
+        if kind is UsdGeom.Xformable:  # each of its operations can be added once
+            self.made += 1
+            return UsdGeom.Xformable(UsdGeom.Xform.Define(self.by_cpp["UsdStage"], f"/World/xform_{self.made}"))
         if issubclass(kind, Usd.SchemaBase):
             try:
                 return kind(self.by_cpp["UsdPrim"])

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import importlib
 import inspect
 import re
+import textwrap
 import warnings
 from collections.abc import Iterator
 from types import ModuleType
@@ -36,7 +38,8 @@ _DEPRECATED = re.compile(r"\A[^\n]*\n\s*\.\. deprecated::\s*([^\n]*(?:\n\s+\S[^\
 _ARRAYS = (
     "array", "zeros", "ones", "empty", "full", "arange", "linspace", "logspace", "geomspace", "eye", "identity", "diag",
     "stack", "concatenate", "vstack", "hstack", "column_stack", "zeros_like", "ones_like", "full_like", "empty_like",
-    "reshape", "tile", "asarray",
+    "reshape", "tile", "asarray", "outer", "sort", "roll", "flip", "diff", "cumsum", "cumprod", "repeat", "kron", "tril",
+    "triu", "pad", "delete", "insert", "append", "fromiter", "dstack", "rot90", "transpose", "ravel", "array_like",
 )  # fmt: skip
 _METHODS = (
     "reshape", "astype", "copy", "ravel", "flatten", "transpose", "clip", "round", "cumsum", "cumprod", "repeat",
@@ -83,7 +86,8 @@ def _of_class(value: type, name: str, source: str) -> Iterator[Entry]:
     doc = clean(value.__doc__)
     overloads: tuple[tuple[Parameter, ...], ...] = ()
     with contextlib.suppress(ValueError, TypeError):
-        overloads = (_parameters(value, doc),)
+        # In `inspect` itself "no default" is a default, which a signature cannot tell apart.
+        overloads = (_parameters(value, doc),) if value.__module__ != "inspect" else ()
     yield Entry(name, "class", source, overloads, doc=doc, summary=summary(doc), extra={"type": _qualified(value)})
     for key in dir(value):
         if key.startswith("_"):
@@ -104,7 +108,8 @@ def function_entry(value: Any, name: str, source: str, kind: EntryKind, *, bound
         parameters = _parameters(value, doc)
         overloads = (parameters[1:] if bound else parameters,)
     found = _DEPRECATED.match(doc)
-    deprecated = getattr(value, "__deprecated__", "") or (" ".join(found[1].split()) if found else "")
+    told = " ".join(found[1].split()) if found else _warned(value)
+    deprecated = getattr(value, "__deprecated__", "") or told
     native = source == "numpy" and not inspect.isfunction(inspect.unwrap(value))
     return Entry(
         name, kind, source, overloads, _RETURNS.get(name, ""), (), summary(doc), doc[:4000], str(deprecated)[:300],
@@ -125,6 +130,27 @@ def _parameters(value: Any, doc: str) -> tuple[Parameter, ...]:
         )
         for name, each in inspect.signature(value).parameters.items()
     )
+
+
+def _warned(value: Any) -> str:
+    """What a function that does nothing else first warns of: that it is deprecated; "" if it does not."""
+    function = inspect.unwrap(value)
+    if not inspect.isfunction(function):
+        return ""
+    try:
+        (tree,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
+    except (OSError, TypeError, SyntaxError, ValueError):
+        return ""
+    for each in getattr(tree, "body", []):
+        call = each.value if isinstance(each, ast.Expr) else None
+        if (
+            isinstance(call, ast.Call)
+            and ast.unparse(call.func).endswith("warn")
+            and "DeprecationWarning" in ast.unparse(call)
+        ):
+            texts = [n.value for n in ast.walk(call) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
+            return " ".join(" ".join(texts).split()) or "it will be removed"
+    return ""
 
 
 def _default(value: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from collections.abc import Iterator
 from dataclasses import replace
@@ -234,10 +235,8 @@ class Package:
         return str(annotation)
 
     def _shown(self, path: str) -> str:
-        try:
+        with contextlib.suppress(KeyError, griffe.GriffeError):
             path = self.modules[path].canonical_path
-        except (KeyError, griffe.GriffeError):
-            pass
         return self.shown.get(path, path)
 
 
