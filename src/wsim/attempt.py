@@ -140,7 +140,7 @@ def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: P
         )
         for problem in problems
     ]
-    return Verdict(status="rejected", summary=f"The program has {len(problems)} mistakes.", findings=findings)
+    return Verdict(status="rejected", summary=f"Mistakes in the program: {len(problems)}.", findings=findings)
 
 
 def _built(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
@@ -173,7 +173,7 @@ def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Prog
             )
     if not findings:
         return None
-    return Verdict(status="rejected", summary=f"{len(findings)} cameras show nothing.", findings=findings)
+    return Verdict(status="rejected", summary=f"Cameras that show nothing: {len(findings)}.", findings=findings)
 
 
 def _moved(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:

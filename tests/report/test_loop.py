@@ -238,7 +238,8 @@ def test_a_review_by_facts(accepted: Path) -> None:
         Elements(write(accepted)).words
     )
     write_json(path, {"share_of_picture": []})  # nobody was asked
-    assert not Elements(write(accepted)).all("section", id="review")
+    page = Elements(write(accepted))
+    assert not page.all("section", id="review") and "cannot be read" not in page.words
 
 
 def test_the_picture_it_was_to_look_like(accepted: Path) -> None:

@@ -74,9 +74,14 @@ class Ledger:
         return sum(account.input_tokens + account.output_tokens for account in self.accounts.values())
 
     @property
+    def seconds_used(self) -> float:
+        """Since the run began [s]."""
+        return time.monotonic() - self.started
+
+    @property
     def seconds_left(self) -> float:
         """Of the run's time [s]."""
-        return self.budget.seconds - (time.monotonic() - self.started)
+        return self.budget.seconds - self.seconds_used
 
     def check(self) -> None:
         """Look whether there is anything left.

@@ -125,8 +125,14 @@ class Crew:
         """For run.json."""
         skills = {f"{number:02d}": names for number, names in self.skills.items()}
         reasons = {f"{number:02d}": why for number, why in self.reasons.items()}
-        facts = {"models": self.desk.models.facts(), "usage": self.desk.ledger.facts(), "skills": skills}
+        facts: dict[str, Any] = {
+            "models": self.desk.models.facts(),
+            "usage": self.desk.ledger.facts(),
+            "skills": skills,
+        }
+        facts["seconds"] = round(self.desk.ledger.seconds_used, 1)
         return facts | {"reasons": reasons} | ({"notes": self.notes} if self.notes else {})
+
 
 def _quoted(tried: Attempt) -> list[str]:
     """The lines of the program that failed findings point at."""

@@ -114,7 +114,13 @@ def said(response: ModelResponse) -> dict[str, Any]:
 
 
 def _sent(arguments: Any) -> Any:
-    return _clean(arguments) if isinstance(arguments, str) else arguments
+    """The arguments of a call; what is JSON and no object is put into one, for the tool to refuse."""
+    text = _clean(arguments) if isinstance(arguments, str) else json.dumps(arguments)
+    try:
+        given = json.loads(text)
+    except (ValueError, RecursionError):
+        return text  # no JSON at all: the client says so to the model
+    return text if isinstance(given, dict) else {} if given is None else {"arguments": given}
 
 
 def _clean(text: str) -> str:

@@ -6,9 +6,9 @@ It may object to a world that passes every check. It cannot accept one that fail
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Annotated, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.judge.verdict import Finding, RepairKind, RepairTarget, Verdict
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 ROOT = "/World/"
+Short = Annotated[str, AfterValidator(lambda text: text[:800])]  # who says more is heard that far
 
 
 class Objection(BaseModel):
@@ -26,7 +27,7 @@ class Objection(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     object: str
-    what: str = Field(max_length=400)
+    what: Short
 
 
 class Repair(BaseModel):
@@ -36,8 +37,8 @@ class Repair(BaseModel):
 
     kind: RepairKind
     object: str = ""
-    parameter: str = Field("", max_length=80)
-    why: str = Field(max_length=600)
+    parameter: Short = ""
+    why: Short
 
     @property
     def sentence(self) -> str:
@@ -52,7 +53,7 @@ class Opinion(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     accept: bool
-    why: str = Field("", max_length=800)
+    why: Short = ""
     repair: Repair | None = None
     objections: list[Objection] = Field(default_factory=list, max_length=10)
 

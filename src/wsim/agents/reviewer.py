@@ -6,9 +6,9 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from wsim.agents.ask import UnusableError, object_in
 
@@ -22,6 +22,7 @@ TILES, COLUMNS = 6, 3
 TILE = (256, 144)  # px
 QUALITY = 60  # of the JPEG: 15 to 20 kB for six tiles
 ROOT = "/World/"
+Short = Annotated[str, AfterValidator(lambda text: text[:1200])]  # who says more is heard that far
 
 
 class Difference(BaseModel):
@@ -30,7 +31,7 @@ class Difference(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     object: str
-    what: str = Field(max_length=400)
+    what: Short
     severity: Literal["minor", "major"] = "minor"
 
 
@@ -39,11 +40,11 @@ class Review(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    summary: str = Field(max_length=1200)
-    objects: str = Field("", max_length=1200)
-    layout: str = Field("", max_length=800)
-    motion: str = Field("", max_length=800)
-    contacts: str = Field("", max_length=800)
+    summary: Short
+    objects: Short = ""
+    layout: Short = ""
+    motion: Short = ""
+    contacts: Short = ""
     differences: list[Difference] = Field(default_factory=list, max_length=20)
 
     @property

@@ -69,8 +69,21 @@ def _rest() -> list[tuple[str, str]]:
 
     return [
         ("display", "yes" if has_display() else "none: `wsim view --web` serves a browser"),
-        ("models", "builtin for every role (no language model is needed or used)"),
+        ("models", _models()),
     ]
+
+
+def _models() -> str:
+    """Who fills which role, by the environment and wsim.toml."""
+    from wsim.agents.models import BUILTIN, ROLES, choose
+    from wsim.errors import UserError
+
+    try:
+        models = choose()
+    except UserError as error:
+        return str(error)
+    named = ", ".join(f"{role} {models[role]}" for role in ROLES if models[role] != BUILTIN)
+    return named or "builtin for every role (no language model is needed)"
 
 
 def register(app: typer.Typer) -> None:

@@ -37,6 +37,7 @@ class AttemptRow:
     failed: list[str]  # checks
     summary: str
     repair: str  # what the judge wants mended first
+    judged: bool  # its model said so; else the checks ask for it
     skills: list[str]
     patch: Diff | None
     patched: str  # the number of the iteration that the patch starts from
@@ -64,6 +65,7 @@ def _row(contents: RunContents, item: Iteration) -> AttemptRow:
         failed=tried.failed if tried else list(dict.fromkeys(finding.check for finding in failures)),
         summary=tried.summary if tried else verdict.summary if verdict else "",
         repair=tried.repair if tried and tried.repair else _asked_by_checks(item),
+        judged=tried is not None and bool(tried.repair),
         skills=loop.skills.get(item.number, []),
         patch=make_diff(item.patch) if item.patch else None,
         patched=f"{base:02d}" if base is not None else "",

@@ -221,10 +221,13 @@ def _objectives(contents: RunContents) -> list[tuple[str, bool | None]]:
     return rows
 
 
-def _judged(contents: RunContents, status: str) -> str:
-    """What the judge's model wants mended first in the iteration that is shown."""
+def _judged(contents: RunContents, status: str) -> tuple[str, str] | None:
+    """What the judge's model wants mended first in the iteration that is shown: (kind and thing, why)."""
     tried = contents.loop.tried(contents.shown.index) if contents.shown else None
-    return tried.repair if tried is not None and status != "accepted" else ""
+    if tried is None or not tried.repair or status == "accepted":
+        return None
+    what, _, why = tried.repair.replace("/World/", "").partition(": ")
+    return what, why
 
 
 def _status(contents: RunContents) -> str:

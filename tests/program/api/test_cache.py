@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 from wsim.program.api.entry import Entry, Parameter
-from wsim.program.api.lookup import _folder
+from wsim.program.api.lookup import _folder, _forget
 from wsim.program.api.sources import all as sources
 from wsim.program.api.store import Store
 
@@ -58,6 +59,17 @@ def test_key_follows_the_versions(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sources.metadata, "version", lambda name: "0" if name == "newton" else real(name))
     assert sources.key("lower") != before["lower"]
     assert sources.key("programs") == before["programs"]
+
+
+def test_files_of_older_installations_are_removed(tmp_path: Path) -> None:
+    for i in range(7):
+        (tmp_path / f"lower-{i}.sqlite").write_text("")
+        os.utime(tmp_path / f"lower-{i}.sqlite", (i, i))
+    (tmp_path / "programs-0.sqlite").write_text("")
+    _forget("lower", tmp_path)
+    assert {file.name for file in tmp_path.iterdir()} == {
+        "programs-0.sqlite", *(f"lower-{i}.sqlite" for i in range(3, 7)),
+    }  # fmt: skip
 
 
 def test_cache_lies_where_the_environment_says(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

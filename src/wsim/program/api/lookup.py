@@ -14,6 +14,7 @@ from wsim.program.api.search import Hit, Searcher
 from wsim.program.api.sources import all as sources
 from wsim.program.api.store import Store
 
+_KEPT = 4  # files of a part in the cache
 Progress = Callable[[str], None]
 # Of names that end alike, the one that a program means: the scene's own before USD's before the rest.
 _ORDER = (
@@ -123,8 +124,16 @@ def _read(part: str, progress: Progress) -> Store:
     found = Store.open(file)
     if found is None:
         found = Store.of(sources.entries(part, progress))
-        found.save(file)
+        if found.save(file):
+            _forget(part, file.parent)
     return found
+
+
+def _forget(part: str, folder: Path) -> None:
+    """Remove what older installations left, but for the last few: checkouts may take turns."""
+    files = sorted(folder.glob(f"{part}-*.sqlite"), key=lambda file: file.stat().st_mtime)
+    for file in files[:-_KEPT]:
+        file.unlink(missing_ok=True)
 
 
 def _folder() -> Path:

@@ -180,7 +180,9 @@ class Calls(Attributes):
             node = bound[field][1] if field in bound else arguments.call
             self.problems.add(node, "value", f"{method}(): {refusal.partition(': ')[2]}", entry.signature)
         if method == "param" and made is None:
-            return values.get("default", UNKNOWN)
+            default = values.get("default", UNKNOWN)
+            number = isinstance(default, Const) and isinstance(default.value, (int, float))
+            return Const(float(default.value)) if number and isinstance(default, Const) else Instance("builtins.float")
         if method == "simulation":
             self._gravity(bound)
             return Const(None)

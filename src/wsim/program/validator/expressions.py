@@ -325,7 +325,7 @@ class Expressions(Objects):
             return Dict({}, exact=False)
 
     def _each(self, generators: list[ast.comprehension], read: Callable[[], None]) -> bool:
-        """Read something for each round of a comprehension; False if the rounds are not known, and one stands for all."""
+        """Read something for each round of a comprehension; False if they are not known, and one stands for all."""
         first = self.value(generators[0].iter)
         before = self.scope
         names = frozenset().union(*(assigned([ast.Expr(g.target)]) for g in generators))

@@ -20,8 +20,9 @@ _WHY = (
 _FORBIDDEN_CALLS = {
     **dict.fromkeys(
         (
-            "system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "startfile", "execv", "execve", "execl",
-            "execle", "execlp", "execvp", "execvpe", "spawnl", "spawnle", "spawnlp", "spawnv", "spawnve", "spawnvp",
+            "system", "popen", "fork", "forkpty", "posix_spawn", "posix_spawnp", "startfile", "execv", "execve",
+            "execl", "execle", "execlp", "execvp", "execvpe", "spawnl", "spawnle", "spawnlp", "spawnv", "spawnve",
+            "spawnvp", "spawnvpe",
         ),
         "programs start no processes",
     ),

@@ -28,6 +28,7 @@ _NOT_NEGATIVE = (
     "restitution", "intensity", "focalLength", "damping", "stiffness", "maxForce",
 )  # fmt: skip
 _ATTRIBUTE = re.compile(r"^(Create|Get)\w+Attr$")
+# The degrees of freedom of a joint, as UsdPhysics names them.
 _FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ", "distance", "linear", "angular")
 _NUMBERS = ("float", "double", "int", "half", "uint")
 
@@ -224,16 +225,13 @@ def _is_wrong(kind: str, value: Const | Items) -> bool:
 
 
 def _instance_name(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
-    """The name of one of several applications of a schema, such as the "angular" of a drive."""
-    if not isinstance(value, Const) or not isinstance(value.value, str):
+    """Which freedom of a joint a drive or a limit is for."""
+    if entry.parent not in ("pxr.UsdPhysics.DriveAPI", "pxr.UsdPhysics.LimitAPI"):
         return
-    schema = _schema_of(reader, entry.parent)
-    from pxr import Usd
-
-    if schema and not Usd.SchemaRegistry.IsAllowedAPISchemaInstanceName(schema, value.value):
-        known = [axis for axis in _FREEDOMS if Usd.SchemaRegistry.IsAllowedAPISchemaInstanceName(schema, axis)]
-        hint = f"; it takes {', '.join(known)}" if known else ""
-        reader.problems.add(node, "value", f'{schema} has no instance "{value.value}"{hint}', entry.signature)
+    if isinstance(value, Const) and isinstance(value.value, str) and value.value not in _FREEDOMS:
+        kind = entry.parent.rpartition(".")[2]
+        message = f'{kind} has no "{value.value}"; it takes {", ".join(_FREEDOMS)}'
+        reader.problems.add(node, "value", message, entry.signature)
 
 
 def _three(value: Const | Items) -> bool:

@@ -38,8 +38,8 @@ _DEPRECATED = re.compile(r"\A[^\n]*\n\s*\.\. deprecated::\s*([^\n]*(?:\n\s+\S[^\
 _ARRAYS = (
     "array", "zeros", "ones", "empty", "full", "arange", "linspace", "logspace", "geomspace", "eye", "identity", "diag",
     "stack", "concatenate", "vstack", "hstack", "column_stack", "zeros_like", "ones_like", "full_like", "empty_like",
-    "reshape", "tile", "asarray", "outer", "sort", "roll", "flip", "diff", "cumsum", "cumprod", "repeat", "kron", "tril",
-    "triu", "pad", "delete", "insert", "append", "fromiter", "dstack", "rot90", "transpose", "ravel", "array_like",
+    "reshape", "tile", "asarray", "outer", "sort", "roll", "flip", "diff", "cumsum", "cumprod", "repeat", "kron",
+    "tril", "triu", "pad", "delete", "insert", "append", "fromiter", "dstack", "rot90", "transpose", "ravel",
 )  # fmt: skip
 _METHODS = (
     "reshape", "astype", "copy", "ravel", "flatten", "transpose", "clip", "round", "cumsum", "cumprod", "repeat",
