@@ -10,6 +10,8 @@ from wsim.agents.ask import Desk
 from wsim.agents.budget import Budget, Ledger
 from wsim.agents.models import ROLES, Models
 from wsim.agents.transcript import Transcript
+from wsim.plan.planner import plan as plan_of
+from wsim.plan.schema import Plan
 
 __all__ = ["own_cache", "server"]
 
@@ -31,3 +33,9 @@ def make_desk(server: Server, folder: Path, **budget: float) -> Desk:
     limits = {"request_seconds": 20.0, **budget}
     models = Models(**{role: server.model(role) for role in ROLES})
     return Desk(models, Transcript(folder), Ledger(Budget(**limits)))  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="session")
+def slide() -> Plan:
+    """A crate on a ramp."""
+    return plan_of("A crate slides down a ramp.")

@@ -1,4 +1,4 @@
-"""A crank-slider: a motor turns the crank, a rod pushes the piston along X."""
+"""A slider-crank: a ram pushes the piston along X, a rod turns the crank."""
 
 import math
 
@@ -18,14 +18,15 @@ def build(scene: Scene) -> None:
     rod = scene.box("rod", size=(ROD, 0.02, 0.02), position=(CRANK + ROD / 2, 0.04, HEIGHT), material=alu)
     piston = scene.box("piston", size=(0.1, 0.1, 0.1), position=(CRANK + ROD, 0.12, HEIGHT), material=alu, color=(0.7, 0.2, 0.1))
 
-    rpm = scene.param("crank_rpm", 60.0, low=10.0, high=240.0, unit="1/min")
-    motor = Drive(velocity=rpm * 360.0 / 60.0, damping=20.0, max_force=50.0)
-
-    scene.joint_revolute("main_bearing", None, crank, anchor=(0.0, 0.0, HEIGHT), axis="Y", drive=motor)
-    scene.joint_revolute("crank_pin", crank, rod, anchor=(CRANK, 0.02, HEIGHT), axis="Y")
-    scene.joint_revolute("wrist_pin", rod, piston, anchor=(CRANK + ROD, 0.05, HEIGHT), axis="Y")
+    speed = scene.param("piston_speed", 0.2, low=0.05, high=1.0, unit="m/s")
+    motor = Drive(velocity=speed, damping=200.0, max_force=50.0)
     stroke = 2 * CRANK
-    scene.joint_prismatic("guide", None, piston, axis="X", limits=(-stroke * 1.1, 0.1 * stroke))
+
+    # The loop begins at the slider and closes at the crank's bearing, which turns freely.
+    scene.joint_prismatic("guide", None, piston, axis="X", limits=(-stroke * 1.1, 0.1 * stroke), drive=motor)
+    scene.joint_revolute("wrist_pin", piston, rod, anchor=(CRANK + ROD, 0.05, HEIGHT), axis="Y")
+    scene.joint_revolute("crank_pin", rod, crank, anchor=(CRANK, 0.02, HEIGHT), axis="Y")
+    scene.joint_revolute("main_bearing", None, crank, anchor=(0.0, 0.0, HEIGHT), axis="Y")
 
     eye = (0.3, -1.8 * math.cos(0.2), HEIGHT + 0.3)
     scene.camera("side", eye=eye, target=(0.3, 0.0, HEIGHT))

@@ -1,0 +1,158 @@
+"""A model's plan: its shorthand, its sentences, and what is sent back."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from tests.agents.scripted import Server, text
+from wsim.agents.ask import RETRIES, Desk
+from wsim.agents.failures import ModelError
+from wsim.agents.planner import plan_with, read_plan
+from wsim.errors import UserError
+from wsim.plan.schema import Plan
+from wsim.program.compose import compose
+
+PROMPT = "A ball falls by half a metre."
+WOOD = {"name": "wood", "density": 600}
+GROUND = {"name": "ground", "role": "terrain", "primitive": "ground", "state": "static", "material": WOOD}
+BALL = {
+    "name": "ball", "role": "rigid_body", "primitive": "sphere", "size": [0.1], "state": "dynamic", "material": WOOD,
+    "position": [0, 0, 2],
+}  # fmt: skip
+MOVES = {"kind": "moves", "object": "ball", "value": 0.5}
+SENTENCE = "finally (reaches(ball, (0, 0, 1.2), within 10 cm))"
+
+
+def answer(**change: Any) -> dict[str, Any]:
+    data = {
+        "title": "A ball falls",
+        "objects": [GROUND, BALL],
+        "cameras": [{"name": "side", "eye": [0, -4, 1.5], "target": [0, 0, 1.2]}],
+        "objectives": [MOVES],
+        "simulation": {"duration": 0.4, "frame_rate": 10},
+        **change,
+    }
+    return {key: value for key, value in data.items() if value is not None}
+
+
+def with_ball(**change: Any) -> dict[str, Any]:
+    ball = {key: value for key, value in {**BALL, **change}.items() if value is not None}
+    return answer(objects=[GROUND, ball])
+
+
+def ball_of(plan: Plan) -> Any:
+    return next(item for item in plan.objects if item.name == "ball")
+
+
+def test_shorthand_is_written_out() -> None:
+    plan = read_plan(answer(), PROMPT)
+    ball = ball_of(plan)
+    assert (ball.construction.kind, ball.primitive, ball.size) == ("proxy", "sphere", (0.1,))
+    assert ball.pose.position == (0.0, 0.0, 2.0)
+    assert plan.prompt == PROMPT
+    turned = ball_of(read_plan(with_ball(rotation_deg=[0, 0, 30]), PROMPT))
+    assert turned.pose.rotation_deg == (0.0, 0.0, 30.0)
+
+
+def test_all_written_out_is_the_same_plan() -> None:
+    full = with_ball(
+        primitive=None, size=None, position=None,
+        construction={"kind": "proxy", "primitive": "sphere", "size": [0.1]}, pose={"position": [0, 0, 2]},
+    )  # fmt: skip
+    half = with_ball(primitive=None, size=None, construction={"primitive": "sphere", "size": [0.1]})
+    assert read_plan(full, PROMPT) == read_plan(half, PROMPT) == read_plan(answer(), PROMPT)
+
+
+def test_relations_become_places() -> None:
+    plan = read_plan(with_ball(position=None, relations=[{"predicate": "SPAWNED-ABOVE", "value": 1.0}]), PROMPT)
+    assert ball_of(plan).pose.position[2] > 1.0
+    assert "scene.sphere(" in compose(plan)
+
+
+def test_an_asset_is_taken_by_its_id() -> None:
+    from wsim.assets import search
+
+    (hit, *_) = search("wooden crate", 1)
+    item = {"name": "box", "role": "rigid_body", "asset": hit.asset.id, "state": "dynamic", "position": [0, 0, 2]}
+    plan = read_plan(answer(objects=[GROUND, item], objectives=[{"kind": "moves", "object": "box", "value": 0.5}]), PROMPT)
+    assert plan.objects[1].construction.kind == "asset"
+
+
+def test_a_sentence_becomes_a_formula() -> None:
+    plan = read_plan(answer(objectives=[{"kind": "formula", "object": "ball", "sentence": SENTENCE}]), PROMPT)
+    (objective,) = plan.objectives
+    assert objective.formula is not None
+    assert objective.sentence == SENTENCE
+
+
+WRONG: dict[str, tuple[dict[str, Any], str]] = {
+    "no objects": (answer(objects=None), "objects"),
+    "objects that are none": (answer(objects=[3]), r"objects\.0"),
+    "an unknown field": (with_ball(colour="red"), r"objects\.1\.colour"),
+    "a size that is none": (with_ball(size=[-0.1]), r"objects\.1\.construction"),
+    "a number that is none": (with_ball(position=[0, 0, float("nan")]), r"objects\.1\.pose\.position"),
+    "an unknown primitive": (with_ball(primitive="teapot"), r"objects\.1\.construction"),
+    "an unknown asset": (with_ball(primitive=None, size=None, material=None, asset="unicorn_12"), "unicorn_12"),
+    "an unknown object": (answer(objectives=[{**MOVES, "object": "bal"}]), "bal"),
+    "no objective": (answer(objectives=[]), "objectives: none"),
+    "a sentence that is none": (
+        answer(objectives=[{"kind": "formula", "object": "ball", "sentence": "the ball is happy"}]),
+        r"objectives\.0\.sentence",
+    ),
+    "a formula without a sentence": (answer(objectives=[{"kind": "formula", "object": "ball"}]), r"objectives\.0"),
+    "objectives that are none": (answer(objectives={"kind": "moves"}), "objectives"),
+    "a place that is none": (
+        with_ball(position=None, relations=[{"predicate": "PLACE-ON", "ref": "table"}]), "table",
+    ),
+    "places that go in a circle": (
+        with_ball(position=None, relations=[{"predicate": "PLACE-ON", "ref": "ball"}]), "ball",
+    ),
+    "one name twice": (answer(objects=[GROUND, BALL, BALL]), "ball"),
+    "what no program can build": (answer(cameras=[{"name": "ball", "eye": [0, -4, 1], "target": [0, 0, 1]}]), "ball"),
+    "no time": (answer(simulation={"duration": 0}), r"simulation\.duration"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_is_said_with_its_place(what: str) -> None:
+    given, message = WRONG[what]
+    with pytest.raises(UserError, match=message) as caught:
+        read_plan(given, PROMPT)
+    assert len(str(caught.value)) < 1000
+
+
+def test_what_is_wrong_goes_back_then_there_is_a_plan(server: Server, desk: Desk) -> None:
+    given = [WRONG[what][0] for what in ("a size that is none", "a place that is none", "a sentence that is none")]
+    server.script["planner"] = [text("Gladly!"), *[text(json.dumps(one)) for one in given]]
+    server.script["planner"].append(text(f"```json\n{json.dumps(answer())}\n```"))
+    assert plan_with(desk, PROMPT) == read_plan(answer(), PROMPT)
+    asked = server.asked("planner")
+    assert len(asked) == 5
+    for request, part in zip(
+        asked, (PROMPT, "no JSON object", "objects.1.construction", "table", "objectives.0.sentence"), strict=True
+    ):
+        assert part in request
+    assert desk.ledger.account("planner").requests == 5
+
+
+def test_the_catalogue_and_the_picture_go_with_the_prompt(server: Server, desk: Desk) -> None:
+    server.script["planner"] = [text(json.dumps(answer()))]
+    plan_with(desk, "A wooden crate falls.", [b"\xff\xd8\xff\xe0 a picture"], "reference.jpg")
+    (request,) = server.asked("planner")
+    assert "Assets of the catalogue that may fit:" in request
+    assert "A reference picture is attached (reference.jpg)" in request
+    parts = server.requests[0]["messages"][1]["content"]
+    assert [part["type"] for part in parts] == ["text", "image_url"]
+    assert parts[1]["image_url"]["url"].startswith("data:image/jpeg;base64,")
+
+
+def test_a_planner_that_gives_none_is_a_model_error(server: Server, desk: Desk) -> None:
+    server.forever["planner"] = text(json.dumps(WRONG["no objective"][0]))
+    with pytest.raises(ModelError) as caught:
+        plan_with(desk, PROMPT)
+    assert caught.value.kind == "unusable"
+    assert "objectives: none" in str(caught.value)
+    assert len(server.requests) == RETRIES + 1
