@@ -2,6 +2,10 @@
 
 import pytest
 
+from tests.agents.scripted import own_cache, server
+
+__all__ = ["own_cache", "server"]
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     marked = [item for item in items if item.get_closest_marker("cuda")]

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.agents.scripted import Server, own_cache, server
+from tests.agents.scripted import Server
 from wsim.agents import relay
 from wsim.agents.ask import Desk
 from wsim.agents.budget import Budget, Ledger
@@ -12,8 +12,6 @@ from wsim.agents.models import ROLES, Models
 from wsim.agents.transcript import Transcript
 from wsim.plan.planner import plan as plan_of
 from wsim.plan.schema import Plan
-
-__all__ = ["own_cache", "server"]
 
 
 @pytest.fixture(autouse=True)

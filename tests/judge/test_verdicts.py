@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from wsim.judge import judge
+from wsim.judge.checks_run import CheckPlanControl
+from wsim.judge.evidence import Evidence
 from wsim.judge.verdict import Verdict
-from wsim.plan.schema import Objective
+from wsim.plan.schema import Objective, Step
 from wsim.scene.world import Joint
 
 BLOCK, BALL, TANK, WATER = "/World/wooden_block", "/World/steel_ball", "/World/tank", "/World/water"
@@ -412,3 +414,14 @@ def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):
     joined = apart.world(joints=[glue])
     assert only(judge(joined.recording, joined.plan), "ObjectiveFloats").passed
     assert not only(judge(apart.recording, apart.plan), "ObjectiveFloats").passed
+
+
+@pytest.mark.parametrize(
+    ("controlled", "shows", "outcome"),
+    [(False, "", None), (True, "it floats", False), (True, "control holds the ball up", True)],
+)
+def test_control_acts_only_where_the_plan_asks_for_it(pool, controlled, shows, outcome):
+    case = pool().changed(metadata={"controlled": controlled})
+    plan = case.plan.model_copy(update={"steps": [Step(title="motion", shows=shows)]})
+    found = [finding.passed for finding in CheckPlanControl().evaluate(Evidence(case.recording, plan))]
+    assert found == ([] if outcome is None else [outcome])

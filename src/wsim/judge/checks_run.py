@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.check import Check
+from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
     from wsim.judge.evidence import Evidence
@@ -166,3 +167,25 @@ class CheckPlanObjects(Check):
             message = f"{prim} is in the world, but not in the plan"
             found.append(self.failed(message, prim=prim, line=evidence.line(prim)))
         return found or [self.passed(f"The world has the plan's {len(planned)} objects and no others")]
+
+
+@dataclass
+class CheckPlanControl(Check):
+    """A world is steered by `control` only where the plan asks for it: unseen hands could make anything come true."""
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for a controlled world, none for another."""
+        plan = evidence.plan
+        if plan is None or not evidence.recording.metadata.get("controlled"):
+            return []
+        asked = [item.name for item in plan.objects if item.registration.actuation]
+        asked += [step.title for step in plan.steps if "control" in f"{step.title} {step.shows}".lower()]
+        if asked:
+            return [self.passed(f"The plan asks for control: {asked[0]}")]
+        return [
+            self.failed(
+                "The program's control acts on the world, and the plan asks for none: what happens may be its doing",
+                limit_from="a step that names control, or an object's actuation",
+                target=RepairTarget(kind="controller", parameter="control", direction="remove"),
+            )
+        ]

@@ -20,7 +20,7 @@ from wsim.judge.checks_physics import (
 )
 from wsim.judge.checks_plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks_rest import CheckCreep, CheckJitter, CheckRestForce
-from wsim.judge.checks_run import CheckComplete, CheckFinite, CheckLog, CheckPlanObjects
+from wsim.judge.checks_run import CheckComplete, CheckFinite, CheckLog, CheckPlanControl, CheckPlanObjects
 from wsim.judge.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveFormula
 from wsim.judge.objectives_fluid import ObjectiveFills, ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
@@ -69,7 +69,7 @@ OBJECTIVES: dict[str, type[ObjectiveCheck]] = {
 
 def run_checks() -> list[Check]:
     """The checks that need no finite numbers."""
-    return [CheckFinite(), CheckComplete(), CheckLog(), CheckPlanObjects()]
+    return [CheckFinite(), CheckComplete(), CheckLog(), CheckPlanObjects(), CheckPlanControl()]
 
 
 def physics_checks() -> list[Check]:
