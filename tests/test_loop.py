@@ -24,6 +24,7 @@ from wsim.generate import Generated, Options, generate
 from wsim.pipeline import Settings
 from wsim.plan.schema import Plan
 from wsim.progress import silent
+from wsim.replay import replay
 
 SETTINGS = Settings(device="cpu", pictures=False)
 NO_WORLD = replace(SETTINGS, params={"mass": 1.0})  # the program has no such parameter: it fails in a second
@@ -132,7 +133,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Repaired]:
         text(edit("duration=0.3", "duration=0.4")),  # not in the program
         text(edit("scene.simulation(duration=0.2", "scene.simulate(duration=0.3")),  # no such call
         text(lasts(0.3)),
-        call("query_recording", {"signal": "position", "prim": "ball", "reduction": "final"}),
+        call("query_recording", {"signal": "position", "prim": "ball", "reduction": "last"}),
         text(lasts(0.4, before=0.3)),
     ]
     server.forever["judge"] = JUDGED
@@ -156,7 +157,12 @@ def test_it_is_planned_repaired_reviewed_and_accepted(repaired: Repaired) -> Non
         ("physics", "rejected", True),
         ("all", "accepted", True),
     ]
-    assert [kept.text(number).split("duration=")[1].split(",")[0] for number in (1, 2, 3, 4)] == ["0.2", "0.1", "0.3", "0.4"]
+    assert [kept.text(number).split("duration=")[1].split(",")[0] for number in (1, 2, 3, 4)] == [
+        "0.2",
+        "0.1",
+        "0.3",
+        "0.4",
+    ]
     assert kept.facts["best"] == 4
     assert kept.facts["title"] == "A ball flies"
     assert "cause" not in kept.facts
@@ -173,7 +179,7 @@ def test_a_worse_patch_is_undone_and_told_of(repaired: Repaired) -> None:
     assert "# Tried before, and undone" not in first
     assert "there is no time to fly" in first  # the judge
     told = second.partition("# Tried before, and undone")[2]
-    assert "iteration 2: It is too short. It failed at physics: CheckComplete: " in told
+    assert "iteration 2: It is too short. It failed at physics: ObjectiveMoves: " in told
     assert "+    scene.simulation(duration=0.1" in told
     assert "duration=0.2" in second.partition("# Verdict")[0]  # the best so far is what is to be edited
     diff = repaired.kept.text(3, "patch.diff")
@@ -188,7 +194,9 @@ def test_what_cannot_be_used_goes_back_to_the_coder(repaired: Repaired) -> None:
     assert "these lines are not in the program: 'duration=0.3'" in asked[3]
     assert "simulate" in asked[4].rpartition("has mistakes")[2]
     assert "# Tried before" not in asked[5]  # the best is new
-    assert "ball" in asked[6].rpartition("```")[2]  # what the tool answered
+    (answer,) = [body["messages"][-1] for body in repaired.server.requests if body["messages"][-1]["role"] == "tool"]
+    assert "0.45" in answer["content"]  # [m]: where the best so far came to
+    assert "nearest: line 34: '    scene.simulation(duration=0.2, frame_rate=10.0)'" in asked[3]
 
 
 def test_the_reviewer_sees_stills_and_facts(repaired: Repaired) -> None:
@@ -222,6 +230,20 @@ def test_every_exchange_is_written_down(repaired: Repaired) -> None:
     exchanges = read(repaired.kept.folder)
     assert len(exchanges) == len(repaired.server.requests) == 15
     assert [exchange.error["kind"] for exchange in exchanges if exchange.error] == ["server", "rate limit"]
+
+
+def test_it_is_replayed_with_no_model_left(repaired: Repaired, tmp_path: Path) -> None:
+    recorded = repaired.kept.folder
+    again = replay(recorded, tmp_path / "runs")
+    assert again.divergences == []
+    assert again.differing == []
+    assert again.same == 2 + 4 * 2 + 3  # the plan and the transcript; programs and verdicts; three patches
+    made = Kept(again.generated.run.path)
+    assert made.rows == repaired.kept.rows
+    assert made.facts["usage"]["tokens"] == repaired.kept.facts["usage"]["tokens"]
+    assert (made.folder / "accepted" / "SHA256SUMS").read_bytes() == (
+        recorded / "accepted" / "SHA256SUMS"
+    ).read_bytes()
 
 
 # --- how it ends otherwise

@@ -24,7 +24,9 @@ Entry = Callable[["_Handler", Body], None]
 TOKENS = {"prompt_tokens": 1000, "completion_tokens": 100, "total_tokens": 1100}
 
 
-def reply(content: Any, finish: str = "stop", calls: list[Body] | None = None, usage: Any = TOKENS, **more: Any) -> Body:
+def reply(
+    content: Any, finish: str = "stop", calls: list[Body] | None = None, usage: Any = TOKENS, **more: Any
+) -> Body:
     """A chat completion as it goes over the wire."""
     message = {"role": "assistant", "content": content, **more} | ({"tool_calls": calls} if calls else {})
     choice = {"index": 0, "message": message, "finish_reason": finish}

@@ -72,7 +72,11 @@ def test_an_accepted_world_stays_accepted(server: Server, desk: Desk, slide: Pla
 @pytest.mark.parametrize(
     ("answer", "passed", "message"),
     [
-        (said(False, [{**OBJECTION, "object": "giraffe"}]), True, "the plan has no object 'giraffe'; it has crate, ground"),
+        (
+            said(False, [{**OBJECTION, "object": "giraffe"}]),
+            True,
+            "the plan has no object 'giraffe'; it has crate, ground",
+        ),
         (said(False, repair=REPAIR), True, "every check passed: accept, or object to an object of the plan"),
         (said(False), True, "every check passed: accept, or object"),
         (said(False), False, "not accepted, and neither a repair nor an objection"),

@@ -77,7 +77,9 @@ def test_an_asset_is_taken_by_its_id() -> None:
 
     (hit, *_) = search("wooden crate", 1)
     item = {"name": "box", "role": "rigid_body", "asset": hit.asset.id, "state": "dynamic", "position": [0, 0, 2]}
-    plan = read_plan(answer(objects=[GROUND, item], objectives=[{"kind": "moves", "object": "box", "value": 0.5}]), PROMPT)
+    plan = read_plan(
+        answer(objects=[GROUND, item], objectives=[{"kind": "moves", "object": "box", "value": 0.5}]), PROMPT
+    )
     assert plan.objects[1].construction.kind == "asset"
 
 

@@ -150,7 +150,9 @@ def test_what_is_wrong_goes_back_until_an_answer_can_be_used(server: Server, des
     assert "one word, not 'two words'" in second
     assert "one word, not 'three words more'" in third
     told = [exchange.messages[-1] for exchange in written(desk)]
-    assert [message["content"] in wire for message, wire in zip(told, (first, second, third), strict=True)] == [True] * 3
+    assert [message["content"] in wire for message, wire in zip(told, (first, second, third), strict=True)] == [
+        True
+    ] * 3
     assert "one word, not 'two words'" in told[1]["content"]
 
 
@@ -215,7 +217,11 @@ def test_a_model_that_only_calls_tools_is_ended(server: Server, desk: Desk) -> N
 
 
 def test_what_a_tool_answers_goes_to_the_model_and_into_the_transcript(server: Server, desk: Desk) -> None:
-    server.script["coder"] = [call("search_api", {"words": "hinge"}), call("search_api", {"wrds": "hinge"}), text("yes")]
+    server.script["coder"] = [
+        call("search_api", {"words": "hinge"}),
+        call("search_api", {"wrds": "hinge"}),
+        text("yes"),
+    ]
     tools = [TOOLS["search_api"]]
     assert desk.ask("coder", "Hi.", word, tools=tools, workspace=Workspace(RunFolder(desk.transcript.folder))) == "yes"
     assert "joint_revolute" in wire(server.requests[1])

@@ -40,13 +40,26 @@ def test_a_conversation_is_written_once_and_read_whole(tmp_path: Path) -> None:
 
 def test_all_of_an_exchange_comes_back(tmp_path: Path) -> None:
     transcript = Transcript(tmp_path)
-    reply = {"text": "", "calls": [{"name": "search_api", "arguments": '{"words": "x"}', "id": "1"}], "finish": "length"}
+    reply = {
+        "text": "",
+        "calls": [{"name": "search_api", "arguments": '{"words": "x"}', "id": "1"}],
+        "finish": "length",
+    }
     usage = {"input_tokens": 7, "output_tokens": 3}
     transcript.add("coder", "m", Asked([user("a")], TOOLS, {}), reply=reply, usage=usage, seconds=1.234)
-    transcript.add("coder", "m", Asked([user("b")], TOOLS, {}), error={"kind": "timeout", "message": "late"}, seconds=9.0)
+    transcript.add(
+        "coder", "m", Asked([user("b")], TOOLS, {}), error={"kind": "timeout", "message": "late"}, seconds=9.0
+    )
     transcript.add("coder", "m", Asked([user("b")], [], {}), reply={"text": "ok"}, cached=True)
     one, two, three = read(tmp_path)
-    assert (one.model, one.reply, one.error, one.usage, one.seconds, one.cached) == ("m", reply, None, usage, 1.23, False)
+    assert (one.model, one.reply, one.error, one.usage, one.seconds, one.cached) == (
+        "m",
+        reply,
+        None,
+        usage,
+        1.23,
+        False,
+    )
     assert (two.reply, two.error, two.seconds) == (None, {"kind": "timeout", "message": "late"}, 9.0)
     assert (three.reply, three.usage, three.cached) == ({"text": "ok"}, {}, True)
 
@@ -84,7 +97,9 @@ def test_what_the_builtin_roles_made_is_there_and_is_no_exchange(tmp_path: Path)
     assert [(exchange.number, exchange.role) for exchange in read(tmp_path)] == [(1, "coder")]
 
 
-@pytest.mark.parametrize("mark", ["\u2028", "\u2029", "\x85", "\x0b", "\x0c", "\x1c", "\r", "\r\n", "\\n", "\x00", "é", "🙂"])
+@pytest.mark.parametrize(
+    "mark", ["\u2028", "\u2029", "\x85", "\x0b", "\x0c", "\x1c", "\r", "\r\n", "\\n", "\x00", "é", "🙂"]
+)
 def test_any_text_comes_back(tmp_path: Path, mark: str) -> None:
     words = f"one{mark}two\nthree"
     Transcript(tmp_path).add("coder", "m", Asked([user(words)], [], {}), reply={"text": words})

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import UnusableError
-from wsim.program.patch import apply, parse
+from wsim.program.patch import PatchError, apply, parse
 
 if TYPE_CHECKING:
     from wsim.agents.ask import Desk
@@ -91,7 +91,10 @@ def _patched(answer: str, situation: Situation, plan: Plan | None) -> str:
     """
     from wsim.program.validator import validate
 
-    text = apply(situation.program, parse(answer))
+    try:
+        text = apply(situation.program, parse(answer))
+    except PatchError as error:
+        raise UnusableError(f"{error}; or, if none can mend it, CANNOT: and the reason") from error
     if text == situation.program:
         raise UnusableError("the edits change nothing; replace by something else than what is there")
     same = [number for program, number in situation.tried.items() if _runs_alike(program, text)]

@@ -70,7 +70,8 @@ class Crew:
                 tried.review, tried.seen = seen.text, [one.what for one in seen.differences]
             except ModelError as error:
                 self.notes.append(f"iteration {tried.number} was reviewed by facts alone: {error}")
-        tried.review = tried.review or "\n".join(reviewer.facts(tried.folder))
+        nobody = ["Nobody looked at the pictures; the renderer's facts:", *reviewer.facts(tried.folder)]
+        tried.review = tried.review or "\n".join(nobody)
         reviewer.keep(tried.folder, seen, self.desk.models["reviewer"] if seen else BUILTIN)
 
     def judge(self, tried: Attempt, plan: Plan) -> None:

@@ -106,8 +106,11 @@ def _read(text: str, names: set[str], passed: bool) -> Opinion:
 
 
 def decide(verdict: Verdict, held: Opinion) -> Verdict:
-    """The verdict with the model's objections in it. A failed check stays failed, whatever the model says."""
-    if held.accept or not held.objections:
+    """The verdict with the model's objections in it. A failed check stays failed, whatever the model says.
+
+    A world that fails by its checks is ranked by them alone: there objections say nothing that counts.
+    """
+    if verdict.status != "accepted" or held.accept or not held.objections:
         return verdict
     objections = [
         Finding(

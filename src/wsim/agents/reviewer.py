@@ -86,10 +86,9 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
     """
     sheet, labels = contact_sheet(folder / "frames")
     names = {item.name for item in plan.objects}
-    steps = [f"- {step.title}: {step.shows}" for step in plan.steps]
     request = "\n\n".join(
         [
-            "# Plan", "\n".join([*plan_lines, *(["what each step must show:", *steps] if steps else [])]),
+            "# Plan", "\n".join(line for line in plan_lines if not line.startswith("formula")),
             "# Pictures", f"One sheet, left to right, top to bottom: {', '.join(labels)}" if labels else "none",
             "# Facts from the shape-index images (glass and water have no pixels)",
             "\n".join(facts(folder)) or "none",

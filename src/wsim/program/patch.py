@@ -126,7 +126,8 @@ def _near(lines: list[str], wanted: list[str]) -> str:
 
     def likeness(k: int) -> float:
         matcher.set_seq1("\n".join(line[:_WIDE] for line in lines[k : k + size]))
-        return matcher.ratio()
+        longest = max(block.size for block in matcher.get_matching_blocks())
+        return matcher.ratio() + longest / len(matcher.b)  # a few characters may be searched for in a long line
 
     best = max(windows, key=likeness, default=0)
     return f"line {best + 1}: {_quote(lines[best : best + size])}"

@@ -114,8 +114,12 @@ def _objects(plan: Plan, name: str) -> list[str]:
             number(weight.mass), numbers(item.size, " x "), numbers(pose.position) if pose else "",
             numbers(pose.rotation_deg) if pose and any(pose.rotation_deg) else "",
             numbers(item.velocity) if any(item.velocity) else "",
+            number(item.material.friction) if item.material and item.primitive != "fluid" else "",
         ])  # fmt: skip
-    head = ("object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s")
+    head = (
+        "object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s",
+        "friction",
+    )  # fmt: skip
     return table(head, rows) if rows else []
 
 
