@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 from dataclasses import asdict, dataclass, field, replace
 from enum import IntEnum
@@ -31,6 +32,7 @@ class Reached(IntEnum):
 
 
 Rank = tuple[int, int, float]
+NUMERICS = ("time_step", "spacing", "speed_of_sound")
 
 
 @dataclass
@@ -195,3 +197,10 @@ def _simulated(made: Attempt, plan: Plan | None, settings: Settings, progress: P
     return simulate_and_judge(
         made.folder, made.folder / "program.py", plan, settings, progress, seconds, checks.get("build")
     )
+
+
+def numerics(program: str) -> list[str]:
+    """How a program has its world computed: the values that it gives for time steps and particle spacings."""
+    calls = (node for node in ast.walk(ast.parse(program)) if isinstance(node, ast.Call))
+    given = (keyword for call in calls for keyword in call.keywords if keyword.arg in NUMERICS)
+    return sorted(f"{keyword.arg}={ast.unparse(keyword.value)}" for keyword in given)

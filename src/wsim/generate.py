@@ -138,13 +138,18 @@ def _candidates(crew: Crew, best: Attempt, undone: Sequence[Attempt], plan: Plan
 
 def _try(run: RunFolder, crew: Crew, plan: Plan, options: Options, best: Attempt | None, text: str) -> Attempt:
     """One program through all passes, the review, the judge, and acceptance."""
-    from wsim.attempt import Reached, attempt
+    from wsim.attempt import Reached, attempt, numerics
     from wsim.judge.verdict import Verdict
     from wsim.pipeline import conclude
     from wsim.tools.iterations import add
 
     folder = add(run, text, best.program if best else None)
-    tried = attempt(folder, plan, options.settings, crew.workspace.progress, cheap_first=crew.has("coder"))
+    settings = options.settings
+    if best is not None and numerics(text) != numerics(_text(run.iteration(1))):
+        settings = replace(
+            settings, verify=True
+        )  # a world that a finer computation made right must stand a still finer one
+    tried = attempt(folder, plan, settings, crew.workspace.progress, cheap_first=crew.has("coder"))
     try:
         _assess(run, crew, plan, options, tried)
     except BudgetError as error:  # what was tried is kept, and what was found of it
@@ -156,6 +161,10 @@ def _try(run: RunFolder, crew: Crew, plan: Plan, options: Options, best: Attempt
         tried.reached = Reached.REVIEW
     conclude(folder, tried.verdict)
     return tried
+
+
+def _text(folder: Path) -> str:
+    return (folder / "program.py").read_text(encoding="utf-8")
 
 
 def _assess(run: RunFolder, crew: Crew, plan: Plan, options: Options, tried: Attempt) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.agents.flies import BALL, GROUND, MOVES, PROMPT, answer
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import RETRIES, Desk
 from wsim.agents.failures import ModelError
@@ -15,27 +16,7 @@ from wsim.errors import UserError
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 
-PROMPT = "A ball falls by half a metre."
-WOOD = {"name": "wood", "density": 600}
-GROUND = {"name": "ground", "role": "terrain", "primitive": "ground", "state": "static", "material": WOOD}
-BALL = {
-    "name": "ball", "role": "rigid_body", "primitive": "sphere", "size": [0.1], "state": "dynamic", "material": WOOD,
-    "position": [0, 0, 2],
-}  # fmt: skip
-MOVES = {"kind": "moves", "object": "ball", "value": 0.5}
 SENTENCE = "finally (reaches(ball, (0, 0, 1.2), within 10 cm))"
-
-
-def answer(**change: Any) -> dict[str, Any]:
-    data = {
-        "title": "A ball falls",
-        "objects": [GROUND, BALL],
-        "cameras": [{"name": "side", "eye": [0, -4, 1.5], "target": [0, 0, 1.2]}],
-        "objectives": [MOVES],
-        "simulation": {"duration": 0.4, "frame_rate": 10},
-        **change,
-    }
-    return {key: value for key, value in data.items() if value is not None}
 
 
 def with_ball(**change: Any) -> dict[str, Any]:

@@ -7,11 +7,11 @@ import json
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from pydantic_ai.messages import ModelMessage, ModelResponse
+from pydantic_ai.messages import ModelMessage, ModelRequest, ModelResponse, SystemPromptPart, UserPromptPart
 from pydantic_ai.models import Model, ModelRequestParameters
 from pydantic_ai.models.wrapper import WrapperModel
 from pydantic_ai.settings import ModelSettings
@@ -102,6 +102,7 @@ class Relay(WrapperModel):
             ModelError: If every attempt failed.
             BudgetError: If nothing is left to ask with.
         """
+        messages = _for_any(messages)
         request = asked(messages, model_request_parameters)
         if self.replay is not None:
             return self._replayed(request)
@@ -183,6 +184,21 @@ class Relay(WrapperModel):
             again = following is not None and following.role == self.role and following.messages == exchange.messages
             if not again:
                 raise ModelError(error.get("kind", "server"), error.get("message", ""), self.role)  # type: ignore[arg-type]
+
+
+def _for_any(messages: list[ModelMessage]) -> list[ModelMessage]:
+    """The messages without words of the system in between.
+
+    The client adds some for certain models alone, and many servers refuse them there. Where they are all that is said,
+    the user says them.
+    """
+    plain: list[ModelMessage] = [*messages]
+    for k, message in enumerate(messages[1:], start=1):
+        if isinstance(message, ModelRequest):
+            parts = [part for part in message.parts if not isinstance(part, SystemPromptPart)]
+            parts = parts or [UserPromptPart(p.content) for p in message.parts if isinstance(p, SystemPromptPart)]
+            plain[k] = replace(message, parts=parts)
+    return plain
 
 
 def _difference(recorded: list[dict[str, Any]], now: list[dict[str, Any]]) -> str:

@@ -1,0 +1,165 @@
+"""What a reviewer is shown: stills, and exact facts. What it may answer; and what is left where it fails."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from tests.agents.flies import CAMERA, PROMPT, flies, review
+from tests.agents.scripted import Server, text
+from wsim.agents.ask import Desk
+from wsim.agents.budget import Ledger
+from wsim.agents.crew import Crew
+from wsim.agents.models import Models
+from wsim.agents.reviewer import COLUMNS, TILE, TILES, Review, contact_sheet, facts, keep
+from wsim.agents.reviewer import review as ask_for_review
+from wsim.agents.transcript import Transcript
+from wsim.attempt import Attempt, Reached
+from wsim.judge.verdict import Verdict
+from wsim.pipeline import Settings, run_program
+from wsim.plan.schema import Plan
+from wsim.program.compose import compose
+from wsim.runs import RunFolder
+from wsim.tools import Workspace
+
+ABOVE = {"name": "above", "eye": [0, -1, 6], "target": [0, 0, 2]}
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    return flies(simulation={"duration": 0.8, "frame_rate": 10}, cameras=[CAMERA, ABOVE])
+
+
+@pytest.fixture(scope="module")
+def made(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An iteration with pictures, which nobody may change."""
+    folder = RunFolder(tmp_path_factory.mktemp("pictured")).iteration(1)
+    (folder / "program.py").write_text(compose(plan))
+    assert run_program(folder / "program.py", folder, plan, Settings(device="cpu")).status == "accepted"
+    return folder
+
+
+@pytest.fixture
+def iteration(made: Path, tmp_path: Path) -> Path:
+    """The same, to be written to."""
+    folder = tmp_path / "run" / "iterations" / "01"
+    shutil.copytree(made, folder)
+    return folder
+
+
+def picture(data: bytes) -> Image.Image:
+    return Image.open(io.BytesIO(data))
+
+
+def test_the_sheet_shows_the_start_and_the_end_and_the_other_cameras_end(made: Path) -> None:
+    assert len(list((made / "frames").glob("*.png"))) == 2 * 9
+    data, labels = contact_sheet(made / "frames")
+    with picture(data) as sheet:
+        assert (sheet.format, sheet.size) == ("JPEG", (TILE[0] * COLUMNS, TILE[1] * 2))
+    assert len(data) < 40_000
+    assert len(labels) == TILES
+    cameras, times = zip(*(label.rsplit(" ", 1) for label in labels), strict=True)
+    assert cameras[:5] == (cameras[0],) * 5
+    assert cameras[5] != cameras[0]
+    seconds = [float(time.removesuffix("s")) for time in times]
+    assert seconds[0] == 0.0
+    assert seconds[4] == seconds[5] == pytest.approx(0.8)
+    assert seconds[:5] == sorted(set(seconds[:5]))
+    assert contact_sheet(made / "frames") == (data, labels)
+
+
+def test_the_stills_in_between_are_where_something_changes(tmp_path: Path) -> None:
+    for k in range(20):  # one lone flash, and the end is as the start
+        Image.new("RGB", (64, 36), (255, 255, 255) if k == 13 else (0, 0, k == 7 and 90)).save(
+            tmp_path / f"side_{k / 10:06.3f}s.png"
+        )
+    _, labels = contact_sheet(tmp_path)
+    assert {"side 00.000s", "side 00.700s", "side 01.300s", "side 01.900s"} <= set(labels)
+    assert labels == sorted(labels)
+
+
+def test_few_stills_are_all_shown_and_none_is_no_sheet(tmp_path: Path) -> None:
+    assert contact_sheet(tmp_path / "frames") == (b"", [])
+    Image.new("RGB", (640, 360)).save(tmp_path / "side_00.000s.png")
+    data, labels = contact_sheet(tmp_path)
+    assert labels == ["side 00.000s"]
+    with picture(data) as sheet:
+        assert sheet.size == TILE
+
+
+def test_facts_are_shares_of_the_picture(made: Path, tmp_path: Path) -> None:
+    side, above = facts(made)
+    assert side.startswith("side (% of picture at start/least/end): ")
+    assert above.startswith("above (")
+    start, least, end = map(float, side.partition("ball ")[2].split(",")[0].split("/"))
+    assert 0.0 < least <= min(start, end) < 5.0
+    assert facts(tmp_path) == []
+
+
+def test_a_reviewer_is_shown_all_of_it(server: Server, desk: Desk, plan: Plan, made: Path) -> None:
+    server.script["reviewer"] = [text(f"```json\n{review(differences=[])}\n```")]
+    found = ask_for_review(desk, plan, made, ["ground", "ball"])
+    assert (found.summary, found.differences) == ("A ball flies.", [])
+    (request,) = server.asked("reviewer")
+    for part in (PROMPT, "side 00.000s", *facts(made)):
+        assert part in request
+    sent = server.requests[0]["messages"][1]["content"][1]["image_url"]["url"]
+    assert sent.startswith("data:image/jpeg;base64,")
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ("<html><p>A ball flies.</p></html>", "no JSON object in the answer"),
+        (review()[:-1], "it breaks off"),
+        ('{"objects": "ball"}', "summary: Field required"),
+        (review(summary="long " * 1000), "summary: String should have at most 1200 characters"),
+        (review(stars=5), "stars: Extra inputs are not permitted"),
+        (review(differences=[{"object": "bird", "what": "it sings"}]), "the plan has no object 'bird'; it has ball, ground"),
+        (review(differences=[{"object": "ball", "what": "", "severity": "awful"}]), "differences.0.severity: "),
+    ],
+)
+def test_what_is_no_review_is_sent_back(
+    server: Server, desk: Desk, plan: Plan, made: Path, answer: str, message: str
+) -> None:
+    server.script["reviewer"] = [text(answer), text(review())]
+    assert ask_for_review(desk, plan, made, []).summary == "A ball flies."
+    first, second = server.asked("reviewer")
+    assert message in second
+    assert message not in first
+
+
+def test_a_review_is_kept_beside_the_facts(iteration: Path) -> None:
+    before = json.loads((iteration / "review.json").read_text())
+    difference = {"object": "ball", "what": "it is blue", "severity": "minor"}
+    keep(iteration, Review.model_validate({"summary": "Seen.", "differences": [difference]}), "m@x")
+    after = json.loads((iteration / "review.json").read_text())
+    assert after["share_of_picture"] == before["share_of_picture"]
+    assert (after["by"], after["review"]["differences"]) == ("m@x", [difference])
+
+
+def test_without_a_model_the_facts_are_the_review(plan: Plan, iteration: Path) -> None:
+    run = RunFolder(iteration.parents[1])
+    desk = Desk(Models(), Transcript(run.path), Ledger())
+    crew = Crew(desk, Workspace(run))
+    tried = Attempt(iteration, "", Reached.ALL, Verdict(status="accepted", summary=""))
+    crew.look(tried, plan)
+    assert tried.review == "\n".join(facts(iteration))
+    assert crew.notes == []
+    kept = json.loads((iteration / "review.json").read_text())
+    assert (kept["by"], kept["review"]) == ("builtin", {"facts": facts(iteration)})
+
+
+def test_a_reviewer_that_fails_is_done_without(server: Server, desk: Desk, plan: Plan, iteration: Path) -> None:
+    server.forever["reviewer"] = text("It is lovely.")
+    crew = Crew(desk, Workspace(RunFolder(iteration.parents[1])))
+    tried = Attempt(iteration, "", Reached.ALL, Verdict(status="accepted", summary=""))
+    crew.look(tried, plan)
+    assert tried.review == "\n".join(facts(iteration))
+    (note,) = crew.notes
+    assert note.startswith("iteration 1 was reviewed by facts alone: the reviewer's model: unusable: 5 answers")
