@@ -27,8 +27,7 @@ def tried(folder: Path, text: str, settings: Settings = QUIET) -> Attempt:
 def test_a_program_with_mistakes_is_not_run(tmp_path: Path) -> None:
     made = tried(tmp_path, PROGRAM.replace("scene.sphere(", "scene.spere("))
     assert (made.reached, made.verdict.status) == (Reached.VALIDATION, "rejected")
-    finding = made.verdict.findings[0]
-    assert "spere" in finding.message
+    (finding,) = (one for one in made.verdict.findings if "spere" in one.message)
     assert finding.line == f"program.py:{PROGRAM[: PROGRAM.index('scene.sphere(')].count(chr(10)) + 1}"
     assert {path.name for path in made.folder.iterdir()} == {"program.py", "verdict.json"}
 

@@ -1,7 +1,8 @@
 """Recorded runs with language models, made again offline: the same programs, and the same ends.
 
 What models were asked hangs on prompts and skills, which grow; what they answered is what was recorded. So the replies
-must lead to the same patches and programs, byte for byte, and each program to the same outcome.
+must lead to the same patches and programs, byte for byte, and each program must come as far as it did. Which findings
+fail on the way is the judge's affair, which learns.
 """
 
 import json
@@ -22,8 +23,8 @@ def test_a_recorded_run_is_made_again(recorded: Path, tmp_path: Path) -> None:
     after = again.generated.run.facts()
     assert after["status"] == before["status"]
     assert after.get("best") == before.get("best")
-    assert [(row["reached"], row["failed"], row["kept"]) for row in after["iterations"]] == [
-        (row["reached"], row["failed"], row["kept"]) for row in before["iterations"]
+    assert [(row["reached"], row["kept"]) for row in after["iterations"]] == [
+        (row["reached"], row["kept"]) for row in before["iterations"]
     ]
     assert [line for line in again.differing if "program.py" in line or "patch.diff" in line] == []
     assert not any("were not asked for" in line for line in again.divergences)

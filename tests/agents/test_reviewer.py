@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import shutil
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
-from tests.agents.flies import CAMERA, PROMPT, flies, review
+from tests.agents.flies import CAMERA, flies, review
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import Desk
 from wsim.agents.budget import Ledger
@@ -26,6 +27,7 @@ from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.runs import RunFolder
 from wsim.tools import Workspace
+from wsim.tools.plan import plan_lines
 
 ABOVE = {"name": "above", "eye": [0, -1, 6], "target": [0, 0, 2]}
 
@@ -57,7 +59,7 @@ def picture(data: bytes) -> Image.Image:
 
 
 def test_the_sheet_shows_the_start_and_the_end_and_the_other_cameras_end(made: Path) -> None:
-    assert len(list((made / "frames").glob("*.png"))) == 2 * 9
+    assert len(list((made / "frames").glob("*.png"))) == 2 * 6
     data, labels = contact_sheet(made / "frames")
     with picture(data) as sheet:
         assert (sheet.format, sheet.size) == ("JPEG", (TILE[0] * COLUMNS, TILE[1] * 2))
@@ -103,11 +105,12 @@ def test_facts_are_shares_of_the_picture(made: Path, tmp_path: Path) -> None:
 
 def test_a_reviewer_is_shown_all_of_it(server: Server, desk: Desk, plan: Plan, made: Path) -> None:
     server.script["reviewer"] = [text(f"```json\n{review(differences=[])}\n```")]
-    found = ask_for_review(desk, plan, made, ["ground", "ball"])
+    found = ask_for_review(desk, plan, made, plan_lines(plan))
     assert (found.summary, found.differences) == ("A ball flies.", [])
     (request,) = server.asked("reviewer")
-    for part in (PROMPT, "side 00.000s", *facts(made)):
+    for part in ("A ball flies", "ball moves", *facts(made)):
         assert part in request
+    assert re.search(r"top to bottom: side 00\.000s, (side \S+, )+above 00\.800s\n", request)  # as the plan has them
     sent = server.requests[0]["messages"][1]["content"][1]["image_url"]["url"]
     assert sent.startswith("data:image/jpeg;base64,")
 
@@ -118,7 +121,7 @@ def test_a_reviewer_is_shown_all_of_it(server: Server, desk: Desk, plan: Plan, m
         ("<html><p>A ball flies.</p></html>", "no JSON object in the answer"),
         (review()[:-1], "it breaks off"),
         ('{"objects": "ball"}', "summary: Field required"),
-        (review(summary="long " * 1000), "summary: String should have at most 1200 characters"),
+        (review(differences=[{"object": "ball", "what": "x"}] * 21), "differences: List should have at most 20 items"),
         (review(stars=5), "stars: Extra inputs are not permitted"),
         (review(differences=[{"object": "bird", "what": "it sings"}]), "the plan has no object 'bird'; it has ball, ground"),
         (review(differences=[{"object": "ball", "what": "", "severity": "awful"}]), "differences.0.severity: "),
@@ -132,6 +135,11 @@ def test_what_is_no_review_is_sent_back(
     first, second = server.asked("reviewer")
     assert message in second
     assert message not in first
+
+
+def test_a_long_review_is_heard_so_far(server: Server, desk: Desk, plan: Plan, made: Path) -> None:
+    server.script["reviewer"] = [text(review(summary="long " * 10_000))]
+    assert len(ask_for_review(desk, plan, made, []).text) < 2000
 
 
 def test_a_review_is_kept_beside_the_facts(iteration: Path) -> None:
@@ -149,7 +157,8 @@ def test_without_a_model_the_facts_are_the_review(plan: Plan, iteration: Path) -
     crew = Crew(desk, Workspace(run))
     tried = Attempt(iteration, "", Reached.ALL, Verdict(status="accepted", summary=""))
     crew.look(tried, plan)
-    assert tried.review == "\n".join(facts(iteration))
+    assert tried.review.splitlines()[1:] == facts(iteration)
+    assert "Nobody looked at the pictures" in tried.review
     assert crew.notes == []
     kept = json.loads((iteration / "review.json").read_text())
     assert (kept["by"], kept["review"]) == ("builtin", {"facts": facts(iteration)})
@@ -160,6 +169,7 @@ def test_a_reviewer_that_fails_is_done_without(server: Server, desk: Desk, plan:
     crew = Crew(desk, Workspace(RunFolder(iteration.parents[1])))
     tried = Attempt(iteration, "", Reached.ALL, Verdict(status="accepted", summary=""))
     crew.look(tried, plan)
-    assert tried.review == "\n".join(facts(iteration))
+    assert tried.review.splitlines()[1:] == facts(iteration)
+    assert tried.seen is None
     (note,) = crew.notes
     assert note.startswith("iteration 1 was reviewed by facts alone: the reviewer's model: unusable: 5 answers")

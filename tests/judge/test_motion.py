@@ -101,6 +101,18 @@ def test_a_ball_rolls_down_as_its_inertia_has_it():
     )
 
 
+def test_what_a_ball_meets_after_the_ramp_says_nothing_of_how_it_rolled():
+    plan, recording = down_a_ramp("A steel ball rolls down a ramp", lambda a: 5 / 7 * G * math.sin(a), rolling=True)
+    q, qd = recording.body_q.copy(), recording.body_qd.copy()
+    after = len(q) * 3 // 4
+    q[after:, 0, :3] = q[after, 0, :3] + (0.3, 0.0, 0.5)
+    qd[after:] = 0.0
+    pull = findings(plan, replace(recording, body_q=q, body_qd=qd), "ObjectiveRollsDown")[2]
+    assert pull.passed and pull.value == pytest.approx(pull.expected, rel=1e-3)
+    qd[:after, 0, :3] *= 0.7  # on the ramp it still counts
+    assert not findings(plan, replace(recording, body_q=q, body_qd=qd), "ObjectiveRollsDown")[2].passed
+
+
 def test_a_ball_that_slips_down_or_is_too_slow_is_rejected():
     plan, slips = down_a_ramp("A steel ball rolls down a ramp", lambda a: G * math.sin(a), rolling=False)
     _, turning, pull = findings(plan, slips, "ObjectiveRollsDown")

@@ -84,7 +84,7 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
         ModelError: If no answer is a review.
         BudgetError: If tokens or time ran out.
     """
-    sheet, labels = contact_sheet(folder / "frames")
+    sheet, labels = contact_sheet(folder / "frames", [camera.name for camera in plan.cameras])
     names = {item.name for item in plan.objects}
     request = "\n\n".join(
         [
@@ -120,11 +120,12 @@ def keep(folder: Path, found: Review | None, by: str) -> None:
     write_json(path, data | {"by": by, "review": found.model_dump() if found else {"facts": facts(folder)}})
 
 
-def contact_sheet(frames: Path) -> tuple[bytes, list[str]]:
+def contact_sheet(frames: Path, order: Sequence[str] = ()) -> tuple[bytes, list[str]]:
     """A few stills on one small JPEG, and what each is: the start and the end, then where most has changed.
 
     Args:
         frames: The folder of stills, `camera_00.000s.png`; first camera over time, others at the end.
+        order: Names of cameras, those that come first; others follow by name.
     """
     from PIL import Image
 
@@ -133,7 +134,8 @@ def contact_sheet(frames: Path) -> tuple[bytes, list[str]]:
         by_camera.setdefault(path.stem.rpartition("_")[0], []).append(path)
     if not by_camera:
         return b"", []
-    first, *others = by_camera.values()
+    named = {name: by_camera[name] for name in (*order, *by_camera) if name in by_camera}
+    first, *others = named.values()
     ends = [stills[-1] for stills in others[:2]]
     chosen = [*_changing(first, TILES - len(ends)), *ends]
     rows = -(-len(chosen) // COLUMNS)

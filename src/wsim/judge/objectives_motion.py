@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence import Evidence
     from wsim.judge.verdict import Finding
+    from wsim.scene.world import Body
 
     Floats = NDArray[np.float64]
 
@@ -107,6 +108,7 @@ class ObjectiveRollsDown(ObjectiveSlides):
     """The body rolls down the ramp `ref`, at the acceleration that its own inertia leaves of gravity's pull."""
 
     accuracy: float = 0.1  # of the acceleration
+    parting: float = 0.05  # of its smallest extent: a gap beyond is no contact any more
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The way made [m], how much of it is rolling [1], and for a ball let go the acceleration [m/s^2]."""
@@ -114,7 +116,7 @@ class ObjectiveRollsDown(ObjectiveSlides):
         along = downhill(evidence, self.ref())
         found = [self._way(evidence, i, None, along), self._turning(evidence, i, rolls=True)]
         body = evidence.world.bodies[i]
-        here = self._frames(evidence, i)
+        here = self._frames(evidence, i) & self._on_ramp(evidence, body)
         ball = len(body.shapes) == 1 and body.shapes[0].kind == "sphere"
         if not ball or np.linalg.norm(body.velocity) > 0.0 or here.sum() < 4 or not found[0].passed:
             return found
@@ -140,6 +142,16 @@ class ObjectiveRollsDown(ObjectiveSlides):
             )
         )
         return found
+
+    def _on_ramp(self, evidence: Evidence, body: Body) -> NDArray[np.bool_]:
+        """The frames (T,) until it leaves the ramp: what it meets after that is another story."""
+        gap = distance(evidence, body.prim, evidence.prim(self.ref()))
+        near = gap <= self.parting * evidence.solid(evidence.index(body.prim)).smallest
+        left = np.flatnonzero(~near & (np.cumsum(near) > 0))
+        here = np.ones(len(near), dtype=bool)
+        if len(left):
+            here[left[0] :] = False
+        return here
 
 
 def downhill(evidence: Evidence, name: str) -> Floats:
