@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 TORCH_VERSION := 2.13.0
+TEST_JOBS ?= 2
 
 .PHONY: install demo test lint format bench bench-sph-validation lock clean help
 
@@ -23,7 +24,7 @@ demo: install  ## A sentence becomes a judged world
 	$(BIN)/wsim generate "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks." --yes
 
 test: install  ## Run the tests
-	$(BIN)/python -m pytest $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadfile $(PYTEST_ARGS)
 
 lint: install  ## Check format, lint, types and import directions
 	$(BIN)/ruff format --check .
