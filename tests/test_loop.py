@@ -241,9 +241,7 @@ def test_it_is_replayed_with_no_model_left(repaired: Repaired, tmp_path: Path) -
     made = Kept(again.generated.run.path)
     assert made.rows == repaired.kept.rows
     assert made.facts["usage"]["tokens"] == repaired.kept.facts["usage"]["tokens"]
-    assert (made.folder / "accepted" / "SHA256SUMS").read_bytes() == (
-        recorded / "accepted" / "SHA256SUMS"
-    ).read_bytes()
+    assert (made.folder / "accepted" / "SHA256SUMS").read_bytes() == (recorded / "accepted" / "SHA256SUMS").read_bytes()
 
 
 # --- how it ends otherwise

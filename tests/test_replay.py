@@ -167,7 +167,9 @@ def test_a_planner_that_failed_fails_again(server: Server, tmp_path: Path, monke
         ("transcript.jsonl", None, "has no transcript.jsonl"),
     ],
 )
-def test_what_is_no_recorded_run_is_said(copy: Path, tmp_path: Path, name: str, content: str | None, message: str) -> None:
+def test_what_is_no_recorded_run_is_said(
+    copy: Path, tmp_path: Path, name: str, content: str | None, message: str
+) -> None:
     (copy / name).unlink()
     if content is not None:
         (copy / name).write_text(content)
@@ -235,5 +237,13 @@ def test_a_model_that_is_none_is_a_mistake(tmp_path: Path, name: str) -> None:
 def test_the_help_names_what_a_model_may_do() -> None:
     code, out = run("generate", "--help")
     assert code == 0
-    for word in ("--model", "--coder-model", "--max-iterations", "--max-tokens", "--max-seconds", "--replay", "3 blocked"):
+    for word in (
+        "--model",
+        "--coder-model",
+        "--max-iterations",
+        "--max-tokens",
+        "--max-seconds",
+        "--replay",
+        "3 blocked",
+    ):
         assert word in out

@@ -71,7 +71,8 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
     plan = load(recorded / "plan.json") if given and (recorded / "plan.json").is_file() else None
     generated = generate(facts["prompt"], runs, options, plan=plan, progress=progress)
     if answers.left:
-        answers.divergences.append(f"{len(answers.left)} recorded exchanges were not asked for")
+        roles = ", ".join(exchange.role for exchange in answers.left)
+        answers.divergences.append(f"{len(answers.left)} recorded exchanges were not asked for: {roles}")
     differing, same = _compare(recorded, generated.run.path)
     return Replayed(generated, answers.divergences, differing, same)
 

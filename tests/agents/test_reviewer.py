@@ -123,7 +123,10 @@ def test_a_reviewer_is_shown_all_of_it(server: Server, desk: Desk, plan: Plan, m
         ('{"objects": "ball"}', "summary: Field required"),
         (review(differences=[{"object": "ball", "what": "x"}] * 21), "differences: List should have at most 20 items"),
         (review(stars=5), "stars: Extra inputs are not permitted"),
-        (review(differences=[{"object": "bird", "what": "it sings"}]), "the plan has no object 'bird'; it has ball, ground"),
+        (
+            review(differences=[{"object": "bird", "what": "it sings"}]),
+            "the plan has no object 'bird'; it has ball, ground",
+        ),
         (review(differences=[{"object": "ball", "what": "", "severity": "awful"}]), "differences.0.severity: "),
     ],
 )

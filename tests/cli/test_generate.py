@@ -24,7 +24,7 @@ ALWAYS = {
     "iterations/01/recording.rrd",
     "iterations/01/verdict.json",
 }
-ACCEPTED = {"accepted/program.py", "accepted/stage.usda", "accepted/SHA256SUMS"}
+ACCEPTED = {"accepted/program.py", "accepted/stage.usda", "accepted/acceptance.json", "accepted/SHA256SUMS"}
 PICTURES = {"iterations/01/video.mp4", "iterations/01/review.json"}
 
 

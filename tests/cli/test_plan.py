@@ -6,7 +6,6 @@ import json
 import os
 import re
 import subprocess
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -88,16 +87,6 @@ def test_a_plan_without_a_file_has_its_picture_in_a_new_folder(wsim, tmp_path: P
     assert list(tmp_path.iterdir()) == []
 
 
-def test_planning_takes_a_second(wsim) -> None:
-    """The best of three, with half a second to spare for a busy machine."""
-    seconds = []
-    for _ in range(3):
-        began = time.monotonic()
-        assert wsim("plan", PROMPT, "-o", "plan.json").code == 0
-        seconds.append(time.monotonic() - began)
-    assert min(seconds) < 1.5
-
-
 def test_a_plan_from_a_file_is_checked_laid_out_and_shown(wsim, tmp_path: Path) -> None:
     path = EXAMPLES / "buggy_floating_bridge.json"
     ended = wsim("plan", "--plan", path, "-o", "laid_out.json")
@@ -164,7 +153,7 @@ MISTAKES: dict[tuple[str, ...], str] = {
     ("plan", "--plan", "plan.json", "--answers", "wrong.toml"): "a plan from a file has none",
     ("plan", PROMPT, "--image", "none.png"): "--image none.png: No such file or directory",
     ("plan", PROMPT, "--image", "wrong.toml"): "--image wrong.toml: it is not a picture; give a PNG or a JPEG",
-    ("plan", PROMPT, "--image", "photo.png"): "the builtin planner does not see pictures; leave --image out",
+    ("plan", PROMPT, "--image", "photo.png"): "the builtin planner does not see pictures; name a model that does",
     ("generate", PROMPT, "--yes", "--image", "photo.png"): "the builtin planner does not see pictures",
     ("generate", PROMPT, "--image", "none.png"): "--image none.png: No such file or directory",
     ("generate", PROMPT): "nothing was built: there was no answer; --yes builds without asking, --answers FILE",

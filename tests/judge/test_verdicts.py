@@ -418,7 +418,12 @@ def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):
 
 @pytest.mark.parametrize(
     ("controlled", "shows", "outcome"),
-    [(False, "", None), (True, "it floats", False), (True, "control holds the ball up", True)],
+    [
+        (False, "it floats", None),
+        (True, "it floats", False),
+        (True, "control holds the ball up", True),
+        (False, "control holds the ball up", False),
+    ],
 )
 def test_control_acts_only_where_the_plan_asks_for_it(pool, controlled, shows, outcome):
     case = pool().changed(metadata={"controlled": controlled})

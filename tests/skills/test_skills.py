@@ -46,7 +46,7 @@ def test_it_says_when_to_use_it_and_when_not(skill: Skill) -> None:
 
 @by_name
 def test_it_is_short_and_has_a_whole_program(skill: Skill) -> None:
-    assert len(skill.text) <= LONGEST and len(skill.text.splitlines()) < 120
+    assert len(skill.text) <= LONGEST and len(skill.text.splitlines()) <= 130
     assert max(len(line) for line in skill.body.splitlines() if not line.startswith("|")) <= 120
     assert any(block.name.startswith(skill.name) for block in WHOLE)
 

@@ -171,21 +171,28 @@ class CheckPlanObjects(Check):
 
 @dataclass
 class CheckPlanControl(Check):
-    """A world is steered by `control` only where the plan asks for it: unseen hands could make anything come true."""
+    """A world is steered by `control` where the plan asks for it, and only there: unseen hands could do anything."""
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding for a controlled world, none for another."""
-        plan = evidence.plan
-        if plan is None or not evidence.recording.metadata.get("controlled"):
+        """One finding where the plan asks for control or the program has one, none for another world."""
+        plan, controlled = evidence.plan, bool(evidence.recording.metadata.get("controlled"))
+        if plan is None:
             return []
         asked = [item.name for item in plan.objects if item.registration.actuation]
         asked += [step.title for step in plan.steps if "control" in f"{step.title} {step.shows}".lower()]
-        if asked:
-            return [self.passed(f"The plan asks for control: {asked[0]}")]
+        if bool(asked) == controlled:
+            return [self.passed(f"The plan asks for control: {asked[0]}")] if controlled else []
+        message = (
+            "The program's control acts on the world, and the plan asks for none: what happens may be its doing"
+            if controlled
+            else f"The plan asks for control ({asked[0]}), and the program has no control(world, t)"
+        )
         return [
             self.failed(
-                "The program's control acts on the world, and the plan asks for none: what happens may be its doing",
+                message,
                 limit_from="a step that names control, or an object's actuation",
-                target=RepairTarget(kind="controller", parameter="control", direction="remove"),
+                target=RepairTarget(
+                    kind="controller", parameter="control", direction="remove" if controlled else "add"
+                ),
             )
         ]
