@@ -31,7 +31,7 @@ STAYS = [
     'scene.camera("side_review_", eye=(0, -4, 1), target=(0, 0, 1))',
     'review_density = scene.param("review_density", 600.0)',
     'scene.box("review_box", size=(1, 1, 1))',
-    'camera = scene.camera("review_far", eye=(0, -9, 1), target=(0, 0, 1))\nscene.box(camera.prim.name, size=(1, 1, 1))',
+    'far = scene.camera("review_far", eye=(0, -9, 1), target=(0, 0, 1))\nscene.box(far.prim.name, size=(1, 1, 1))',
     'text = "print(1)"\n# print(2)',
     "printed = [print]",
 ]
@@ -61,8 +61,8 @@ GOES = {
         "match 1:\n    case 1:\n        pass\n    case _:\n        x = 1"
     ),
     # nested, and in an order in which lines move
-    "for k in range(3):\n    x = k\n    print(k)\n    for j in range(3):\n        y = j\n        print(j)\nprint(9)\nz = 1": (
-        "for k in range(3):\n    x = k\n    for j in range(3):\n        y = j\nz = 1"
+    "for k in a:\n    x = k\n    print(k)\n    for j in b:\n        y = j\n        print(j)\nprint(9)\nz = 1": (
+        "for k in a:\n    x = k\n    for j in b:\n        y = j\nz = 1"
     ),
     "print(1)\nif True:\n    x = 1\n    print(2)\nprint(3)\ny = 2\nprint(4)": "if True:\n    x = 1\ny = 2",
     # beside something else on its line
@@ -104,7 +104,7 @@ def test_the_largest_distance_counts() -> None:
     assert trajectory(still).distance(trajectory(still)) == 0.0
     assert trajectory(still).distance(trajectory(moved)) == 5.0
     assert trajectory(still).distance(trajectory(turned)) == pytest.approx(0.01, rel=1e-4)  # [m] at 1 m: 0.01 rad
-    assert trajectory(still, w=water).distance(trajectory(still, w=water + (0.0, 0.0, 2.0))) == 2.0
+    assert trajectory(still, w=water).distance(trajectory(still, w=water + np.array((0.0, 0.0, 2.0)))) == 2.0
     assert trajectory(still[:, :0], w=water).distance(trajectory(still[:, :0], w=water)) == 0.0
 
 

@@ -32,8 +32,13 @@ def test_a_program_with_mistakes_is_not_run(tmp_path: Path) -> None:
     assert {path.name for path in made.folder.iterdir()} == {"program.py", "verdict.json"}
 
 
+DEEP = "".join(f"{' ' * k}if 1:\n" for k in range(1, 200))
+
+
 @pytest.mark.timeout(60)
-@pytest.mark.parametrize("text", ["", "\x00", "(" * 5000, "-" * 50_000 + "1", "x = '\ud800'".encode("utf-8", "replace").decode(), "\u2028\u2028", "def build(scene):\n" + "".join(" " * k + "if 1:\n" for k in range(1, 200)) + " " * 200 + "pass"])  # fmt: skip
+@pytest.mark.parametrize(
+    "text", ["", "\x00", "x = '?'", "(" * 5000, "-" * 50_000 + "1", f"def build(scene):\n{DEEP}{' ' * 200}pass"]
+)
 def test_what_is_no_program_is_said(tmp_path: Path, text: str) -> None:
     made = tried(tmp_path, text)
     assert (made.reached, made.verdict.status) == (Reached.VALIDATION, "rejected")

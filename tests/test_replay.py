@@ -115,7 +115,7 @@ def test_what_was_not_asked_for_again_is_counted(copy: Path, tmp_path: Path) -> 
     facts = json.loads((copy / "run.json").read_text())
     facts["budget"]["iterations"] = 1
     (copy / "run.json").write_text(json.dumps(facts))
-    assert replay(copy, tmp_path / "runs").divergences == ["8 recorded exchanges were not asked for"]
+    assert replay(copy, tmp_path / "runs").divergences[0].startswith("8 recorded exchanges were not asked for")
 
 
 def test_another_role_than_the_recorded_one_is_said(copy: Path, tmp_path: Path) -> None:

@@ -78,7 +78,9 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "a size that is none": (with_ball(size=[-0.1]), r"objects\.1\.construction"),
     "a number that is none": (with_ball(position=[0, 0, float("nan")]), r"objects\.1\.pose\.position"),
     "an unknown primitive": (with_ball(primitive="teapot"), r"objects\.1\.construction"),
-    "an unknown asset": (with_ball(primitive=None, size=None, material=None, velocity=None, asset="unicorn_12"), "unicorn_12"),
+    "an unknown asset": (
+        with_ball(primitive=None, size=None, material=None, velocity=None, asset="unicorn_12"), "unicorn_12",
+    ),
     "an unknown object": (answer(objectives=[{**MOVES, "object": "bal"}]), "bal"),
     "no objective": (answer(objectives=[]), "objectives: none"),
     "a sentence that is none": (

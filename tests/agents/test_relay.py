@@ -305,6 +305,12 @@ def test_answers_that_came_to_nothing_are_asked_for_again(server: Server, desk: 
     assert desk.ask("coder", "Say a word.", word) == "yes"
 
 
+def test_an_answer_that_was_cut_is_not_kept(server: Server, desk: Desk, tmp_path: Path) -> None:
+    server.script["coder"] = [text("ye", "length"), text("yes")]
+    assert desk.ask("coder", "Say a word.", word) == "ye"
+    assert make_desk(server, tmp_path / "other").ask("coder", "Say a word.", word) == "yes"
+
+
 def test_a_broken_cache_is_no_cache(server: Server, desk: Desk, tmp_path: Path) -> None:
     server.script["coder"] = [text("yes"), text("no")]
     assert desk.ask("coder", "Say a word.", word) == "yes"

@@ -137,5 +137,5 @@ def test_what_is_no_transcript_is_said_with_its_line(tmp_path: Path, text: str, 
 
 
 def test_a_folder_without_one_is_said(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="has no transcript.jsonl; give the folder of a run that wsim generate made"):
+    with pytest.raises(UserError, match=r"has no transcript\.jsonl; give the folder of a run that wsim generate made"):
         read(tmp_path)

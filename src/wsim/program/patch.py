@@ -121,13 +121,14 @@ def _near(lines: list[str], wanted: list[str]) -> str:
     """The part of the program that is most like what was searched for."""
     size = min(len(wanted), _SHOWN)
     windows = range(max(len(lines) - size, 0) + 1)
+    target = "\n".join(line[:_WIDE] for line in wanted[:size])
     matcher = difflib.SequenceMatcher(autojunk=False)
-    matcher.set_seq2("\n".join(line[:_WIDE] for line in wanted[:size]))
+    matcher.set_seq2(target)
 
     def likeness(k: int) -> float:
         matcher.set_seq1("\n".join(line[:_WIDE] for line in lines[k : k + size]))
         longest = max(block.size for block in matcher.get_matching_blocks())
-        return matcher.ratio() + longest / len(matcher.b)  # a few characters may be searched for in a long line
+        return matcher.ratio() + longest / len(target)  # a few characters may be searched for in a long line
 
     best = max(windows, key=likeness, default=0)
     return f"line {best + 1}: {_quote(lines[best : best + size])}"
