@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
+import subprocess
+import sys
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -230,18 +232,21 @@ def test_a_reviewer_that_fails_leaves_the_facts(server: Server, tmp_path: Path) 
     assert line in server.asked("judge")[0]
 
 
-def test_ctrl_c_while_a_model_thinks(server: Server, loop: Callable[..., Generated], tmp_path: Path) -> None:
-    import asyncio
-
-    def interrupt(handler: Any, body: Any) -> None:
-        os.kill(os.getpid(), signal.SIGINT)
-        hang(handler, body)
-
-    server.script["coder"] = [interrupt]
-    asyncio.set_event_loop(asyncio.new_event_loop())
-    with pytest.raises(KeyboardInterrupt):
-        loop()
-    asyncio.set_event_loop(asyncio.new_event_loop())  # the other has a request left in it
+def test_ctrl_c_while_a_model_thinks(server: Server, tmp_path: Path) -> None:
+    """In a process of its own: an interrupt would stop whoever runs the tests as well."""
+    server.script["coder"] = [hang]
+    (tmp_path / "plan.json").write_text(flies().model_dump_json(), encoding="utf-8")
+    command = ["generate", "--plan", "plan.json", "--yes", "--device", "cpu", "--no-pictures", "--set", "mass=1"]
+    command += ["--coder-model", models(server, "coder").coder]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "wsim.cli", *command], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+    deadline = time.monotonic() + 60.0
+    while not server.asked("coder") and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=30)
+    assert process.returncode == 130, err
     (folder,) = (tmp_path / "runs").iterdir()
     kept = Kept(folder)
     assert (kept.facts["status"], kept.facts["summary"]) == ("stopped", "interrupted")

@@ -41,5 +41,5 @@ def test_what_was_recorded_covers_what_can_happen() -> None:
     assert {run["status"] for run in runs} == {"accepted", "blocked"}
     assert max(len(run["iterations"]) for run in runs) >= 4  # three repairs
     assert any("picture" in str(line.get("messages")) and line["role"] == "reviewer" for line in lines)
-    assert {line["error"]["kind"] for line in lines if "error" in line} >= {"rate limit", "server"}
+    assert {line["error"]["kind"] for line in lines if "error" in line} >= {"rate limit", "server", "timeout"}
     assert any("repair" in str(line.get("messages")) and line["role"] == "coder" for line in lines)
