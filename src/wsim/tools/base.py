@@ -52,27 +52,6 @@ class Workspace:
 
         return load(path)
 
-    @property
-    def iteration(self) -> Path:
-        """The newest iteration's folder.
-
-        Raises:
-            UserError: If there is none.
-        """
-        return self.run.last_iteration()
-
-    @property
-    def program(self) -> Path:
-        """The newest iteration's program.
-
-        Raises:
-            UserError: If there is none.
-        """
-        path = self.iteration / "program.py"
-        if not path.is_file():
-            raise UserError(f"{self.iteration} has no program.py; write one first")
-        return path
-
 
 @dataclass(frozen=True)
 class Tool:
