@@ -185,7 +185,8 @@ def test_an_earlier_run_of_the_same_program_is_the_second_run(tmp_path: Path, ba
     assert (run.path / "accepted" / "SHA256SUMS").is_file()  # the last that was accepted stays
 
 
-RANDOM = "time.time_ns() % 1_000_003 * 1e-9"
+# Of a million values, so far apart that a float32 pose tells any two of them from each other.
+RANDOM = "time.time_ns() % 1_000_003 * 1e-7"
 
 
 @pytest.mark.parametrize(
@@ -193,7 +194,7 @@ RANDOM = "time.time_ns() % 1_000_003 * 1e-9"
     [
         f", velocity=({RANDOM}, 0.0, 0.0)",
         ", velocity=(__import__('random').random(), 0.0, 0.0)",
-        f", angular_velocity_deg=(60.0 + {RANDOM}, 0.0, 0.0)",  # turns about its own centre, which stays where it is
+        f", angular_velocity_deg=(60.0 + 100.0 * ({RANDOM}), 0.0, 0.0)",  # turns about its own centre, which stays where it is
     ],
 )
 def test_a_program_that_is_another_each_time_is_rejected(tmp_path: Path, more: str) -> None:
