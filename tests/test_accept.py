@@ -194,7 +194,8 @@ RANDOM = "time.time_ns() % 1_000_003 * 1e-7"
     [
         f", velocity=({RANDOM}, 0.0, 0.0)",
         ", velocity=(__import__('random').random(), 0.0, 0.0)",
-        f", angular_velocity_deg=(60.0 + 100.0 * ({RANDOM}), 0.0, 0.0)",  # turns about its own centre, which stays where it is
+        # It turns about its own centre, which stays where it is.
+        f", angular_velocity_deg=(60.0 + 100.0 * ({RANDOM}), 0.0, 0.0)",
     ],
 )
 def test_a_program_that_is_another_each_time_is_rejected(tmp_path: Path, more: str) -> None:

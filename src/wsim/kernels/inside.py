@@ -1,18 +1,20 @@
-"""Which points lie inside a closed triangle mesh."""
+"""How deep points lie inside a closed triangle mesh."""
 
 import warp as wp
 
 
 @wp.kernel(enable_backward=False)
-def mark_inside(
+def depth_inside(
     # Data in:
     mesh: wp.uint64,
     points: wp.array(dtype=wp.vec3),
     reach: float,
     # Data out:
-    inside: wp.array(dtype=wp.bool),
+    depth: wp.array(dtype=float),
 ):
-    """Mark points by the winding number, which holds for meshes that are not quite closed."""
+    """Distance to the surface [m], negative outside, by the winding number, which holds for meshes not quite closed."""
     i = wp.tid()
     query = wp.mesh_query_point_sign_winding_number(mesh, points[i], reach)
-    inside[i] = query.result and query.sign < 0.0
+    depth[i] = -reach
+    if query.result:
+        depth[i] = -query.sign * wp.length(points[i] - wp.mesh_eval_position(mesh, query.face, query.u, query.v))

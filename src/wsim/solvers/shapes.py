@@ -8,15 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from wsim.solvers.layers import capsule_layers, cylinder_layers, mesh_layers, sphere_layers
 from wsim.solvers.sampling import (
     Samples,
     box_lattice,
-    capsule_lattice,
     container_walls,
-    cylinder_lattice,
-    mesh_lattice,
     plane_patch,
-    sphere_lattice,
 )
 from wsim.solvers.sph_config import ConfigSPH
 
@@ -87,15 +84,15 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
     if plane:
         raise ValueError(f"SolverSPH: a {GeoType(kind).name} in a flow of 2 dimensions; only boxes stand in a plane")
     if kind == GeoType.SPHERE:
-        return sphere_lattice(float(scale[0]), spacing)
+        return sphere_layers(float(scale[0]), spacing)
     if kind == GeoType.CYLINDER:
-        return cylinder_lattice(float(scale[0]), float(scale[1]), spacing)
+        return cylinder_layers(float(scale[0]), float(scale[1]), spacing)
     if kind == GeoType.CAPSULE:
-        return capsule_lattice(float(scale[0]), float(scale[1]), spacing)
+        return capsule_layers(float(scale[0]), float(scale[1]), spacing)
     if kind in (GeoType.MESH, GeoType.CONVEX_MESH):
         vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * scale
         triangles = np.asarray(source.indices).reshape(-1, 3)
-        return mesh_lattice(vertices, triangles, spacing, convex=kind == GeoType.CONVEX_MESH)
+        return mesh_layers(vertices, triangles, spacing, convex=kind == GeoType.CONVEX_MESH)
     return None
 
 
