@@ -108,6 +108,16 @@ def test_a_worse_patch_is_undone_and_told_of(repaired: Repaired) -> None:
     assert "+    scene.simulation(duration=0.3" in diff
 
 
+def test_the_judge_is_asked_again_about_the_best(repaired: Repaired) -> None:
+    """Its repair did not help: it is told what was tried. The patch that was undone is not asked about."""
+    first, again, third = repaired.server.asked("judge")
+    assert "# Tried from here, and undone" not in first + third
+    before, _, told = again.partition("# Tried from here, and undone")
+    assert before.rstrip().endswith(first.rstrip())
+    assert "iteration 2: It is too short. It failed at physics: ObjectiveMoves: " in told
+    assert "+    scene.simulation(duration=0.1" in told
+
+
 def test_what_cannot_be_used_goes_back_to_the_coder(repaired: Repaired) -> None:
     asked = repaired.server.asked("coder")
     assert len(asked) == 7

@@ -126,6 +126,8 @@ def _loop(run: RunFolder, crew: Crew, plan: Plan, options: Options) -> Verdict:
                 return best.verdict
             if tried.number >= options.budget.iterations:
                 return _blocked(run, f"iteration limit: {tried.number} programs were tried", verdict_of, best)
+            if tried is not best:
+                crew.judge(best, plan, undone)  # what it asked for did not help
             programs = _candidates(crew, best, undone, plan)
     except (ModelError, BudgetError) as error:
         return _blocked(run, str(error), verdict_of, best)
@@ -151,7 +153,7 @@ def _try(run: RunFolder, crew: Crew, plan: Plan, options: Options, best: Attempt
         )  # a world that a finer computation made right must stand a still finer one
     tried = attempt(folder, plan, settings, crew.workspace.progress, cheap_first=crew.has("coder"))
     try:
-        _assess(run, crew, plan, options, tried)
+        _assess(run, crew, plan, options, tried, best)
     except BudgetError as error:  # what was tried is kept, and what was found of it
         run.record(cause=str(error))
         if tried.verdict.status == "accepted":
@@ -167,13 +169,14 @@ def _text(folder: Path) -> str:
     return (folder / "program.py").read_text(encoding="utf-8")
 
 
-def _assess(run: RunFolder, crew: Crew, plan: Plan, options: Options, tried: Attempt) -> None:
-    """The review, the judge, and acceptance of a program that was tried."""
+def _assess(run: RunFolder, crew: Crew, plan: Plan, options: Options, tried: Attempt, best: Attempt | None) -> None:
+    """The review, the judge, and acceptance of a program that was tried; one that is no better is not asked about."""
     from wsim.accept import accept
 
     if tried.verdict.status == "accepted":
         crew.look(tried, plan)
-    crew.judge(tried, plan)
+    if best is None or tried.rank > best.rank:
+        crew.judge(tried, plan)
     if tried.verdict.status == "accepted" and options.confirm:
         tried.verdict = accept(run, tried.folder, plan, options.settings, crew.workspace.progress, tried.earlier)
     elif tried.verdict.status == "accepted":

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import json
 import re
 import shutil
 from pathlib import Path
 
 import pytest
-from PIL import Image
 
 from tests.agents.flies import CAMERA, flies, review
 from tests.agents.scripted import Server, text
@@ -17,7 +15,7 @@ from wsim.agents.ask import Desk
 from wsim.agents.budget import Ledger
 from wsim.agents.crew import Crew
 from wsim.agents.models import Models
-from wsim.agents.reviewer import COLUMNS, TILE, TILES, Review, contact_sheet, facts, keep
+from wsim.agents.reviewer import Review, facts, keep
 from wsim.agents.reviewer import review as ask_for_review
 from wsim.agents.transcript import Transcript
 from wsim.attempt import Attempt, Reached
@@ -52,46 +50,6 @@ def iteration(made: Path, tmp_path: Path) -> Path:
     folder = tmp_path / "run" / "iterations" / "01"
     shutil.copytree(made, folder)
     return folder
-
-
-def picture(data: bytes) -> Image.Image:
-    return Image.open(io.BytesIO(data))
-
-
-def test_the_sheet_shows_the_start_and_the_end_and_the_other_cameras_end(made: Path) -> None:
-    assert len(list((made / "frames").glob("*.png"))) == 2 * 6
-    data, labels = contact_sheet(made / "frames")
-    with picture(data) as sheet:
-        assert (sheet.format, sheet.size) == ("JPEG", (TILE[0] * COLUMNS, TILE[1] * 2))
-    assert len(data) < 40_000
-    assert len(labels) == TILES
-    cameras, times = zip(*(label.rsplit(" ", 1) for label in labels), strict=True)
-    assert cameras[:5] == (cameras[0],) * 5
-    assert cameras[5] != cameras[0]
-    seconds = [float(time.removesuffix("s")) for time in times]
-    assert seconds[0] == 0.0
-    assert seconds[4] == seconds[5] == pytest.approx(0.8)
-    assert seconds[:5] == sorted(set(seconds[:5]))
-    assert contact_sheet(made / "frames") == (data, labels)
-
-
-def test_the_stills_in_between_are_where_something_changes(tmp_path: Path) -> None:
-    for k in range(20):  # one lone flash, and the end is as the start
-        Image.new("RGB", (64, 36), (255, 255, 255) if k == 13 else (0, 0, k == 7 and 90)).save(
-            tmp_path / f"side_{k / 10:06.3f}s.png"
-        )
-    _, labels = contact_sheet(tmp_path)
-    assert {"side 00.000s", "side 00.700s", "side 01.300s", "side 01.900s"} <= set(labels)
-    assert labels == sorted(labels)
-
-
-def test_few_stills_are_all_shown_and_none_is_no_sheet(tmp_path: Path) -> None:
-    assert contact_sheet(tmp_path / "frames") == (b"", [])
-    Image.new("RGB", (640, 360)).save(tmp_path / "side_00.000s.png")
-    data, labels = contact_sheet(tmp_path)
-    assert labels == ["side 00.000s"]
-    with picture(data) as sheet:
-        assert sheet.size == TILE
 
 
 def test_facts_are_shares_of_the_picture(made: Path, tmp_path: Path) -> None:

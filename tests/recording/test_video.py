@@ -4,7 +4,7 @@ import av
 import numpy as np
 import pytest
 
-from wsim.recording.video import VideoWriter, write_video
+from wsim.recording.video import VideoWriter, read_video, write_video
 
 
 def pictures(count: int, height: int = 120, width: int = 160) -> list[np.ndarray]:
@@ -34,6 +34,15 @@ def test_a_player_gets_what_was_written(tmp_path):
     errors = [np.abs(shown[10].astype(int) - picture).mean() for picture in written]
     assert int(np.argmin(errors)) == 10
     assert [p.name for p in tmp_path.iterdir()] == ["v.mp4"]
+
+
+def test_frames_are_read_back_evenly(tmp_path):
+    written = pictures(20)
+    write_video(tmp_path / "v.mp4", written, 10)
+    for most, expected in ((2, [0, 19]), (5, [0, 5, 10, 14, 19]), (50, list(range(20)))):
+        times, frames = zip(*read_video(tmp_path / "v.mp4", most), strict=True)
+        assert times == pytest.approx([k / 10 for k in expected])
+        assert all(np.abs(f.astype(int) - written[k]).mean() < 6.0 for f, k in zip(frames, expected, strict=True))
 
 
 def test_the_index_stands_in_front(tmp_path):

@@ -74,19 +74,23 @@ class Crew:
         tried.review = tried.review or "\n".join(nobody)
         reviewer.keep(tried.folder, seen, self.desk.models["reviewer"] if seen else BUILTIN)
 
-    def judge(self, tried: Attempt, plan: Plan) -> None:
+    def judge(self, tried: Attempt, plan: Plan, undone: Sequence[Attempt] = ()) -> None:
         """Let the judge's model name what to mend, or object. Checks that failed stay failed.
 
         Where every check passed and a reviewer saw no difference there is nothing to ask.
+
+        Args:
+            tried: What is judged.
+            plan: What it must be.
+            undone: Patches of it that made it no better: what was asked for before them did not help.
         """
         settled = tried.verdict.status == "accepted" and tried.seen is not None and not tried.seen
         if not self.has("judge") or tried.reached < Reached.PHYSICS or settled:
             return
         passed = tried.verdict.status == "accepted"
+        found, history = verdict_lines(tried.folder / "verdict.json"), self._history(undone)
         try:
-            held = judge.opinion(
-                self.desk, plan, plan_lines(plan), verdict_lines(tried.folder / "verdict.json"), tried.review, passed
-            )
+            held = judge.opinion(self.desk, plan, plan_lines(plan), found, tried.review, passed, history)
         except ModelError as error:
             self.notes.append(f"iteration {tried.number} was judged by the checks alone: {error}")
             return
@@ -96,6 +100,9 @@ class Crew:
             tried.reached = Reached.REVIEW
         elif held.accept and not passed:
             self.notes.append(f"iteration {tried.number}: the judge's model would accept; failed checks stay failed")
+
+    def _history(self, undone: Sequence[Attempt]) -> list[str]:
+        return [_told(tried, self.reasons.get(tried.number, "")) for tried in undone]
 
     def repair(self, best: Attempt, undone: Sequence[Attempt], plan: Plan) -> str:
         """The best program so far, with the coder's edits made.
@@ -111,7 +118,7 @@ class Crew:
             plan=plan_lines(plan),
             repair=best.repair,
             review=best.review,
-            history=[_told(tried, self.reasons.get(tried.number, "")) for tried in undone],
+            history=self._history(undone),
             tried=self.tried,
         )
         number = max(tried.number for tried in (best, *undone)) + 1

@@ -59,7 +59,13 @@ class Opinion(BaseModel):
 
 
 def opinion(
-    desk: Desk, plan: Plan, plan_lines: Sequence[str], verdict_lines: Sequence[str], seen: str, passed: bool
+    desk: Desk,
+    plan: Plan,
+    plan_lines: Sequence[str],
+    verdict_lines: Sequence[str],
+    seen: str,
+    passed: bool,
+    undone: Sequence[str] = (),
 ) -> Opinion:
     """Ask the judge's model.
 
@@ -70,6 +76,7 @@ def opinion(
         verdict_lines: What the checks found.
         seen: The review; empty if nobody looked.
         passed: Every check passed, so that only an objection can keep the world back.
+        undone: Patches of this very world that made it no better.
 
     Raises:
         ModelError: If no answer is an opinion.
@@ -77,12 +84,12 @@ def opinion(
     """
     names = {item.name for item in plan.objects}
     review = seen or "nobody has looked at pictures yet"
-    request = "\n\n".join(
-        [
-            f"Prompt: {plan.prompt}", "# Plan", "\n".join(plan_lines), "# Checks", "\n".join(verdict_lines),
-            "# Review", review,
-        ]
-    )  # fmt: skip
+    parts = [
+        f"Prompt: {plan.prompt}", "# Plan", "\n".join(plan_lines), "# Checks", "\n".join(verdict_lines),
+        "# Review", review,
+    ]  # fmt: skip
+    parts += ["# Tried from here, and undone", *undone] if undone else []
+    request = "\n\n".join(parts)
     return desk.ask("judge", request, lambda text: _read(text, names, passed))
 
 

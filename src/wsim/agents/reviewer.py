@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,16 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from wsim.agents.ask import UnusableError, object_in
+from wsim.agents.sheet import contact_sheet, shares
 
 if TYPE_CHECKING:
-    from PIL import Image
-
     from wsim.agents.ask import Desk
     from wsim.plan.schema import Plan
 
-TILES, COLUMNS = 6, 3
-TILE = (256, 144)  # px
-QUALITY = 60  # of the JPEG: 15 to 20 kB for six tiles
 ROOT = "/World/"
 Short = Annotated[str, AfterValidator(lambda text: text[:1200])]  # who says more is heard that far
 
@@ -56,25 +51,27 @@ class Review(BaseModel):
 
 
 def facts(folder: Path) -> list[str]:
-    """How much of each picture each object takes up, from the shape-index images: at the start, least, and at the end.
+    """How much of each still each object takes up, by the shape-index images: at the start, least and when, and last.
 
     Args:
         folder: An iteration's folder with a review.json.
     """
-    path = folder / "review.json"
-    rows = json.loads(path.read_text(encoding="utf-8")).get("share_of_picture", []) if path.is_file() else []
-    cameras: dict[str, list[dict[str, float]]] = {}
-    for row in rows:
-        cameras.setdefault(row["camera"], []).append(row["objects"])
+    cameras: dict[str, list[dict[str, Any]]] = {}
+    for row in shares(folder):
+        cameras.setdefault(row["camera"], []).append(row)
     lines = []
-    for camera, shares in cameras.items():
-        seen = sorted({prim for share in shares for prim in share})
-        parts = []
-        for prim in seen:
-            values = [100.0 * share.get(prim, 0.0) for share in shares]
-            parts.append(f"{prim.removeprefix(ROOT)} {values[0]:.2g}/{min(values):.2g}/{values[-1]:.2g}")
+    for camera, rows in cameras.items():
+        seen = sorted({prim for row in rows for prim in row["objects"]})
+        parts = [f"{prim.removeprefix(ROOT)} {_over_time(rows, prim)}" for prim in seen]
         lines.append(f"{camera.removeprefix(ROOT)} (% of picture at start/least/end): {', '.join(parts)}")
     return lines
+
+
+def _over_time(rows: Sequence[dict[str, Any]], prim: str) -> str:
+    values = [100.0 * row["objects"].get(prim, 0.0) for row in rows]
+    least = min(range(len(values)), key=values.__getitem__)
+    when = f"@{rows[least]['time']:g}s" if values[least] < min(values[0], values[-1]) else ""
+    return f"{values[0]:.2g}/{values[least]:.2g}{when}/{values[-1]:.2g}"
 
 
 def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> Review:
@@ -84,7 +81,7 @@ def review(desk: Desk, plan: Plan, folder: Path, plan_lines: Sequence[str]) -> R
         ModelError: If no answer is a review.
         BudgetError: If tokens or time ran out.
     """
-    sheet, labels = contact_sheet(folder / "frames", [camera.name for camera in plan.cameras])
+    sheet, labels = contact_sheet(folder, [camera.name for camera in plan.cameras])
     names = {item.name for item in plan.objects}
     request = "\n\n".join(
         [
@@ -118,54 +115,3 @@ def keep(folder: Path, found: Review | None, by: str) -> None:
     path = folder / "review.json"
     data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     write_json(path, data | {"by": by, "review": found.model_dump() if found else {"facts": facts(folder)}})
-
-
-def contact_sheet(frames: Path, order: Sequence[str] = ()) -> tuple[bytes, list[str]]:
-    """A few stills on one small JPEG, and what each is: the start and the end, then where most has changed.
-
-    Args:
-        frames: The folder of stills, `camera_00.000s.png`; first camera over time, others at the end.
-        order: Names of cameras, those that come first; others follow by name.
-    """
-    from PIL import Image
-
-    by_camera: dict[str, list[Path]] = {}
-    for path in sorted(frames.glob("*s.png")):
-        by_camera.setdefault(path.stem.rpartition("_")[0], []).append(path)
-    if not by_camera:
-        return b"", []
-    named = {name: by_camera[name] for name in (*order, *by_camera) if name in by_camera}
-    first, *others = named.values()
-    ends = [stills[-1] for stills in others[:2]]
-    chosen = [*_changing(first, TILES - len(ends)), *ends]
-    rows = -(-len(chosen) // COLUMNS)
-    sheet = Image.new("RGB", (TILE[0] * min(COLUMNS, len(chosen)), TILE[1] * rows))
-    for k, path in enumerate(chosen):
-        sheet.paste(_small(path), (TILE[0] * (k % COLUMNS), TILE[1] * (k // COLUMNS)))
-    out = io.BytesIO()
-    sheet.save(out, "JPEG", quality=QUALITY, optimize=True)
-    return out.getvalue(), [path.stem.replace("_", " ") for path in chosen]
-
-
-def _changing(stills: Sequence[Path], count: int) -> list[Path]:
-    """The first, the last, and in between those that differ most from all that are chosen already."""
-    from PIL import ImageChops, ImageStat
-
-    if len(stills) <= count:
-        return list(stills)
-    small = {path: _small(path) for path in stills}
-    chosen = [stills[0], stills[-1]]
-
-    def change(path: Path) -> float:
-        return min(sum(ImageStat.Stat(ImageChops.difference(small[path], small[one])).mean) for one in chosen)
-
-    while len(chosen) < count:
-        chosen.append(max((path for path in stills if path not in chosen), key=change))
-    return sorted(chosen, key=stills.index)
-
-
-def _small(path: Path) -> Image.Image:
-    from PIL import Image
-
-    with Image.open(path) as picture:
-        return picture.convert("RGB").resize(TILE, Image.Resampling.LANCZOS)

@@ -1,4 +1,4 @@
-"""Writes frames to an H.264 video that any browser plays."""
+"""Writes frames to an H.264 video that any browser plays, and reads them back."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
     from types import TracebackType
 
     from numpy.typing import NDArray
@@ -128,6 +128,27 @@ def write_video(path: str | Path, frames: Iterable[NDArray[np.uint8]], fps: floa
         if not video.frame_count:
             raise ValueError(f"video: there are no frames for {path}")
     return video.frame_count
+
+
+def read_video(path: str | Path, most: int) -> Iterator[tuple[float, NDArray[np.uint8]]]:
+    """Frames of a video, evenly over it, the first and the last among them.
+
+    Args:
+        path: The video.
+        most: How many at the most; 2 or more.
+
+    Yields:
+        Time [s] and picture (H, W, 3) uint8 RGB.
+    """
+    import av
+
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        last = stream.frames - 1
+        wanted = {round(k * last / (most - 1)) for k in range(most)}
+        for k, frame in enumerate(container.decode(stream)):
+            if k in wanted:
+                yield float(k / stream.average_rate), frame.to_ndarray(format="rgb24")
 
 
 def _even(frame: NDArray[np.uint8]) -> NDArray[np.uint8]:
