@@ -83,7 +83,9 @@ class SolverSPH(SolverBase):
             self._read_worlds()
             self._sample_solids(containers)
             self.domain = domain_of(model.particle_q.numpy(), containers)
-            self.search = ParticleSearch(config, self.domain, self.particle_world, self.fluid_count, self.world_count)
+            self.search = ParticleSearch(
+                config, self.domain, self.particle_world, self.fluid_count, self.world_count, self.has_bodies
+            )
             self.programs = self.search.programs
             self._allocate()
             self.method = self._method()

@@ -41,8 +41,9 @@ class ConfigSPH:
     cfl: float = 0.5
     """Courant number: dt <= cfl * smoothing length / speed of sound. A dam break is stable up to 1.25."""
     cells_per_support: int = 0
-    """Grid cells that the search radius spans; 0 takes 2 on a GPU, where finer cells trim the search closer to the
-    sphere, and 1 on a CPU, where looking up the rows costs more than that saves."""
+    """Grid cells that the search radius spans along y and z (along x four times as many); 0 takes 2 on a GPU, where
+    finer cells trim the search closer to the sphere, and 1 on a CPU, where looking up the rows costs more than that
+    saves."""
     skin: float = 0.1
     """How much further than the support the neighbour lists reach, as a share of it. Lists are a CPU's: they are kept
     until a particle has moved half the skin. A GPU walks the cells anew in each sum."""

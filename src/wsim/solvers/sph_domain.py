@@ -14,7 +14,8 @@ from wsim.solvers.sph_config import ConfigSPH
 
 Array = np.ndarray
 MAX_CELLS = 2**30
-REACH = {True: 2, False: 1}  # cells that a support spans, on a CUDA device or a CPU
+REACH = {True: 2, False: 1}  # cells that a support spans across a row, on a CUDA device or a CPU
+ALONG = 4  # times as many along it: at a reach of 2 a fifth fewer candidates
 
 
 def domain_of(fluid: Array, containers: tuple[OpenBox, ...]) -> tuple[Array, Array]:
@@ -50,10 +51,10 @@ def make_grid(config: ConfigSPH, low: Array, high: Array, support: float, cuda: 
         ValueError: If even the coarsest cells are too many.
     """
     finest = config.cells_per_support or REACH[cuda]
-    for reach in range(finest, 0, -1):
-        grid = _grid(config, low, high, support, reach)
+    for reach, along in [(finest, ALONG), *((reach, 1) for reach in range(finest, 0, -1))]:
+        grid = _grid(config, low, high, support, reach, along)
         cells = cells_of(grid) * world_count
-        if cells <= MAX_CELLS // 4 or (cells <= MAX_CELLS and reach == 1):
+        if cells <= MAX_CELLS // 4 or (cells <= MAX_CELLS and (reach, along) == (1, 1)):
             return grid
     raise ValueError(f"SolverSPH: {cells} grid cells; use a coarser spacing or a smaller domain")
 
@@ -63,8 +64,8 @@ def cells_of(grid: Any) -> int:
     return int(grid.count[0]) * int(grid.count[1]) * int(grid.count[2])
 
 
-def _grid(config: ConfigSPH, low: Array, high: Array, support: float, reach: int) -> Grid:
-    cell, offset, period = np.full(3, support / reach), np.zeros(3), np.zeros(3)
+def _grid(config: ConfigSPH, low: Array, high: Array, support: float, reach: int, along: int) -> Grid:
+    cell, offset, period = support / reach / np.array([along, 1, 1]), np.zeros(3), np.zeros(3)
     first, count, reaches = np.zeros(3, int), np.ones(3, int), np.full(3, reach)
     for axis, ends in enumerate(config.periodic):
         if axis == 1 and config.dimensions == 2:

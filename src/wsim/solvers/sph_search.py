@@ -33,6 +33,7 @@ class ParticleSearch:
         particle_world: World of each particle, fluid first; its device is where all arrays are made.
         fluid_count: How many of them are fluid.
         world_count: Number of worlds.
+        bodies: Some boundary particles are of moving bodies.
 
     Attributes:
         order: Original index of each sorted one, shape (n,).
@@ -47,6 +48,7 @@ class ParticleSearch:
         particle_world: wp.array,
         fluid_count: int,
         world_count: int,
+        bodies: bool,
     ) -> None:
         self.cuda = particle_world.device.is_cuda
         self.skin = 0.0 if self.cuda else config.skin * config.support
@@ -55,6 +57,8 @@ class ParticleSearch:
             lists=not self.cuda,
             periodic=tuple(map(bool, config.periodic)),
             branch=self.cuda and config.smoothing_ratio > MANY_NEIGHBORS,
+            reach=(int(self.grid.reach[1]), int(self.grid.reach[2])),
+            bodies=bodies,
         )
         self.fluid_count, self.world_count, self.count = fluid_count, world_count, particle_world.shape[0]
         self.particle_world = particle_world

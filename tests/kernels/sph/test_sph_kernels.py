@@ -16,7 +16,7 @@ from wsim.solvers.sph_domain import make_grid
 
 DEVICE = "cpu"
 OPEN = (False, False, False)
-SUMS = make_pair_sums(lists=True, periodic=OPEN, branch=False)
+SUMS = make_pair_sums(lists=True, periodic=OPEN, branch=False, bodies=True)
 
 
 @wp.kernel(enable_backward=False)
@@ -84,7 +84,8 @@ def sorted_world(config: ConfigSPH, fluid, boundary, world, lists: bool):
     nb.entry = wp.zeros(n * nb.capacity if lists else 0, dtype=int, device=DEVICE)
     nb.entry_count = wp.zeros(n if lists else 0, dtype=int, device=DEVICE)
     point, motion = (wp.array(a, dtype=wp.vec4, device=DEVICE) for a in (records, motions))
-    programs = Programs.make(lists, tuple(map(bool, config.periodic)), branch=not lists)
+    reach = int(grid.reach[1]), int(grid.reach[2])
+    programs = Programs.make(lists, tuple(map(bool, config.periodic)), not lists, reach, bodies=lists)
     if lists:
         overflow = wp.zeros(1, dtype=int, device=DEVICE)
         outputs = [nb.entry, nb.entry_count, overflow]
@@ -127,7 +128,7 @@ def test_neighbour_lists_equal_brute_force(periodic):
 
 @pytest.mark.parametrize("periodic", [False, True])
 def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
-    """The walk is what a GPU does; here it runs on the CPU, over cells of another size."""
+    """The walk is what a GPU does; here it runs on the CPU, over other cells, compiled for fixed walls alone."""
     config, fluid, boundary, world = random_particles(periodic)
     results = []
     for lists in (True, False):
@@ -171,7 +172,7 @@ def test_overflow_is_reported_and_nothing_is_written_past_the_list():
     found = wp.full(n * capacity, -77, dtype=int, device=DEVICE)
     count, overflow = wp.zeros(n, dtype=int, device=DEVICE), wp.zeros(1, dtype=int, device=DEVICE)
     point = wp.array([(0.5, 0.5, 0.5, 1.0)] * n, dtype=wp.vec4, device=DEVICE)
-    programs = Programs.make(True, OPEN, False)
+    programs = Programs.make(True, OPEN, False, (0, 0), bodies=False)
     wp.launch(programs.find_neighbors, n, [0, nb, point], [found, count, overflow], device=DEVICE)
     assert overflow.numpy()[0] == n - 1
     assert (count.numpy() == capacity - 2).all()

@@ -1,8 +1,9 @@
 """Uniform cell grid: particles sorted by cell, x fastest, so that a row of cells is one run of the sorted list.
 
-The cells are a fraction of the kernel's support. A neighbour search walks rows, each trimmed to the sphere around
-the particle. Along an axis that is not periodic, particles outside the grid belong to its rim: clamping brings cells
-no further apart, so the search stays exact there and is only slower. Along a periodic axis the rows wrap.
+The cells are a fraction of the kernel's support, and shorter along x: a search walks rows, each trimmed to the sphere
+around the particle (`rows.py`), and the finer the cells along the row, the closer. Along an axis that is not periodic,
+particles outside the grid belong to its rim: clamping brings cells no further apart, so the search stays exact there
+and is only slower. Along a periodic axis the rows wrap.
 
 Cell k along an axis spans [k, k + 1) * cell, whatever the grid's extent: a world is cut into the same cells alone and
 in a batch, and its sums add up in the same order.
@@ -17,7 +18,7 @@ class Grid:
 
     first: wp.vec3i  # index of the first cell along each axis
     count: wp.vec3i  # cells along each axis
-    reach: wp.vec3i  # cells that a support spans
+    reach: wp.vec3i  # cells that a support spans; 0 across a plane
     cell: wp.vec3  # edges [m]
     inv_cell: wp.vec3  # [1/m]
     offset: wp.vec3  # where cell 0 begins [m]; not zero on periodic axes alone
@@ -46,71 +47,6 @@ def grid_cell(grid: Grid, world: int, x: wp.vec3) -> int:
 def in_plane(grid: Grid) -> bool:
     """Whether the flow is one in the x-z plane."""
     return grid.reach[1] == 0
-
-
-@wp.func
-def row_count(grid: Grid) -> int:
-    """Number of rows of cells that a search visits."""
-    return (2 * grid.reach[1] + 1) * (2 * grid.reach[2] + 1)
-
-
-@wp.func
-def run_count(grid: Grid, x: wp.vec3) -> int:
-    """Number of runs that a search around x visits: its rows, and again where they wrap around a periodic x."""
-    rows = row_count(grid)
-    u = x[0] - grid.offset[0]
-    margin = grid.support + grid.cell[0]
-    if grid.period[0] > 0.0 and (u < margin or u > grid.period[0] - margin):
-        rows = 2 * rows
-    return rows
-
-
-@wp.func
-def gap_to_cell(grid: Grid, x: float, index: int, axis: int) -> float:
-    """Distance from x to a cell along one axis [m]; a rim cell also holds what lies beyond it, so it has none."""
-    gap = float(0.0)
-    if grid.period[axis] > 0.0 or (index > 0 and index < grid.count[axis] - 1):
-        low = grid.offset[axis] + float(index + grid.first[axis]) * grid.cell[axis]
-        gap = wp.max(wp.max(low - x, x - low - grid.cell[axis]), 0.0)
-    return gap
-
-
-@wp.func
-def row_span(grid: Grid, cell_start: wp.array(dtype=int), world: int, x: wp.vec3, run: int) -> wp.vec2i:
-    """First and past-the-last sorted index of the particles of one run that can lie within the support of x."""
-    width = 2 * grid.reach[1] + 1
-    rows = row_count(grid)
-    second = run >= rows
-    r = run % rows
-    iy = grid_axis(grid, x[1], 1) + r % width - grid.reach[1]
-    iz = grid_axis(grid, x[2], 2) + r / width - grid.reach[2]
-    dy = gap_to_cell(grid, x[1], iy, 1)
-    dz = gap_to_cell(grid, x[2], iz, 2)
-    left = grid.support * grid.support - dy * dy - dz * dz
-    if grid.period[1] > 0.0:
-        iy = (iy + grid.count[1]) % grid.count[1]
-    if grid.period[2] > 0.0:
-        iz = (iz + grid.count[2]) % grid.count[2]
-    if left <= 0.0 or iy < 0 or iz < 0 or iy >= grid.count[1] or iz >= grid.count[2]:
-        return wp.vec2i(0, 0)
-    # A thousandth of a cell more, so that rounding never drops a neighbour at the edge of the support.
-    half = wp.sqrt(left) + 0.001 * grid.cell[0]
-    nx = grid.count[0]
-    base = ((world * grid.count[2] + iz) * grid.count[1] + iy) * nx
-    if grid.period[0] == 0.0:
-        first = grid_axis(grid, x[0] - half, 0)
-        last = grid_axis(grid, x[0] + half, 0)
-        return wp.vec2i(cell_start[base + first], cell_start[base + last + 1])
-    u = (x[0] - grid.offset[0]) * grid.inv_cell[0]
-    low = int(wp.floor(u - half * grid.inv_cell[0]))
-    high = int(wp.floor(u + half * grid.inv_cell[0]))
-    if second:
-        if low < 0:
-            return wp.vec2i(cell_start[base + low + nx], cell_start[base + nx])
-        if high >= nx:
-            return wp.vec2i(cell_start[base], cell_start[base + high - nx + 1])
-        return wp.vec2i(0, 0)
-    return wp.vec2i(cell_start[base + wp.max(low, 0)], cell_start[base + wp.min(high, nx - 1) + 1])
 
 
 @wp.func

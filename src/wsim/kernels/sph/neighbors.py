@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import warp as wp
 
-from wsim.kernels.sph.grid import Grid, nearest_image, row_span, run_count
+from wsim.kernels.sph.grid import Grid, nearest_image
 from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
 from wsim.kernels.sph.records import load_record
+from wsim.kernels.sph.rows import Rows
 
 
 @wp.struct
@@ -27,24 +28,6 @@ class Neighborhood:
     entry_count: wp.array(dtype=int)
     capacity: int
     fluid_count: int
-
-
-@wp.func
-def _walk_runs(nb: Neighborhood, x: wp.vec3) -> int:
-    return run_count(nb.grid, x)
-
-
-@wp.func
-def _walk_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
-    return row_span(nb.grid, nb.cell_start, world, x, run)
-
-
-@wp.func
-def _walk_fluid_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
-    span = row_span(nb.grid, nb.cell_start, world, x, run)
-    if nb.fluid_before[span[0]] == nb.fluid_before[span[1]]:
-        return wp.vec2i(0, 0)
-    return span
 
 
 @wp.func
@@ -71,16 +54,33 @@ class Search:
     fluid_span: wp.Function
 
 
-def make_search(lists: bool) -> Search:
+def make_search(lists: bool, rows: Rows) -> Search:
     """Search by kept lists or by walking cells."""
     if lists:
         return Search(_list_runs, _list_span, _list_span)
-    return Search(_walk_runs, _walk_span, _walk_fluid_span)
+    count, row_span = rows.count, rows.span
+
+    @wp.func
+    def runs(nb: Neighborhood, x: wp.vec3) -> int:
+        return count(nb.grid, x)
+
+    @wp.func
+    def span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
+        return row_span(nb.grid, nb.cell_start, world, x, run)
+
+    @wp.func
+    def fluid_span(nb: Neighborhood, s: int, world: int, x: wp.vec3, run: int) -> wp.vec2i:
+        row = row_span(nb.grid, nb.cell_start, world, x, run)
+        if nb.fluid_before[row[0]] == nb.fluid_before[row[1]]:
+            return wp.vec2i(0, 0)
+        return row
+
+    return Search(runs, span, fluid_span)
 
 
-def make_find_neighbors(sums: PairSums) -> wp.Kernel:
+def make_find_neighbors(rows: Rows, sums: PairSums) -> wp.Kernel:
     """The kernel that makes the lists."""
-    find = sums.find
+    count_runs, row_span, find = rows.count, rows.span, sums.find
 
     @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
     def find_neighbors(
@@ -103,8 +103,8 @@ def make_find_neighbors(sums: PairSums) -> wp.Kernel:
         period, inv_period = nb.grid.period, nb.grid.inv_period
         base = s * nb.capacity
         count = int(0)
-        for run in range(_walk_runs(nb, x)):
-            span = _walk_span(nb, s, world, x, run)
+        for run in range(count_runs(nb.grid, x)):
+            span = row_span(nb.grid, nb.cell_start, world, x, run)
             count = find(
                 point, entry, base, nb.capacity, count, span[0], span[1], s, fluid, support2, period, inv_period, x
             )

@@ -12,6 +12,7 @@ from wsim.kernels.sph.density import make_continuity
 from wsim.kernels.sph.momentum import make_momentum
 from wsim.kernels.sph.neighbors import make_find_neighbors, make_search
 from wsim.kernels.sph.pair_sums import make_pair_sums
+from wsim.kernels.sph.rows import make_rows
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,14 @@ class Programs:
 
     @staticmethod
     @functools.cache
-    def make(lists: bool, periodic: tuple[bool, bool, bool], branch: bool) -> Programs:
-        """Build the kernels, once in a process; see `make_pair_sums`."""
-        search, sums = make_search(lists), make_pair_sums(lists, periodic, branch)
+    def make(
+        lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int], bodies: bool
+    ) -> Programs:
+        """Build the kernels, once in a process; see `make_pair_sums` and `make_rows`."""
+        rows, sums = make_rows(reach, periodic), make_pair_sums(lists, periodic, branch, bodies)
+        search = make_search(lists, rows)
         return Programs(
-            make_find_neighbors(sums),
+            make_find_neighbors(rows, sums),
             make_compress(search, sums),
             make_continuity(search, sums),
             make_extrapolate(search, sums),
