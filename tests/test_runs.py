@@ -1,7 +1,6 @@
 """Run folders: never overwritten, files whole or absent."""
 
 import hashlib
-import json
 
 import pytest
 
@@ -19,16 +18,11 @@ def test_folders_of_the_same_second_do_not_meet(tmp_path):
     assert len(paths) == 4
 
 
-def test_run_json_grows_and_transcript_appends(tmp_path):
+def test_run_json_grows(tmp_path):
     run = RunFolder.create(tmp_path, "a")
     run.record(prompt="p")
     run.record(status="accepted")
     assert run.facts() == {"prompt": "p", "status": "accepted"}
-    run.say("planner", "builtin", "p", {"x": 1})
-    run.say("coder", "builtin", "plan", "text\nwith lines")
-    lines = [json.loads(line) for line in (run.path / "transcript.jsonl").read_text().splitlines()]
-    assert [line["role"] for line in lines] == ["planner", "coder"]
-    assert lines[1]["reply"] == "text\nwith lines"
 
 
 def test_open_finds_the_run_from_inside_it(tmp_path):

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import ast
-import json
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wsim.accept import Trajectory
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
-from wsim.pipeline import Settings, build_stage, conclude, reject, simulate_and_judge
+from wsim.pipeline import Settings, build_in, conclude, no_world, reject, simulate_and_judge
 from wsim.progress import Progress, silent
-from wsim.runs import write_json
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -147,9 +145,8 @@ def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: P
 
 def _built(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
     made.reached = Reached.BUILD
-    built = build_stage(made.folder / "program.py", made.folder / "stage.usda", settings, progress)
-    write_json(made.folder / "checks.json", {"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})
-    return None if built.ok else reject(Finding(**built.finding()), f"The program made no world ({built.kind}).")
+    built = build_in(made.folder, settings, progress)
+    return None if built.ok else no_world(made.folder, built)
 
 
 def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
@@ -180,7 +177,8 @@ def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Prog
 
 def _moved(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
     made.reached = Reached.PHYSICS
-    verdict = _simulated(made, plan, replace(settings, pictures=False, verify=False), progress)
+    quick = replace(settings, pictures=False, verify=False)
+    verdict = simulate_and_judge(made.folder, made.folder / "program.py", plan, quick, progress)
     if verdict.status == "accepted":
         made.earlier = Trajectory.of(made.folder / "recording.rrd")
     return verdict
@@ -188,15 +186,7 @@ def _moved(made: Attempt, plan: Plan | None, settings: Settings, progress: Progr
 
 def _recorded(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
     made.reached = Reached.RECORDING
-    return _simulated(made, plan, settings, progress)
-
-
-def _simulated(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict:
-    checks = json.loads((made.folder / "checks.json").read_text(encoding="utf-8"))
-    seconds = dict(checks.get("seconds", {}))
-    return simulate_and_judge(
-        made.folder, made.folder / "program.py", plan, settings, progress, seconds, checks.get("build")
-    )
+    return simulate_and_judge(made.folder, made.folder / "program.py", plan, settings, progress)
 
 
 def numerics(program: str) -> list[str]:

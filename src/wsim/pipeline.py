@@ -106,26 +106,46 @@ def run_program(
     copy = folder / "program.py"
     if program.resolve() != copy.resolve():
         shutil.copyfile(program, copy)
-    seconds: dict[str, float] = {}
-    built = _timed(seconds, "build", lambda: build_stage(copy, folder / "stage.usda", settings, progress))
-    write_json(folder / "checks.json", {"build": asdict(built), "seconds": seconds})
+    built = build_in(folder, settings, progress)
     if not built.ok:
-        return conclude(folder, reject(Finding(**built.finding()), f"The program made no world ({built.kind})."))
-    return simulate_and_judge(folder, copy, plan, settings, progress, seconds, asdict(built))
+        return no_world(folder, built)
+    return simulate_and_judge(folder, copy, plan, settings, progress)
+
+
+def build_in(folder: Path, settings: Settings, progress: Progress = silent) -> BuildResult:
+    """`folder/program.py` → `folder/stage.usda`; checks.json says how it went."""
+    built = build_stage(folder / "program.py", folder / "stage.usda", settings, progress)
+    write_json(folder / "checks.json", {"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})
+    return built
+
+
+def no_world(folder: Path, built: BuildResult) -> Verdict:
+    """The verdict on a program whose build failed."""
+    return conclude(folder, reject(Finding(**built.finding()), f"The program made no world ({built.kind})."))
+
+
+def checks_of(folder: Path) -> dict[str, Any]:
+    """What an iteration's checks.json says; nothing where there is none."""
+    path = folder / "checks.json"
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 
 def simulate_and_judge(
-    folder: Path,
-    program: Path,
-    plan: Plan | None,
-    settings: Settings,
-    progress: Progress,
-    seconds: dict[str, float],
-    build: dict[str, Any] | None = None,
+    folder: Path, program: Path, plan: Plan | None, settings: Settings, progress: Progress
 ) -> Verdict:
-    """Stage → recording → verdict, in `folder`, where the stage is."""
+    """Stage → recording → verdict, in `folder`, where the stage is.
+
+    Args:
+        folder: An iteration's; what checks.json says of the build stays in it.
+        program: Whose `control` steps the world, if it has one.
+        plan: What the judge holds the world to.
+        settings: Device, parameters, limits.
+        progress: Told how far it is.
+    """
     from wsim.program.control import ControlError
 
+    before = checks_of(folder)
+    build, seconds = before.get("build"), dict(before.get("seconds", {}))
     try:
         result = _timed(seconds, "simulate", lambda: simulate(folder, program, settings, progress))
     except ControlError as error:

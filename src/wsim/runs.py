@@ -106,12 +106,6 @@ class RunFolder:
         path = self.path / "run.json"
         return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
-    def say(self, role: str, model: str, request: Any, reply: Any) -> None:
-        """Append an exchange to transcript.jsonl."""
-        line = {"role": role, "model": model, "request": request, "reply": reply}
-        with (self.path / "transcript.jsonl").open("a", encoding="utf-8") as transcript:
-            transcript.write(json.dumps(line, ensure_ascii=False) + "\n")
-
     def accept(self, iteration: Path) -> Path:
         """Copy an iteration's program and stage to accepted/, with their checksums."""
         target, partial = self.path / "accepted", self.path / "accepted.partial"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from wsim.skills import for_finding, pick
+from wsim.skills import pick
 from wsim.skills.retrieval import stem
 
 FLOAT, FLUID, WAVES = "floating-bodies", "containers-and-fluid", "waves-and-dam-breaks"
@@ -104,13 +104,6 @@ def test_forms_of_a_word_are_one(words: str) -> None:
 def test_words_that_differ_stay_apart() -> None:
     words = ("ball", "box", "wall", "wave", "water", "hinge", "swing", "spring", "tank", "crank", "drive", "drop")
     assert len({stem(word) for word in words}) == len(words)
-
-
-def test_a_finding_leads_to_the_skill_that_treats_it() -> None:
-    assert SWING in [skill.name for skill in for_finding("ObjectiveSwings")]
-    assert {JOINT, REPAIR} <= {skill.name for skill in for_finding("CheckJoints")}
-    assert FLOAT in [skill.name for skill in for_finding("ObjectiveFloats")][:2]
-    assert for_finding("CheckNothing") == []
 
 
 def test_the_package_is_light() -> None:

@@ -37,7 +37,7 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
         build(scene)
         scene.save(folder / "stage.usda")
         with ConsoleProgress() as progress:
-            verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress, {})
+            verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress)
     except (UserError, SceneError) as error:
         run.record(status="stopped", summary=str(error))
         print(f"{_place(error, program)}: {error}", file=sys.stderr)

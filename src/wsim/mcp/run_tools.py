@@ -80,6 +80,7 @@ def draft_program(workspace: Workspace, _: DraftProgram) -> Result:
 
 def _planned(desk: Desk, prompt: str) -> Result:
     """A new run, with the builtin planner's plan in it, drawn."""
+    from wsim.agents.transcript import Transcript
     from wsim.generate import BUILTIN, make_plan
     from wsim.plan.drawing.picture import draw_picture
     from wsim.plan.store import save
@@ -88,7 +89,7 @@ def _planned(desk: Desk, prompt: str) -> Result:
     plan = make_plan(prompt)
     run = desk.start(plan.title)
     run.record(prompt=plan.prompt, models={"planner": BUILTIN})
-    run.say("planner", BUILTIN, prompt, plan.model_dump(mode="json"))
+    Transcript(run.path).builtin("planner", prompt, plan.model_dump(mode="json"))
     save(plan, run.path / "plan.json")
     draw_picture(plan, run.path / "plan.png")
     tables = (read_plan(Workspace(run), ReadPlan(part=part)).text for part in ("all", "assumptions"))

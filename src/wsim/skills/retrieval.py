@@ -16,7 +16,6 @@ from pathlib import Path
 from wsim.skills.library import Skill, skills
 
 NAME, HEADING, DESCRIPTION = 3.0, 1.0, 2.0  # what a word counts by where it stands
-_CHECK = re.compile(r"\b(?:Check|Objective)[A-Z]\w*")
 _IDENTIFIER = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")  # joint_revolute and CheckPenetration are words too
 _PLURALS = (("ies", "y"), ("sses", "ss"), ("xes", "x"), ("ches", "ch"), ("shes", "sh"), ("s", ""))
 _ENDINGS = ("ation", "ingly", "ness", "ment", "ing", "ion", "ed", "er", "en", "ly", "e", "y")
@@ -64,19 +63,6 @@ def pick(words: str, limit: int = 3, folder: Path | None = None) -> list[Picked]
             score = sum(weight for weight, _ in counted)
             found.append(Picked(skill, round(score, 4), tuple(said for _, said in counted)))
     return sorted(found, key=lambda picked: (-picked.score, picked.skill.name))[:limit]
-
-
-def for_finding(check: str, folder: Path | None = None) -> list[Skill]:
-    """The skills whose tables of findings name a check or an objective, as a verdict has it: "CheckPenetration".
-
-    Those that name fewest others come first: they have most to say of it.
-    """
-    found = []
-    for skill in skills(folder):
-        named = set(_CHECK.findall(skill.body))
-        if check in named:
-            found.append((len(named), skill.name, skill))
-    return [skill for _, _, skill in sorted(found, key=lambda entry: entry[:2])]
 
 
 def stem(word: str) -> str:

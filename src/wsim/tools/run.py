@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from wsim.judge.verdict import Finding
+from wsim.pipeline import checks_of
 from wsim.runs import write_json
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
@@ -50,16 +49,15 @@ def run_program(workspace: Workspace, asked: RunProgram) -> Result:
 
 def _build(workspace: Workspace, program: Path) -> Result | None:
     """Make the stage; the answer where there is none to be had."""
-    from wsim.pipeline import build_stage, conclude, reject
+    from wsim.pipeline import build_in, no_world
 
     folder = program.parent
     if (folder / "stage.usda").is_file():
         return None
-    built = build_stage(program, folder / "stage.usda", workspace.settings, workspace.progress)
-    write_json(folder / "checks.json", {"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})
+    built = build_in(folder, workspace.settings, workspace.progress)
     if built.ok:
         return None
-    conclude(folder, reject(Finding(**built.finding()), f"The program made no world ({built.kind})."))
+    no_world(folder, built)
     where = f" [{built.line}]" if built.line else ""
     lines = [f"iterations/{folder.name}: the program made no world ({built.kind}){where}: {built.message}"]
     return Result("\n".join([*lines, *built.problems[1:], *_printed(built.log)]), ok=False)
@@ -69,7 +67,7 @@ def _built(workspace: Workspace, folder: Path) -> Result:
     from wsim.scene.describe import describe
 
     world = describe(folder / "stage.usda")
-    log = _checks(folder).get("build", {}).get("log", "")
+    log = checks_of(folder).get("build", {}).get("log", "")
     head = f"iterations/{folder.name}/stage.usda: {number(world.duration)} s at {number(world.frame_rate)} frames/s"
     return Result("\n".join([head, *_contents(world), *_printed(log)]))
 
@@ -123,12 +121,8 @@ def _simulate(workspace: Workspace, folder: Path, pictures: bool) -> None:
     from wsim.pipeline import simulate_and_judge
 
     settings = replace(workspace.settings, pictures=pictures, verify=workspace.settings.verify and pictures)
-    checks = _checks(folder)
-    seconds = dict(checks.get("seconds", {}))
     with _kept(folder / "recording.rrd"):
-        simulate_and_judge(
-            folder, folder / "program.py", workspace.plan, settings, workspace.progress, seconds, checks.get("build")
-        )
+        simulate_and_judge(folder, folder / "program.py", workspace.plan, settings, workspace.progress)
 
 
 @contextlib.contextmanager
@@ -147,7 +141,7 @@ def _kept(recording: Path) -> Iterator[None]:
 
 
 def _judged(folder: Path) -> Result:
-    facts = _checks(folder).get("simulation", {})
+    facts = checks_of(folder).get("simulation", {})
     lines = [f"iterations/{folder.name}:"]
     if "steps" in facts:
         lines[0] += f" {facts['frames']} frames, {facts['steps']} steps of {number(facts['dt'])} s"
@@ -157,11 +151,6 @@ def _judged(folder: Path) -> Result:
     names = [f"frames/{name}" for name in facts.get("stills", [])]
     pictures = [name for name in ("video.mp4", *names) if (folder / name).is_file()]
     return Result("\n".join([*lines, *([f"pictures: {', '.join(pictures)}"] if pictures else [])]))
-
-
-def _checks(folder: Path) -> dict[str, Any]:
-    path = folder / "checks.json"
-    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 
 def _printed(log: str) -> list[str]:
