@@ -9,7 +9,7 @@ import warp as wp
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, assign_cells, wrap
 from wsim.kernels.sph.neighbors import Neighborhood
-from wsim.kernels.sph.pair_sums import make_pair_sums
+from wsim.kernels.sph.pair_sums import Pairs, make_pair_sums
 from wsim.kernels.sph.programs import Programs
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import make_grid
@@ -31,10 +31,14 @@ def _of_one_neighbor(
     """What a particle at the origin takes from neighbour k alone."""
     k = wp.tid()
     none = wp.vec3(0.0, 0.0, 0.0)
-    sums = wp.static(SUMS.extrapolation)(entry, point, motion, k, k + 1, shape, none, none, none, none)
+    pairs = Pairs()
+    pairs.entry = entry
+    pairs.point = point
+    pairs.motion = motion
+    pairs.shape = shape
+    sums = wp.static(SUMS.extrapolation)(pairs, k, k + 1, none, none)
     weight[k] = sums[0]
-    viscosity = wp.vec3(0.0, 0.0, 1.0)
-    force[k] = wp.static(SUMS.force)(entry, point, motion, k, k + 1, shape, none, none, none, none, 1.0, viscosity, 1.0)
+    force[k] = wp.static(SUMS.force)(pairs, k, k + 1, none, none, 1.0, wp.vec3(0.0, 0.0, 1.0), 1.0)
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])

@@ -4,7 +4,7 @@ import warp as wp
 
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, in_plane, wrap
-from wsim.kernels.sph.neighbors import Neighborhood, Search
+from wsim.kernels.sph.neighbors import Neighborhood, Search, pairs_of
 from wsim.kernels.sph.pair_sums import OPTIONS, Extrapolated, Flux, PairSums
 from wsim.kernels.sph.records import load_record
 
@@ -87,13 +87,11 @@ def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
         world = nb.particle_world[i]
         x, v = wp.vec3(p[0], p[1], p[2]), wp.vec3(m[0], m[1], m[2])
         weight_of_water = rest_density[world] * gravity[world]
-        period, inv_period = nb.grid.period, nb.grid.inv_period
+        pairs = pairs_of(nb, point, motion, method.shape)
         total = Flux()
         for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
-            total += sum_run(
-                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, weight_of_water
-            )
+            total += sum_run(pairs, span[0], span[1], x, v, weight_of_water)
         given_back = float(0.0)
         if total[0] > 0.0 and total[1] > -method.background_pressure * total[0]:
             given_back = -p[3] * total[2] / total[0]
@@ -141,13 +139,11 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
         laminar = method.laminar_factor * viscosity[world]
         x = wp.vec3(p[0], p[1], p[2])
-        period, inv_period = nb.grid.period, nb.grid.inv_period
+        pairs = pairs_of(nb, point, motion, method.shape)
         total = Extrapolated()
         for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
-            total += sum_run(
-                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, weight_of_water
-            )
+            total += sum_run(pairs, span[0], span[1], x, weight_of_water)
         m = motion[s]
         if total[0] <= 0.0:
             motion[s] = wp.vec4(m[0], m[1], m[2], 0.0)

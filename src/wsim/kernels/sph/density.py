@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from wsim.kernels.sph.neighbors import Neighborhood, Search
+from wsim.kernels.sph.neighbors import Neighborhood, Search, pairs_of
 from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
 from wsim.kernels.sph.records import load_record
 
@@ -70,13 +70,11 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
         rho0 = rest_density[world]
         # p^H_j - p^H_i = rho_0 g.(x_j - x_i): the incompressible column, within the 1 % of compression.
         weight = rho0 * gravity[world]
-        period, inv_period = nb.grid.period, nb.grid.inv_period
+        pairs = pairs_of(nb, point, motion, method.shape)
         total = wp.vec4(0.0, 0.0, 0.0, 0.0)
         for run in range(runs(nb, x)):
             span = span_of(nb, s, world, x, run)
-            total += sum_run(
-                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, m[3], weight
-            )
+            total += sum_run(pairs, span[0], span[1], x, v, m[3], weight)
         # What walls give back fades as a body comes within reach: see `boundary.compress`.
         given_back = wp.max(1.0 - FADE * total[3], 0.0) * total[2]
         divergence, smoothing = total[0] + given_back / p[3], total[1]

@@ -4,7 +4,7 @@ import warp as wp
 
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import wrap
-from wsim.kernels.sph.neighbors import Neighborhood, Search
+from wsim.kernels.sph.neighbors import Neighborhood, Search, pairs_of
 from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
 from wsim.kernels.sph.records import load_record
 
@@ -61,7 +61,7 @@ def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
         laminar = method.laminar_factor * viscosity[world]
         eta2 = COINCIDENT * method.h * method.h
         own = m[3] + 2.0 * method.background_pressure
-        period, inv_period = nb.grid.period, nb.grid.inv_period
+        pairs = pairs_of(nb, point, motion, method.shape)
         total = wp.vec3(0.0, 0.0, 0.0)
         viscous = wp.vec3(artificial, laminar, eta2)
         solids = wp.where(fluid, 1.0, 0.0)
@@ -70,9 +70,7 @@ def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
                 span = span_of(nb, s, world, x, run)
             else:
                 span = fluid_span_of(nb, s, world, x, run)
-            total += sum_run(
-                nb.entry, point, motion, span[0], span[1], method.shape, period, inv_period, x, v, own, viscous, solids
-            )
+            total += sum_run(pairs, span[0], span[1], x, v, own, viscous, solids)
         if fluid:
             v = v + dt * (p[3] / fluid_mass[i] * total + gravity[world])
             fluid_velocity[i] = v

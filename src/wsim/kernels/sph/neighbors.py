@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import warp as wp
 
 from wsim.kernels.sph.grid import Grid, nearest_image
-from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.pair_sums import OPTIONS, Pairs, PairSums
 from wsim.kernels.sph.records import load_record
 from wsim.kernels.sph.rows import Rows
 
@@ -78,6 +78,21 @@ def make_search(lists: bool, rows: Rows) -> Search:
     return Search(runs, span, fluid_span)
 
 
+@wp.func
+def pairs_of(
+    nb: Neighborhood, point: wp.array(dtype=wp.vec4), motion: wp.array(dtype=wp.vec4), shape: wp.vec3
+) -> Pairs:
+    """What the loops over pairs read."""
+    pairs = Pairs()
+    pairs.entry = nb.entry
+    pairs.point = point
+    pairs.motion = motion
+    pairs.shape = shape
+    pairs.period = nb.grid.period
+    pairs.inv_period = nb.grid.inv_period
+    return pairs
+
+
 def make_find_neighbors(rows: Rows, sums: PairSums) -> wp.Kernel:
     """The kernel that makes the lists."""
     count_runs, row_span, find = rows.count, rows.span, sums.find
@@ -99,15 +114,13 @@ def make_find_neighbors(rows: Rows, sums: PairSums) -> wp.Kernel:
         x = wp.vec3(p[0], p[1], p[2])
         fluid = p[3] > 0.0
         world = nb.particle_world[nb.order[s]]
-        support2 = nb.grid.support * nb.grid.support
-        period, inv_period = nb.grid.period, nb.grid.inv_period
+        pairs = pairs_of(nb, point, point, wp.vec3(0.0, 0.0, nb.grid.support * nb.grid.support))
+        pairs.entry = entry
         base = s * nb.capacity
         count = int(0)
         for run in range(count_runs(nb.grid, x)):
             span = row_span(nb.grid, nb.cell_start, world, x, run)
-            count = find(
-                point, entry, base, nb.capacity, count, span[0], span[1], s, fluid, support2, period, inv_period, x
-            )
+            count = find(pairs, span[0], span[1], x, s, fluid, base, nb.capacity, count)
         entry_count[s] = wp.min(count, nb.capacity)
         if count > nb.capacity:
             wp.atomic_max(overflow, 0, count)

@@ -5,8 +5,7 @@ AMD EPYC the same continuity sum takes 46 ms as a Warp loop and 24 ms so; on a G
 a loop is put together from choices that must cost nothing per pair: entries of a list or runs of cells, which axes are
 periodic, whether to branch, and what is summed.
 
-Every sum takes `entry` (list entries; not read when cells are walked), the records `point` and `motion`, the run
-`[first, last)`, and `shape` = (1 / 2h, -5 norm / h^2, (2h)^2): what the kernel function needs.
+Every sum takes `Pairs`, which all of them read, and the run `[first, last)`.
 """
 
 from __future__ import annotations
@@ -16,6 +15,19 @@ from dataclasses import dataclass
 import warp as wp
 
 OPTIONS = {"fast_math": True}
+
+
+@wp.struct
+class Pairs:
+    """What every loop reads."""
+
+    entry: wp.array(dtype=int)  # of lists; not read when cells are walked
+    point: wp.array(dtype=wp.vec4)  # x, y, z, V; V < 0 is a boundary particle's
+    motion: wp.array(dtype=wp.vec4)  # vx, vy, vz, p
+    shape: wp.vec3  # of the kernel function: (1 / 2h, -5 norm / h^2, (2h)^2)
+    period: wp.vec3  # of the domain [m]
+    inv_period: wp.vec3
+
 
 # Sums of W, of W times pressure, and of V (v - v_b).grad W.
 Flux = wp.vec3
@@ -33,11 +45,11 @@ _LOOP = """
     #define WSIM_LOAD(records, j) records[j]
     #define WSIM_SATURATE(x) ((x) > 0.0f ? (x) : 0.0f)
 #endif
-    const Record* __restrict__ points = reinterpret_cast<const Record*>(point.data);
-    const Record* __restrict__ motions = reinterpret_cast<const Record*>(motion.data);
-    const int* __restrict__ entries = entry.data;
+    const Record* __restrict__ points = reinterpret_cast<const Record*>(pairs.point.data);
+    const Record* __restrict__ motions = reinterpret_cast<const Record*>(pairs.motion.data);
+    const int* __restrict__ entries = pairs.entry.data;
     const float x0 = x[0], x1 = x[1], x2 = x[2];
-    const float inv_support = shape[0], slope_norm = shape[1], support2 = shape[2];
+    const float inv_support = pairs.shape[0], slope_norm = pairs.shape[1], support2 = pairs.shape[2];
     BEFORE
 #if defined(__CUDA_ARCH__)
     #pragma unroll 2
@@ -145,9 +157,10 @@ _MOMENTUM = (
 
 _FIND = """
     struct Record { float x, y, z, w; };
-    const Record* __restrict__ points = reinterpret_cast<const Record*>(point.data);
-    int* __restrict__ found = entry.data + base;
+    const Record* __restrict__ points = reinterpret_cast<const Record*>(pairs.point.data);
+    int* __restrict__ found = pairs.entry.data + base;
     const float x0 = x[0], x1 = x[1], x2 = x[2];
+    const float support2 = pairs.shape[2];
     int count = start;
     for (int j = first; j < last; ++j) {
         const Record q = points[j];
@@ -184,7 +197,9 @@ class PairSums:
 def _images(periodic: tuple[bool, bool, bool]) -> str:
     """Take the nearest periodic image along each periodic axis."""
     return "\n        ".join(
-        f"d{axis} -= period[{axis}] * rintf(d{axis} * inv_period[{axis}]);" for axis in range(3) if periodic[axis]
+        f"d{axis} -= pairs.period[{axis}] * rintf(d{axis} * pairs.inv_period[{axis}]);"
+        for axis in range(3)
+        if periodic[axis]
     )
 
 
@@ -210,81 +225,23 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
 
     @wp.func_native(loop(_CONTINUITY))
     def continuity(
-        entry: wp.array(dtype=int),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
-        first: int,
-        last: int,
-        shape: wp.vec3,
-        period: wp.vec3,
-        inv_period: wp.vec3,
-        x: wp.vec3,
-        v: wp.vec3,
-        p: float,
-        weight: wp.vec3,
+        pairs: Pairs, first: int, last: int, x: wp.vec3, v: wp.vec3, p: float, weight: wp.vec3
     ) -> wp.vec4: ...
 
     @wp.func_native(loop(_FLUX))
-    def flux(
-        entry: wp.array(dtype=int),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
-        first: int,
-        last: int,
-        shape: wp.vec3,
-        period: wp.vec3,
-        inv_period: wp.vec3,
-        x: wp.vec3,
-        v: wp.vec3,
-        weight: wp.vec3,
-    ) -> Flux: ...
+    def flux(pairs: Pairs, first: int, last: int, x: wp.vec3, v: wp.vec3, weight: wp.vec3) -> Flux: ...
 
     @wp.func_native(loop(_EXTRAPOLATION))
-    def extrapolation(
-        entry: wp.array(dtype=int),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
-        first: int,
-        last: int,
-        shape: wp.vec3,
-        period: wp.vec3,
-        inv_period: wp.vec3,
-        x: wp.vec3,
-        weight: wp.vec3,
-    ) -> Extrapolated: ...
+    def extrapolation(pairs: Pairs, first: int, last: int, x: wp.vec3, weight: wp.vec3) -> Extrapolated: ...
 
     @wp.func_native(loop(_MOMENTUM))
     def force(
-        entry: wp.array(dtype=int),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
-        first: int,
-        last: int,
-        shape: wp.vec3,
-        period: wp.vec3,
-        inv_period: wp.vec3,
-        x: wp.vec3,
-        v: wp.vec3,
-        p: float,
-        viscosity: wp.vec3,
-        solids: float,
+        pairs: Pairs, first: int, last: int, x: wp.vec3, v: wp.vec3, p: float, viscosity: wp.vec3, solids: float
     ) -> wp.vec3: ...
 
     @wp.func_native(_FIND.replace("IMAGES", _images(periodic)))
     def find(
-        point: wp.array(dtype=wp.vec4),
-        entry: wp.array(dtype=int),
-        base: int,
-        capacity: int,
-        start: int,
-        first: int,
-        last: int,
-        s: int,
-        fluid: bool,
-        support2: float,
-        period: wp.vec3,
-        inv_period: wp.vec3,
-        x: wp.vec3,
+        pairs: Pairs, first: int, last: int, x: wp.vec3, s: int, fluid: bool, base: int, capacity: int, start: int
     ) -> int: ...
 
     return PairSums(continuity, flux, extrapolation, force, find)
