@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 from wsim.errors import UserError
 from wsim.plan.schema import CameraPlan, FromAsset, Joint, JointDrive, Material, Plan, PlanObject
+from wsim.program.source import WIDTH, call, comment, number, prose, tuple_of
 
-_WIDTH = 88  # columns; a call that does not fit has one argument a line, which any formatter's settings keep
 _AXES = "xyz"
 _DEFAULT_FRAME_RATE = 30.0
 _JOINTS = {"fixed": "fixed", "hinge": "revolute", "slider": "prismatic", "ball": "spherical"}
@@ -75,19 +75,19 @@ class _Composer:
         return "\n".join(lines) + "\n"
 
     def _docstring(self) -> list[str]:
-        title = _prose(self.plan.title).rstrip(".") or "A world"
+        title = prose(self.plan.title).rstrip(".") or "A world"
         title = title[:1].upper() + title[1:]
-        first, *rest = textwrap.wrap(title + ".", _WIDTH - 6)
+        first, *rest = textwrap.wrap(title + ".", WIDTH - 6)
         paragraphs = [rest] if rest else []
-        prompt = _prose(self.plan.prompt)
+        prompt = prose(self.plan.prompt)
         if prompt and prompt.rstrip(".").lower() != title.lower():
-            paragraphs.append(textwrap.wrap(f"Asked for: {prompt}", _WIDTH))
-        sentences = [sentence for sentence in (_prose(o.sentence) for o in self.plan.objectives) if sentence]
+            paragraphs.append(textwrap.wrap(f"Asked for: {prompt}", WIDTH))
+        sentences = [sentence for sentence in (prose(o.sentence) for o in self.plan.objectives) if sentence]
         if sentences:
             items = [
                 line
                 for sentence in dict.fromkeys(sentences)
-                for line in textwrap.wrap(sentence, _WIDTH, initial_indent="- ", subsequent_indent="  ")
+                for line in textwrap.wrap(sentence, WIDTH, initial_indent="- ", subsequent_indent="  ")
             ]
             paragraphs.append(["What must happen:", *items])
         if not paragraphs:
@@ -97,9 +97,9 @@ class _Composer:
     def _assumptions(self) -> list[str]:
         lines = []
         for item in self.plan.assumptions:
-            why = _prose(item.why)
-            text = f"Assumed: {_prose(item.subject)}: {_prose(item.choice)}" + (f" ({why})" if why else "")
-            lines += _comment(text)
+            why = prose(item.why)
+            text = f"Assumed: {prose(item.subject)}: {prose(item.choice)}" + (f" ({why})" if why else "")
+            lines += comment(text)
         return [*lines, ""] if lines else []
 
     def _materials(self) -> list[str]:
@@ -115,21 +115,21 @@ class _Composer:
         return [*lines, ""] if lines else []
 
     def _material(self, material: Material, variable: str, *, moving: bool) -> list[str]:
-        density = _number(material.density)
+        density = number(material.density)
         lines = []
         if moving:
-            bounds = [f"low={_number(0.5 * material.density)}", f"high={_number(1.5 * material.density)}"]
+            bounds = [f"low={number(0.5 * material.density)}", f"high={number(1.5 * material.density)}"]
             name = self._variable(f"{variable}_density")
-            lines += _call(f"{name} = scene.param", [f'"{name}"', density, *bounds, 'unit="kg/m^3"'])
+            lines += call(f"{name} = scene.param", [f'"{name}"', density, *bounds, 'unit="kg/m^3"'])
             density = name
         arguments = [f'"{variable}"', *([f"density={density}"] if moving else [])]
-        arguments.append(f"friction={_number(material.friction)}")
+        arguments.append(f"friction={number(material.friction)}")
         if material.restitution:
-            arguments.append(f"restitution={_number(material.restitution)}")
-        arguments.append(f"color={_tuple(material.color)}")
+            arguments.append(f"restitution={number(material.restitution)}")
+        arguments.append(f"color={tuple_of(material.color)}")
         if material.opacity != 1.0:
-            arguments.append(f"opacity={_number(material.opacity)}")
-        return lines + _call(f"{variable} = scene.material", arguments)
+            arguments.append(f"opacity={number(material.opacity)}")
+        return lines + call(f"{variable} = scene.material", arguments)
 
     def _objects(self) -> list[str]:
         lines: list[str] = []
@@ -144,12 +144,12 @@ class _Composer:
             if item.name in containers | jointed:
                 self.handles[item.name] = self._variable(item.name)
                 target = f"{self.handles[item.name]} = {target}"
-            lines += _call(target, [f'"{item.name}"', *self._arguments(item)])
+            lines += call(target, [f'"{item.name}"', *self._arguments(item)])
         return lines
 
     def _loop(self, group: Sequence[PlanObject]) -> list[str]:
         """Objects that differ in position and number only."""
-        positions = [[_number(value) for value in _position(item)] for item in group]
+        positions = [[number(value) for value in _position(item)] for item in group]
         differing = [axis for axis in range(3) if len({position[axis] for position in positions}) > 1]
         if len(differing) == 1:
             variable = _AXES[differing[0]]
@@ -163,7 +163,7 @@ class _Composer:
         start = ["start=1"] if first == 1 else []
         counted = ", ".join(["(" + ", ".join(values) + ")", *start])
         head = f"for i, {variable} in enumerate({counted}):"
-        if len(head) + 4 > _WIDTH:
+        if len(head) + 4 > WIDTH:
             lines = [f"for i, {variable} in enumerate(", "    ("]
             lines += [*(f"        {value}," for value in values), "    )" + "," * bool(start)]
             lines += [*(f"    {argument}," for argument in start), "):"]
@@ -171,7 +171,7 @@ class _Composer:
             lines = [head]
         arguments = self._arguments(group[0], position=f"({', '.join(where)})")
         indented = ["    " + line for line in lines]
-        return indented + _call(f"scene.{group[0].primitive}", [f'f"{prefix}_{{i}}"', *arguments], depth=2)
+        return indented + call(f"scene.{group[0].primitive}", [f'f"{prefix}_{{i}}"', *arguments], depth=2)
 
     def _arguments(self, item: PlanObject, position: str | None = None) -> list[str]:
         if item.primitive == "fluid":
@@ -181,13 +181,13 @@ class _Composer:
         arguments = _size(item)
         if item.primitive == "ground":
             if item.pose is not None and item.pose.position[2]:
-                arguments.append(f"height={_number(item.pose.position[2])}")
+                arguments.append(f"height={number(item.pose.position[2])}")
         elif item.primitive != "tank" or any(_position(item)):
-            arguments.append(f"position={position or _tuple(_position(item))}")
+            arguments.append(f"position={position or tuple_of(_position(item))}")
         if item.pose is not None and any(item.pose.rotation_deg) and item.primitive not in ("ground", "tank"):
-            arguments.append(f"rotation_deg={_tuple(item.pose.rotation_deg)}")
+            arguments.append(f"rotation_deg={tuple_of(item.pose.rotation_deg)}")
         if any(item.velocity) and item.state == "dynamic":
-            arguments.append(f"velocity={_tuple(item.velocity)}")
+            arguments.append(f"velocity={tuple_of(item.velocity)}")
         if item.state == "static" and item.primitive not in ("ground", "tank"):
             arguments.append("static=True")
         if item.state == "kinematic":
@@ -204,19 +204,19 @@ class _Composer:
         if container is not None and level is not None and level.value is not None:
             tank = self.plan.object(container)
             volume = (*tank.size[:2], level.value)
-            arguments = [f"fills={self.handles[container]}", f"level={_number(level.value)}"]
+            arguments = [f"fills={self.handles[container]}", f"level={number(level.value)}"]
         else:
             volume = item.size
-            arguments = [f"size={_tuple(item.size)}", f"position={_tuple(_position(item))}"]
+            arguments = [f"size={tuple_of(item.size)}", f"position={tuple_of(_position(item))}"]
         spacing = item.registration.spacing or self.plan.simulation.spacing or _spacing(volume)
-        arguments.append(f"spacing={_number(spacing)}")
+        arguments.append(f"spacing={number(spacing)}")
         if item.registration.viscosity is not None:
-            arguments.append(f"viscosity={_number(item.registration.viscosity)}")
+            arguments.append(f"viscosity={number(item.registration.viscosity)}")
         if any(objective.kind == "fills" and objective.object == item.name for objective in self.plan.objectives):
-            arguments.append(f"speed_of_sound={_number(_sound(item))}")
+            arguments.append(f"speed_of_sound={number(_sound(item))}")
         if item.material is not None:
-            arguments.append(f"density={_number(item.material.density)}")
-            arguments.append(f"color={_tuple(item.material.color)}")
+            arguments.append(f"density={number(item.material.density)}")
+            arguments.append(f"color={tuple_of(item.material.color)}")
         return arguments
 
     def _joints(self) -> list[str]:
@@ -226,34 +226,34 @@ class _Composer:
             arguments = [f'"{joint.name}"', parent, self.handles[joint.child]]
             child = self.plan.object(joint.child)
             if joint.anchor is not None:
-                arguments.append(f"anchor={_tuple(_anchor(child, joint))}")
+                arguments.append(f"anchor={tuple_of(_anchor(child, joint))}")
             if joint.kind in ("hinge", "slider"):
                 arguments.append(f'axis="{joint.axis}"')
             if joint.limits is not None:
-                arguments.append(f"{_LIMITS[joint.kind]}={_tuple(joint.limits)}")
+                arguments.append(f"{_LIMITS[joint.kind]}={tuple_of(joint.limits)}")
             if joint.drive is not None:
                 arguments.append(f"drive={_drive(joint.drive)}")
-            lines += _call(f"scene.joint_{_JOINTS[joint.kind]}", arguments)
+            lines += call(f"scene.joint_{_JOINTS[joint.kind]}", arguments)
         return lines
 
     def _cameras(self) -> list[str]:
         def arguments(camera: CameraPlan) -> list[str]:
             if camera.eye is None or camera.target is None:
                 raise UserError(f"camera {camera.name} has no eye or no target; lay the plan out before composing it")
-            return [f'"{camera.name}"', f"eye={_tuple(camera.eye)}", f"target={_tuple(camera.target)}"]
+            return [f'"{camera.name}"', f"eye={tuple_of(camera.eye)}", f"target={tuple_of(camera.target)}"]
 
-        return [line for camera in self.plan.cameras for line in _call("scene.camera", arguments(camera))]
+        return [line for camera in self.plan.cameras for line in call("scene.camera", arguments(camera))]
 
     def _simulation(self) -> list[str]:
         simulation = self.plan.simulation
-        arguments = [f"duration={_number(simulation.duration)}"]
+        arguments = [f"duration={number(simulation.duration)}"]
         if simulation.frame_rate != _DEFAULT_FRAME_RATE:
-            arguments.append(f"frame_rate={_number(simulation.frame_rate)}")
+            arguments.append(f"frame_rate={number(simulation.frame_rate)}")
         if simulation.time_step:
-            arguments.append(f"time_step={_number(simulation.time_step)}")
+            arguments.append(f"time_step={number(simulation.time_step)}")
         if simulation.seed:
             arguments.append(f"seed={simulation.seed}")
-        return _call("scene.simulation", arguments)
+        return call("scene.simulation", arguments)
 
     def _variable(self, text: str) -> str:
         """A free variable name like the text."""
@@ -294,10 +294,10 @@ def _groups(objects: Sequence[PlanObject], apart: Collection[str | None] = ()) -
 
 def _continues(group: list[PlanObject], item: PlanObject) -> bool:
     first = group[0]
-    prefix, _, number = first.name.rpartition("_")
+    prefix, _, start = first.name.rpartition("_")
     if (
-        number not in ("0", "1")
-        or item.name != f"{prefix}_{int(number) + len(group)}"
+        start not in ("0", "1")
+        or item.name != f"{prefix}_{int(start) + len(group)}"
         or item.primitive in ("tank", "fluid", "ground", "asset")
     ):
         return False
@@ -319,8 +319,8 @@ def _weight(item: PlanObject) -> list[str]:
     """A mass or a density of its own, which comes before its material's."""
     registration = item.registration
     if registration.mass is not None:
-        return [f"mass={_number(registration.mass)}"]
-    return [f"density={_number(registration.density)}"] if registration.density is not None else []
+        return [f"mass={number(registration.mass)}"]
+    return [f"density={number(registration.density)}"] if registration.density is not None else []
 
 
 def _anchor(child: PlanObject, joint: Joint) -> tuple[float, float, float]:
@@ -337,7 +337,7 @@ def _anchor(child: PlanObject, joint: Joint) -> tuple[float, float, float]:
 def _drive(drive: JointDrive) -> str:
     """The `Drive` of a joint, with what it has of its own."""
     given = {name: value for name, value in drive.model_dump().items() if value}
-    return f"Drive({', '.join(f'{name}={_number(value)}' for name, value in given.items())})"
+    return f"Drive({', '.join(f'{name}={number(value)}' for name, value in given.items())})"
 
 
 def _container(item: PlanObject) -> str | None:
@@ -361,23 +361,23 @@ def _asset(item: PlanObject) -> list[str]:
             )
     arguments = [
         f'"{item.built.asset}"' if isinstance(item.built, FromAsset) else "",
-        f"position={_tuple(_position(item))}",
+        f"position={tuple_of(_position(item))}",
     ]
     if item.pose is not None and any(item.pose.rotation_deg):
-        arguments.append(f"rotation_deg={_tuple(item.pose.rotation_deg)}")
+        arguments.append(f"rotation_deg={tuple_of(item.pose.rotation_deg)}")
     return [*arguments, *(["static=True"] if item.state == "static" else [])]
 
 
 def _size(item: PlanObject) -> list[str]:
     size = item.size
     if item.primitive == "box":
-        return [f"size={_tuple(size)}"]
+        return [f"size={tuple_of(size)}"]
     if item.primitive == "tank":
-        return [f"inner_size={_tuple(size)}"]
+        return [f"inner_size={tuple_of(size)}"]
     if item.primitive == "sphere":
-        return [f"radius={_number(size[0])}"]
+        return [f"radius={number(size[0])}"]
     if item.primitive in ("cylinder", "capsule"):
-        return [f"radius={_number(size[0])}", f"height={_number(size[1])}"]
+        return [f"radius={number(size[0])}", f"height={number(size[1])}"]
     return []
 
 
@@ -394,33 +394,3 @@ def _sound(poured: PlanObject) -> float:
     """
     top = _position(poured)[2] + (poured.size[2] / 2 if poured.size else 0.0)
     return float(f"{_SOUND_OVER_FALL * math.sqrt(2 * 9.81 * max(top, 0.01)):.2g}")
-
-
-def _number(value: float) -> str:
-    """A float as a person writes it: to a micrometre, or to four figures where it is small; rounding's dust is 0."""
-    if abs(value) < 1e-9:
-        return "0.0"
-    rounded = round(float(value), 6) if abs(value) >= 1e-3 else float(f"{value:.4g}")
-    return repr(rounded)
-
-
-def _tuple(values: Sequence[float]) -> str:
-    return f"({', '.join(_number(value) for value in values)})"
-
-
-def _call(target: str, arguments: Sequence[str], depth: int = 1) -> list[str]:
-    indent = "    " * depth
-    line = f"{indent}{target}({', '.join(arguments)})"
-    if len(line) <= _WIDTH:
-        return [line]
-    return [f"{indent}{target}(", *(f"{indent}    {argument}," for argument in arguments), f"{indent})"]
-
-
-def _comment(text: str) -> list[str]:
-    return textwrap.wrap(text, _WIDTH, initial_indent="    # ", subsequent_indent="    #   ")
-
-
-def _prose(text: str) -> str:
-    """Free text for a docstring or a comment: one line, without what could end either or hide in it."""
-    plain = "".join(" " if c.isspace() else c for c in text if c.isspace() or c.isprintable())
-    return " ".join(plain.replace("\\", "/").replace('"', "'").split())
