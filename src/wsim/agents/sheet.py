@@ -40,24 +40,20 @@ def contact_sheet(folder: Path, order: Sequence[str] = ()) -> tuple[bytes, list[
     rows = shares(folder)
     if not rows or not (folder / "video.mp4").is_file():
         return b"", []
-    filmed = _name(rows[0]["camera"])
-    ends = {_name(row["camera"]): row["time"] for row in rows if _name(row["camera"]) != filmed}
-    others = [name for name in dict.fromkeys([*order, *ends]) if name in ends][:OTHERS]
+    filmed = rows[0]["camera"].rsplit("/", 1)[-1]
+    ends = {path.stem.rpartition("_")[0]: path for path in sorted((folder / "frames").glob("*s.png"))}
+    others = [name for name in dict.fromkeys([*order, *ends]) if name in ends and name != filmed][:OTHERS]
     tiles = [(f"{filmed} {time:06.3f}s", frame) for time, frame in _moments(folder / "video.mp4", TILES - len(others))]
     for name in others:
-        label = f"{name} {ends[name]:06.3f}s"
-        with Image.open(folder / "frames" / f"{label.replace(' ', '_')}.png") as picture:
-            tiles.append((label, picture.convert("RGB").resize(TILE, Image.Resampling.LANCZOS)))
+        with Image.open(ends[name]) as picture:
+            shown = picture.convert("RGB").resize(TILE, Image.Resampling.LANCZOS)
+        tiles.append((f"{name} {ends[name].stem.rpartition('_')[2]}", shown))
     sheet = Image.new("RGB", (TILE[0] * min(COLUMNS, len(tiles)), TILE[1] * -(-len(tiles) // COLUMNS)))
     for k, (_, tile) in enumerate(tiles):
         sheet.paste(tile, (TILE[0] * (k % COLUMNS), TILE[1] * (k // COLUMNS)))
     out = io.BytesIO()
     sheet.save(out, "JPEG", quality=QUALITY, optimize=True)
     return out.getvalue(), [label for label, _ in tiles]
-
-
-def _name(camera: str) -> str:
-    return camera.rsplit("/", 1)[-1]
 
 
 def _moments(video: Path, count: int) -> list[tuple[float, Image.Image]]:
