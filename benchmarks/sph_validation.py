@@ -98,6 +98,12 @@ def verdict(error: float, reach: float, unit: str) -> str:
     return "reached" if abs(error) <= reach else f"MISSED by {abs(error) - reach:.3g} {unit}"
 
 
+def errors(run: Run) -> str:
+    """What was measured in a run, in a line."""
+    found = run.measured.errors.items() if run.measured else ()
+    return ", ".join(f"{key} {abs(error):.3g} {run.case.unit[key]}" for key, error in found)
+
+
 def table(runs: list[Run]) -> list[tuple[str, ...]]:
     """A row for each error of each run, and one for each run that failed."""
     rows = []
@@ -228,7 +234,7 @@ def main(arguments: list[str] | None = None) -> int:
         for spacing in case.fine if fine else case.coarse:
             print(f"{case.name} at {1e3 * spacing:.4g} mm on {device} … ", end="", flush=True)
             of_case.append(run_case(case, spacing, device))
-            print(of_case[-1].failure or f"{of_case[-1].seconds:.1f} s", flush=True)
+            print(of_case[-1].failure or f"{of_case[-1].seconds:.1f} s: {errors(of_case[-1])}", flush=True)
         find_orders(of_case)
         runs += of_case
     rows = table(runs)

@@ -72,7 +72,7 @@ def test_a_floor_ends_where_the_period_does(floor):
     sound = 10.0 * math.sqrt(G * 0.4)
     config = SolverSPH.Config(spacing=DP, speed_of_sound=sound, dimensions=2, periodic=((-0.5, 0.5), None, None))
     solver = SolverSPH(model, config)
-    x = solver.boundary_position.numpy()[:, 0]
+    x = solver.wall_position.numpy()[:, 0]
     assert (x > -0.5).all() and (x < 0.5).all()
     assert len(np.unique(x.round(4))) == 20
     state = model.state()

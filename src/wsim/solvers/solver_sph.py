@@ -18,6 +18,7 @@ from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_boundary
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
+from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_search import ParticleSearch
 
 LEAST_LANES = 32
@@ -82,11 +83,6 @@ class SolverSPH(SolverBase):
         with wp.ScopedDevice(model.device):
             self._read_worlds()
             self._sample_solids(containers)
-            self.domain = domain_of(model.particle_q.numpy(), containers)
-            self.search = ParticleSearch(
-                config, self.domain, self.particle_world, self.fluid_count, self.world_count, self.has_bodies
-            )
-            self.programs = self.search.programs
             self._allocate()
             self.method = self._method()
 
@@ -122,28 +118,39 @@ class SolverSPH(SolverBase):
                 self._read_worlds()
 
     def _sample_solids(self, containers: tuple[OpenBox, ...]) -> None:
+        """Fill the solids with particles, and bring walls and worlds into order."""
         model = self.model
-        world = np.maximum(model.particle_world.numpy(), 0)
-        solids = sample_boundary(model, self.config, containers, model.particle_q.numpy(), world)
+        place, world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
+        solids = sample_boundary(model, self.config, containers, place, world)
+        fixed = int(solids.body_first[0])
+        self.wall_count, self.body_particle_count = fixed, len(solids.local) - fixed
         self.boundary_count = len(solids.local)
-        self.fixed_count = int(solids.body_first[0])
         self.count = self.fluid_count + self.boundary_count
-        self.boundary_local = wp.array(solids.local, dtype=wp.vec3)
-        self.boundary_position = wp.array(solids.local, dtype=wp.vec3)
-        self.boundary_velocity = wp.zeros(self.boundary_count, dtype=wp.vec3)
-        self.boundary_volume = wp.array(solids.volume, dtype=float)
-        self.boundary_owner = wp.array(solids.owner, dtype=int)
-        self.body_first = wp.array(solids.body_first, dtype=int)
-        self.has_bodies = self.boundary_count > self.fixed_count
-        everywhere = np.concatenate([world, solids.world]).astype(np.int32)
-        self.particle_world = wp.array(everywhere, dtype=int)
+        self.wall_position = wp.array(solids.local[:fixed], dtype=wp.vec3)
+        self.wall_volume = wp.array(solids.volume[:fixed], dtype=float)
+        self.body_local = wp.array(solids.local[fixed:], dtype=wp.vec3)
+        self.body_volume = wp.array(solids.volume[fixed:], dtype=float)
+        self.body_owner = wp.array(solids.owner[fixed:], dtype=int)
+        self.body_first = wp.array(solids.body_first - fixed, dtype=int)
+        self.domain = domain_of(place, containers)
+        self.search = ParticleSearch(
+            self.config,
+            self.domain,
+            world,
+            solids.world[:fixed],
+            solids.world[fixed:],
+            self.wall_position,
+            self.world_count,
+        )
+        self.programs = self.search.programs
 
     def _allocate(self) -> None:
-        n = self.count
-        self.point = wp.empty(n, dtype=wp.vec4)
-        self.motion = wp.empty(n, dtype=wp.vec4)
-        self.pressure = wp.empty(n, dtype=float)
-        self.boundary_force = wp.zeros(max(1, self.boundary_count - self.fixed_count), dtype=wp.vec3)
+        bodies, walls = self.body_particle_count, self.search.walls
+        self.pressure = wp.empty(self.fluid_count, dtype=float)
+        self.body_position = wp.zeros(bodies, dtype=wp.vec3)
+        self.body_velocity = wp.zeros(bodies, dtype=wp.vec3)
+        self.body_particle_force = wp.zeros(bodies, dtype=wp.vec3)
+        self._gather_solid(walls, self.wall_position, wp.zeros(self.wall_count, dtype=wp.vec3), self.wall_volume)
         # As many lanes as each has particles of the largest body to add up, and add_body_wrench lanes.
         largest = int(np.diff(self.body_first.numpy()).max(initial=0))
         self.lanes = max(LEAST_LANES, math.isqrt(largest))
@@ -177,7 +184,7 @@ class SolverSPH(SolverBase):
             )
         particle, speed = int(broken.numpy()[0]), math.sqrt(float(fastest2.numpy()[0]))
         if particle < self.fluid_count:
-            world = int(self.particle_world.numpy()[particle])
+            world = int(self.search.fluid.world.numpy()[particle])
             raise RuntimeError(
                 f"SolverSPH: fluid particle {particle} of world {world} is not finite; "
                 "use a smaller time step or a higher speed of sound"
@@ -193,7 +200,7 @@ class SolverSPH(SolverBase):
 
     def bodies_outside(self, state: newton.State) -> list[int]:
         """Bodies whose origin is beside or below the domain, which spans the fluid's start and its tanks."""
-        if not self.has_bodies:
+        if not self.body_particle_count:
             return []
         low, high = self.domain
         place = state.body_q.numpy()[:, :3]
@@ -220,103 +227,110 @@ class SolverSPH(SolverBase):
             dt: Time step [s]; no larger than `config.max_time_step`.
         """
         with wp.ScopedDevice(self.model.device):
-            self._move_solids(state_in)
-            self.search.update(state_in, self.boundary_position, self.point, lambda: self._gather(state_in))
+            self._move_bodies(state_in)
+            self.search.update(state_in.particle_q, self.body_position, lambda: self._gather(state_in))
             self._update_pressure(state_out, dt)
             self._move_fluid(state_out, dt)
             self._return_wrenches(state_in, state_out)
 
-    def _move_solids(self, state: newton.State) -> None:
-        if self.has_bodies:
+    def _move_bodies(self, state: newton.State) -> None:
+        if self.body_particle_count:
             wp.launch(
-                boundary_kernels.move_boundary,
-                dim=self.boundary_count,
+                boundary_kernels.move_bodies,
+                dim=self.body_particle_count,
                 inputs=[
                     self.search.grid,
-                    self.boundary_local,
-                    self.boundary_owner,
+                    self.body_local,
+                    self.body_owner,
                     state.body_q,
                     state.body_qd,
                     self.model.body_com,
                 ],
-                outputs=[self.boundary_position, self.boundary_velocity],
+                outputs=[self.body_position, self.body_velocity],
             )
 
     def _gather(self, state: newton.State) -> None:
-        """Copy what the sums need into sorted order."""
+        """Copy what the sums need into sorted order; walls stay as they are."""
+        fluid = self.search.fluid
         wp.launch(
-            grid_kernels.gather,
-            dim=self.count,
+            grid_kernels.gather_fluid,
+            dim=fluid.count,
             inputs=[
-                self.fluid_count,
-                self.search.order,
+                fluid.order,
                 state.particle_q,
                 state.particle_qd,
                 state.sph.pressure,
                 self.model.particle_mass,
-                self.boundary_position,
-                self.boundary_velocity,
-                self.boundary_volume,
-                self.particle_world,
+                fluid.world,
                 self.rest_density,
                 self.config.speed_of_sound,
             ],
-            outputs=[self.point, self.motion, self.search.fluid_before],
+            outputs=[fluid.point, fluid.motion],
         )
+        self._gather_solid(self.search.bodies, self.body_position, self.body_velocity, self.body_volume)
+
+    def _gather_solid(self, solid: SortedParticles, *arrays: wp.array) -> None:
+        if solid.count:
+            wp.launch(
+                grid_kernels.gather_solid,
+                dim=solid.count,
+                inputs=[solid.order, *arrays],
+                outputs=[solid.point, solid.motion],
+            )
 
     def _update_pressure(self, state_out: newton.State, dt: float) -> None:
-        """Continuity with the walls' share, and the equation of state; then the walls take over the pressure."""
-        fluid = [self.search.neighborhood, self.method, self.rest_density]
-        walls, gravity = self.search.boundary_slot, self.model.gravity
-        if self.boundary_count:
+        """Continuity with the walls' share, and the equation of state; then the solids take over the pressure."""
+        search, gravity = self.search, self.model.gravity
+        fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
+        method = [search.grid, self.method, self.rest_density]
+        if self.wall_count:
             launch_shared(
                 self.programs.compress,
-                dim=len(walls),
-                inputs=[walls, *fluid, gravity, self.point, self.fixed_count],
-                outputs=[self.motion],
+                dim=self.wall_count,
+                inputs=[*method, gravity, fluid, walls],
+                outputs=[search.walls.motion],
             )
         launch_shared(
             self.programs.continuity,
-            dim=self.count,
-            inputs=[*fluid, gravity, self.point, self.motion, dt],
+            dim=self.fluid_count,
+            inputs=[*method, gravity, fluid, walls, bodies, dt],
             outputs=[self.pressure],
         )
         wp.launch(
             density_kernels.set_pressure,
-            dim=self.count,
-            inputs=[self.fluid_count, self.search.order, self.pressure],
-            outputs=[self.motion, state_out.sph.pressure],
+            dim=self.fluid_count,
+            inputs=[search.fluid.order, self.pressure],
+            outputs=[search.fluid.motion, state_out.sph.pressure],
         )
-        if self.boundary_count:
+        for solid in search.solid:
             launch_shared(
                 self.programs.extrapolate,
-                dim=len(walls),
-                inputs=[walls, *fluid, self.viscosity, gravity, self.point],
-                outputs=[self.motion],
+                dim=solid.count,
+                inputs=[*method, self.viscosity, gravity, fluid, solid.species],
+                outputs=[solid.motion],
             )
 
     def _move_fluid(self, state_out: newton.State, dt: float) -> None:
         """Momentum: the fluid moves, and its push on the bodies is kept."""
+        search = self.search
+        fluid, walls, bodies = (kind.species for kind in (search.fluid, search.walls, search.bodies))
+        method = [search.grid, self.method, self.rest_density, self.viscosity]
+        if self.body_particle_count:
+            launch_shared(
+                self.programs.push,
+                dim=self.body_particle_count,
+                inputs=[*method, fluid, bodies],
+                outputs=[self.body_particle_force],
+            )
         launch_shared(
             self.programs.momentum,
-            dim=self.count,
-            inputs=[
-                self.search.neighborhood,
-                self.method,
-                self.rest_density,
-                self.viscosity,
-                self.model.gravity,
-                self.point,
-                self.motion,
-                self.model.particle_mass,
-                self.fixed_count,
-                dt,
-            ],
-            outputs=[state_out.particle_q, state_out.particle_qd, self.boundary_force],
+            dim=self.fluid_count,
+            inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
+            outputs=[state_out.particle_q, state_out.particle_qd],
         )
 
     def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
-        if not self.has_bodies:
+        if not self.body_particle_count:
             return
         wp.launch(
             boundary_kernels.sum_body_lanes,
@@ -324,8 +338,8 @@ class SolverSPH(SolverBase):
             inputs=[
                 self.search.grid,
                 self.body_first,
-                self.boundary_force,
-                self.boundary_local,
+                self.body_particle_force,
+                self.body_local,
                 state_in.body_q,
                 self.model.body_com,
             ],

@@ -64,9 +64,14 @@ def cells_of(grid: Any) -> int:
     return int(grid.count[0]) * int(grid.count[1]) * int(grid.count[2])
 
 
+def blocks_of(grid: Any) -> int:
+    """Number of blocks of one world."""
+    return int(grid.blocks[0]) * int(grid.blocks[1]) * int(grid.blocks[2])
+
+
 def _grid(config: ConfigSPH, low: Array, high: Array, support: float, reach: int, along: int) -> Grid:
     cell, offset, period = support / reach / np.array([along, 1, 1]), np.zeros(3), np.zeros(3)
-    first, count, reaches = np.zeros(3, int), np.ones(3, int), np.full(3, reach)
+    first, count, reaches = np.zeros(3, int), np.ones(3, int), reach * np.array([along, 1, 1])
     for axis, ends in enumerate(config.periodic):
         if axis == 1 and config.dimensions == 2:
             reaches[axis] = 0
@@ -77,12 +82,10 @@ def _grid(config: ConfigSPH, low: Array, high: Array, support: float, reach: int
         else:
             first[axis] = math.floor((low[axis] - support) / cell[axis])
             count[axis] = math.ceil((high[axis] + support) / cell[axis]) - first[axis]
+    blocks = np.maximum(count // np.maximum(reaches, 1), 1)
     grid: Any = Grid()
-    grid.first, grid.count, grid.reach = (
-        wp.vec3i(*first.tolist()),
-        wp.vec3i(*count.tolist()),
-        wp.vec3i(*reaches.tolist()),
-    )
+    grid.first, grid.count = wp.vec3i(*first.tolist()), wp.vec3i(*count.tolist())
+    grid.reach, grid.blocks = wp.vec3i(*reaches.tolist()), wp.vec3i(*blocks.tolist())
     grid.cell, grid.inv_cell = wp.vec3(*cell.tolist()), wp.vec3(*(1.0 / cell).tolist())
     grid.offset, grid.period = wp.vec3(*offset.tolist()), wp.vec3(*period.tolist())
     inverse = np.divide(1.0, period, out=np.zeros(3), where=period > 0.0)

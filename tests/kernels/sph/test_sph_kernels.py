@@ -7,38 +7,29 @@ import pytest
 import warp as wp
 
 from wsim.kernels.sph.density import Method
-from wsim.kernels.sph.grid import Grid, assign_cells, wrap
-from wsim.kernels.sph.neighbors import Neighborhood
-from wsim.kernels.sph.pair_sums import Pairs, make_pair_sums
+from wsim.kernels.sph.grid import Grid, wrap
+from wsim.kernels.sph.pair_sums import make_pair_sums
 from wsim.kernels.sph.programs import Programs
+from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import make_grid
+from wsim.solvers.sph_particles import SortedParticles
 
 DEVICE = "cpu"
 OPEN = (False, False, False)
-SUMS = make_pair_sums(lists=True, periodic=OPEN, branch=False, bodies=True)
+SUMS = make_pair_sums(lists=True, periodic=OPEN, branch=False, reach=(1, 1))
+KINDS = ("fluid", "walls", "bodies")
 
 
 @wp.kernel(enable_backward=False)
-def _of_one_neighbor(
-    entry: wp.array(dtype=int),
-    point: wp.array(dtype=wp.vec4),
-    motion: wp.array(dtype=wp.vec4),
-    shape: wp.vec3,
-    weight: wp.array(dtype=float),
-    force: wp.array(dtype=wp.vec3),
-):
-    """What a particle at the origin takes from neighbour k alone."""
+def _of_one_neighbor(water: Species, shape: wp.vec3, weight: wp.array(dtype=float), force: wp.array(dtype=wp.vec3)):
+    """What a particle at the origin takes from the neighbour that particle k lists."""
     k = wp.tid()
     none = wp.vec3(0.0, 0.0, 0.0)
-    pairs = Pairs()
-    pairs.entry = entry
-    pairs.point = point
-    pairs.motion = motion
-    pairs.shape = shape
-    sums = wp.static(SUMS.extrapolation)(pairs, k, k + 1, none, none)
+    sums = wp.static(SUMS.extrapolation)(Grid(), water, water, k, 0, shape, none, none)
     weight[k] = sums[0]
-    force[k] = wp.static(SUMS.force)(pairs, k, k + 1, none, none, 1.0, wp.vec3(0.0, 0.0, 1.0), 1.0)
+    viscosity = wp.vec3(0.0, 0.0, 1.0)
+    force[k] = wp.static(SUMS.force[FLUID])(Grid(), water, water, k, 0, shape, none, none, 1.0, viscosity)
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
@@ -46,11 +37,14 @@ def test_kernel_integrates_to_one_and_the_force_follows_its_slope(dimensions):
     config = ConfigSPH(spacing=0.1, speed_of_sound=1.0, dimensions=dimensions)
     r = np.linspace(0.0, 1.2 * config.support, 4001)
     n, h = len(r), config.smoothing_length
-    point = wp.array(np.stack([r, 0 * r, 0 * r, 0 * r + 1.0], axis=1), dtype=wp.vec4, device=DEVICE)
-    motion, entry = wp.zeros(n, dtype=wp.vec4, device=DEVICE), wp.array(np.arange(n), dtype=int, device=DEVICE)
-    weight, force = wp.zeros(n, dtype=float, device=DEVICE), wp.zeros(n, dtype=wp.vec3, device=DEVICE)
     shape = wp.vec3(1.0 / config.support, -5.0 * config.kernel_norm / h**2, config.support**2)
-    wp.launch(_of_one_neighbor, n, [entry, point, motion, shape], [weight, force], device=DEVICE)
+    with wp.ScopedDevice(DEVICE):
+        water = Species()
+        water.point = wp.array(np.stack([r, 0 * r, 0 * r, 0 * r + 1.0], axis=1), dtype=wp.vec4)
+        water.motion, water.entry = wp.zeros(n, dtype=wp.vec4), wp.array(np.arange(n), dtype=int)
+        water.entry_count, water.capacity = wp.array(np.tile((1, 0, 0), (n, 1)), dtype=wp.vec3i), 1
+        weight, force = wp.zeros(n, dtype=float), wp.zeros(n, dtype=wp.vec3)
+        wp.launch(_of_one_neighbor, n, [water, shape], [weight, force])
 
     w = config.kernel_norm * weight.numpy().astype(float)
     shell = 4.0 * math.pi * r**2 if dimensions == 3 else 2.0 * math.pi * r
@@ -62,125 +56,140 @@ def test_kernel_integrates_to_one_and_the_force_follows_its_slope(dimensions):
     assert np.abs(force.numpy()[inner, 0] - derivative[inner]).max() < 2e-3 * np.abs(derivative).max()
 
 
-def sorted_world(config: ConfigSPH, fluid, boundary, world, lists: bool):
-    """A neighbourhood over particles on the CPU, its records, and the original index of each."""
-    n, worlds = len(fluid) + len(boundary), int(world.max()) + 1
-    grid = make_grid(config, fluid.min(axis=0), fluid.max(axis=0), config.support, not lists, worlds)
-    cells = math.prod(grid.count) * worlds
-    order = wp.array(np.argsort(world, kind="stable"), dtype=int, device=DEVICE)
-    key, value = (wp.empty(2 * n, dtype=int, device=DEVICE) for _ in range(2))
-    histogram, start = (wp.zeros(cells + 1, dtype=int, device=DEVICE) for _ in range(2))
-    places = [wp.array(x.astype(np.float32), dtype=wp.vec3, device=DEVICE) for x in (fluid, boundary)]
-    world_of = wp.array(world, dtype=int, device=DEVICE)
-    inputs = [0, grid, len(fluid), order, *places, world_of]
-    wp.launch(assign_cells, n, inputs, [key, value, histogram], device=DEVICE)
-    wp.utils.array_scan(histogram, start, inclusive=False)
-    wp.utils.radix_sort_pairs(key, value, n)
-    index = value.numpy()[:n]
-    rng = np.random.default_rng(3)
-    volume = np.where(np.arange(n) < len(fluid), 1.0, -1.0) * rng.uniform(0.5, 1.5, n) * config.spacing**3
-    records = np.column_stack([np.concatenate([fluid, boundary]), volume]).astype(np.float32)[index]
-    motions = rng.normal(size=(n, 4)).astype(np.float32)[index]
-    nb = Neighborhood()
-    nb.grid, nb.cell_start, nb.particle_world = grid, start, world_of
-    nb.order, nb.fluid_count, nb.capacity = wp.array(index, dtype=int, device=DEVICE), len(fluid), 300
-    nb.fluid_before = wp.array(np.append(0, np.cumsum(index < len(fluid))), dtype=int, device=DEVICE)
-    nb.entry = wp.zeros(n * nb.capacity if lists else 0, dtype=int, device=DEVICE)
-    nb.entry_count = wp.zeros(n if lists else 0, dtype=int, device=DEVICE)
-    point, motion = (wp.array(a, dtype=wp.vec4, device=DEVICE) for a in (records, motions))
-    reach = int(grid.reach[1]), int(grid.reach[2])
-    programs = Programs.make(lists, tuple(map(bool, config.periodic)), not lists, reach, bodies=lists)
-    if lists:
-        overflow = wp.zeros(1, dtype=int, device=DEVICE)
-        outputs = [nb.entry, nb.entry_count, overflow]
-        wp.launch(programs.find_neighbors, n, [0, nb, point], outputs, device=DEVICE)
-        assert overflow.numpy()[0] == 0
-    return nb, point, motion, index, programs
-
-
 def random_particles(periodic: bool):
-    """Fluid and boundary of two worlds at the same place, some of it outside an open grid's extent."""
+    """Places and worlds of fluid, walls and bodies, in two worlds at one place, some of it outside an open grid."""
     rng = np.random.default_rng(7)
-    fluid, boundary = rng.uniform(-0.5, 0.5, (500, 3)), rng.uniform(-0.5, 0.5, (200, 3))
-    if not periodic:
-        boundary *= 1.8
-    world = np.concatenate([rng.integers(0, 2, 500), rng.integers(0, 2, 200)]).astype(np.int32)
     ends = ((-0.5, 0.5),) * 3 if periodic else (None,) * 3
     config = ConfigSPH(spacing=0.1, speed_of_sound=1.0, smoothing_ratio=1.25, periodic=ends)
-    return config, fluid.astype(np.float32), boundary.astype(np.float32), world
+    places, worlds = [], []
+    for kind, n in zip(KINDS, (500, 150, 80), strict=True):
+        wide = 1.0 if periodic or kind == "fluid" else 1.8
+        # Bodies are in one corner: much of the fluid is far from them.
+        corner = 0.45 if kind == "bodies" else 0.0
+        places.append((wide * rng.uniform(-0.5 + corner, 0.5, (n, 3))).astype(np.float32))
+        worlds.append(rng.integers(0, 2, n))
+    return config, places, worlds
+
+
+def sorted_world(config: ConfigSPH, places, worlds, lists: bool):
+    """The three kinds on the CPU, sorted, with random motions and volumes, and the kernels for them."""
+    fluid = places[0]
+    grid = make_grid(config, fluid.min(axis=0), fluid.max(axis=0), config.support, not lists, 2)
+    rng, kinds = np.random.default_rng(3), []
+    with wp.ScopedDevice(DEVICE):
+        for place, world in zip(places, worlds, strict=True):
+            kind = SortedParticles(world, grid, 2, 300 if lists else 0)
+            position = wp.array(place, dtype=wp.vec3)
+            kind.sort(position, 0, 2)
+            if not lists:
+                kind.mark(position)
+            order = kind.order.numpy()
+            volume = rng.uniform(0.5, 1.5, kind.count) * config.spacing**3
+            kind.point.assign(np.column_stack([place, volume]).astype(np.float32)[order])
+            kind.motion.assign(rng.normal(size=(kind.count, 4)).astype(np.float32)[order])
+            kinds.append(kind)
+        reach = int(grid.reach[1]), int(grid.reach[2])
+        programs = Programs.make(lists, tuple(map(bool, config.periodic)), not lists, reach, (WALLS, BODIES))
+        if lists:
+            overflow = wp.zeros(1, dtype=int)
+            water, walls, bodies = (kind.species for kind in kinds)
+            wp.launch(programs.find.of_fluid, kinds[0].count, [0, grid, walls, bodies], [water, overflow])
+            for kind in kinds[1:]:
+                wp.launch(programs.find.of_solid, kind.count, [0, grid, water], [kind.species, overflow])
+            assert overflow.numpy()[0] == 0
+    return grid, kinds, programs
 
 
 @pytest.mark.parametrize("periodic", [False, True])
 def test_neighbour_lists_equal_brute_force(periodic):
-    config, fluid, boundary, world = random_particles(periodic)
-    nb, _, _, index, _ = sorted_world(config, fluid, boundary, world, lists=True)
-    n = len(index)
-    place = np.concatenate([fluid, boundary])[index].astype(float)
-    apart = place[:, None] - place[None]
-    if periodic:
-        apart -= np.rint(apart)
-    is_fluid = index < len(fluid)
-    expected = np.linalg.norm(apart, axis=2) < config.support
-    expected &= (
-        (world[index][:, None] == world[index][None]) & (is_fluid[:, None] | is_fluid[None]) & ~np.eye(n, dtype=bool)
-    )
-    lists, count = nb.entry.numpy().reshape(n, nb.capacity), nb.entry_count.numpy()
-    assert expected.sum() > 5000
-    for s in range(n):
-        assert sorted(lists[s, : count[s]]) == list(np.flatnonzero(expected[s]))
+    config, places, worlds = random_particles(periodic)
+    _, kinds, _ = sorted_world(config, places, worlds, lists=True)
+    found = 0
+    for own, kind in enumerate(kinds):
+        entry = kind.species.entry.numpy().reshape(kind.count, -1)
+        counts = kind.species.entry_count.numpy()
+        first = np.cumsum(counts, axis=1) - counts
+        for other, others in enumerate(kinds):
+            here, there = kind.order.numpy(), others.order.numpy()
+            apart = places[own][here][:, None].astype(float) - places[other][there][None]
+            if periodic:
+                apart -= np.rint(apart)
+            expected = np.linalg.norm(apart, axis=2) < config.support
+            expected &= worlds[own][here][:, None] == worlds[other][there][None]
+            if own == other == 0:
+                np.fill_diagonal(expected, False)
+            if own and other:  # solids list the fluid alone
+                expected[:] = False
+            for s in range(kind.count):
+                listed = entry[s, first[s, other] : first[s, other] + counts[s, other]]
+                assert sorted(listed) == list(np.flatnonzero(expected[s]))
+            found += expected.sum()
+    assert found > 5000
+
+
+def test_a_walk_passes_over_blocks_that_are_far_from_bodies():
+    config, places, worlds = random_particles(periodic=False)
+    _, (_, _, bodies), _ = sorted_world(config, places, worlds, lists=False)
+    near = bodies.near.numpy()
+    assert 0 < near.sum() < 0.8 * len(near)
 
 
 @pytest.mark.parametrize("periodic", [False, True])
 def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
-    """The walk is what a GPU does; here it runs on the CPU, over other cells, compiled for fixed walls alone."""
-    config, fluid, boundary, world = random_particles(periodic)
+    """The walk is what a GPU does; here it runs on the CPU, over other cells."""
+    config, places, worlds = random_particles(periodic)
     results = []
     for lists in (True, False):
-        nb, point, motion, index, programs = sorted_world(config, fluid, boundary, world, lists)
-        n, method = len(index), Method()
+        grid, kinds, programs = sorted_world(config, places, worlds, lists)
+        fluid, walls, bodies = (kind.species for kind in kinds)
+        n, method = kinds[0].count, Method()
         method.h, method.speed_of_sound, method.diffusion = config.smoothing_length, 3.0, 0.1
         method.shape = wp.vec3(1.0 / config.support, -5.0 * config.kernel_norm / method.h**2, config.support**2)
         method.artificial_viscosity, method.laminar_factor = 0.1, 10.0
-        per_world = [wp.full(2, v, dtype=float, device=DEVICE) for v in (1000.0, 2.0)]
-        gravity = wp.array([(0.0, 0.0, -9.8)] * 2, dtype=wp.vec3, device=DEVICE)
-        pressure = wp.zeros(n, dtype=float, device=DEVICE)
-        slot = wp.array(np.arange(n), dtype=int, device=DEVICE)
-        inputs = [0, slot, nb, method, per_world[0], gravity, point, len(boundary)]
-        wp.launch(programs.compress, n, inputs, [motion], device=DEVICE)
-        given_back = motion.numpy()[np.argsort(index)][len(fluid) :, 3]
-        assert (given_back != 0.0).any()
-        inputs = [0, nb, method, per_world[0], gravity, point, motion, 1e-3]
-        wp.launch(programs.continuity, n, inputs, [pressure], device=DEVICE)
-        wp.launch(programs.extrapolate, n, [0, slot, nb, method, *per_world, gravity, point], [motion], device=DEVICE)
-        moved = [wp.zeros(len(fluid), dtype=wp.vec3, device=DEVICE) for _ in range(2)]
-        force = wp.zeros(len(boundary), dtype=wp.vec3, device=DEVICE)
-        mass = wp.full(len(fluid), 0.1, dtype=float, device=DEVICE)
-        inputs = [0, nb, method, *per_world, gravity, point, motion, mass, 0, 1e-3]
-        wp.launch(programs.momentum, n, inputs, [*moved, force], device=DEVICE)
-        back = np.argsort(index)
-        results.append(
-            [given_back, pressure.numpy()[back], motion.numpy()[back], *(a.numpy() for a in (*moved, force))]
-        )
+        with wp.ScopedDevice(DEVICE):
+            density, viscosity = (wp.full(2, v, dtype=float) for v in (1000.0, 2.0))
+            gravity = wp.array([(0.0, 0.0, -9.8)] * 2, dtype=wp.vec3)
+            pressure, force = wp.zeros(n, dtype=float), wp.zeros(kinds[2].count, dtype=wp.vec3)
+            moved, mass = [wp.zeros(n, dtype=wp.vec3) for _ in range(2)], wp.full(n, 0.1, dtype=float)
+            shared = [0, grid, method, density]
+            wp.launch(programs.compress, kinds[1].count, [*shared, gravity, fluid, walls], [walls.motion])
+            given_back = original(kinds[1], walls.motion)[:, 3]
+            assert (given_back != 0.0).any()
+            inputs = [*shared, gravity, fluid, walls, bodies, 1e-3]
+            wp.launch(programs.continuity, n, inputs, [pressure])
+            for kind in kinds[1:]:
+                inputs = [*shared, viscosity, gravity, fluid, kind.species]
+                wp.launch(programs.extrapolate, kind.count, inputs, [kind.motion])
+            inputs = [*shared, viscosity, gravity, fluid, walls, bodies, mass, 1e-3]
+            wp.launch(programs.momentum, n, inputs, moved)
+            wp.launch(programs.push, kinds[2].count, [*shared, viscosity, fluid, bodies], [force])
+        solid = [original(kind, kind.motion) for kind in kinds[1:]]
+        results.append([given_back, original(kinds[0], pressure), *solid, *(a.numpy() for a in (*moved, force))])
     for of_lists, of_walk in zip(*results, strict=True):
         assert np.abs(of_walk - of_lists).max() < 2e-5 * np.abs(of_lists).max()
 
 
+def original(kind: SortedParticles, values: wp.array) -> np.ndarray:
+    """Sorted values in original order."""
+    return values.numpy()[np.argsort(kind.order.numpy())]
+
+
 def test_overflow_is_reported_and_nothing_is_written_past_the_list():
     n, capacity = 50, 10
-    nb, grid = Neighborhood(), Grid()
+    grid, fluid = Grid(), Species()
     grid.count, grid.reach, grid.cell = wp.vec3i(1, 1, 1), wp.vec3i(0, 0, 0), wp.vec3(1.0, 1.0, 1.0)
     grid.inv_cell, grid.support = wp.vec3(1.0, 1.0, 1.0), 1.0
-    nb.grid, nb.cell_start = grid, wp.array([0, n], dtype=int, device=DEVICE)
-    nb.order = wp.array(np.arange(n), dtype=int, device=DEVICE)
-    nb.particle_world, nb.capacity = wp.zeros(n, dtype=int, device=DEVICE), capacity - 2
-    found = wp.full(n * capacity, -77, dtype=int, device=DEVICE)
-    count, overflow = wp.zeros(n, dtype=int, device=DEVICE), wp.zeros(1, dtype=int, device=DEVICE)
-    point = wp.array([(0.5, 0.5, 0.5, 1.0)] * n, dtype=wp.vec4, device=DEVICE)
-    programs = Programs.make(True, OPEN, False, (0, 0), bodies=False)
-    wp.launch(programs.find_neighbors, n, [0, nb, point], [found, count, overflow], device=DEVICE)
+    with wp.ScopedDevice(DEVICE):
+        fluid.cell_start, fluid.order = wp.array([0, n], dtype=int), wp.array(np.arange(n), dtype=int)
+        fluid.world, fluid.capacity = wp.zeros(n, dtype=int), capacity - 2
+        fluid.entry, fluid.entry_count = wp.full(n * capacity, -77, dtype=int), wp.zeros(n, dtype=wp.vec3i)
+        fluid.point = wp.array([(0.5, 0.5, 0.5, 1.0)] * n, dtype=wp.vec4)
+        overflow = wp.zeros(1, dtype=int)
+        programs = Programs.make(True, OPEN, False, (0, 0), ())
+        wp.launch(programs.find.of_fluid, n, [0, grid, Species(), Species()], [fluid, overflow])
     assert overflow.numpy()[0] == n - 1
-    assert (count.numpy() == capacity - 2).all()
-    assert (found.numpy()[n * (capacity - 2) :] == -77).all()
+    assert (fluid.entry_count.numpy() == (capacity - 2, 0, 0)).all()
+    assert (fluid.entry.numpy()[n * (capacity - 2) :] == -77).all()
 
 
 @wp.kernel

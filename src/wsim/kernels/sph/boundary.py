@@ -1,19 +1,18 @@
-"""Boundary particles: walls and bodies that take the fluid's pressure and push back (Adami, Hu & Adams 2012)."""
+"""Solids: walls and bodies, made of particles that take the fluid's pressure and push back (Adami, Hu & Adams 2012)."""
 
 import warp as wp
 
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, in_plane, wrap
-from wsim.kernels.sph.neighbors import Neighborhood, Search, pairs_of
-from wsim.kernels.sph.pair_sums import OPTIONS, Extrapolated, Flux, PairSums
+from wsim.kernels.sph.pair_sums import PairSums
 from wsim.kernels.sph.records import load_record
+from wsim.kernels.sph.species import Species
 
 TINY = wp.constant(1.0e-30)
-BODY = wp.constant(1.0e20)  # what a body's particle has where a wall's has what it gives back
 
 
 @wp.kernel(enable_backward=False)
-def move_boundary(
+def move_bodies(
     # Data in:
     grid: Grid,
     local_position: wp.array(dtype=wp.vec3),
@@ -25,14 +24,12 @@ def move_boundary(
     position: wp.array(dtype=wp.vec3),
     velocity: wp.array(dtype=wp.vec3),
 ):
-    """Carry the particles of moving bodies with them; body_qd is (velocity of the centre of mass, angular velocity).
+    """Carry the particles of bodies with them; body_qd is (velocity of the centre of mass, angular velocity).
 
     In a plane they stay at y = 0, however a body may have rolled: one particle out of it and all the water follows.
     """
     b = wp.tid()
     body = owner[b]
-    if body < 0:
-        return
     pose = body_q[body]
     x = wp.transform_point(pose, local_position[b])
     twist = body_qd[body]
@@ -45,28 +42,27 @@ def move_boundary(
     velocity[b] = v
 
 
-def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
-    """The kernel that finds how fast the fluid is pressed into each boundary particle."""
-    runs, span_of, sum_run = search.runs, search.fluid_span, sums.flux
+def make_compress(sums: PairSums) -> wp.Kernel:
+    """The kernel that finds how fast the fluid is pressed into each particle of a wall."""
+    of_fluid = sums.flux
 
-    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    @wp.kernel(**sums.options)
     def compress(
         # Data in:
         first: int,
-        slot: wp.array(dtype=int),
-        nb: Neighborhood,
+        grid: Grid,
         method: Method,
         rest_density: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
-        point: wp.array(dtype=wp.vec4),
-        fixed_count: int,
-        # Data in and out (boundary entries are written, fluid entries read):
+        fluid: Species,
+        walls: Species,
+        # Data out:
         motion: wp.array(dtype=wp.vec4),
     ):
-        """What each boundary particle adds to the compression of the fluid near it [m^3/s], per sum of W.
+        """What each particle of a wall adds to the compression of the fluid near it [m^3/s], per sum of W.
 
         The momentum equation lets a wall push with pressure extrapolated from the fluid, p_b = sum p_f W / sum W. The
-        work of that push on fluid that moves, V_b p_b sum V_f (v_f - v_b).grad W, must be found again in the fluid's
+        work of that push on fluid that moves, V_b p_b sum V_f v_f.grad W, must be found again in the fluid's
         compression, or walls pump energy into sound: a still tank excites its slowest tone. So the same sum is given
         back to the same fluid with the same weights: continuity is the adjoint of the push, as it is between fluid
         particles (Bonet & Lok 1999, section 3). Where the wall does not push, it gives nothing back.
@@ -74,51 +70,42 @@ def make_compress(search: Search, sums: PairSums) -> wp.Kernel:
         Fixed walls alone do, to water that no body is near: water that comes to a dry wall is compressed twice on its
         way, and stands off. A tank is full at the start, but a body that falls into it would float a fifth of a spacing
         too high, and drive the water under it into the floor.
+
+        `motion` is that of the walls: at rest, and what they give back.
         """
-        s = slot[first + wp.tid()]
-        p = load_record(point, s)
-        if p[3] > 0.0:
-            return
-        i = nb.order[s]
-        m = motion[s]
-        if i >= nb.fluid_count + fixed_count:
-            motion[s] = wp.vec4(m[0], m[1], m[2], BODY)
-            return
-        world = nb.particle_world[i]
-        x, v = wp.vec3(p[0], p[1], p[2]), wp.vec3(m[0], m[1], m[2])
+        s = first + wp.tid()
+        p = load_record(walls.point, s)
+        world = walls.world[walls.order[s]]
+        x = wp.vec3(p[0], p[1], p[2])
         weight_of_water = rest_density[world] * gravity[world]
-        pairs = pairs_of(nb, point, motion, method.shape)
-        total = Flux()
-        for run in range(runs(nb, x)):
-            span = span_of(nb, s, world, x, run)
-            total += sum_run(pairs, span[0], span[1], x, v, weight_of_water)
+        total = of_fluid(grid, walls, fluid, s, world, method.shape, x, weight_of_water)
         given_back = float(0.0)
         if total[0] > 0.0 and total[1] > -method.background_pressure * total[0]:
-            given_back = -p[3] * total[2] / total[0]
-        motion[s] = wp.vec4(m[0], m[1], m[2], given_back)
+            given_back = p[3] * total[2] / total[0]
+        motion[s] = wp.vec4(0.0, 0.0, 0.0, given_back)
 
     return compress
 
 
-def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
-    """The kernel that gives boundary particles the fluid's pressure and the opposite of its velocity."""
-    runs, span_of, sum_run = search.runs, search.fluid_span, sums.extrapolation
+def make_extrapolate(sums: PairSums) -> wp.Kernel:
+    """The kernel that gives solid particles the fluid's pressure and the opposite of its velocity."""
+    of_fluid = sums.extrapolation
 
-    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    @wp.kernel(**sums.options)
     def extrapolate(
         # Data in:
         first: int,
-        slot: wp.array(dtype=int),
-        nb: Neighborhood,
+        grid: Grid,
         method: Method,
         rest_density: wp.array(dtype=float),
         viscosity: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
-        point: wp.array(dtype=wp.vec4),
-        # Data in and out (boundary entries are written, fluid entries read):
+        fluid: Species,
+        solid: Species,
+        # Data in and out:
         motion: wp.array(dtype=wp.vec4),
     ):
-        """Pressure and velocity of each boundary particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
+        """Pressure and velocity of each solid particle from the fluid near it (Adami et al. 2012, eqs. 23, 27).
 
         p_b = sum (p_f + rho_0 g.(x_b - x_f)) W / sum W, never below what the background pressure holds, so that a wall
         does not hold the fluid back. The wall's own acceleration, which Adami et al. subtract from g, is left out:
@@ -128,33 +115,29 @@ def make_extrapolate(search: Search, sums: PairSums) -> wp.Kernel:
         The velocity is the fluid's, v_f = sum v W / sum W, mirrored in two ways. For the laminar viscosity
         v_b = 2 v_wall - v_f: no slip. For the artificial one v_b = v_f - 2 n n.(v_f - v_wall), which mirrors the way
         into the wall alone: a boundary layer of that viscosity, centimetres thick, would drag on bodies and load
-        them with water. Both forces are linear in v_b, so that its mean, weighted with the viscosities, serves both.
+        them with water. Both forms are linear in v_b, so that its mean, weighted with the viscosities, serves both.
+
+        `motion` is that of the solid: its own velocity comes in, the mirrored one and the pressure go out.
         """
-        s = slot[first + wp.tid()]
-        p = load_record(point, s)
-        if p[3] > 0.0:
-            return
-        world = nb.particle_world[nb.order[s]]
+        s = first + wp.tid()
+        p = load_record(solid.point, s)
+        world = solid.world[solid.order[s]]
         weight_of_water = rest_density[world] * gravity[world]
         artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
         laminar = method.laminar_factor * viscosity[world]
         x = wp.vec3(p[0], p[1], p[2])
-        pairs = pairs_of(nb, point, motion, method.shape)
-        total = Extrapolated()
-        for run in range(runs(nb, x)):
-            span = span_of(nb, s, world, x, run)
-            total += sum_run(pairs, span[0], span[1], x, weight_of_water)
+        total = of_fluid(grid, solid, fluid, s, world, method.shape, x, weight_of_water)
         m = motion[s]
         if total[0] <= 0.0:
             motion[s] = wp.vec4(m[0], m[1], m[2], 0.0)
         else:
             pressure = wp.max(total[1] / total[0], -method.background_pressure)
-            wall = wp.vec3(m[0], m[1], m[2])
-            past = wp.vec3(total[2], total[3], total[4]) / total[0] - wall
+            own = wp.vec3(m[0], m[1], m[2])
+            past = wp.vec3(total[2], total[3], total[4]) / total[0] - own
             normal = wp.normalize(wp.vec3(total[5], total[6], total[7]))
             slip = past - 2.0 * wp.dot(past, normal) * normal
             share = artificial / wp.max(artificial + laminar, TINY)
-            v = wall + share * slip - (1.0 - share) * past
+            v = own + share * slip - (1.0 - share) * past
             motion[s] = wp.vec4(v[0], v[1], v[2], pressure)
 
     return extrapolate
@@ -165,7 +148,7 @@ def sum_body_lanes(
     # Data in:
     grid: Grid,
     body_first: wp.array(dtype=int),
-    boundary_force: wp.array(dtype=wp.vec3),
+    particle_force: wp.array(dtype=wp.vec3),
     local_position: wp.array(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
     body_com: wp.array(dtype=wp.vec3),
@@ -178,9 +161,8 @@ def sum_body_lanes(
     force = wp.vec3(0.0, 0.0, 0.0)
     torque = wp.vec3(0.0, 0.0, 0.0)
     first = body_first[body]
-    fixed = body_first[0]  # forces are kept for the particles of bodies alone
     for b in range(first + lane, body_first[body + 1], lane_wrench.shape[1]):
-        f = boundary_force[b - fixed]
+        f = particle_force[b]
         force += f
         arm = wp.transform_vector(pose, local_position[b] - body_com[body])
         if in_plane(grid):

@@ -2,9 +2,10 @@
 
 import warp as wp
 
-from wsim.kernels.sph.neighbors import Neighborhood, Search, pairs_of
-from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.grid import Grid
+from wsim.kernels.sph.pair_sums import PairSums
 from wsim.kernels.sph.records import load_record
+from wsim.kernels.sph.species import BODIES, WALLS, Species, is_near
 
 # Water that is pulled apart leaves a void; it does not stretch. Below this share of the rest density a particle is one
 # drop of spray, and its density says nothing more. Without the bound a few drops that hold each other in orbit by
@@ -27,20 +28,21 @@ class Method:
     background_pressure: float  # [Pa]
 
 
-def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
-    """The kernel that advances pressure by the continuity equation."""
-    runs, span_of, sum_run = search.runs, search.span, sums.continuity
+def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
+    """The kernel that advances pressure by the continuity equation, given the kinds of solids."""
+    of_fluid, of_walls, of_bodies = sums.continuity, sums.continuity_at_walls, sums.continuity_at_bodies
 
-    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+    @wp.kernel(**sums.options)
     def continuity(
         # Data in:
         first: int,
-        nb: Neighborhood,
+        grid: Grid,
         method: Method,
         rest_density: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
+        fluid: Species,
+        walls: Species,
+        bodies: Species,
         dt: float,
         # Data out:
         pressure: wp.array(dtype=float),
@@ -56,28 +58,32 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
 
         The second sum is the density diffusion of Fourtakas et al. (2019, Computers & Fluids 190): the hydrostatic
         part rho^H_ij of the difference is left out of Molteni & Colagrossi's (2009) term, so that a tank at rest keeps
-        its pressure. It spans fluid alone, and so neither
-        makes nor destroys volume in sum.
+        its pressure. It spans fluid alone, and so neither makes nor destroys volume in sum.
         """
         s = first + wp.tid()
-        p = load_record(point, s)
-        if p[3] < 0.0:
-            return
-        m = load_record(motion, s)
+        p = load_record(fluid.point, s)
+        m = load_record(fluid.motion, s)
         x = wp.vec3(p[0], p[1], p[2])
         v = wp.vec3(m[0], m[1], m[2])
-        world = nb.particle_world[nb.order[s]]
+        world = fluid.world[fluid.order[s]]
         rho0 = rest_density[world]
         # p^H_j - p^H_i = rho_0 g.(x_j - x_i): the incompressible column, within the 1 % of compression.
         weight = rho0 * gravity[world]
-        pairs = pairs_of(nb, point, motion, method.shape)
-        total = wp.vec4(0.0, 0.0, 0.0, 0.0)
-        for run in range(runs(nb, x)):
-            span = span_of(nb, s, world, x, run)
-            total += sum_run(pairs, span[0], span[1], x, v, m[3], weight)
-        # What walls give back fades as a body comes within reach: see `boundary.compress`.
-        given_back = wp.max(1.0 - FADE * total[3], 0.0) * total[2]
-        divergence, smoothing = total[0] + given_back / p[3], total[1]
+        total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, m[3], weight)
+        divergence, smoothing = total[0], total[1]
+        given_back = float(0.0)
+        if wp.static(WALLS in solids):
+            if is_near(grid, walls, world, x):
+                at_walls = of_walls(grid, fluid, walls, s, world, method.shape, x, v)
+                divergence += at_walls[0]
+                given_back = at_walls[1]
+        if wp.static(BODIES in solids):
+            if is_near(grid, bodies, world, x):
+                at_bodies = of_bodies(grid, fluid, bodies, s, world, method.shape, x, v)
+                divergence += at_bodies[0]
+                # What walls give back fades as a body comes within reach: see `boundary.compress`.
+                given_back *= wp.max(1.0 - FADE * at_bodies[1], 0.0)
+        divergence += given_back / p[3]
         c2 = method.speed_of_sound * method.speed_of_sound
         rate = (c2 * rho0 + m[3]) * divergence + 2.0 * method.diffusion * method.h * method.speed_of_sound * smoothing
         pressure[s] = wp.max(m[3] + dt * rate, (LOWEST_DENSITY - 1.0) * rho0 * c2)
@@ -88,7 +94,6 @@ def make_continuity(search: Search, sums: PairSums) -> wp.Kernel:
 @wp.kernel(enable_backward=False)
 def set_pressure(
     # Data in:
-    fluid_count: int,
     order: wp.array(dtype=int),
     pressure: wp.array(dtype=float),
     # Data out:
@@ -97,8 +102,6 @@ def set_pressure(
 ):
     """Put the new pressures of the fluid in the records and in the state."""
     s = wp.tid()
-    i = order[s]
-    if i < fluid_count:
-        m = motion[s]
-        motion[s] = wp.vec4(m[0], m[1], m[2], pressure[s])
-        fluid_pressure[i] = pressure[s]
+    m = motion[s]
+    motion[s] = wp.vec4(m[0], m[1], m[2], pressure[s])
+    fluid_pressure[order[s]] = pressure[s]

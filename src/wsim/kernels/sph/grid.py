@@ -19,6 +19,7 @@ class Grid:
     first: wp.vec3i  # index of the first cell along each axis
     count: wp.vec3i  # cells along each axis
     reach: wp.vec3i  # cells that a support spans; 0 across a plane
+    blocks: wp.vec3i  # how many along each axis; a block has as many cells as the reach, or more
     cell: wp.vec3  # edges [m]
     inv_cell: wp.vec3  # [1/m]
     offset: wp.vec3  # where cell 0 begins [m]; not zero on periodic axes alone
@@ -32,6 +33,12 @@ def grid_axis(grid: Grid, x: float, axis: int) -> int:
     """Cell index along one axis, clamped to the grid. The float is clamped first: casting a huge one is undefined."""
     k = wp.floor((x - grid.offset[axis]) * grid.inv_cell[axis]) - float(grid.first[axis])
     return int(wp.clamp(k, 0.0, float(grid.count[axis] - 1)))
+
+
+@wp.func
+def block_axis(grid: Grid, k: int, axis: int) -> int:
+    """Block that a cell belongs to, along one axis; the last one has what is left over too."""
+    return wp.min(k / wp.max(grid.reach[axis], 1), grid.blocks[axis] - 1)
 
 
 @wp.func
@@ -74,10 +81,8 @@ def assign_cells(
     # Data in:
     first: int,
     grid: Grid,
-    fluid_count: int,
     order: wp.array(dtype=int),
-    fluid_position: wp.array(dtype=wp.vec3),
-    boundary_position: wp.array(dtype=wp.vec3),
+    position: wp.array(dtype=wp.vec3),
     particle_world: wp.array(dtype=int),
     # Data out:
     key: wp.array(dtype=int),
@@ -87,12 +92,7 @@ def assign_cells(
     """Cell of each particle, in the present order, and how many particles each cell has."""
     k = wp.tid()
     i = order[first + k]
-    x = wp.vec3(0.0, 0.0, 0.0)
-    if i < fluid_count:
-        x = fluid_position[i]
-    else:
-        x = boundary_position[i - fluid_count]
-    cell = grid_cell(grid, particle_world[i], x)
+    cell = grid_cell(grid, particle_world[i], position[i])
     key[k] = cell
     value[k] = i
     wp.atomic_add(cell_count, cell, 1)
@@ -111,40 +111,46 @@ def shift(
 
 
 @wp.kernel(enable_backward=False)
-def gather(
+def gather_fluid(
     # Data in:
-    fluid_count: int,
     order: wp.array(dtype=int),
-    fluid_position: wp.array(dtype=wp.vec3),
-    fluid_velocity: wp.array(dtype=wp.vec3),
-    fluid_pressure: wp.array(dtype=float),
-    fluid_mass: wp.array(dtype=float),
-    boundary_position: wp.array(dtype=wp.vec3),
-    boundary_velocity: wp.array(dtype=wp.vec3),
-    boundary_volume: wp.array(dtype=float),
+    position: wp.array(dtype=wp.vec3),
+    velocity: wp.array(dtype=wp.vec3),
+    pressure: wp.array(dtype=float),
+    mass: wp.array(dtype=float),
     particle_world: wp.array(dtype=int),
     rest_density: wp.array(dtype=float),
     speed_of_sound: float,
     # Data out:
     point: wp.array(dtype=wp.vec4),
     motion: wp.array(dtype=wp.vec4),
-    is_fluid: wp.array(dtype=int),
 ):
-    """Copy positions, velocities, pressures and volumes into sorted order; `is_fluid` may be empty."""
+    """Copy positions, volumes, velocities and pressures into sorted order."""
     s = wp.tid()
     i = order[s]
-    if is_fluid.shape[0] > 0:
-        is_fluid[s] = wp.where(i < fluid_count, 1, 0)
-    if i < fluid_count:
-        x = fluid_position[i]
-        v = fluid_velocity[i]
-        p = fluid_pressure[i]
-        density = rest_density[particle_world[i]] + p / (speed_of_sound * speed_of_sound)
-        point[s] = wp.vec4(x[0], x[1], x[2], fluid_mass[i] / density)
-        motion[s] = wp.vec4(v[0], v[1], v[2], p)
-    else:
-        b = i - fluid_count
-        x = boundary_position[b]
-        v = boundary_velocity[b]
-        point[s] = wp.vec4(x[0], x[1], x[2], -boundary_volume[b])
-        motion[s] = wp.vec4(v[0], v[1], v[2], 0.0)
+    x = position[i]
+    v = velocity[i]
+    p = pressure[i]
+    density = rest_density[particle_world[i]] + p / (speed_of_sound * speed_of_sound)
+    point[s] = wp.vec4(x[0], x[1], x[2], mass[i] / density)
+    motion[s] = wp.vec4(v[0], v[1], v[2], p)
+
+
+@wp.kernel(enable_backward=False)
+def gather_solid(
+    # Data in:
+    order: wp.array(dtype=int),
+    position: wp.array(dtype=wp.vec3),
+    velocity: wp.array(dtype=wp.vec3),
+    volume: wp.array(dtype=float),
+    # Data out:
+    point: wp.array(dtype=wp.vec4),
+    motion: wp.array(dtype=wp.vec4),
+):
+    """Copy positions, volumes and velocities into sorted order."""
+    s = wp.tid()
+    i = order[s]
+    x = position[i]
+    v = velocity[i]
+    point[s] = wp.vec4(x[0], x[1], x[2], volume[i])
+    motion[s] = wp.vec4(v[0], v[1], v[2], 0.0)

@@ -1,41 +1,47 @@
-"""Momentum equation, and the step of velocity and position."""
+"""Momentum equation, the step of velocity and position, and the fluid's push on bodies."""
 
 import warp as wp
 
 from wsim.kernels.sph.density import Method
-from wsim.kernels.sph.grid import wrap
-from wsim.kernels.sph.neighbors import Neighborhood, Search, pairs_of
-from wsim.kernels.sph.pair_sums import OPTIONS, PairSums
+from wsim.kernels.sph.grid import Grid, wrap
+from wsim.kernels.sph.pair_sums import PairSums
 from wsim.kernels.sph.records import load_record
+from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species, is_near
 
 # Of h^2: keeps two particles at one place from dividing by zero. Monaghan's 0.01 would weaken viscosity by 1.5 %.
 COINCIDENT = wp.constant(1.0e-4)
 
 
-def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
-    """The kernel that sums forces and moves the fluid."""
-    runs, span_of, fluid_span_of, sum_run = search.runs, search.span, search.fluid_span, sums.force
+@wp.func
+def _viscosities(method: Method, rest_density: float, viscosity: float) -> wp.vec3:
+    """Artificial and laminar factor of a pair's approach, and what is added to r^2."""
+    artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density
+    return wp.vec3(artificial, method.laminar_factor * viscosity, COINCIDENT * method.h * method.h)
 
-    @wp.kernel(enable_backward=False, module="unique", module_options=OPTIONS)
+
+def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
+    """The kernel that sums forces and moves the fluid, given the kinds of solids."""
+    of_fluid, of_walls, of_bodies = (sums.force[kind] for kind in (FLUID, WALLS, BODIES))
+
+    @wp.kernel(**sums.options)
     def momentum(
         # Data in:
         first: int,
-        nb: Neighborhood,
+        grid: Grid,
         method: Method,
         rest_density: wp.array(dtype=float),
         viscosity: wp.array(dtype=float),
         gravity: wp.array(dtype=wp.vec3),
-        point: wp.array(dtype=wp.vec4),
-        motion: wp.array(dtype=wp.vec4),
-        fluid_mass: wp.array(dtype=float),
-        fixed_count: int,
+        fluid: Species,
+        walls: Species,
+        bodies: Species,
+        mass: wp.array(dtype=float),
         dt: float,
         # Data out:
-        fluid_position: wp.array(dtype=wp.vec3),
-        fluid_velocity: wp.array(dtype=wp.vec3),
-        boundary_force: wp.array(dtype=wp.vec3),
+        position: wp.array(dtype=wp.vec3),
+        velocity: wp.array(dtype=wp.vec3),
     ):
-        """Move each fluid particle, and find the fluid's force on each particle of a body, in original order.
+        """Move each fluid particle; positions and velocities are in original order.
 
         F_i = -V_i sum V_j (p_i + p_j) grad W                                (Colagrossi & Landrini 2003)
             + V_i sum V_j alpha h c rho_0 min(v_ij.x_ij, 0) / r^2 grad W      (Monaghan 1992)
@@ -48,34 +54,55 @@ def make_momentum(search: Search, sums: PairSums) -> wp.Kernel:
         particle (symplectic Euler).
         """
         s = first + wp.tid()
-        i = nb.order[s]
-        if i >= nb.fluid_count and i < nb.fluid_count + fixed_count:
-            return
-        p = load_record(point, s)
-        m = load_record(motion, s)
-        fluid = i < nb.fluid_count
+        i = fluid.order[s]
+        p = load_record(fluid.point, s)
+        m = load_record(fluid.motion, s)
         x = wp.vec3(p[0], p[1], p[2])
         v = wp.vec3(m[0], m[1], m[2])
-        world = nb.particle_world[i]
-        artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
-        laminar = method.laminar_factor * viscosity[world]
-        eta2 = COINCIDENT * method.h * method.h
+        world = fluid.world[i]
+        viscous = _viscosities(method, rest_density[world], viscosity[world])
         own = m[3] + 2.0 * method.background_pressure
-        pairs = pairs_of(nb, point, motion, method.shape)
-        total = wp.vec3(0.0, 0.0, 0.0)
-        viscous = wp.vec3(artificial, laminar, eta2)
-        solids = wp.where(fluid, 1.0, 0.0)
-        for run in range(runs(nb, x)):
-            if fluid:
-                span = span_of(nb, s, world, x, run)
-            else:
-                span = fluid_span_of(nb, s, world, x, run)
-            total += sum_run(pairs, span[0], span[1], x, v, own, viscous, solids)
-        if fluid:
-            v = v + dt * (p[3] / fluid_mass[i] * total + gravity[world])
-            fluid_velocity[i] = v
-            fluid_position[i] = wrap(nb.grid, x + dt * v)
-        else:
-            boundary_force[i - nb.fluid_count - fixed_count] = -p[3] * total
+        total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
+        if wp.static(WALLS in solids):
+            if is_near(grid, walls, world, x):
+                total += of_walls(grid, fluid, walls, s, world, method.shape, x, v, own, viscous)
+        if wp.static(BODIES in solids):
+            if is_near(grid, bodies, world, x):
+                total += of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, own, viscous)
+        v = v + dt * (p[3] / mass[i] * total + gravity[world])
+        velocity[i] = v
+        position[i] = wrap(grid, x + dt * v)
 
     return momentum
+
+
+def make_push(sums: PairSums) -> wp.Kernel:
+    """The kernel that sums the fluid's forces on the particles of bodies."""
+    of_fluid = sums.force[FLUID]
+
+    @wp.kernel(**sums.options)
+    def push(
+        # Data in:
+        first: int,
+        grid: Grid,
+        method: Method,
+        rest_density: wp.array(dtype=float),
+        viscosity: wp.array(dtype=float),
+        fluid: Species,
+        bodies: Species,
+        # Data out:
+        force: wp.array(dtype=wp.vec3),
+    ):
+        """The fluid's force on each particle of a body [N], in original order: the opposite of what the fluid feels."""
+        s = first + wp.tid()
+        p = load_record(bodies.point, s)
+        m = load_record(bodies.motion, s)
+        x = wp.vec3(p[0], p[1], p[2])
+        v = wp.vec3(m[0], m[1], m[2])
+        i = bodies.order[s]
+        world = bodies.world[i]
+        viscous = _viscosities(method, rest_density[world], viscosity[world])
+        own = m[3] + 2.0 * method.background_pressure
+        force[i] = p[3] * of_fluid(grid, bodies, fluid, s, world, method.shape, x, v, own, viscous)
+
+    return push

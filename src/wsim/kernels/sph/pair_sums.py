@@ -11,31 +11,24 @@ Every sum takes `Pairs`, which all of them read, and the run `[first, last)`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import warp as wp
 
-OPTIONS = {"fast_math": True}
+from wsim.kernels.sph.grid import Grid
+from wsim.kernels.sph.rows import walk
+from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species
+
+BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
 
 
-@wp.struct
-class Pairs:
-    """What every loop reads."""
-
-    entry: wp.array(dtype=int)  # of lists; not read when cells are walked
-    point: wp.array(dtype=wp.vec4)  # x, y, z, V; V < 0 is a boundary particle's
-    motion: wp.array(dtype=wp.vec4)  # vx, vy, vz, p
-    shape: wp.vec3  # of the kernel function: (1 / 2h, -5 norm / h^2, (2h)^2)
-    period: wp.vec3  # of the domain [m]
-    inv_period: wp.vec3
-
-
-# Sums of W, of W times pressure, and of V (v - v_b).grad W.
+# Sums of W, of W times pressure, and of V v.grad W.
 Flux = wp.vec3
 
 # Sums of W, of W times pressure, of W times velocity (3), and of W times the way to the fluid (3).
 Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
 
-_LOOP = """
+_SUM = """
 #if defined(__CUDA_ARCH__)
     typedef float4 Record;
     #define WSIM_LOAD(records, j) __ldg(records + j)
@@ -45,14 +38,20 @@ _LOOP = """
     #define WSIM_LOAD(records, j) records[j]
     #define WSIM_SATURATE(x) ((x) > 0.0f ? (x) : 0.0f)
 #endif
-    const Record* __restrict__ points = reinterpret_cast<const Record*>(pairs.point.data);
-    const Record* __restrict__ motions = reinterpret_cast<const Record*>(pairs.motion.data);
-    const int* __restrict__ entries = pairs.entry.data;
+    const Record* __restrict__ points = reinterpret_cast<const Record*>(other.point.data);
+    const Record* __restrict__ motions = reinterpret_cast<const Record*>(other.motion.data);
     const float x0 = x[0], x1 = x[1], x2 = x[2];
-    const float inv_support = pairs.shape[0], slope_norm = pairs.shape[1], support2 = pairs.shape[2];
+    const float inv_support = shape[0], slope_norm = shape[1], support2 = shape[2];
     BEFORE
+    SEARCH
+    #undef WSIM_LOAD
+    #undef WSIM_SATURATE
+    AFTER
+"""
+
+_RUN = """
 #if defined(__CUDA_ARCH__)
-    #pragma unroll 2
+    #pragma unroll UNROLL
 #else
     #pragma clang loop vectorize(enable) interleave(enable)
 #endif
@@ -69,46 +68,64 @@ _LOOP = """
             TERM
         }
     }
-    #undef WSIM_LOAD
-    #undef WSIM_SATURATE
-    AFTER
 """
+
+# The entries of a particle are its fluid neighbours, then walls, then bodies.
+_LISTED = """
+    const int* __restrict__ entries = own.entry.data;
+    const wp::vec_t<3, int> counts = own.entry_count.data[s];
+    const int first = s * own.capacity OTHERS, last = first + counts[KIND];
+    LOOP
+"""
+_OTHERS = {FLUID: "", WALLS: "+ counts[0]", BODIES: "+ counts[0] + counts[1]"}
 
 _CONTINUITY = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = weight[0], w1 = weight[1], w2 = weight[2];
-    float divergence = 0.0f, smoothing = 0.0f, carried = 0.0f, body = 0.0f;
+    float divergence = 0.0f, smoothing = 0.0f;
     """,
     """
-            const float slope = t2 * t;
-            divergence += fabsf(q.w) * slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
-            smoothing -= (q.w > 0.0f ? q.w : 0.0f) * slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
-            const float marked = q.w > 0.0f ? 0.0f : n.w;
-            OF_BODIES
-            carried += t2 * t2 * (1.0f + 4.0f * u) * given_back;
+            const float slope = q.w * (t2 * t);
+            divergence += slope * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
+            smoothing -= slope * (n.w - p + w0 * d0 + w1 * d1 + w2 * d2);
     """,
-    "return wp::vec_t<4, float>(slope_norm * divergence, slope_norm * smoothing, carried, body);",
+    "return wp::vec_t<2, float>(slope_norm * divergence, slope_norm * smoothing);",
 )
 
-# What stands in for OF_BODIES, where there are bodies and where there are none.
-_OF_BODIES = {
-    True: """const bool of_body = marked > 1.0e10f;
-            body += of_body ? t : 0.0f;
-            const float given_back = of_body ? 0.0f : marked;""",
-    False: "const float given_back = marked;",
-}
+_CONTINUITY_AT_WALLS = (
+    """
+    const float v0 = v[0], v1 = v[1], v2 = v[2];
+    float divergence = 0.0f, given_back = 0.0f;
+    """,
+    """
+            divergence += q.w * (t2 * t) * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
+            given_back += t2 * t2 * (1.0f + 4.0f * u) * n.w;
+    """,
+    "return wp::vec_t<2, float>(slope_norm * divergence, given_back);",
+)
+
+_CONTINUITY_AT_BODIES = (
+    """
+    const float v0 = v[0], v1 = v[1], v2 = v[2];
+    float divergence = 0.0f, presence = 0.0f;
+    """,
+    """
+            divergence += q.w * (t2 * t) * ((v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2);
+            presence += t;
+    """,
+    "return wp::vec_t<2, float>(slope_norm * divergence, presence);",
+)
 
 _FLUX = (
     """
-    const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = weight[0], w1 = weight[1], w2 = weight[2];
+    const float w0 = weight[0], w1 = weight[1], w2 = weight[2];
     float total = 0.0f, pressure = 0.0f, flux = 0.0f;
     """,
     """
-            const float volume = q.w > 0.0f ? q.w : 0.0f;
-            const float w = q.w > 0.0f ? t2 * t2 * (1.0f + 4.0f * u) : 0.0f;
+            const float w = t2 * t2 * (1.0f + 4.0f * u);
             total += w;
             pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
-            flux -= volume * (t2 * t) * ((n.x - v0) * d0 + (n.y - v1) * d1 + (n.z - v2) * d2);
+            flux -= q.w * (t2 * t) * (n.x * d0 + n.y * d1 + n.z * d2);
     """,
     "return wp::vec_t<3, float>(total, pressure, slope_norm * flux);",
 )
@@ -119,7 +136,7 @@ _EXTRAPOLATION = (
     float total = 0.0f, pressure = 0.0f, f0 = 0.0f, f1 = 0.0f, f2 = 0.0f, o0 = 0.0f, o1 = 0.0f, o2 = 0.0f;
     """,
     """
-            const float w = q.w > 0.0f ? t2 * t2 * (1.0f + 4.0f * u) : 0.0f;
+            const float w = t2 * t2 * (1.0f + 4.0f * u);
             total += w;
             pressure += w * (n.w + w0 * d0 + w1 * d1 + w2 * d2);
             f0 += w * n.x;
@@ -146,8 +163,7 @@ _MOMENTUM = (
     """
             const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
             const float push = approach < 0.0f ? (artificial + laminar) * approach : laminar * approach;
-            const float solid = -solids * q.w, volume = q.w > solid ? q.w : solid;
-            const float force = volume * (t2 * t) * (push / (r2 + eta2) - p - n.w);
+            const float force = q.w * (t2 * t) * (push / (r2 + eta2) - p - n.w);
             a0 += force * d0;
             a1 += force * d1;
             a2 += force * d2;
@@ -157,91 +173,142 @@ _MOMENTUM = (
 
 _FIND = """
     struct Record { float x, y, z, w; };
-    const Record* __restrict__ points = reinterpret_cast<const Record*>(pairs.point.data);
-    int* __restrict__ found = pairs.entry.data + base;
+    const Record* __restrict__ points = reinterpret_cast<const Record*>(other.point.data);
+    const int capacity = own.capacity;
+    int* __restrict__ found = own.entry.data + s * capacity;
     const float x0 = x[0], x1 = x[1], x2 = x[2];
-    const float support2 = pairs.shape[2];
     int count = start;
+    SEARCH
+    return count;
+"""
+
+_FIND_RUN = """
     for (int j = first; j < last; ++j) {
         const Record q = points[j];
         float d0 = x0 - q.x, d1 = x1 - q.y, d2 = x2 - q.z;
         IMAGES
         // Written first and counted after: a branch here would be mispredicted half the time.
         found[count < capacity ? count : capacity - 1] = j;
-        count += (d0 * d0 + d1 * d1 + d2 * d2 < support2) & (j != s) & (fluid | (q.w > 0.0f));
+        count += (d0 * d0 + d1 * d1 + d2 * d2 < reach2) & (j != itself);
     }
-    return count;
 """
 
 
 @dataclass(frozen=True)
 class PairSums:
-    """The native loops of one way of searching.
+    """The native loops of one way of searching. W stands for W up to a factor; v_ij is v_i - v_j.
 
     Attributes:
-        continuity: Sums of V_j (v_i - v_j).grad W, of the density diffusion, of what walls give back times W, and of
-            1 - r / 2h over the neighbours that have `boundary.BODY` in its place.
-        flux: `Flux`, over fluid neighbours; W up to a factor.
-        extrapolation: `Extrapolated`, over fluid neighbours; W up to a factor.
-        force: Force on a particle, per volume, from fluid and `solids` times from boundary neighbours.
-        find: Write a run's neighbours behind `start` others; returns how many there are then. For lists alone.
+        continuity: Over fluid: sums of V_j v_ij.grad W and of the density diffusion.
+        continuity_at_walls: Over walls: sums of V_j v_ij.grad W and of W times what a wall gives back.
+        continuity_at_bodies: Over bodies: sums of V_j v_ij.grad W and of 1 - r / 2h.
+        flux: `Flux`, over fluid around what stands still.
+        extrapolation: `Extrapolated`, over fluid.
+        force: Force on a particle per volume, over each kind.
+        find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
+            For lists alone.
+        options: What `wp.kernel` is to do with a kernel that sums.
     """
 
     continuity: wp.Function
+    continuity_at_walls: wp.Function
+    continuity_at_bodies: wp.Function
     flux: wp.Function
     extrapolation: wp.Function
-    force: wp.Function
+    force: dict[int, wp.Function]
     find: wp.Function
+    options: dict[str, Any]
 
 
 def _images(periodic: tuple[bool, bool, bool]) -> str:
     """Take the nearest periodic image along each periodic axis."""
     return "\n        ".join(
-        f"d{axis} -= pairs.period[{axis}] * rintf(d{axis} * pairs.inv_period[{axis}]);"
+        f"d{axis} -= grid.period[{axis}] * rintf(d{axis} * grid.inv_period[{axis}]);"
         for axis in range(3)
         if periodic[axis]
     )
 
 
-def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool, bodies: bool) -> PairSums:
+def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int]) -> PairSums:
     """Put the loops together.
 
     Args:
-        lists: Over the entries of lists; otherwise over runs of cells.
+        lists: Over the entries of lists; otherwise over the cells around a position.
         periodic: Which axes are.
         branch: Pass over what lies beyond the support. The kernel is zero there, so the sums are right without, and
-            the loads of the next pair need not wait: on an H200 the branch costs 7 % at 74 neighbours and saves 8 %
-            at 270; a CPU mispredicts it a quarter of the time.
-        bodies: Some boundary particles are of moving bodies.
+            the loads of the next pair need not wait: on an H200 the branch costs 10 % of a step at 70 neighbours and
+            saves 5 % at 250, there with blocks enough on a multiprocessor to hide the wait (2 %). A CPU mispredicts it
+            a quarter of the time.
+        reach: Cells that the support spans along y and z.
     """
 
-    def loop(parts: tuple[str, str, str]) -> str:
+    def text(parts: tuple[str, str, str], kind: int = FLUID) -> str:
         before, term, after = parts
-        text = _LOOP.replace("INDEX", "entries[k]" if lists else "k")
-        text = text.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
-        text = text.replace("BEFORE", before).replace("TERM", term).replace("AFTER", after)
-        text = text.replace("OF_BODIES", _OF_BODIES[bodies])
-        return text.replace("IMAGES", _images(periodic))
+        loop = _RUN.replace("INDEX", "entries[k]" if lists else "k")
+        loop = loop.replace("IF_NEAR", "if (r2 < support2)" if branch else "")
+        loop = loop.replace("UNROLL", "2" if branch else "1")
+        loop = loop.replace("IMAGES", _images(periodic)).replace("TERM", term)
+        listed = _LISTED.replace("OTHERS", _OTHERS[kind]).replace("KIND", str(kind)).replace("LOOP", loop)
+        search = listed if lists else walk(loop, reach, periodic)
+        return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
 
-    @wp.func_native(loop(_CONTINUITY))
+    def make_force(kind: int) -> wp.Function:
+        @wp.func_native(text(_MOMENTUM, kind))
+        def force(
+            grid: Grid,
+            own: Species,
+            other: Species,
+            s: int,
+            world: int,
+            shape: wp.vec3,
+            x: wp.vec3,
+            v: wp.vec3,
+            p: float,
+            viscosity: wp.vec3,
+        ) -> wp.vec3: ...
+
+        return force
+
+    @wp.func_native(text(_CONTINUITY))
     def continuity(
-        pairs: Pairs, first: int, last: int, x: wp.vec3, v: wp.vec3, p: float, weight: wp.vec3
-    ) -> wp.vec4: ...
+        grid: Grid,
+        own: Species,
+        other: Species,
+        s: int,
+        world: int,
+        shape: wp.vec3,
+        x: wp.vec3,
+        v: wp.vec3,
+        p: float,
+        weight: wp.vec3,
+    ) -> wp.vec2: ...
 
-    @wp.func_native(loop(_FLUX))
-    def flux(pairs: Pairs, first: int, last: int, x: wp.vec3, v: wp.vec3, weight: wp.vec3) -> Flux: ...
+    @wp.func_native(text(_CONTINUITY_AT_WALLS, WALLS))
+    def continuity_at_walls(
+        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, v: wp.vec3
+    ) -> wp.vec2: ...
 
-    @wp.func_native(loop(_EXTRAPOLATION))
-    def extrapolation(pairs: Pairs, first: int, last: int, x: wp.vec3, weight: wp.vec3) -> Extrapolated: ...
+    @wp.func_native(text(_CONTINUITY_AT_BODIES, BODIES))
+    def continuity_at_bodies(
+        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, v: wp.vec3
+    ) -> wp.vec2: ...
 
-    @wp.func_native(loop(_MOMENTUM))
-    def force(
-        pairs: Pairs, first: int, last: int, x: wp.vec3, v: wp.vec3, p: float, viscosity: wp.vec3, solids: float
-    ) -> wp.vec3: ...
+    @wp.func_native(text(_FLUX))
+    def flux(
+        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, weight: wp.vec3
+    ) -> Flux: ...
 
-    @wp.func_native(_FIND.replace("IMAGES", _images(periodic)))
+    @wp.func_native(text(_EXTRAPOLATION))
+    def extrapolation(
+        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, weight: wp.vec3
+    ) -> Extrapolated: ...
+
+    @wp.func_native(_FIND.replace("SEARCH", walk(_FIND_RUN.replace("IMAGES", _images(periodic)), reach, periodic)))
     def find(
-        pairs: Pairs, first: int, last: int, x: wp.vec3, s: int, fluid: bool, base: int, capacity: int, start: int
+        grid: Grid, own: Species, other: Species, s: int, world: int, x: wp.vec3, itself: int, start: int
     ) -> int: ...
 
-    return PairSums(continuity, flux, extrapolation, force, find)
+    forces = {kind: make_force(kind) for kind in (FLUID, WALLS, BODIES)}
+    options: dict[str, Any] = {"enable_backward": False, "grid_stride": False, "module": "unique"}
+    options |= {"module_options": {"fast_math": True}} | ({"launch_bounds": (BLOCK, 12)} if branch else {})
+    return PairSums(continuity, continuity_at_walls, continuity_at_bodies, flux, extrapolation, forces, find, options)

@@ -9,34 +9,42 @@ import warp as wp
 
 from wsim.kernels.sph.boundary import make_compress, make_extrapolate
 from wsim.kernels.sph.density import make_continuity
-from wsim.kernels.sph.momentum import make_momentum
-from wsim.kernels.sph.neighbors import make_find_neighbors, make_search
+from wsim.kernels.sph.momentum import make_momentum, make_push
+from wsim.kernels.sph.neighbors import Finders, make_finders
 from wsim.kernels.sph.pair_sums import make_pair_sums
-from wsim.kernels.sph.rows import make_rows
 
 
 @dataclass(frozen=True)
 class Programs:
     """Kernels of one way of searching: by lists or by cells, in an open or a periodic domain."""
 
-    find_neighbors: wp.Kernel
+    find: Finders
     compress: wp.Kernel
     continuity: wp.Kernel
     extrapolate: wp.Kernel
     momentum: wp.Kernel
+    push: wp.Kernel
 
     @staticmethod
     @functools.cache
     def make(
-        lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int], bodies: bool
+        lists: bool, periodic: tuple[bool, bool, bool], branch: bool, reach: tuple[int, int], solids: tuple[int, ...]
     ) -> Programs:
-        """Build the kernels, once in a process; see `make_pair_sums` and `make_rows`."""
-        rows, sums = make_rows(reach, periodic), make_pair_sums(lists, periodic, branch, bodies)
-        search = make_search(lists, rows)
+        """Build the kernels, once in a process; see `make_pair_sums`.
+
+        Args:
+            lists: Search by lists, or by walking cells.
+            periodic: Which axes are.
+            branch: Pass over what lies beyond the support.
+            reach: Cells that the support spans along y and z.
+            solids: `WALLS`, `BODIES`, both or none: the kinds of solids that there are.
+        """
+        sums = make_pair_sums(lists, periodic, branch, reach)
         return Programs(
-            make_find_neighbors(rows, sums),
-            make_compress(search, sums),
-            make_continuity(search, sums),
-            make_extrapolate(search, sums),
-            make_momentum(search, sums),
+            make_finders(sums, solids),
+            make_compress(sums),
+            make_continuity(sums, solids),
+            make_extrapolate(sums),
+            make_momentum(sums, solids),
+            make_push(sums),
         )

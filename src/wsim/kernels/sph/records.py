@@ -16,10 +16,3 @@ def load_record(records: wp.array(dtype=wp.vec4), i: int) -> wp.vec4:
 
     For arrays whose entry i nobody writes in the same kernel.
     """
-
-
-@wp.func_native("""
-    return wp::vec_t<2, int>(start.data[first], start.data[past]);
-""")
-def load_span(start: wp.array(dtype=int), first: int, past: int) -> wp.vec2i:
-    """Where two cells begin in the sorted list: Warp's own indexing takes 16 instructions more on a GPU."""

@@ -1,103 +1,88 @@
-"""The rows of cells around a position, each trimmed to the sphere that is searched.
+"""The text of a walk over the rows of cells around a position, each trimmed to the sphere that is searched.
 
 A search visits tens of rows for some 150 candidates, so that what a row costs counts: how many there are and which
-axes are periodic is compiled in, and a row's place takes a division by a constant.
+axes are periodic is put in the text, and what all rows of a plane share is worked out once.
 """
 
-from dataclasses import dataclass
+_WALK = """
+    const float along = (x0 - grid.offset[0]) * grid.inv_cell[0] - (float)(grid.first[0]);
+    const float at_y = (x1 - grid.offset[1]) * grid.inv_cell[1] - (float)(grid.first[1]);
+    const float at_z = (x2 - grid.offset[2]) * grid.inv_cell[2] - (float)(grid.first[2]);
+    const int nx = grid.count[0], ny = grid.count[1], nz = grid.count[2];
+    // What lies beyond the grid is in its rim, as near to the rest as can be.
+    const int iy = (int)(WSIM_CLAMP(floorf(at_y), 0.0f, (float)(ny - 1)));
+    const int iz = (int)(WSIM_CLAMP(floorf(at_z), 0.0f, (float)(nz - 1)));
+    const float beside_y = WSIM_CLAMP(at_y - (float)iy, 0.0f, 1.0f);
+    const float beside_z = WSIM_CLAMP(at_z - (float)iz, 0.0f, 1.0f);
+    const float reach2 = grid.support * grid.support;
+    // A little more, so that rounding never drops a neighbour at the edge of the support.
+    const float margin = 0.0005f * grid.support;
+    const int* __restrict__ starts = other.cell_start.data;
+    #pragma unroll 1
+    for (int step_z = -REACH_Z; step_z <= REACH_Z; ++step_z) {
+        int jz = iz + step_z;
+        WRAP_Z
+        if (jz < 0 || jz >= nz) continue;
+        const float gap_z = grid.cell[2] * WSIM_GAP(beside_z, (float)step_z);
+        const float left_z = reach2 - gap_z * gap_z;
+        const int plane = (world * nz + jz) * ny;
+        #pragma unroll 1
+        for (int step_y = -REACH_Y; step_y <= REACH_Y; ++step_y) {
+            int jy = iy + step_y;
+            WRAP_Y
+            const float gap_y = grid.cell[1] * WSIM_GAP(beside_y, (float)step_y);
+            const float left = left_z - gap_y * gap_y;
+            if (left <= 0.0f || jy < 0 || jy >= ny) continue;
+            const float half = (sqrtf(left) + margin) * grid.inv_cell[0];
+            const int* row = starts + (plane + jy) * nx;
+            SPAN
+            LOOP
+            END_SPAN
+        }
+    }
+"""
 
-import warp as wp
+_OPEN_SPAN = """
+            const int first = row[(int)(WSIM_CLAMP(floorf(along - half), 0.0f, (float)(nx - 1)))];
+            const int last = row[(int)(WSIM_CLAMP(floorf(along + half), 0.0f, (float)(nx - 1))) + 1];
+"""
 
-from wsim.kernels.sph.grid import Grid, grid_axis
-from wsim.kernels.sph.records import load_span
+# A row that wraps is two runs of the sorted list: what is inside, and what comes round from the other end.
+_PERIODIC_SPAN = """
+            const int low = (int)(floorf(along - half)), high = (int)(floorf(along + half));
+            const int parts = low < 0 || high >= nx ? 2 : 1;
+            for (int part = 0; part < parts; ++part) {
+                const int from = part == 0 ? (low < 0 ? 0 : low) : (low < 0 ? low + nx : 0);
+                const int to = part == 0 ? (high < nx ? high + 1 : nx) : (low < 0 ? nx : high - nx + 1);
+                const int first = row[from], last = row[to];
+"""
 
-
-@dataclass(frozen=True)
-class Rows:
-    """The functions of one shape of search.
-
-    `count(grid, x)`: how many runs of the sorted list a search around x visits: its rows, and again where they wrap
-    around a periodic x. `span(grid, cell_start, world, x, run)`: first and past-the-last sorted index of the particles
-    of one run that can lie within the support of x.
-    """
-
-    count: wp.Function
-    span: wp.Function
-
-
-@wp.func
-def _beside(grid: Grid, x: float, index: int, axis: int) -> float:
-    """Where x lies in its cell, in cells; what lies beyond the grid is in its rim, as near to the rest as can be."""
-    u = (x - grid.offset[axis]) * grid.inv_cell[axis] - float(index + grid.first[axis])
-    return wp.clamp(u, 0.0, 1.0)
-
-
-@wp.func
-def _gap(u: float, steps: int, cell: float) -> float:
-    """Distance [m] from a place in a cell to the cell so many steps further on."""
-    j = float(steps)
-    return wp.max(wp.max(j - u, u - j - 1.0), 0.0) * cell
+HELPERS = """
+#if defined(__CUDA_ARCH__)
+    #define WSIM_MAX(a, b) fmaxf(a, b)
+    #define WSIM_MIN(a, b) fminf(a, b)
+#else
+    #define WSIM_MAX(a, b) ((a) > (b) ? (a) : (b))
+    #define WSIM_MIN(a, b) ((a) < (b) ? (a) : (b))
+#endif
+    #define WSIM_CLAMP(x, low, high) WSIM_MIN(WSIM_MAX(x, low), high)
+    // From a place in a cell to the cell so many steps further on, in cells.
+    #define WSIM_GAP(beside, steps) WSIM_MAX(WSIM_MAX((steps) - beside, beside - (steps) - 1.0f), 0.0f)
+"""
 
 
-def make_rows(reach: tuple[int, int], periodic: tuple[bool, bool, bool]) -> Rows:
-    """Rows for a search that reaches so many cells along y and z.
+def walk(loop: str, reach: tuple[int, int], periodic: tuple[bool, bool, bool]) -> str:
+    """The walk of a position `x0, x1, x2` in a `world` over the cells of `other`, in C++.
 
     Args:
+        loop: What is done with the run `[first, last)` of the sorted list.
         reach: Cells that the support spans along y and z.
         periodic: Which axes are.
     """
-    reach_y, reach_z = reach
-    width = 2 * reach_y + 1
-    rows = width * (2 * reach_z + 1)
-    around_x, around_y, around_z = periodic
-
-    @wp.func
-    def count(grid: Grid, x: wp.vec3) -> int:
-        runs = int(wp.static(rows))
-        if wp.static(around_x):
-            u = x[0] - grid.offset[0]
-            margin = grid.support + grid.cell[0]
-            if u < margin or u > grid.period[0] - margin:
-                runs = int(wp.static(2 * rows))
-        return runs
-
-    @wp.func
-    def span(grid: Grid, cell_start: wp.array(dtype=int), world: int, x: wp.vec3, run: int) -> wp.vec2i:
-        row = run
-        if wp.static(around_x):
-            row = run % wp.static(rows)
-        step_y = row % wp.static(width) - wp.static(reach_y)
-        step_z = row / wp.static(width) - wp.static(reach_z)
-        iy, iz = grid_axis(grid, x[1], 1), grid_axis(grid, x[2], 2)
-        gap_y = _gap(_beside(grid, x[1], iy, 1), step_y, grid.cell[1])
-        gap_z = _gap(_beside(grid, x[2], iz, 2), step_z, grid.cell[2])
-        left = grid.support * grid.support - gap_y * gap_y - gap_z * gap_z
-        iy, iz = iy + step_y, iz + step_z
-        if wp.static(around_y):
-            iy = (iy + grid.count[1]) % grid.count[1]
-        if wp.static(around_z):
-            iz = (iz + grid.count[2]) % grid.count[2]
-        if wp.min(wp.min(iy, iz), wp.min(grid.count[1] - 1 - iy, grid.count[2] - 1 - iz)) < 0:
-            left = float(0.0)
-        if left <= 0.0:
-            return wp.vec2i(0, 0)
-        # A little more, so that rounding never drops a neighbour at the edge of the support.
-        half = (wp.sqrt(left) + 0.0005 * grid.support) * grid.inv_cell[0]
-        nx = grid.count[0]
-        base = ((world * grid.count[2] + iz) * grid.count[1] + iy) * nx
-        u = (x[0] - grid.offset[0]) * grid.inv_cell[0] - float(grid.first[0])
-        if wp.static(not around_x):
-            end = float(nx - 1)
-            first = int(wp.clamp(wp.floor(u - half), 0.0, end))
-            last = int(wp.clamp(wp.floor(u + half), 0.0, end))
-            return load_span(cell_start, base + first, base + last + 1)
-        low, high = int(wp.floor(u - half)), int(wp.floor(u + half))
-        if run >= wp.static(rows):
-            if low < 0:
-                return load_span(cell_start, base + low + nx, base + nx)
-            if high >= nx:
-                return load_span(cell_start, base, base + high - nx + 1)
-            return wp.vec2i(0, 0)
-        return load_span(cell_start, base + wp.max(low, 0), base + wp.min(high, nx - 1) + 1)
-
-    return Rows(count, span)
+    wrap = "j{0} = j{0} < 0 ? j{0} + n{0} : (j{0} >= n{0} ? j{0} - n{0} : j{0});"
+    text = _WALK.replace("REACH_Y", str(reach[0])).replace("REACH_Z", str(reach[1]))
+    text = text.replace("WRAP_Y", wrap.format("y") if periodic[1] else "")
+    text = text.replace("WRAP_Z", wrap.format("z") if periodic[2] else "")
+    text = text.replace("END_SPAN", "}" if periodic[0] else "")
+    text = text.replace("SPAN", _PERIODIC_SPAN if periodic[0] else _OPEN_SPAN)
+    return HELPERS + text.replace("LOOP", loop)
