@@ -26,7 +26,7 @@ def _of_one_neighbor(water: Species, shape: wp.vec3, weight: wp.array(dtype=floa
     """What a particle at the origin takes from the neighbour that particle k lists."""
     k = wp.tid()
     none = wp.vec3(0.0, 0.0, 0.0)
-    sums = wp.static(SUMS.extrapolation)(Grid(), water, water, k, 0, shape, none, none)
+    sums = wp.static(SUMS.extrapolation)(Grid(), water, water, k, 0, shape, none, none, 0.0, none)
     weight[k] = sums[0]
     viscosity = wp.vec3(0.0, 0.0, 1.0)
     force[k] = wp.static(SUMS.force[FLUID])(Grid(), water, water, k, 0, shape, none, none, 1.0, viscosity)

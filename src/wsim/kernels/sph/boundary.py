@@ -76,9 +76,9 @@ def make_compress(sums: PairSums) -> wp.Kernel:
         s = first + wp.tid()
         p = load_record(walls.point, s)
         world = walls.world[walls.order[s]]
-        x = wp.vec3(p[0], p[1], p[2])
+        x, at_rest = wp.vec3(p[0], p[1], p[2]), wp.vec3(0.0, 0.0, 0.0)
         weight_of_water = rest_density[world] * gravity[world]
-        total = of_fluid(grid, walls, fluid, s, world, method.shape, x, weight_of_water)
+        total = of_fluid(grid, walls, fluid, s, world, method.shape, x, at_rest, 0.0, weight_of_water)
         given_back = float(0.0)
         if total[0] > 0.0 and total[1] > -method.background_pressure * total[0]:
             given_back = p[3] * total[2] / total[0]
@@ -125,8 +125,8 @@ def make_extrapolate(sums: PairSums) -> wp.Kernel:
         weight_of_water = rest_density[world] * gravity[world]
         artificial = method.artificial_viscosity * method.h * method.speed_of_sound * rest_density[world]
         laminar = method.laminar_factor * viscosity[world]
-        x = wp.vec3(p[0], p[1], p[2])
-        total = of_fluid(grid, solid, fluid, s, world, method.shape, x, weight_of_water)
+        x, at_rest = wp.vec3(p[0], p[1], p[2]), wp.vec3(0.0, 0.0, 0.0)
+        total = of_fluid(grid, solid, fluid, s, world, method.shape, x, at_rest, 0.0, weight_of_water)
         m = motion[s]
         if total[0] <= 0.0:
             motion[s] = wp.vec4(m[0], m[1], m[2], 0.0)

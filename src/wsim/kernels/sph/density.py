@@ -74,12 +74,12 @@ def make_continuity(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         given_back = float(0.0)
         if wp.static(WALLS in solids):
             if is_near(grid, walls, world, x):
-                at_walls = of_walls(grid, fluid, walls, s, world, method.shape, x, v)
+                at_walls = of_walls(grid, fluid, walls, s, world, method.shape, x, v, m[3], weight)
                 divergence += at_walls[0]
                 given_back = at_walls[1]
         if wp.static(BODIES in solids):
             if is_near(grid, bodies, world, x):
-                at_bodies = of_bodies(grid, fluid, bodies, s, world, method.shape, x, v)
+                at_bodies = of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, m[3], weight)
                 divergence += at_bodies[0]
                 # What walls give back fades as a body comes within reach: see `boundary.compress`.
                 given_back *= wp.max(1.0 - FADE * at_bodies[1], 0.0)

@@ -5,10 +5,10 @@ AMD EPYC the same continuity sum takes 46 ms as a Warp loop and 24 ms so; on a G
 a loop is put together from choices that must cost nothing per pair: entries of a list or runs of cells, which axes are
 periodic, whether to branch, and what is summed.
 
-Every sum takes `Pairs`, which all of them read, and the run `[first, last)`.
+Every sum is over the neighbours of one kind, `other`, of particle s of `own`. It takes that one's world, position x,
+velocity v and pressure p, `shape` of `density.Method`, and `common`: what is the same for all pairs, the weight of the
+fluid rho_0 g [N/m^3] or, in the momentum equation, artificial and laminar factor and what is added to r^2.
 """
-
-from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
@@ -20,7 +20,6 @@ from wsim.kernels.sph.rows import walk
 from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species
 
 BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neighbours, on an H200
-
 
 # Sums of W, of W times pressure, and of V v.grad W.
 Flux = wp.vec3
@@ -81,7 +80,7 @@ _OTHERS = {FLUID: "", WALLS: "+ counts[0]", BODIES: "+ counts[0] + counts[1]"}
 
 _CONTINUITY = (
     """
-    const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = weight[0], w1 = weight[1], w2 = weight[2];
+    const float v0 = v[0], v1 = v[1], v2 = v[2], w0 = common[0], w1 = common[1], w2 = common[2];
     float divergence = 0.0f, smoothing = 0.0f;
     """,
     """
@@ -118,7 +117,7 @@ _CONTINUITY_AT_BODIES = (
 
 _FLUX = (
     """
-    const float w0 = weight[0], w1 = weight[1], w2 = weight[2];
+    const float w0 = common[0], w1 = common[1], w2 = common[2];
     float total = 0.0f, pressure = 0.0f, flux = 0.0f;
     """,
     """
@@ -132,7 +131,7 @@ _FLUX = (
 
 _EXTRAPOLATION = (
     """
-    const float w0 = weight[0], w1 = weight[1], w2 = weight[2];
+    const float w0 = common[0], w1 = common[1], w2 = common[2];
     float total = 0.0f, pressure = 0.0f, f0 = 0.0f, f1 = 0.0f, f2 = 0.0f, o0 = 0.0f, o1 = 0.0f, o2 = 0.0f;
     """,
     """
@@ -157,7 +156,7 @@ _EXTRAPOLATION = (
 _MOMENTUM = (
     """
     const float v0 = v[0], v1 = v[1], v2 = v[2];
-    const float artificial = viscosity[0], laminar = viscosity[1], eta2 = viscosity[2];
+    const float artificial = common[0], laminar = common[1], eta2 = common[2];
     float a0 = 0.0f, a1 = 0.0f, a2 = 0.0f;
     """,
     """
@@ -252,9 +251,9 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         search = listed if lists else walk(loop, reach, periodic)
         return _SUM.replace("SEARCH", search).replace("BEFORE", before).replace("AFTER", after)
 
-    def make_force(kind: int) -> wp.Function:
-        @wp.func_native(text(_MOMENTUM, kind))
-        def force(
+    def total(parts: tuple[str, str, str], result: Any, kind: int = FLUID) -> wp.Function:
+        @wp.func_native(text(parts, kind))
+        def pair_sum(
             grid: Grid,
             own: Species,
             other: Species,
@@ -264,51 +263,25 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
             x: wp.vec3,
             v: wp.vec3,
             p: float,
-            viscosity: wp.vec3,
-        ) -> wp.vec3: ...
+            common: wp.vec3,
+        ) -> result: ...
 
-        return force
-
-    @wp.func_native(text(_CONTINUITY))
-    def continuity(
-        grid: Grid,
-        own: Species,
-        other: Species,
-        s: int,
-        world: int,
-        shape: wp.vec3,
-        x: wp.vec3,
-        v: wp.vec3,
-        p: float,
-        weight: wp.vec3,
-    ) -> wp.vec2: ...
-
-    @wp.func_native(text(_CONTINUITY_AT_WALLS, WALLS))
-    def continuity_at_walls(
-        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, v: wp.vec3
-    ) -> wp.vec2: ...
-
-    @wp.func_native(text(_CONTINUITY_AT_BODIES, BODIES))
-    def continuity_at_bodies(
-        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, v: wp.vec3
-    ) -> wp.vec2: ...
-
-    @wp.func_native(text(_FLUX))
-    def flux(
-        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, weight: wp.vec3
-    ) -> Flux: ...
-
-    @wp.func_native(text(_EXTRAPOLATION))
-    def extrapolation(
-        grid: Grid, own: Species, other: Species, s: int, world: int, shape: wp.vec3, x: wp.vec3, weight: wp.vec3
-    ) -> Extrapolated: ...
+        return pair_sum
 
     @wp.func_native(_FIND.replace("SEARCH", walk(_FIND_RUN.replace("IMAGES", _images(periodic)), reach, periodic)))
     def find(
         grid: Grid, own: Species, other: Species, s: int, world: int, x: wp.vec3, itself: int, start: int
     ) -> int: ...
 
-    forces = {kind: make_force(kind) for kind in (FLUID, WALLS, BODIES)}
     options: dict[str, Any] = {"enable_backward": False, "grid_stride": False, "module": "unique"}
     options |= {"module_options": {"fast_math": True}} | ({"launch_bounds": (BLOCK, 12)} if branch else {})
-    return PairSums(continuity, continuity_at_walls, continuity_at_bodies, flux, extrapolation, forces, find, options)
+    return PairSums(
+        continuity=total(_CONTINUITY, wp.vec2),
+        continuity_at_walls=total(_CONTINUITY_AT_WALLS, wp.vec2, WALLS),
+        continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec2, BODIES),
+        flux=total(_FLUX, Flux),
+        extrapolation=total(_EXTRAPOLATION, Extrapolated),
+        force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, WALLS, BODIES)},
+        find=find,
+        options=options,
+    )
