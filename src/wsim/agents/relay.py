@@ -132,7 +132,7 @@ class Relay(WrapperModel):
             try:
                 response = await asyncio.wait_for(self.wrapped.request(messages, settings, parameters), patience)
             except Exception as error:  # whatever a client raises is a failed attempt
-                seconds = time.monotonic() - started
+                seconds = _since(started)
                 failed = failure(error)
                 account.failed += 1
                 account.seconds += seconds
@@ -143,7 +143,7 @@ class Relay(WrapperModel):
                     raise ModelError(failed.kind, str(failed), self.role) from error
                 await self.sleep(min(2.0**attempt, LONGEST_PAUSE, max(self.ledger.seconds_left, 0.0)))
                 continue
-            return self._charge(request, response, time.monotonic() - started)
+            return self._charge(request, response, _since(started))
         raise AssertionError("unreachable")
 
     def _charge(self, request: Asked, response: ModelResponse, seconds: float) -> tuple[Reply, Usage]:
@@ -220,6 +220,11 @@ def _text(message: dict[str, Any]) -> str:
     if isinstance(content, list):
         return "\n".join(one if isinstance(one, str) else str(one) for one in content)
     return content if isinstance(content, str) else str(content)
+
+
+def _since(started: float) -> float:
+    """Seconds of a request, to the digits that the transcript keeps: a replay adds them up to the same sum."""
+    return round(time.monotonic() - started, 2)
 
 
 def _tokens(*data: Any) -> int:
