@@ -44,14 +44,14 @@ class SortedParticles:
         self.order.assign(np.argsort(world, kind="stable").astype(np.int32))
         self.cell_count, self.cell_start = wp.zeros(cells + 1, dtype=int), wp.zeros(cells + 1, dtype=int)
         self.point, self.motion = wp.zeros(n, dtype=wp.vec4), wp.zeros(n, dtype=wp.vec4)
-        self.near = wp.zeros(0, dtype=wp.uint8)
+        # Made here: a first step may be captured in a CUDA graph, which would keep what is made in it to itself.
+        self.near = wp.zeros(0 if capacity or n == 0 else blocks_of(grid) * world_count, dtype=wp.uint8)
         self.species: Any = Species()
         self.species.order, self.species.world = self.order, self.world
         self.species.point, self.species.motion = self.point, self.motion
         self.species.cell_start, self.species.near = self.cell_start, self.near
         self.species.entry, self.species.capacity = wp.empty(n * capacity, dtype=int), capacity
         self.species.entry_count = wp.zeros(n if capacity else 0, dtype=wp.vec3i)
-        self.world_count = world_count
 
     def sort(self, position: wp.array, first_world: int, last_world: int) -> None:
         """Sort the particles of some worlds by cell; the sort is stable, so that a run repeats bit for bit.
@@ -84,7 +84,5 @@ class SortedParticles:
         """Mark the blocks that are near; walks of others pass over the rest."""
         if not self.count:
             return
-        if not self.near.shape[0]:
-            self.near = self.species.near = wp.zeros(blocks_of(self.grid) * self.world_count, dtype=wp.uint8)
         self.near.zero_()
         wp.launch(mark_near, dim=(self.count, 27), inputs=[self.grid, position, self.world], outputs=[self.near])

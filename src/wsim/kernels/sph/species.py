@@ -22,7 +22,7 @@ class Species:
     point: wp.array(dtype=wp.vec4)  # x, y, z, V
     motion: wp.array(dtype=wp.vec4)  # vx, vy, vz and a pressure, or what a wall gives back
     cell_start: wp.array(dtype=int)  # of each cell in the sorted list
-    near: wp.array(dtype=wp.uint8)  # blocks within reach of any; for walks alone, and not for fluid
+    near: wp.array(dtype=wp.uint8)  # blocks within reach of any; for walks alone, and not marked for fluid
     entry: wp.array(dtype=int)  # neighbours: fluid, then walls, then bodies; for lists alone
     entry_count: wp.array(dtype=wp.vec3i)  # of each kind
     capacity: int
