@@ -125,7 +125,7 @@ def cases(half: str, only: Sequence[str] = ()) -> list[Case]:
 
 def record(case: Case) -> Path:
     """The recording of a run, made now unless it is kept."""
-    from wsim.pipeline import Settings, build_stage
+    from wsim.runs.pipeline import Settings, build_stage
 
     folder = case.folder
     recording = folder / "recording.rrd"

@@ -10,7 +10,7 @@ from typer.main import get_command
 from wsim.cli import app
 from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
 from wsim.judge.verdict import RepairKind
-from wsim.plan.lexicon import lexicon
+from wsim.rules.lexicon import lexicon
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
 

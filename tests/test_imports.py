@@ -24,7 +24,7 @@ def test_import_directions():
         ("import wsim", {"newton", "warp", "pxr", "rerun", "pydantic", "typer", "numpy", "mujoco"}),
         ("import wsim.cli", {"newton", "warp", "pxr", "rerun", "mujoco", "av", "matplotlib", "cv2"}),
         ("import wsim.scene", {"newton", "warp", "rerun", "pydantic", "mujoco", "trimesh", "typer"}),
-        ("import wsim.plan.planner", {"newton", "warp", "pxr", "rerun", "mujoco"}),
+        ("import wsim.rules.planner", {"newton", "warp", "pxr", "rerun", "mujoco"}),
         ("import wsim.judge", {"newton", "warp", "pxr", "mujoco"}),
         ("import wsim.recording", {"newton", "warp", "mujoco"}),
     ],

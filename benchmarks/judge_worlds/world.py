@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from wsim.plan.materials import material_named
-from wsim.plan.planner import plan as plan_prompt
-from wsim.plan.scenes.motion import ground_object
 from wsim.plan.schema import Joint, Objective, Plan, PlanObject, Pose, SimulationPlan, Vec3
 from wsim.plan.views import cameras
 from wsim.program.compose import compose
+from wsim.rules.materials import material_named
+from wsim.rules.planner import plan as plan_prompt
+from wsim.rules.scenes.motion import ground_object
 
 FRAME_RATE = 30.0  # of the worlds that no prompt makes [1/s]
 

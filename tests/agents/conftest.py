@@ -10,8 +10,8 @@ from wsim.agents.ask import Desk
 from wsim.agents.budget import Budget, Ledger
 from wsim.agents.models import ROLES, Models
 from wsim.agents.transcript import Transcript
-from wsim.plan.planner import plan as plan_of
 from wsim.plan.schema import Plan
+from wsim.rules.planner import plan as plan_of
 
 
 @pytest.fixture(autouse=True)

@@ -15,7 +15,7 @@ from wsim.agents.budget import BudgetError
 from wsim.agents.exchange import LONGEST
 from wsim.agents.failures import ModelError
 from wsim.agents.transcript import Exchange, read
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 from wsim.tools import TOOLS, Workspace
 
 NOT_JSON = raw(b"<html>503 Service Unavailable</html>", "text/html")

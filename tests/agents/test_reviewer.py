@@ -18,12 +18,12 @@ from wsim.agents.models import Models
 from wsim.agents.reviewer import Review, facts, keep
 from wsim.agents.reviewer import review as ask_for_review
 from wsim.agents.transcript import Transcript
-from wsim.attempt import Attempt, Reached
 from wsim.judge.verdict import Verdict
-from wsim.pipeline import Settings, run_program
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
-from wsim.runs import RunFolder
+from wsim.runs.attempt import Attempt, Reached
+from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings, run_program
 from wsim.tools import Workspace
 from wsim.tools.plan import plan_lines
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from wsim.plan.planner import plan
 from wsim.program.sandbox import available
+from wsim.rules.planner import plan
 
 ENVIRONMENT = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "COLUMNS")}
 

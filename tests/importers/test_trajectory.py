@@ -18,7 +18,7 @@ from wsim.importers import read_npz
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.trajectory import save
 from wsim.judge import judge
-from wsim.judge.geometry import rotate
+from wsim.judge.evidence.geometry import rotate
 from wsim.recording import Recording, read
 
 NAMES = ["brick", "ball", "arm"]

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from wsim.plan.materials import material_named
-from wsim.plan.planner import plan as make_plan
 from wsim.plan.schema import Plan
 from wsim.recording.frames import LogLine
 from wsim.recording.reader import FluidTrack, Recording
+from wsim.rules.materials import material_named
+from wsim.rules.planner import plan as make_plan
 from wsim.scene.world import Body, Container, Fluid, Shape, Static, World
 
 G = 9.81

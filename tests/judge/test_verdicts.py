@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from wsim.judge import judge
-from wsim.judge.checks_run import CheckPlanControl
-from wsim.judge.evidence import Evidence
+from wsim.judge.checks.run import CheckPlanControl
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Objective, Step
 from wsim.scene.world import Joint

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wsim.judge.evidence import Evidence
+from wsim.judge.evidence.evidence import Evidence
 from wsim.recording.reader import Recording
 from wsim.scene.world import Body, Camera, Joint, Shape, Static, World
 

@@ -15,8 +15,8 @@ from wsim.plan.drawing.labels import Wanted, place, together
 from wsim.plan.drawing.picture import WIDTH, draw_picture
 from wsim.plan.drawing.silhouettes import scene_of
 from wsim.plan.drawing.text import draw_text, nice
-from wsim.plan.planner import plan as plan_of
 from wsim.plan.schema import Material, Plan, PlanObject, Pose, Relation
+from wsim.rules.planner import plan as plan_of
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples" / "plans").glob("*.json"))
 WOOD = Material(name="wood", density=600.0, color=(0.5, 0.25, 0.1))

@@ -5,8 +5,8 @@ from pydantic import ValidationError
 
 from wsim.errors import UserError
 from wsim.plan import load
-from wsim.plan.planner import plan
 from wsim.plan.schema import Plan
+from wsim.rules.planner import plan
 
 PROMPT = "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks."
 

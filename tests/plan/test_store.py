@@ -6,7 +6,7 @@ import pytest
 
 from wsim.errors import UserError
 from wsim.plan import load, save
-from wsim.plan.planner import plan
+from wsim.rules.planner import plan
 
 PROMPT = "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks."
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
-from wsim.plan.planner import plan as make_plan
 from wsim.recording import FluidFrame, Frame, RecordingWriter
 from wsim.recording.video import write_video
-from wsim.runs import RunFolder
+from wsim.rules.planner import plan as make_plan
+from wsim.runs.folder import RunFolder
 from wsim.scene.world import Body, Camera, Container, Fluid, Parameter, Shape, World
 
 PROMPT = "A wooden block floats in a glass tank of water and a steel ball drops into it and sinks"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from wsim.judge import judge
-from wsim.judge.evidence import Evidence
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.verdict import Finding, RepairTarget
 from wsim.recording import read
 from wsim.report.chart import Limit

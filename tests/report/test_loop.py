@@ -12,14 +12,14 @@ from typing import Any
 
 import pytest
 
-from wsim.accept import bare
-from wsim.attempt import Attempt, attempt
-from wsim.generate import Options, generate
-from wsim.pipeline import Settings
+from wsim.loop.generate import Options, generate
 from wsim.plan.store import load
 from wsim.report import write
 from wsim.report.diff import MOST_LINES, difference, make_diff
-from wsim.runs import RunFolder, write_json
+from wsim.runs.accept import bare
+from wsim.runs.attempt import Attempt, attempt
+from wsim.runs.folder import RunFolder, write_json
+from wsim.runs.pipeline import Settings
 from wsim.tools.iterations import add
 
 _spec = importlib.util.spec_from_file_location("report_probe", Path(__file__).parent / "probe.py")

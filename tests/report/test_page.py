@@ -12,7 +12,7 @@ from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.recording import Frame, RecordingWriter
 from wsim.report import write
 from wsim.report.page import write_page
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 from wsim.scene.world import Body, Shape, World
 
 _spec = importlib.util.spec_from_file_location("report_probe", Path(__file__).parent / "probe.py")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from wsim.judge.checks_energy import CheckEnergy
-from wsim.judge.evidence import Evidence
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Drive, Scene
 from wsim.sim import Simulation

@@ -10,13 +10,13 @@ import pytest
 
 from tests.skills.blocks import PYTHON, WHOLE, Block, blocks
 from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
-from wsim.judge.evidence import Evidence
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import parse
 from wsim.judge.language.objective import ObjectiveFormula
 from wsim.judge.verdict import Finding, Verdict
-from wsim.pipeline import Settings, build_stage, run_program
 from wsim.plan.schema import Objective
 from wsim.recording import read
+from wsim.runs.pipeline import Settings, build_stage, run_program
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe

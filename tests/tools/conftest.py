@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from wsim.pipeline import Settings
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings
 from wsim.tools import TOOLS, Result, Workspace
 from wsim.tools.text import LIMIT
 

@@ -7,8 +7,8 @@ import json
 import pytest
 
 from tests.tools.conftest import RIGID, call_tool, done, refused
-from wsim.plan.planner import plan as make_plan
 from wsim.plan.store import load
+from wsim.rules.planner import plan as make_plan
 from wsim.tools import TOOLS, Workspace
 from wsim.tools.iterations import add
 from wsim.tools.text import LIMIT

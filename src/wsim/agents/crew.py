@@ -10,8 +10,8 @@ from wsim.agents import coder, judge, planner, reviewer
 from wsim.agents.ask import Desk
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN
-from wsim.attempt import Attempt, Reached
 from wsim.judge.verdict import Verdict
+from wsim.runs.attempt import Attempt, Reached
 from wsim.tools import Workspace
 from wsim.tools.plan import plan_lines
 from wsim.tools.verdict import verdict_lines
@@ -55,7 +55,7 @@ class Crew:
         """
         if self.has("planner"):
             return planner.plan_with(self.desk, prompt, pictures, image)
-        from wsim.plan.planner import plan
+        from wsim.rules.planner import plan
 
         return plan(prompt)
 

@@ -110,7 +110,7 @@ def _read(text: str, names: set[str]) -> Review:
 
 def keep(folder: Path, found: Review | None, by: str) -> None:
     """Write a review into review.json, beside the facts."""
-    from wsim.runs import write_json
+    from wsim.runs.folder import write_json
 
     path = folder / "review.json"
     data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}

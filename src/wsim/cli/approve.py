@@ -12,8 +12,8 @@ from pathlib import Path
 
 from wsim.cli.show import console, show_plan
 from wsim.errors import UserError
-from wsim.plan.questions import Planner, Question, answered, questions, read_answers
 from wsim.plan.schema import Plan
+from wsim.rules.questions import Planner, Question, answered, questions, read_answers
 
 NO_ANSWER = (
     "nothing was built: there was no answer; --yes builds without asking, --answers FILE answers the questions first"

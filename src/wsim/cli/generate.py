@@ -28,7 +28,7 @@ from wsim.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from wsim.generate import Options
+    from wsim.loop.generate import Options
     from wsim.plan.schema import Plan
 
 Iterations = Annotated[int, typer.Option("--max-iterations", min=1, max=99, help="Programs that are tried.")]
@@ -76,8 +76,8 @@ def generate(
     from wsim.agents.budget import Budget
     from wsim.agents.models import choose
     from wsim.errors import UserError
-    from wsim.generate import Options
-    from wsim.pipeline import Settings
+    from wsim.loop.generate import Options
+    from wsim.runs.pipeline import Settings
 
     if replay is not None:
         _replay(replay, runs, device)
@@ -106,7 +106,7 @@ def generate(
 def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answers: Path | None, yes: bool) -> None:
     from wsim.agents.models import BUILTIN
     from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
-    from wsim.generate import generate as generate_world
+    from wsim.loop.generate import generate as generate_world
 
     builtin = options.models.planner == BUILTIN or path is not None
     if builtin:
@@ -137,7 +137,7 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
 
 def _replay(recorded: Path, runs: Path, device: str) -> None:
     from wsim.cli.show import ConsoleProgress, console, show_verdict
-    from wsim.replay import replay
+    from wsim.loop.replay import replay
 
     with ConsoleProgress() as progress:
         again = replay(recorded, runs, progress, None if device == "auto" else device)
@@ -154,7 +154,7 @@ def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool) -> 
     """The plan to build: a file of answers is a yes, as --yes is; else a person is asked."""
     from wsim.cli.approve import approved, with_answers
     from wsim.cli.show import show_plan
-    from wsim.generate import make_plan
+    from wsim.loop.generate import make_plan
     from wsim.plan.store import load
 
     planner = make_plan if path is None else None

@@ -22,9 +22,9 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
     """
     from wsim.cli.options import EXIT_CODES
     from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.pipeline import Settings, simulate_and_judge
     from wsim.report import write as write_report
-    from wsim.runs import RunFolder
+    from wsim.runs.folder import RunFolder
+    from wsim.runs.pipeline import Settings, simulate_and_judge
     from wsim.scene import Scene, SceneError
 
     program = Path(sys.modules[build.__module__].__file__ or "program.py")

@@ -9,7 +9,7 @@ import typer
 
 from wsim.cli.options import EXIT_CODES
 from wsim.errors import UserError
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 
 
 def judge(
@@ -31,8 +31,8 @@ def judge(
     The run's own verdict.json is not touched. Exit code: 0 accepted, 1 rejected, 3 blocked.
     """
     from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.pipeline import judge_recording
     from wsim.plan.store import load
+    from wsim.runs.pipeline import judge_recording
 
     if (model or save) and target.suffix != ".npz":
         raise UserError(f"{target} is no trajectory; --model and --save go with a .npz file")

@@ -29,7 +29,7 @@ def mcp(
     wire = None if http else take_stdout()
     from wsim.mcp.desk import Desk
     from wsim.mcp.server import make_server
-    from wsim.pipeline import Settings
+    from wsim.runs.pipeline import Settings
 
     settings = Settings(device=device, isolation=isolation)
     settings.check()

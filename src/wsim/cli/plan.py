@@ -31,7 +31,7 @@ def plan(
 ) -> None:
     """Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two drawings."""
     from wsim.agents.models import BUILTIN, choose
-    from wsim.runs import write_whole
+    from wsim.runs.folder import write_whole
 
     if schema:
         print(_schema())
@@ -64,7 +64,7 @@ def _schema() -> str:
 
 def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
     from wsim.cli.approve import with_answers
-    from wsim.generate import make_plan
+    from wsim.loop.generate import make_plan
     from wsim.plan.store import load
 
     if bool(prompt) == (file is not None):
@@ -79,7 +79,7 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
 def _plan_with(models: Models, prompt: str, image: Path | None, runs: Path) -> Plan:
     """A model's plan; its run's folder keeps what was asked and answered."""
     from wsim.cli.show import ConsoleProgress, console, show_usage
-    from wsim.generate import Options, generate
+    from wsim.loop.generate import Options, generate
 
     if not prompt:
         raise UserError('give a sentence, such as wsim plan "A crank drives a piston." --planner-model MODEL')
@@ -97,7 +97,7 @@ def _show(made: Plan, output: Path | None, planned: bool) -> None:
 
     from wsim.cli.approve import draw
     from wsim.cli.show import console, show_plan
-    from wsim.plan.questions import questions
+    from wsim.rules.questions import questions
 
     path = output.with_suffix(".png") if output else Path(tempfile.mkdtemp(prefix="wsim-plan-")) / "plan.png"
     show_plan(made, questions(made) if planned else (), draw(made, path))

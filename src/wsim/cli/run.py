@@ -9,7 +9,7 @@ import typer
 
 from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
 from wsim.errors import UserError
-from wsim.runs import RunFolder, write_whole
+from wsim.runs.folder import RunFolder, write_whole
 
 
 def run(
@@ -35,9 +35,9 @@ def run(
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """
     from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.pipeline import Settings, run_in_folder
     from wsim.plan.store import load
     from wsim.report import write as write_report
+    from wsim.runs.pipeline import Settings, run_in_folder
 
     program, plan = find_program(target, plan)
     chosen = load(plan) if plan else None

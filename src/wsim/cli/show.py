@@ -15,8 +15,8 @@ from rich.text import Text
 
 if TYPE_CHECKING:
     from wsim.judge.verdict import Finding, Verdict
-    from wsim.plan.questions import Question
     from wsim.plan.schema import Plan
+    from wsim.rules.questions import Question
 
 PIPED_WIDTH = 1000  # a file or a pipe gets each finding on one line
 console = Console(highlight=False, width=None if sys.stdout.isatty() else PIPED_WIDTH)

@@ -12,7 +12,7 @@ import typer
 
 from wsim.cli.options import Device, Isolation
 from wsim.errors import UserError
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 
 if TYPE_CHECKING:
     from wsim.tools import Tool
@@ -39,8 +39,8 @@ def tool(
     from difflib import get_close_matches
 
     from wsim.cli.show import ConsoleProgress
-    from wsim.pipeline import Settings
     from wsim.progress import silent
+    from wsim.runs.pipeline import Settings
     from wsim.tools import TOOLS, Workspace
 
     if not name:

@@ -11,7 +11,7 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.importers.mujoco_state import body_name, load_model
-from wsim.judge.geometry import conjugate, multiply, rotate
+from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 from wsim.scene.world import Body, Joint, Shape, Static, World
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
@@ -59,7 +59,7 @@ def world_of(path: Path) -> World:
 
 
 def _body(model: Any, b: int, pose: Pose, shapes: list[Shape]) -> Body:
-    from wsim.judge.geometry import Solid
+    from wsim.judge.evidence.geometry import Solid
 
     axes = np.stack([rotate(_xyzw(model.body_iquat[b]), axis) for axis in np.eye(3)], axis=1)
     body = Body(

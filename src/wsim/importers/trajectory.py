@@ -135,7 +135,7 @@ def save(recording: Recording, path: Path) -> Path:
 
 def velocities(time: Array, body_q: Array, world: World) -> Array:
     """Velocities (T, B, 6) of the centres of mass by central differences of poses (T, B, 7), second order inside."""
-    from wsim.judge.geometry import conjugate, multiply, rotate
+    from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 
     com = np.array([body.com for body in world.bodies], dtype=np.float64).reshape(-1, 3)
     q = body_q[:, :, 3:]

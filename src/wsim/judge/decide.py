@@ -4,47 +4,47 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wsim.judge.checks_camera import CheckInFrame, CheckSeen
-from wsim.judge.checks_contact import CheckFriction, CheckSupport, CheckTunnelling
-from wsim.judge.checks_energy import CheckEnergy
-from wsim.judge.checks_fluid import CheckFluidMass, CheckHydrostatic, CheckPlanFluid
-from wsim.judge.checks_joint import CheckDrives, CheckJointLimits, CheckJoints
-from wsim.judge.checks_mass import CheckMass
-from wsim.judge.checks_motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
-from wsim.judge.checks_physics import (
+from wsim.judge.checks.camera import CheckInFrame, CheckSeen
+from wsim.judge.checks.contact import CheckFriction, CheckSupport, CheckTunnelling
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.fluid import CheckFluidMass, CheckHydrostatic, CheckPlanFluid
+from wsim.judge.checks.joint import CheckDrives, CheckJointLimits, CheckJoints
+from wsim.judge.checks.mass import CheckMass
+from wsim.judge.checks.motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
+from wsim.judge.checks.physics import (
     CheckDensity,
     CheckExplosion,
     CheckFluidContained,
     CheckPenetration,
     CheckWaterLevel,
 )
-from wsim.judge.checks_plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
-from wsim.judge.checks_rest import CheckCreep, CheckJitter, CheckRestForce
-from wsim.judge.checks_run import CheckComplete, CheckFinite, CheckLog, CheckPlanControl, CheckPlanObjects
-from wsim.judge.evidence import Evidence
+from wsim.judge.checks.plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
+from wsim.judge.checks.rest import CheckCreep, CheckJitter, CheckRestForce
+from wsim.judge.checks.run import CheckComplete, CheckFinite, CheckLog, CheckPlanControl, CheckPlanObjects
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives_fluid import ObjectiveFills, ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
-from wsim.judge.objectives_hinge import ObjectiveSwings, ObjectiveTilts
-from wsim.judge.objectives_motion import (
+from wsim.judge.objectives.fluid import ObjectiveFills, ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
+from wsim.judge.objectives.hinge import ObjectiveSwings, ObjectiveTilts
+from wsim.judge.objectives.motion import (
     ObjectiveCollidesWith,
     ObjectiveFlies,
     ObjectiveMoves,
     ObjectiveRollsDown,
     ObjectiveSlides,
 )
-from wsim.judge.objectives_solid import (
+from wsim.judge.objectives.solid import (
     CheckSettled,
     ObjectiveRestsOn,
     ObjectiveSettles,
     ObjectiveStaysOn,
     ObjectiveTopples,
 )
-from wsim.judge.targets import aim
+from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
 
 if TYPE_CHECKING:
-    from wsim.judge.check import Check
-    from wsim.judge.objective import ObjectiveCheck
+    from wsim.judge.checks.check import Check
+    from wsim.judge.objectives.objective import ObjectiveCheck
     from wsim.plan.schema import Plan
     from wsim.recording.reader import Recording
 

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from wsim.errors import UserError
 from wsim.mcp.desk import Desk
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 
 
@@ -81,7 +81,7 @@ def draft_program(workspace: Workspace, _: DraftProgram) -> Result:
 def _planned(desk: Desk, prompt: str) -> Result:
     """A new run, with the builtin planner's plan in it, drawn."""
     from wsim.agents.transcript import Transcript
-    from wsim.generate import BUILTIN, make_plan
+    from wsim.loop.generate import BUILTIN, make_plan
     from wsim.plan.drawing.picture import draw_picture
     from wsim.plan.store import save
     from wsim.tools.plan import ReadPlan, read_plan

@@ -12,7 +12,7 @@ from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
 from wsim.report.records import Acceptance, Loop, Review, review_of, sums_of
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 
 if TYPE_CHECKING:
     from wsim.recording import Recording

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.geometry import radius_about
+from wsim.judge.evidence.geometry import radius_about
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.targets_objectives import ref_of
+from wsim.judge.repair.objectives import ref_of
 from wsim.report.chart import Chart, Limit, Mark, Series
 from wsim.report.signals import Signal, find_signal
 from wsim.report.text import limit_word, percent, prim_name
 
 if TYPE_CHECKING:
-    from wsim.judge.evidence import Evidence
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
 BESIDE = 0.5  # [s] shown before and after the moment, at least

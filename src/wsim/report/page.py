@@ -11,7 +11,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from wsim.judge.targets_objectives import sentence_of
+from wsim.judge.repair.objectives import sentence_of
 from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
 from wsim.report.attempts import make_attempts
@@ -24,7 +24,7 @@ from wsim.report.facts import make_facts, make_parameters
 from wsim.report.fixes import command, describe, make_fixes
 from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_reference, find_stills, find_video
 from wsim.report.source import SourceLine, source_lines, statement
-from wsim.runs import write_whole
+from wsim.runs.folder import write_whole
 
 STATUS_WORDS = {"accepted": "Accepted", "rejected": "Rejected", "blocked": "Blocked"}
 MOST_CARDS = 8
@@ -161,7 +161,7 @@ def _illustrated(rows: list[Row], contents: RunContents) -> list[Row]:
     """Rows with a plot and a picture of their moment, where the recording has them."""
     if contents.recording is None:
         return rows
-    from wsim.judge.evidence import Evidence
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.report.moments import moment_chart
 
     evidence = Evidence(contents.recording, contents.plan)

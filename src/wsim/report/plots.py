@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence import Evidence
+from wsim.judge.evidence.evidence import Evidence
 from wsim.report.chart import COLORS, MUTED, Chart, Mark, Series
 from wsim.report.text import prim_name
 

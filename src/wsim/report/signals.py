@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.contact import distance, overlaps
-from wsim.judge.geometry import conjugate, rotate
-from wsim.judge.objective import support_of
-from wsim.judge.objectives_motion import downhill
+from wsim.judge.evidence.contact import distance, overlaps
+from wsim.judge.evidence.geometry import conjugate, rotate
+from wsim.judge.objectives.motion import downhill
+from wsim.judge.objectives.objective import support_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence import Evidence
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
     Values = NDArray[np.float64]
@@ -134,7 +134,7 @@ def _sources(
 
 def _of_formula(evidence: Evidence, finding: Finding) -> Iterator[Signal]:
     """The measure that decides a formula."""
-    from wsim.judge.targets_language import decider
+    from wsim.judge.repair.language import decider
 
     found = decider(finding, evidence)
     if found is not None:

@@ -17,8 +17,8 @@ class Accept(OfIteration):
 
 def accept(workspace: Workspace, asked: Accept) -> Result:
     """Accept an iteration whose verdict is accepted."""
-    from wsim.accept import accept as stamp
     from wsim.report import write as write_report
+    from wsim.runs.accept import accept as stamp
 
     path = file_of(workspace, asked.iteration, "verdict.json", "run_program with the pass physics or full judges it")
     verdict = Verdict.model_validate_json(path.read_text(encoding="utf-8"))

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from wsim.errors import UserError
-from wsim.pipeline import Settings
 from wsim.progress import Progress, silent
+from wsim.runs.pipeline import Settings
 from wsim.tools.text import capped, relative
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
-    from wsim.runs import RunFolder
+    from wsim.runs.folder import RunFolder
 
 
 class Arguments(BaseModel):

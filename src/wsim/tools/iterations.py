@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import Field
 
 from wsim.errors import UserError
-from wsim.runs import RunFolder
+from wsim.runs.folder import RunFolder
 from wsim.tools.base import Arguments, Workspace
 
 

@@ -40,7 +40,7 @@ class Query(OfIteration):
 
 def query_recording(workspace: Workspace, asked: Query) -> Result:
     """A few numbers of a recording."""
-    from wsim.judge.evidence import Evidence
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.recording import read
     from wsim.tools.signals import find, known
 

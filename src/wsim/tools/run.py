@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
-from wsim.pipeline import checks_of
-from wsim.runs import write_json
+from wsim.runs.folder import write_json
+from wsim.runs.pipeline import checks_of
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.text import name_of, number, numbers, table
@@ -49,7 +49,7 @@ def run_program(workspace: Workspace, asked: RunProgram) -> Result:
 
 def _build(workspace: Workspace, program: Path) -> Result | None:
     """Make the stage; the answer where there is none to be had."""
-    from wsim.pipeline import build_in, no_world
+    from wsim.runs.pipeline import build_in, no_world
 
     folder = program.parent
     if (folder / "stage.usda").is_file():
@@ -118,7 +118,7 @@ def _full(workspace: Workspace, folder: Path) -> Result:
 
 def _simulate(workspace: Workspace, folder: Path, pictures: bool) -> None:
     """Simulate and judge; recording, verdict and the rest replace those of a narrower pass, file by file."""
-    from wsim.pipeline import simulate_and_judge
+    from wsim.runs.pipeline import simulate_and_judge
 
     settings = replace(workspace.settings, pictures=pictures, verify=workspace.settings.verify and pictures)
     with _kept(folder / "recording.rrd"):

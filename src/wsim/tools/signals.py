@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.errors import UserError
-from wsim.judge.evidence import Evidence, MissingError
+from wsim.judge.evidence.evidence import Evidence, MissingError
 from wsim.tools.text import name_of, prim_of
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def _rotation(evidence: Evidence, i: int) -> Values:
 
 def _tilt(evidence: Evidence, i: int) -> Values:
     """The angle between what pointed up at the start and up."""
-    from wsim.judge.geometry import conjugate, rotate
+    from wsim.judge.evidence.geometry import conjugate, rotate
 
     up = np.array([0.0, 0.0, 1.0])
     q = evidence.body_q[:, i, 3:]
@@ -155,7 +155,7 @@ def _draft(evidence: Evidence, i: int) -> Values:
 
 
 def _gap(evidence: Evidence, prim: str, other: str) -> Values:
-    from wsim.judge.contact import distance
+    from wsim.judge.evidence.contact import distance
 
     solids = [body.prim for body in evidence.world.bodies] + [static.prim for static in evidence.world.statics]
     if not other or prim_of(other) not in solids or prim_of(other) == prim:

@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from wsim.judge import judge
-from wsim.judge.evidence import Evidence
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import ObjectiveFormula, parse
 from wsim.plan.schema import Objective, Plan
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.judge.language.conftest import moving, shape, solid, still, times
-from wsim.judge.evidence import Evidence
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import Signals, evaluate, from_json, parse, python
 from wsim.plan.schema import Objective
 from wsim.plan.schema.formula import VOCABULARY

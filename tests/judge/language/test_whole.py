@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, times
+from wsim.judge.evidence.pendulum import pivot_of, swing_stretch
 from wsim.judge.language import Signals, evaluate, parse
-from wsim.judge.pendulum import pivot_of, swing_stretch
 from wsim.scene.world import World
 
 ARM, RADIUS = 1.0, 0.1

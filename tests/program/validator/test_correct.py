@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from wsim.plan.planner import plan
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.program.validator import validate
+from wsim.rules.planner import plan
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence import MissingError
-from wsim.judge.geometry import rotate
+from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.geometry import rotate
+from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.language.contacts import gap, moving_size, touch_reach
 from wsim.judge.language.measure import Measure, measures
-from wsim.judge.motion import FLOAT32
-from wsim.judge.objective import support_of
+from wsim.judge.objectives.objective import support_of
 from wsim.plan.schema.formula import (
     CollidesWith,
     NeverTouches,

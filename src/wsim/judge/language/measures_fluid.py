@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence import MissingError
+from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
 from wsim.plan.schema.formula import FillsTo, Floats, Sinks, Submerged
@@ -20,7 +20,7 @@ from wsim.plan.schema.formula import FillsTo, Floats, Sinks, Submerged
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence import Evidence
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
     from wsim.scene.world import Fluid
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence import Evidence, MissingError
-from wsim.judge.geometry import conjugate, multiply, reach, rotate
+from wsim.judge.evidence.evidence import Evidence, MissingError
+from wsim.judge.evidence.geometry import conjugate, multiply, reach, rotate
+from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.language.contacts import gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
-from wsim.judge.motion import FLOAT32
 from wsim.plan.schema.formula import (
     ContainedIn,
     Crosses,

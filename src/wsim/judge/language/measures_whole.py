@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.pendulum import Pendulum, period_of, pivot_of
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
-from wsim.judge.motion import FLOAT32
-from wsim.judge.pendulum import Pendulum, period_of, pivot_of
 from wsim.plan.schema.formula import Conserves, Swings
 
 if TYPE_CHECKING:

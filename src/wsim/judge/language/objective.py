@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.check import Check
+from wsim.judge.checks.check import Check
 from wsim.judge.language.evaluate import Outcome, evaluate
 from wsim.judge.language.sentence import sentence
 from wsim.judge.language.signals import Signals
-from wsim.judge.objective import ObjectiveCheck
+from wsim.judge.objectives.objective import ObjectiveCheck
 from wsim.plan.schema.formula import And, Formula
 
 if TYPE_CHECKING:
-    from wsim.judge.evidence import Evidence
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.judge.evidence import Evidence, MissingError
-from wsim.judge.geometry import conjugate, rotate
+from wsim.judge.evidence.evidence import Evidence, MissingError
+from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.recording.reader import Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.geometry import Solid
+    from wsim.judge.evidence.geometry import Solid
     from wsim.plan.schema import Plan
     from wsim.scene.world import Body, Container, Fluid, World
 

@@ -1,0 +1,179 @@
+"""Checks of the cameras: what the world is about is in frame, and is to be seen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Camera
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+MOMENTS = 48  # frames that are looked at
+ONCE = "what the world is about is to be seen, once at least"
+
+
+@dataclass
+class CheckInFrame(Check):
+    """Every camera has something that moves in frame, and everything that moves is in frame of some camera.
+
+    At some time: what is hit or thrown may leave the picture for most of it, and a finding says for how much.
+    """
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each camera and each object that is out of frame too long, or one for none."""
+        world = evidence.world
+        things = _things(evidence)
+        if not world.cameras or not things or len(evidence.time) == 0:
+            return []
+        frames = _moments(len(evidence.time))
+        inside = {camera.prim: _inside(evidence, camera, frames) for camera in world.cameras}
+        found = []
+        for camera in world.cameras:
+            anything: Bools = np.asarray(inside[camera.prim].any(axis=1))
+            target = RepairTarget(kind="camera", prim=camera.prim, parameter="target", direction="change")
+            found += self._out(evidence, frames, anything, camera.prim, "has nothing that moves in frame", target)
+        anywhere: Bools = np.asarray(np.any(list(inside.values()), axis=0))
+        for prim, shown in zip(things, anywhere.T, strict=True):
+            target = RepairTarget(kind="camera", prim=world.cameras[0].prim, parameter="target", direction="change")
+            found += self._out(evidence, frames, shown, prim, "is in frame of no camera", target)
+        least = int(np.argmin(anywhere.mean(axis=0)))
+        share = float(anywhere[:, least].mean())
+        return found or [
+            self.measured(
+                f"Everything that moves is in frame, {things[least]} least, at {share:.0%} of the times",
+                share,
+                1.0 / len(frames),
+                "share of time",
+                at_most=False,
+                prim=things[least],
+                limit_from=ONCE,
+            )
+        ]
+
+    def _out(
+        self, evidence: Evidence, frames: NDArray[np.intp], seen: Bools, prim: str, what: str, target: RepairTarget
+    ) -> list[Finding]:
+        if seen.any():
+            return []
+        time = float(evidence.time[0])
+        return [
+            self.measured(
+                f"{prim} {what} at any time",
+                0.0,
+                1.0 / len(frames),
+                "share of time",
+                at_most=False,
+                prim=prim,
+                time=time,
+                line=evidence.line(prim),
+                limit_from=ONCE,
+                target=target,
+            )
+        ]
+
+
+@dataclass
+class CheckSeen(Check):
+    """Everything that moves is to be seen in some picture: not hidden behind something in all, and not too small."""
+
+    pixels: float = 16.0  # of a picture, below which it is a speck
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each opaque body that is never to be seen, or one for none; nothing without pictures."""
+        seen = evidence.recording.seen
+        if not seen:
+            return []
+        sizes = {camera.prim: camera.width * camera.height for camera in evidence.world.cameras}
+        found, least, least_prim = [], 1.0, ""
+        for body in evidence.world.bodies:
+            if any(shape.opacity < 1.0 for shape in body.shapes) or not body.shapes:
+                continue  # what is clear is not in the pictures of what is opaque
+            times, visible = self._visible(evidence, "/".join(body.prim.split("/")[:3]), sizes)
+            share = float(visible.mean()) if len(times) else 1.0
+            if share < least:
+                least, least_prim = share, body.prim
+            if share == 0.0:
+                target = RepairTarget(kind="camera", prim=next(iter(seen)), parameter="eye", direction="change")
+                found.append(
+                    self.measured(
+                        f"{body.prim} is hidden or a speck in all pictures",
+                        0.0,
+                        1.0 / len(times),
+                        "share of pictures",
+                        at_most=False,
+                        prim=body.prim,
+                        time=float(times[0]),
+                        line=body.line,
+                        limit_from=f"{self.pixels:g} pixels of some camera's picture, once",
+                        target=target,
+                    )
+                )
+        hidden = f": {least_prim} is hidden longest, in {1.0 - least:.0%} of the pictures" if least_prim else ""
+        return found or [self.passed(f"Everything that moves is to be seen{hidden}", prim=least_prim or None)]
+
+    def _visible(self, evidence: Evidence, prim: str, sizes: dict[str, int]) -> tuple[Floats, Bools]:
+        """Times of pictures, and whether any camera then shows the object: at the times that the most cameras share."""
+        tracks = [track for track in evidence.recording.seen.values() if prim in track.objects and len(track.time)]
+        if not tracks:
+            return np.zeros(0), np.zeros(0, dtype=bool)
+        # The first camera draws every frame, the others a few: where all draw, one of them has to show it.
+        times = min((track.time for track in tracks), key=len)
+        shown = np.zeros(len(times), dtype=bool)
+        for camera, track in evidence.recording.seen.items():
+            if prim in track.objects and len(track.time):
+                nearest = np.abs(track.time[None] - times[:, None]).argmin(axis=1)
+                least = self.pixels / sizes.get(camera, 640 * 360)
+                shown |= track.share[nearest, track.objects.index(prim)] >= least
+        return times, shown
+
+
+def _things(evidence: Evidence) -> list[str]:
+    """Prims of what moves: bodies and fluids."""
+    return [body.prim for body in evidence.world.bodies] + [fluid.prim for fluid in evidence.world.fluids]
+
+
+def _moments(frames: int) -> NDArray[np.intp]:
+    return np.unique(np.linspace(0, frames - 1, min(frames, MOMENTS)).astype(int))
+
+
+def _inside(evidence: Evidence, camera: Camera, frames: NDArray[np.intp]) -> Bools:
+    """Whether each thing is in a camera's picture, (frames, things): a body's centre, some of a fluid's particles."""
+    bodies = _in_frame(camera, evidence.motion.com[frames])
+    fluids = []
+    for fluid in evidence.world.fluids:
+        track = evidence.track(fluid)
+        at = np.abs(track.time[None] - evidence.time[frames, None]).argmin(axis=1)
+        some = track.position[at, :: max(1, track.position.shape[1] // 100)]
+        fluids.append(_in_frame(camera, np.asarray(some, dtype=np.float64)).any(axis=1))
+    return np.column_stack([bodies, *fluids])
+
+
+def _in_frame(camera: Camera, points: Floats) -> Bools:
+    """Which points (..., 3) are in a camera's picture, (...)."""
+    eye, up = np.array(camera.eye), np.array(camera.up)
+    ahead = np.array(camera.target) - eye
+    ahead /= max(float(np.linalg.norm(ahead)), 1e-12)
+    right = np.cross(ahead, up)
+    if float(np.linalg.norm(right)) < 1e-9:  # it looks along its own up: any side will do
+        right = np.cross(ahead, np.eye(3)[int(np.argmin(np.abs(ahead)))])
+    right /= float(np.linalg.norm(right))
+    local = points - eye
+    depth = local @ ahead
+    half = math.tan(math.radians(camera.fov) / 2.0)
+    tall = half * camera.height / camera.width
+    inside: Bools = (depth > 0.0) & (np.abs(local @ right) <= half * depth)
+    inside &= np.abs(local @ np.cross(right, ahead)) <= tall * depth
+    return inside

@@ -1,0 +1,290 @@
+"""Checks of solids against solids: no wall is passed through, friction holds and no more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.evidence.geometry import conjugate, rotate, smallest_extent
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.separation import separation
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.contact import Placed
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.intp]
+
+
+@dataclass
+class CheckTunnelling(Check):
+    """No body's centre goes into a solid by one face and out by the opposite one between two frames."""
+
+    travel: float = 0.5  # of a shape's smallest extent: what goes less far in a frame is seen in it, by its penetration
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The first passage through each object, or one finding for none."""
+        motion = evidence.motion
+        if len(motion.h) == 0:
+            return []
+        jointed = {frozenset((joint.parent, joint.child)) for joint in evidence.world.joints}
+        moved = np.linalg.norm(np.diff(motion.com, axis=0), axis=2)
+        found: dict[tuple[str, str], Finding] = {}
+        for shape in evidence.placed:
+            if shape.shape.kind in ("plane", "mesh"):
+                continue  # a plane has no other side, and a mesh no known thickness
+            far = moved + (moved[:, [shape.body]] if shape.body >= 0 else 0.0)
+            k, bodies = np.nonzero(far > self.travel * smallest_extent(shape.shape))
+            apart = np.linalg.norm(motion.com[k, bodies] - shape.position[k], axis=1)
+            reaches = apart < shape.radius + far[k, bodies]
+            k, bodies = k[reaches], bodies[reaches]
+            for i in np.unique(bodies):
+                body = evidence.world.bodies[i]
+                if body.prim == shape.owner or frozenset((body.prim, shape.owner)) in jointed:
+                    continue
+                asked = k[bodies == i]
+                passed = asked[self._passes(evidence, int(i), shape, asked)]
+                if len(passed):
+                    found.setdefault((body.prim, shape.owner), self._finding(evidence, int(i), shape, int(passed[0])))
+        return list(found.values()) or [self.passed("No body has passed through a solid between two frames")]
+
+    @staticmethod
+    def _passes(evidence: Evidence, i: int, shape: Placed, k: Indices) -> NDArray[np.bool_]:
+        """Whether the chord of body i's centre, seen from a shape, goes in and out by opposite faces."""
+        ends = []
+        for frames in (k, k + 1):
+            apart = evidence.motion.com[frames, i] - shape.position[frames]
+            ends.append(rotate(conjugate(shape.rotation[frames]), apart))
+        half = _inner_half(shape.shape)
+        start, way = ends[0], ends[1] - ends[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            one, other = (-half - start) / way, (half - start) / way
+        # Along an axis on which it does not move, it is within all the time or never.
+        still = np.abs(way) < 1e-12
+        within = np.abs(start) < half
+        enters = np.where(still, np.where(within, -np.inf, np.inf), np.minimum(one, other))
+        leaves = np.where(still, np.where(within, np.inf, -np.inf), np.maximum(one, other))
+        first, last = enters.max(axis=1), leaves.min(axis=1)
+        opposite = enters.argmax(axis=1) == leaves.argmin(axis=1)
+        passes: NDArray[np.bool_] = (first > 0.0) & (last < 1.0) & (first < last) & opposite
+        return passes
+
+    def _finding(self, evidence: Evidence, i: int, shape: Placed, k: int) -> Finding:
+        body = evidence.world.bodies[i]
+        start, end = float(evidence.time[k]), float(evidence.time[k + 1])
+        thick = smallest_extent(shape.shape)
+        return self.failed(
+            f"{body.prim} passes through {shape.owner}, {thick * 1e3:.3g} mm thick, from {start:.3f} to {end:.3f} s",
+            prim=body.prim,
+            time=end,
+            span=(start, end),
+            line=body.line,
+            value=float(np.linalg.norm(evidence.motion.com[k + 1, i] - evidence.motion.com[k, i])),
+            expected=0.0,
+            unit="m",
+            limit_from="its centre goes in by one face and out by the opposite one",
+            target=RepairTarget(
+                kind="time step",
+                prim=body.prim,
+                parameter="time_step",
+                direction="lower",
+                suggested=0.25 * thick / max(float(evidence.motion.speed[k, i]), 1e-9),
+                unit="s",
+                why="a step must not cross more than a quarter of what it is to stop at",
+            ),
+        )
+
+
+def _inner_half(shape: Shape) -> Floats:
+    """Half the edges of a box inside a shape, in its own frame [m]."""
+    if shape.kind == "box":
+        return np.array(shape.size) / 2
+    if shape.kind == "sphere":
+        return np.full(3, shape.size[0] / np.sqrt(3.0))
+    across = shape.size[0] / np.sqrt(2.0)
+    return np.array([across, across, shape.size[1] / 2])
+
+
+@dataclass
+class CheckSupport(Check):
+    """What the solver presses on has something there to press: no contact without a surface in reach."""
+
+    share: float = 0.01  # of its smallest extent: a contact may be made that much before it touches
+    steps: float = 2.0  # the one whose force is told, and one that a contact may be late by
+    moments: int = 32  # frames in contact that are looked at
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The body whose nearest surface is farthest away while it is in contact, by its limit."""
+        motion = evidence.motion
+        worst: tuple[float, Finding] | None = None
+        for i in np.flatnonzero(motion.touched.any(axis=0) & ~motion.kinematic):
+            frames = np.flatnonzero(motion.touched[:, i])
+            frames = frames[np.unique(np.linspace(0, len(frames) - 1, min(self.moments, len(frames))).astype(int))]
+            limit = self._limit(evidence, int(i), frames)
+            gap = _nearest(evidence, int(i), frames, limit)
+            at = int(np.argmax(gap / limit))
+            if worst is None or gap[at] / limit[at] > worst[0]:
+                finding = self._finding(evidence, int(i), frames[gap > limit], float(gap[at]), float(limit[at]))
+                worst = (float(gap[at] / limit[at]), finding)
+        return [worst[1]] if worst is not None else []
+
+    def _limit(self, evidence: Evidence, i: int, frames: Indices) -> Floats:
+        """How far a body may have come from what pressed on it, (n,) [m]."""
+        motion = evidence.motion
+        surface = motion.speed + np.linalg.norm(motion.w, axis=2) * motion.radius
+        fastest = np.maximum(surface[frames], surface[np.maximum(frames - 1, 0)]).max(axis=1)
+        rounding = 4.0 * FLOAT32 * np.abs(motion.com[frames, i]).max(axis=1)
+        way = self.steps * 2.0 * (fastest + evidence.gravity * motion.dt) * motion.dt
+        limit: Floats = self.share * evidence.solid(i).smallest + way + rounding
+        return limit
+
+    def _finding(self, evidence: Evidence, i: int, wrong: Indices, gap: float, limit: float) -> Finding:
+        body = evidence.world.bodies[i]
+        target = RepairTarget(kind="program", prim=body.prim, why="it is carried by nothing that is there")
+        return self.measured(
+            f"{body.prim} is pressed on, and the nearest surface is {gap * 1e3:.3g} mm away or more"
+            if len(wrong)
+            else "Where the solver presses, there is something to press",
+            max(gap, 0.0),
+            limit,
+            "m",
+            expected=0.0,
+            prim=body.prim,
+            time=float(evidence.time[wrong[0]]) if len(wrong) else None,
+            span=(float(evidence.time[wrong[0]]), float(evidence.time[wrong[-1]])) if len(wrong) else None,
+            line=body.line,
+            limit_from=f"{self.share:g} of its smallest extent, and the way of both in {self.steps:g} time steps",
+            target=target if len(wrong) else None,
+        )
+
+
+def _nearest(evidence: Evidence, i: int, frames: Indices, limit: Floats) -> Floats:
+    """How far body i is from the nearest other shape at least, (n,) [m]; what is within the limit is not looked at."""
+    nearest = np.full(len(frames), np.inf)
+    for own in (shape for shape in evidence.placed if shape.body == i):
+        for other in (shape for shape in evidence.placed if shape.owner != own.owner):
+            apart = np.linalg.norm(own.position[frames] - other.position[frames], axis=1) - own.radius - other.radius
+            asked = np.flatnonzero((nearest > limit) & (apart < nearest))
+            if len(asked):
+                bound = np.maximum(separation(own, other, frames[asked]), apart[asked])
+                nearest[asked] = np.minimum(nearest[asked], bound)
+    return nearest
+
+
+@dataclass
+class CheckFriction(Check):
+    """What slides on level ground is slowed by mu g: it has friction, and no more than its materials give.
+
+    A ball slides where its lowest point moves; rolling, it has none to lose.
+    """
+
+    least: float = 0.6  # of mu g: a pyramid of friction gives 1 / sqrt(2) of it aslant
+    most: float = 1.25  # of mu g: a box that pitches as it slides presses unevenly
+    fewest: int = 3  # intervals
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each body that slides on a level static surface, touching nothing else."""
+        motion = evidence.motion
+        if len(motion.h) == 0 or evidence.gravity <= 0.0:
+            return []
+        loose = ~motion.jointed & ~motion.kinematic
+        found = []
+        for i in np.flatnonzero(loose):
+            kinds = [shape.kind for shape in evidence.solid(int(i)).shapes]
+            if kinds != ["sphere"] and any(kind not in ("box", "mesh") for kind in kinds):
+                continue  # what else is round may roll some way and slide another
+            finding = self._slides(evidence, int(i), kinds == ["sphere"])
+            if finding is not None:
+                found.append(finding)
+        return found
+
+    def _slides(self, evidence: Evidence, i: int, rolls: bool) -> Finding | None:
+        motion, h = evidence.motion, evidence.motion.h
+        slip, turning, hold = motion.v[:, i, :2], np.linalg.norm(motion.w[:, i], axis=1) * motion.radius[i], 2.0
+        if rolls:  # friction turns a ball until its lowest point stands
+            lowest = np.cross(motion.w[:, i], [0.0, 0.0, -motion.radius[i]])[:, :2]
+            slip, turning = slip + lowest, np.zeros(len(slip))
+            hold = 1.0 + float(motion.mass[i] * motion.radius[i] ** 2 / max(motion.inertia[i, 0, 0], 1e-12))
+        across = np.linalg.norm(slip, axis=1)
+        # Over the whole interval: on the surface, level, faster than friction could stop it, and not turning.
+        level = (np.abs(motion.v[:, i, 2]) < 0.1 * across) & (turning < 0.2 * across)
+        sliding = level[1:] & level[:-1] & ~motion.meets[:, i] & motion.touched[1:, i] & motion.touched[:-1, i]
+        support = self._support(evidence, i, np.flatnonzero(sliding))
+        if support is None:
+            return None
+        k, mu = support
+        k = k[np.minimum(across[k], across[k + 1]) > hold * mu * evidence.gravity * h[k]]
+        if len(k) < self.fewest or mu <= 0.0:
+            return None
+        way = slip[k] / across[k, None]
+        slowed = -float(np.einsum("ki,ki->k", motion.acceleration[k, i, :2], way).mean())
+        return self._finding(evidence, i, k, mu, slowed)
+
+    @staticmethod
+    def _support(evidence: Evidence, i: int, k: Indices) -> tuple[Indices, float] | None:
+        """Those of the intervals in which body i stands on one level static surface alone, and their friction."""
+        low = evidence.ends(i)[0]
+        under = np.zeros(len(k), dtype=int)
+        beside = np.zeros(len(k), dtype=bool)
+        friction = 0.0
+        for shape in evidence.placed:
+            if shape.body >= 0 or shape.shape.kind not in ("plane", "box"):
+                continue
+            upright = rotate(shape.rotation[:1], np.array([[0.0, 0.0, 1.0]]))[0, 2] > 1.0 - 1e-6
+            top = shape.position[0, 2] + (shape.shape.size[2] / 2 if shape.shape.kind == "box" else 0.0)
+            local = rotate(conjugate(shape.rotation[k]), evidence.motion.com[k, i] - shape.position[k])
+            over = np.ones(len(k), dtype=bool)
+            near = np.ones(len(k), dtype=bool)
+            if shape.shape.kind == "box":
+                half = np.array(shape.shape.size) / 2
+                reach = evidence.motion.radius[i] + evidence.motion.reach[k, i]
+                over = np.all(np.abs(local[:, :2]) < half[:2], axis=1)
+                near = np.all(np.abs(local) < half + reach[:, None], axis=1)
+            stands = over & (np.abs(low[k] - top) < 0.05 * evidence.solid(i).smallest) & upright
+            under += stands
+            beside |= near & ~stands & ((low[k] < top - 0.05 * evidence.solid(i).smallest) | (not upright))
+            if stands.any():
+                friction = max(friction, shape.shape.friction)
+        chosen = k[(under == 1) & ~beside]
+        if not len(chosen):
+            return None
+        # The harder rubbing of the two counts, as in MuJoCo.
+        own = max(shape.friction for shape in evidence.solid(i).shapes)
+        return chosen, max(own, friction)
+
+    def _finding(self, evidence: Evidence, i: int, k: Indices, mu: float, slowed: float) -> Finding:
+        body, full = evidence.world.bodies[i], mu * evidence.gravity
+        above = slowed > full
+        limit = full * (self.most if above else self.least)
+        wrong = slowed > limit if above else slowed < limit
+        target = RepairTarget(
+            kind="physical parameter",
+            prim=body.prim,
+            parameter="friction",
+            direction="lower" if above else "raise",
+            suggested=mu,
+            why="it is not slowed as its friction has it",
+        )
+        return self.measured(
+            f"{body.prim} slides, and is slowed by {slowed:.3g} m/s^2; its friction of {mu:g} gives {full:.3g}",
+            slowed,
+            limit,
+            "m/s^2",
+            at_most=above,
+            expected=full,
+            prim=body.prim,
+            time=float(evidence.time[k[0]]),
+            span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
+            line=body.line,
+            limit_from=f"{self.most if above else self.least:g} mu g, mu the greater of the two surfaces'",
+            target=target if wrong else None,
+        )

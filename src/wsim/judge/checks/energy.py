@@ -1,0 +1,169 @@
+"""The energy budget: what bodies have, less what was put into them, never rises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.checks.joint import beyond
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckEnergy(Check):
+    """Nothing gains energy from nowhere: kinetic and potential energy, less work done on it, only fall.
+
+    By mechanism, over the time in which it meets no other, and for all bodies together. What friction and impacts take
+    is not known, so a loss is always possible; a gain never is.
+    """
+
+    share: float = 0.01  # of the energy that changes hands
+    settling: float = 2e-3  # of its smallest extent, that a body may be lifted out of what it stands in
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The largest gain of any mechanism by itself, and of all together."""
+        motion = evidence.motion
+        if len(motion.h) == 0 or self._unknown(evidence):
+            return []
+        energy = motion.kinetic + motion.potential
+        if motion.applied_work is not None:
+            energy = energy - motion.applied_work
+        energy = energy - self._chattered(evidence)
+        stored = self._stored(evidence)
+        none = np.zeros(len(evidence.time))
+        worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
+        # The work on joints, by drives or by a controller, is not known of each mechanism.
+        found = (
+            []
+            if any(joint.drive for joint in evidence.world.joints) or np.any(worked)
+            else self._by_mechanism(evidence, energy, stored)
+        )
+        together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
+        return [*found, self._finding(evidence, np.arange(len(motion.mass)), together, stored)]
+
+    @staticmethod
+    def _unknown(evidence: Evidence) -> bool:
+        """Whether something works on the bodies whose work is not in the recording."""
+        recording, world = evidence.recording, evidence.world
+        pushed = bool(world.fluids) or bool(recording.metadata.get("controlled"))
+        driven = any(joint.drive for joint in world.joints)
+        carried = bool(evidence.motion.kinematic.any() and evidence.motion.speed[:, evidence.motion.kinematic].any())
+        return (
+            len(world.bodies) == 0
+            or carried
+            or (pushed and recording.applied_work is None)
+            or (driven and "work/drives" not in recording.scalars)
+        )
+
+    @staticmethod
+    def _chattered(evidence: Evidence) -> Floats:
+        """What contacts that flip from step to step may have given since the start, (T, B) [J].
+
+        Frames see one phase of them: where places do not follow velocities while a body is in contact, the contact's
+        work is known no better than its force times that.
+        """
+        motion = evidence.motion
+        force = np.linalg.norm(np.asarray(evidence.recording.contact_force, dtype=np.float64), axis=2)
+        told = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
+        hidden = np.linalg.norm(np.diff(motion.com, axis=0) - told, axis=2)
+        work = np.minimum(force[1:], force[:-1]) * hidden
+        chattered: Floats = np.concatenate([np.zeros((1, work.shape[1])), np.cumsum(work, axis=0)])
+        return chattered
+
+    def _stored(self, evidence: Evidence) -> Floats:
+        """What contacts and joint stops may hold as springs and give back, (T, B) [J].
+
+        Of a contact that is its force times the depth to which it gives, as far as a time step can tell.
+        """
+        motion, recording = evidence.motion, evidence.recording
+        deepest = recording.scalars.get("contact/penetration")
+        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
+        force = np.linalg.norm(np.asarray(recording.contact_force, dtype=np.float64), axis=2)
+        stored = force * (give + motion.speed * motion.dt)
+        for joint in evidence.world.joints:
+            track = evidence.joint(joint)
+            if track is not None and (joint.low is not None or joint.high is not None):
+                rows = motion.unit == motion.unit[evidence.index(joint.child)]
+                stored[np.ix_(beyond(joint, track) > 0.0, rows)] = np.inf
+        return stored
+
+    def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
+        """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
+        motion = evidence.motion
+        worst: Finding | None = None
+        for unit in np.unique(motion.unit):
+            rows = np.flatnonzero(motion.unit == unit)
+            meets = np.asarray(motion.meets[:, rows].any(axis=1))
+            gained = np.where(meets, 0.0, np.diff(energy[:, rows].sum(axis=1)))
+            # What a contact took up while it met another, it may give back after.
+            parts = np.flatnonzero(meets[:-1] & ~meets[1:]) + 1
+            owed = stored[np.ix_(parts, rows)].sum(axis=1)
+            gained[parts] -= np.where(np.isfinite(owed), owed, 0.0)
+            finding = self._finding(evidence, rows, np.concatenate([[0.0], np.cumsum(gained)]), stored)
+            if worst is None or (finding.value or 0.0) / (finding.limit or 1.0) > (worst.value or 0.0) / (
+                worst.limit or 1.0
+            ):
+                worst = finding
+        return [worst] if worst is not None else []
+
+    def _finding(self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, stored: Floats) -> Finding:
+        motion = evidence.motion
+        had = balance + stored[:, rows].sum(axis=1)
+        gain = np.maximum(balance - np.minimum.accumulate(had), 0.0)
+        end = int(np.argmax(gain))
+        start = int(np.argmin(had[: end + 1]))
+        limit, scale = self._limit(evidence, rows)
+        wrong = gain[end] > limit
+        alone = len(np.unique(motion.unit[rows])) == 1
+        body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[end, rows]))]]
+        who = body.prim if alone else "All bodies together"
+        over = np.flatnonzero(gain > limit)
+        time = float(evidence.time[over[0] if len(over) else end])
+        value = float(gain[end])
+        return self.measured(
+            f"{who} {'gains' if wrong else 'gains at most'} {value:.3g} J from nowhere"
+            + (f", {value / scale:.2%} of what moves it, by {time:.3f} s" if wrong and scale else ""),
+            value,
+            limit,
+            "J",
+            expected=0.0,
+            prim=body.prim if alone or wrong else None,
+            time=time,
+            span=(float(evidence.time[start]), float(evidence.time[end])),
+            line=body.line if alone or wrong else None,
+            limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, what one time step cannot resolve, and "
+            f"a lift by {self.settling:g} of the size of what may touch something",
+            target=RepairTarget(
+                kind="time step", prim=body.prim, parameter="time_step", direction="lower",
+                why="an integrator that gains energy gains less of it in shorter steps, unless something pushes unseen",
+            )
+            if wrong
+            else None,
+        )  # fmt: skip
+
+    def _limit(self, evidence: Evidence, rows: NDArray[np.intp]) -> tuple[float, float]:
+        """The gain that is no finding yet, and the energy that changes hands [J]."""
+        motion, g = evidence.motion, evidence.gravity
+        kinetic, potential = motion.kinetic[:, rows].sum(axis=1), motion.potential[:, rows].sum(axis=1)
+        scale = float(max(kinetic.max(), np.ptp(potential)))
+        size = np.array([evidence.solid(int(i)).smallest for i in rows])
+        height = np.abs(motion.com[:, rows, 2]).max(axis=0)
+        # What hangs on a joint and touches nothing all run is lifted out of nothing.
+        settles = self.settling * size * (motion.touched[:, rows].any(axis=0) | ~motion.jointed[rows])
+        lift = float((motion.mass[rows] * g * (settles + 4.0 * FLOAT32 * height)).sum())
+        # A first-order step leaves positions behind velocities by up to half a step's fall.
+        late = float((motion.mass[rows] * g * motion.speed[:, rows].max(axis=0)).sum() * 0.5 * min(motion.dt, 0.005))
+        return self.share * scale + lift + late, scale

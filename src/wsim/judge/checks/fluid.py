@@ -1,0 +1,185 @@
+"""Checks of fluids: of the plan's density and level, all of it there, and pressing at rest as deep water does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.plan.schema import PlanObject
+    from wsim.scene.world import Fluid
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckFluidMass(Check):
+    """The recording has as many particles as fill the fluid's box, less what bodies take up of it."""
+
+    share: float = 0.05  # of the particles: those at a body's faces may count or not
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each fluid: its mass [kg]."""
+        return [self._mass(evidence, fluid) for fluid in evidence.world.fluids]
+
+    def _mass(self, evidence: Evidence, fluid: Fluid) -> Finding:
+        count = evidence.track(fluid).position.shape[1]
+        cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
+        volume = math.prod(fluid.size)
+        inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
+        value = fluid.density * volume * count / cells
+        expected = fluid.density * max(volume - inside, 0.0)
+        above = value > expected
+        # A body pushes out the particles whose centres are in it or near: up to a layer of half a spacing all round.
+        skin = sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
+        limit = expected * (1.0 + self.share if above else 1.0 - self.share) - (0.0 if above else fluid.density * skin)
+        wrong = value > limit if above else value < limit
+        target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="spacing", direction="change")
+        return self.measured(
+            f"{fluid.prim} has {value:.4g} kg in {count} particles; its box holds {expected:.4g} kg",
+            value, limit, "kg", at_most=above, expected=expected, prim=fluid.prim, time=0.0, line=fluid.line,
+            limit_from=f"density times volume, to {self.share:g}, and a layer at what stands in it",
+            target=target if wrong else None,
+        )  # fmt: skip
+
+    @staticmethod
+    def _drowned(evidence: Evidence, fluid: Fluid, i: int) -> float:
+        """The volume of body i that is in the fluid's box at the start, if it is over it [m^3]."""
+        q = evidence.body_q[0, i]
+        if np.any(np.abs(q[:2] - np.array(fluid.center[:2])) > np.array(fluid.size[:2]) / 2):
+            return 0.0
+        low, high = fluid.center[2] - fluid.size[2] / 2, fluid.center[2] + fluid.size[2] / 2
+        solid = evidence.solid(i)
+        return solid.volume_below(q[3:], float(q[2]), high) - solid.volume_below(q[3:], float(q[2]), low)
+
+    @classmethod
+    def _skin(cls, evidence: Evidence, fluid: Fluid, i: int) -> float:
+        drowned = cls._drowned(evidence, fluid, i)
+        return drowned * ((1.0 + fluid.spacing / evidence.solid(i).smallest) ** 3 - 1.0)
+
+
+@dataclass
+class CheckPlanFluid(Check):
+    """Each fluid has the plan's density, and stands where the plan has its free surface."""
+
+    share: float = 0.05  # of the density
+    spacings: float = 0.5  # of the level: half of what the particles resolve
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each fluid that differs, or one for none; nothing where a parameter was changed."""
+        if evidence.plan is None or any(p.value != p.default for p in evidence.world.parameters):
+            return []
+        fluids = {fluid.prim: fluid for fluid in evidence.world.fluids}
+        pairs = [(item, fluids.get(evidence.prim(item.name))) for item in evidence.plan.objects]
+        known = [(item, fluid) for item, fluid in pairs if item.primitive == "fluid" and fluid is not None]
+        found = [f for item, fluid in known for f in (*self._density(fluid, item), *self._level(evidence, fluid, item))]
+        return found or ([self.passed("Fluids are of the plan's density and level")] if known else [])
+
+    def _density(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        planned = item.registration.density or (item.material.density if item.material is not None else None)
+        if planned is None or abs(fluid.density / planned - 1.0) <= self.share:
+            return []
+        above = fluid.density > planned
+        target = RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="density", direction="lower" if above else "raise",
+            suggested=planned, unit="kg/m^3",
+        )  # fmt: skip
+        return [
+            self.measured(
+                f"{fluid.prim} has a density of {fluid.density:.4g} kg/m^3; the plan has {planned:.4g} kg/m^3",
+                fluid.density, planned * (1.0 + self.share if above else 1.0 - self.share), "kg/m^3", at_most=above,
+                expected=planned, prim=fluid.prim, time=0.0, line=fluid.line,
+                limit_from=f"the plan's material, to {self.share:.0%}", target=target,
+            )
+        ]  # fmt: skip
+
+    def _level(self, evidence: Evidence, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        row, container = item.relation("FREE-SURFACE-AT"), evidence.container_of(fluid)
+        if row is None or row.value is None or container is None:
+            return []
+        floor = container.inner_center[2] - container.inner_size[2] / 2
+        level = fluid.center[2] + fluid.size[2] / 2 - floor
+        if abs(level - row.value) <= self.spacings * fluid.spacing:
+            return []
+        above = level > row.value
+        target = RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="level", direction="lower" if above else "raise",
+            suggested=row.value, unit="m",
+        )  # fmt: skip
+        return [
+            self.measured(
+                f"{fluid.prim} is filled to {level:.4g} m above the floor of {container.prim}; "
+                f"the plan has {row.value:.4g} m",
+                level, row.value + (1.0 if above else -1.0) * self.spacings * fluid.spacing, "m", at_most=above,
+                expected=row.value, prim=fluid.prim, time=0.0, line=fluid.line,
+                limit_from=f"the plan's level, to {self.spacings:g} particle spacings", target=target,
+            )
+        ]  # fmt: skip
+
+
+@dataclass
+class CheckHydrostatic(Check):
+    """In a fluid at rest the pressure grows with depth as rho g; it is read from the density, p = c^2 (rho - rho0)."""
+
+    share: float = 0.2  # of rho g
+    still: float = 0.1  # of sqrt(g H): slower (rms) is at rest
+    layers: float = 4.0  # of particles, fewer of which have no slope worth the name
+    frames: int = 10  # of the final window
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each fluid that is at rest in a container over the final window: the slope [Pa/m]."""
+        found = []
+        for fluid in evidence.world.fluids:
+            sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or 0.0)
+            track = evidence.track(fluid)
+            if sound <= 0.0 or track.density.size == 0 or evidence.gravity <= 0.0:
+                continue
+            frames = np.flatnonzero(track.time >= evidence.window_start - 1e-9)
+            frames = np.unique(frames[np.linspace(0, len(frames) - 1, min(self.frames, len(frames))).astype(int)])
+            slope = self._slope(evidence, fluid, sound, frames)
+            if slope is not None:
+                found.append(self._finding(evidence, fluid, slope))
+        return found
+
+    def _slope(self, evidence: Evidence, fluid: Fluid, sound: float, frames: NDArray[np.intp]) -> float | None:
+        """The pressure's growth with depth [Pa/m]; None where the fluid moves, or is shallow or nowhere at rest."""
+        track, container = evidence.track(fluid), evidence.container_of(fluid)
+        if container is None or not len(frames):
+            return None
+        level = evidence.level(fluid)
+        height = level.height - level.floor
+        speed = math.sqrt(float(np.mean(np.einsum("tni,tni->tn", track.velocity[frames], track.velocity[frames]))))
+        if height < self.layers * fluid.spacing or speed > self.still * evidence.velocity_scale(height):
+            return None
+        depth = level.height - np.asarray(track.position[frames, :, 2], dtype=np.float64)
+        pressure = sound**2 * (np.asarray(track.density[frames], dtype=np.float64) - fluid.density)
+        # Away from the surface, where a particle's density is cut off at nothing, and what has left the container.
+        used = (depth > fluid.spacing) & (depth < height)
+        if int(used.sum()) < 10:
+            return None
+        return float(np.polyfit(depth[used], pressure[used], 1)[0])
+
+    def _finding(self, evidence: Evidence, fluid: Fluid, slope: float) -> Finding:
+        expected = fluid.density * evidence.gravity
+        above = slope > expected
+        limit = expected * (1.0 + self.share if above else 1.0 - self.share)
+        wrong = slope > limit if above else slope < limit
+        target = RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="speed_of_sound", direction="raise",
+            why="its pressure does not carry its weight",
+        )  # fmt: skip
+        return self.measured(
+            f"{fluid.prim}: its pressure grows by {slope:.4g} Pa a metre of depth at rest; rho g is {expected:.4g}",
+            slope, limit, "Pa/m", at_most=above, expected=expected, prim=fluid.prim, time=evidence.window_start,
+            line=fluid.line, limit_from=f"{self.share:g} of rho g", target=target if wrong else None,
+        )  # fmt: skip

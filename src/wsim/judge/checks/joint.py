@@ -1,0 +1,147 @@
+"""Checks of joints: they hold, they keep to their limits, and their drives are strong enough."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.joints import JointTrack
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Joint
+
+
+@dataclass
+class CheckJoints(Check):
+    """A joint holds: its anchors stay together, and its ends turn only as it lets them."""
+
+    share: float = 0.02  # of the child's smallest extent
+    lean: float = 0.02  # [rad]
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The joint whose anchors are farthest apart, and the one that is turned most, by their limits."""
+        found = []
+        for joint in evidence.world.joints:
+            track = evidence.joint(joint)
+            if track is not None:
+                found.append(self._held(evidence, joint, track))
+        return sorted(found, key=lambda finding: finding.passed)[: max(1, sum(not f.passed for f in found))]
+
+    def _held(self, evidence: Evidence, joint: Joint, track: JointTrack) -> Finding:
+        size = evidence.solid(evidence.index(joint.child)).smallest
+        leans = track.turned.max() / self.lean > track.apart.max() / (self.share * size)
+        error, limit = (track.turned, self.lean) if leans else (track.apart, self.share * size)
+        at = int(np.argmax(error))
+        wrong = error > limit
+        since = float(evidence.time[np.argmax(wrong)]) if wrong.any() else float(evidence.time[at])
+        value = float(error[at])
+        what = f"turns by {value:.3g} rad against what it allows" if leans else f"is {value * 1e3:.3g} mm apart"
+        return self.measured(
+            f"{joint.prim} {what}" if wrong.any() else f"{joint.prim} holds",
+            value,
+            limit,
+            "rad" if leans else "m",
+            prim=joint.prim,
+            time=since,
+            span=(since, float(evidence.time[len(wrong) - 1 - np.argmax(wrong[::-1])])) if wrong.any() else None,
+            expected=0.0,
+            line=joint.line,
+            limit_from=f"{self.lean:g} rad"
+            if leans
+            else f"{self.share:g} of {joint.child}'s smallest extent, {size:.3g} m",
+            target=RepairTarget(kind="joint", prim=joint.prim, why="its ends come apart") if wrong.any() else None,
+        )
+
+
+@dataclass
+class CheckJointLimits(Check):
+    """A hinge or slider keeps to its limits."""
+
+    share: float = 0.05  # of the range: a stop is not quite rigid
+    least: float = 0.01  # [rad] of a hinge, or this times the child's smallest extent of a slider
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each joint with limits."""
+        found = []
+        for joint in evidence.world.joints:
+            track = evidence.joint(joint)
+            if track is None or (joint.low is None and joint.high is None):
+                continue
+            over = beyond(joint, track)
+            size = 1.0 if joint.kind == "revolute" else evidence.solid(evidence.index(joint.child)).smallest
+            range_ = (joint.high - joint.low) if joint.low is not None and joint.high is not None else 0.0
+            limit = max(self.share * range_, self.least * size)
+            wrong = over > limit
+            at = int(np.argmax(wrong)) if wrong.any() else int(np.argmax(over))
+            unit = "rad" if joint.kind == "revolute" else "m"
+            found.append(
+                self.measured(
+                    f"{joint.prim} goes {float(over.max()):.3g} {unit} beyond its limits"
+                    if wrong.any()
+                    else f"{joint.prim} keeps to its limits",
+                    float(max(over.max(), 0.0)),
+                    limit,
+                    unit,
+                    prim=joint.prim,
+                    time=float(evidence.time[at]),
+                    line=joint.line,
+                    limit_from=f"{self.share:g} of its range, for the give of its stops",
+                    target=RepairTarget(kind="joint", prim=joint.prim, parameter="limits", direction="change")
+                    if wrong.any()
+                    else None,
+                )
+            )
+        return found
+
+
+def beyond(joint: Joint, track: JointTrack) -> NDArray[np.float64]:
+    """How far a joint is beyond its limits, (T,) [rad or m]; negative within them."""
+    over = np.full(len(track.position), -np.inf)
+    if joint.low is not None:
+        over = np.maximum(over, joint.low - track.position)
+    if joint.high is not None:
+        over = np.maximum(over, track.position - joint.high)
+    return over
+
+
+@dataclass
+class CheckDrives(Check):
+    """A drive does not end at the end of its strength: it reaches what it is set to, or would with time."""
+
+    share: float = 0.98  # of its greatest effort counts as all of it
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each drive whose effort is bounded and recorded: its share of frames at full effort."""
+        found = []
+        for joint in evidence.world.joints:
+            effort = evidence.recording.scalars.get("drive" + joint.prim.removeprefix("/World"))
+            if joint.drive is None or joint.drive.max_effort is None or effort is None:
+                continue
+            full = np.abs(effort[evidence.window]) >= self.share * joint.drive.max_effort
+            value = float(full.mean())
+            wrong = value > 0.5
+            target = RepairTarget(
+                kind="drive", prim=joint.prim, parameter="drive.max_force", direction="raise", why="it is at its limit"
+            )
+            found.append(
+                self.measured(
+                    f"{joint.prim}: its drive is at its full {joint.drive.max_effort:g} at {value:.0%} of the end",
+                    value,
+                    0.5,
+                    "share of frames",
+                    prim=joint.prim,
+                    time=evidence.window_start,
+                    line=joint.line,
+                    limit_from="half of the final window: a drive that gets where it is to go no longer strains",
+                    target=target if wrong else None,
+                )
+            )
+        return found

@@ -1,0 +1,164 @@
+"""Checks of what bodies weigh: as their materials and sizes have it, and with an inertia that fits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.plan.schema import PlanObject
+    from wsim.scene.world import Body
+
+LIGHTEST, DENSEST = 1.0, 22_600.0  # [kg/m^3]: an aerogel, osmium
+
+
+@dataclass
+class CheckMass(Check):
+    """Each body weighs what its material and size give, and turns as its mass and size let it."""
+
+    share: float = 0.05  # of the plan's mass: a mesh is not quite the shape it stands for
+    varied: float = 0.55  # of it, where a parameter of the program was set to another value than its own
+    thin: float = 0.02  # of m R^2: below, its mass would have to lie on a line
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each body whose mass or inertia is out of bounds, or one for none."""
+        found = []
+        for i, body in enumerate(evidence.world.bodies):
+            if not body.kinematic:
+                found += self._mass(evidence, body) + self._inertia(evidence, i, body)
+        wrong = [finding for finding in found if not finding.passed]
+        return wrong or ([self.passed("Bodies weigh what their sizes and materials give")] if found else [])
+
+    def _mass(self, evidence: Evidence, body: Body) -> list[Finding]:
+        item = _planned(evidence, body.prim)
+        expected = _mass_of(item, body) if item is not None else None
+        if expected is None:
+            return self._density(body)
+        changed = any(p.value != p.default for p in evidence.world.parameters)
+        share = self.varied if changed else self.share
+        above = body.mass > expected
+        limit = expected * (1.0 + share) if above else expected * (1.0 - share)
+        wrong = body.mass > limit if above else body.mass < limit
+        return [
+            self.measured(
+                f"{body.prim} weighs {body.mass:.4g} kg; the plan's material and size give {expected:.4g} kg",
+                body.mass,
+                limit,
+                "kg",
+                at_most=above,
+                expected=expected,
+                prim=body.prim,
+                time=0.0,
+                line=body.line,
+                limit_from=f"{share:g} of density times volume, as the plan has them"
+                + ("; a parameter was changed" if changed else ""),
+                target=_mass_target(body, expected) if wrong else None,
+            )
+        ]
+
+    def _density(self, body: Body) -> list[Finding]:
+        if body.volume <= 0.0:
+            return []
+        density = body.mass / body.volume
+        above = density > 1000.0
+        wrong = not LIGHTEST <= density <= DENSEST
+        return [
+            self.measured(
+                f"{body.prim} has a density of {density:.4g} kg/m^3",
+                density,
+                DENSEST if above else LIGHTEST,
+                "kg/m^3",
+                at_most=above,
+                prim=body.prim,
+                time=0.0,
+                line=body.line,
+                limit_from="matter: an aerogel has 1 kg/m^3, osmium 22 600",
+                target=_mass_target(body, None) if wrong else None,
+            )
+        ]
+
+    def _inertia(self, evidence: Evidence, i: int, body: Body) -> list[Finding]:
+        moments = np.linalg.eigvalsh(np.array(body.inertia).reshape(3, 3))
+        bound = body.mass * float(evidence.motion.radius[i]) ** 2
+        if bound <= 0.0 or not np.isfinite(bound):
+            return []
+        greatest = float(moments[2])
+        # Of any distribution of mass the two smaller moments add up to no less than the greatest.
+        spread = moments[0] + moments[1] - moments[2]
+        if greatest <= bound * 1.001 and greatest >= self.thin * bound and spread >= -1e-3 * greatest:
+            return [self.passed(f"{body.prim}: its inertia fits", prim=body.prim)]
+        above = greatest > bound or spread < 0.0
+        return [
+            self.measured(
+                f"{body.prim} has moments of inertia of {', '.join(f'{m:.3g}' for m in moments)} kg m^2, which no "
+                f"{body.mass:.3g} kg of its size can have",
+                greatest if greatest > bound or spread >= 0.0 else float(moments[2] - moments[0] - moments[1]),
+                (bound if greatest > bound else 0.0) if above else self.thin * bound,
+                "kg m^2",
+                at_most=above,
+                prim=body.prim,
+                time=0.0,
+                line=body.line,
+                limit_from=f"m R^2 at most, R = {evidence.motion.radius[i]:.3g} m, {self.thin:g} of it at least, "
+                "and the greatest no more than the sum of the others",
+                target=RepairTarget(
+                    kind="physical parameter",
+                    prim=body.prim,
+                    parameter="inertia",
+                    direction="lower" if above else "raise",
+                ),
+            )
+        ]
+
+
+def _mass_target(body: Body, expected: float | None) -> RepairTarget:
+    direction = "change" if expected is None else "lower" if body.mass > expected else "raise"
+    return RepairTarget.model_validate(
+        {
+            "kind": "physical parameter",
+            "prim": body.prim,
+            "parameter": "density",
+            "direction": direction,
+            "suggested": expected / body.volume if expected is not None and body.volume > 0.0 else None,
+            "unit": "kg/m^3",
+            "why": "its mass is not that of its material and size",
+        }
+    )
+
+
+def _planned(evidence: Evidence, prim: str) -> PlanObject | None:
+    if evidence.plan is None:
+        return None
+    return next((item for item in evidence.plan.objects if evidence.prim(item.name) == prim), None)
+
+
+def _mass_of(item: PlanObject, body: Body) -> float | None:
+    """What the plan's size and material weigh [kg]; None for an asset, which has a mass of its own."""
+    if item.registration.mass is not None:
+        return item.registration.mass
+    density = item.registration.density or (item.material.density if item.material is not None else None)
+    volume = volume_of(item)
+    if density is None or volume is None:
+        return None
+    return density * volume
+
+
+def volume_of(item: PlanObject) -> float | None:
+    """The volume of a plan's primitive [m^3]; None for what has none of its own."""
+    size = item.size
+    if item.primitive == "box":
+        return float(np.prod(size))
+    if item.primitive == "sphere":
+        return float(4.0 / 3.0 * np.pi * size[0] ** 3)
+    if item.primitive == "cylinder":
+        return float(np.pi * size[0] ** 2 * size[1])
+    if item.primitive == "capsule":
+        return float(np.pi * size[0] ** 2 * (size[1] + 4.0 / 3.0 * size[0]))
+    return None

@@ -1,0 +1,267 @@
+"""Checks of how bodies move: by their own velocity from frame to frame, and in the air by gravity alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+
+    Floats = NDArray[np.float64]
+
+EARTH = (9.78, 9.835)  # [m/s^2]: at sea level on the equator and at a pole, rounded outwards
+ELSEWHERE = ("gravity", "moon", "mars", "space", "weightless", "planet", "jupiter")
+
+
+@dataclass
+class CheckContinuity(Check):
+    """A body goes from frame to frame by its own velocity: it does not jump, and does not turn at once."""
+
+    alias: float = 2.0  # [rad] a frame: beyond, a rotation cannot be told from its shorter way round
+    roundings: float = 8.0  # of float32, in a position
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The place and the turn that the velocity explains least."""
+        motion = evidence.motion
+        if len(motion.h) == 0 or not (~motion.kinematic).any():
+            return []
+        return [self._places(evidence), self._turns(evidence)]
+
+    def _places(self, evidence: Evidence) -> Finding:
+        motion, h = evidence.motion, evidence.motion.h[:, None]
+        moved = np.diff(motion.com, axis=0)
+        strayed = np.linalg.norm(moved - 0.5 * (motion.v[1:] + motion.v[:-1]) * h[:, :, None], axis=2)
+        rounding = self.roundings * FLOAT32 * np.abs(motion.com).max(axis=2)[1:]
+        # Within a frame the velocity may be anything between its ends, a body may fall and be caught, and one that is
+        # hit may hand it on.
+        limit = h * (0.5 * _around(motion.v) + evidence.gravity * h + self._handed_on(evidence)) + rounding
+        source = "half the velocity's change about then, g h, and the speed of what may hit it, over the frame's h"
+        return self._worst(evidence, strayed, limit, "m", "jumps by", source)
+
+    def _turns(self, evidence: Evidence) -> Finding:
+        motion, h = evidence.motion, evidence.motion.h[:, None]
+        q = evidence.body_q[:, :, 3:]
+        cosine = np.abs(np.einsum("tbi,tbi->tb", q[1:], q[:-1]))
+        turned = 2.0 * np.arccos(np.clip(cosine, 0.0, 1.0))
+        rate = np.linalg.norm(motion.w, axis=2)
+        fastest = np.maximum(rate[1:], rate[:-1])
+        half = np.array([evidence.solid(i).smallest / 2 for i in range(len(motion.mass))])
+        # A body that tips over an edge turns at most as g pulls its centre about it.
+        pushed = (evidence.gravity * h + self._handed_on(evidence)) / half
+        limit = h * (fastest + 0.5 * _around(motion.w) + pushed) + 1e-3
+        turned = np.where(fastest * h > self.alias, 0.0, turned)
+        source = "its fastest rate then, half the rate's change, and g h / r or a hit's v / r, over the frame's h"
+        return self._worst(evidence, turned, limit, "rad", "turns by", source)
+
+    @staticmethod
+    def _handed_on(evidence: Evidence) -> Floats:
+        """The speed of the fastest body, where another may hit a body within an interval, (T - 1, B) [m/s]."""
+        motion = evidence.motion
+        fastest = np.maximum(motion.speed[1:], motion.speed[:-1]).max(axis=1, keepdims=True)
+        handed: Floats = np.where(motion.meets, fastest, 0.0)
+        return handed
+
+    def _worst(self, evidence: Evidence, value: Floats, limit: Floats, unit: str, verb: str, source: str) -> Finding:
+        share = np.where(evidence.motion.kinematic, 0.0, value / limit)
+        k, i = np.unravel_index(int(np.argmax(share)), share.shape)
+        body = evidence.world.bodies[i]
+        start, end = float(evidence.time[k]), float(evidence.time[k + 1])
+        wrong = share[k, i] > 1.0
+        message = f"{body.prim} {verb} {value[k, i]:.3g} {unit} more than its velocity gives, at {end:.3f} s"
+        return self.measured(
+            message if wrong else f"Every body {'moves' if unit == 'm' else 'turns'} by its own velocity",
+            float(value[k, i]),
+            float(limit[k, i]),
+            unit,
+            prim=body.prim,
+            time=end,
+            span=(start, end),
+            expected=0.0 if unit == "m" else None,
+            line=body.line,
+            limit_from=source,
+            target=RepairTarget(kind="program", prim=body.prim, why="its pose is set by hand") if wrong else None,
+        )
+
+
+def _around(rate: Floats) -> Floats:
+    """The greatest change of a rate (T, B, 3) over an interval or its neighbours, (T - 1, B)."""
+    change = np.linalg.norm(np.diff(rate, axis=0), axis=2)
+    around = change.copy()
+    around[1:] = np.maximum(around[1:], change[:-1])
+    around[:-1] = np.maximum(around[:-1], change[1:])
+    return around
+
+
+@dataclass
+class CheckFreeFlight(Check):
+    """A body that touches nothing is moved by gravity alone, and by as much as the world has of it."""
+
+    share: float = 0.02  # of g
+    fewest: int = 3  # intervals that a mean is worth taking of
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """Gravity from the trajectories, and the acceleration that nothing explains."""
+        motion = evidence.motion
+        unknown = evidence.recording.metadata.get("controlled") and evidence.recording.applied_impulse is None
+        if len(motion.h) == 0 or unknown:
+            return []
+        strange = np.linalg.norm(motion.acceleration - motion.gravity, axis=2)
+        rounding = 4.0 * FLOAT32 * np.maximum(motion.speed[1:], motion.speed[:-1]) / motion.h[:, None]
+        limit = self.share * max(evidence.gravity, 1.0) + rounding
+        free = ~(motion.touched[1:] | motion.touched[:-1]) & ~motion.kinematic & ~motion.jointed
+        dry = evidence.recording.applied_impulse is not None or not evidence.world.fluids
+        _leave_out_what_may_touch(evidence, free, strange > limit, dry)
+        found = [self._strangest(evidence, np.where(free, strange, 0.0), limit)] if free.any() else []
+        if int(free.sum()) >= self.fewest and evidence.gravity > 0.0:
+            found.append(self._gravity(evidence, free))
+        return found
+
+    def _strangest(self, evidence: Evidence, strange: Floats, limit: Floats) -> Finding:
+        k, i = np.unravel_index(int(np.argmax(strange / limit)), strange.shape)
+        body = evidence.world.bodies[i]
+        wrong = strange[k, i] > limit[k, i]
+        time = float(evidence.time[k + 1])
+        message = f"{body.prim} touches nothing at {time:.3f} s, and is accelerated by {strange[k, i]:.3g} m/s^2"
+        return self.measured(
+            f"{message} besides gravity" if wrong else "Bodies that touch nothing are moved by gravity alone",
+            float(strange[k, i]),
+            float(limit[k, i]),
+            "m/s^2",
+            prim=body.prim,
+            time=time,
+            span=(float(evidence.time[k]), time),
+            expected=0.0,
+            line=body.line,
+            limit_from=f"{self.share:g} of g, and the rounding of recorded velocities",
+        )
+
+    def _gravity(self, evidence: Evidence, free: NDArray[np.bool_]) -> Finding:
+        motion = evidence.motion
+        down = motion.gravity / evidence.gravity
+        measured = float((motion.acceleration[free] @ down).mean())
+        wrong = abs(measured - evidence.gravity) > self.share * evidence.gravity
+        above = measured > evidence.gravity
+        limit = evidence.gravity * (1.0 + (self.share if above else -self.share))
+        target = RepairTarget(
+            kind="physical parameter",
+            parameter="gravity",
+            direction="lower" if above else "raise",
+            suggested=evidence.gravity,
+            unit="m/s^2",
+            why="what falls shows another gravity than the world states",
+        )
+        where = np.argwhere(free)
+        return self.measured(
+            f"Gravity is {measured:.4g} m/s^2 by what falls, {evidence.gravity:.4g} m/s^2 in the world",
+            measured,
+            limit,
+            "m/s^2",
+            at_most=above,
+            expected=evidence.gravity,
+            prim=evidence.world.bodies[where[0][1]].prim,
+            time=float(evidence.time[where[0][0]]),
+            limit_from=f"{self.share:g} of the world's, over {len(where)} body-frames in the air",
+            target=target if wrong else None,
+        )
+
+
+@dataclass
+class CheckFreeTurning(Check):
+    """A body that touches nothing keeps its angular momentum: gravity has no torque about the centre of mass."""
+
+    share: float = 0.02  # of the torque of its weight at its radius, as of g in free flight
+    roundings: float = 8.0  # of float32: of a velocity and a rotation, at both ends
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The torque that nothing explains; nothing where a controller may turn bodies, whose torques are not kept."""
+        motion = evidence.motion
+        if len(motion.h) == 0 or evidence.recording.metadata.get("controlled"):
+            return []
+        momentum = motion.angular_momentum
+        torque = np.linalg.norm(np.diff(momentum, axis=0), axis=2) / motion.h[:, None]
+        most = np.linalg.norm(momentum, axis=2)
+        most = np.maximum(most[1:], most[:-1])
+        rate = np.linalg.norm(motion.w, axis=2)
+        # A first-order step of length dt turns what tumbles by w dt too far or too late in each 1 / w.
+        numerical = most * (
+            np.maximum(rate[1:], rate[:-1]) ** 2 * motion.dt + self.roundings * FLOAT32 / motion.h[:, None]
+        )
+        limit = self.share * motion.mass * max(evidence.gravity, 1.0) * motion.radius + numerical
+        free = ~(motion.touched[1:] | motion.touched[:-1]) & ~motion.kinematic & ~motion.jointed & (limit > 0.0)
+        _leave_out_what_may_touch(evidence, free, torque > limit, dry=not evidence.world.fluids)
+        return [self._finding(evidence, np.where(free, torque, 0.0), limit)] if free.any() else []
+
+    def _finding(self, evidence: Evidence, torque: Floats, limit: Floats) -> Finding:
+        share = np.divide(torque, limit, out=np.zeros_like(torque), where=limit > 0.0)
+        k, i = np.unravel_index(int(np.argmax(share)), share.shape)
+        body, time = evidence.world.bodies[i], float(evidence.time[k + 1])
+        wrong = torque[k, i] > limit[k, i]
+        message = f"{body.prim} touches nothing at {time:.3f} s, and is turned by a torque of {torque[k, i]:.3g} N m"
+        return self.measured(
+            message if wrong else "Bodies that touch nothing keep their angular momentum",
+            float(torque[k, i]),
+            float(limit[k, i]),
+            "N m",
+            prim=body.prim,
+            time=time,
+            span=(float(evidence.time[k]), time),
+            expected=0.0,
+            line=body.line,
+            limit_from=f"{self.share:g} m g R, w^2 dt of what it has, and the rounding of recorded velocities",
+            target=RepairTarget(kind="program", prim=body.prim, why="something turns it unseen") if wrong else None,
+        )
+
+
+def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: NDArray[np.bool_], dry: bool) -> None:
+    """Within a frame a body may land and leave again: only what has nothing in reach is surely free."""
+    for i in np.flatnonzero((free & odd).any(axis=0)):
+        asked = np.flatnonzero(free[:, i] & odd[:, i])
+        excused = evidence.motion.near(int(i), asked)
+        if not dry:
+            excused |= evidence.motion.wet(int(i), asked)
+        free[asked[excused], i] = False
+
+
+@dataclass
+class CheckGravity(Check):
+    """The world's gravity is the Earth's and points down, unless the prompt is about another place."""
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding, where there is a plan."""
+        plan = evidence.plan
+        words = plan.prompt.lower() if plan is not None else ""
+        if plan is None or any(word in words for word in ELSEWHERE):
+            return []
+        down = -evidence.world.gravity[2]
+        above = down > sum(EARTH) / 2
+        wrong = not EARTH[0] <= down <= EARTH[1]
+        target = RepairTarget(
+            kind="physical parameter",
+            parameter="gravity",
+            direction="lower" if above else "raise",
+            suggested=9.81,
+            unit="m/s^2",
+            why="nothing in the prompt asks for another gravity than the Earth's",
+        )
+        return [
+            self.measured(
+                f"The world's gravity is {down:.4g} m/s^2 downwards",
+                down,
+                EARTH[1] if above else EARTH[0],
+                "m/s^2",
+                at_most=above,
+                expected=9.81,
+                limit_from="the Earth's, from the equator to the poles",
+                target=target if wrong else None,
+            )
+        ]

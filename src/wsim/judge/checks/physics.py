@@ -1,0 +1,306 @@
+"""Checks that hold for any world: energy bounds speeds, solids keep out of each other, fluid stays fluid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.evidence.contact import overlaps
+from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.geometry import reach, smallest_extent
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Fluid, Shape
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckExplosion(Check):
+    """Nothing moves faster than the energy that was there can make it."""
+
+    body_factor: float = 2.0  # a light body that a heavy one hits leaves at up to twice its speed
+    fluid_factor: float = 3.0  # a splash's jet is thinner, and faster, than what raised it
+    least: float = 0.1  # no bound is below this [m/s]: a world where nothing can fall may still settle
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The fastest body and the fastest particle of each fluid."""
+        free = self._free_speed(evidence)
+        found = []
+        if evidence.world.bodies and not any(body.kinematic for body in evidence.world.bodies):
+            found.append(self._bodies(evidence, free))
+        for fluid in evidence.world.fluids:
+            found.append(self._fluid(evidence, fluid, free))
+        return found
+
+    def _free_speed(self, evidence: Evidence) -> float:
+        """sqrt(v0^2 + 2 g dz): the speed of the fastest thing at the start after the longest fall there is [m/s]."""
+        world = evidence.world
+        tops = [float(evidence.ends(i)[1][0]) for i in range(len(world.bodies))]
+        tops += [fluid.center[2] + fluid.size[2] / 2 for fluid in world.fluids]
+        lows = _lows(evidence)
+        if not lows:  # nothing to land on: they fall for as long as the run lasts
+            lows = [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
+            lows += [float(evidence.track(fluid).position[:, :, 2].min()) for fluid in world.fluids]
+        fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
+        start = max((float(np.linalg.norm(body.velocity)) for body in world.bodies), default=0.0)
+        return math.sqrt(start**2 + 2 * evidence.gravity * fall)
+
+    def _bodies(self, evidence: Evidence, free: float) -> Finding:
+        reported = np.linalg.norm(evidence.body_qd[:, :, :3], axis=2)
+        moved = np.zeros_like(reported)
+        step = np.maximum(np.diff(evidence.time), 1e-9)[:, None]
+        moved[1:] = np.linalg.norm(np.diff(evidence.body_q[:, :, :3], axis=0), axis=2) / step
+        # Where the origin is not the centre of mass, it also turns about it: that is not speed of the body.
+        arms = [float(np.linalg.norm(body.com)) for body in evidence.world.bodies]
+        moved -= np.linalg.norm(evidence.body_qd[:, :, 3:], axis=2) * np.array(arms)
+        fastest = np.maximum(reported, moved)
+        bound = np.sqrt(max(self.body_factor * free, self.least) ** 2 + self._driven(evidence))
+        frame, i = np.unravel_index(int(np.argmax(fastest / bound)), fastest.shape)
+        body = evidence.world.bodies[i]
+        value, limit, time = float(fastest[frame, i]), float(bound[frame, i]), float(evidence.time[frame])
+        how = "jumps at" if moved[frame, i] > reported[frame, i] and value > limit else "reaches"
+        return self.measured(
+            f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
+            value,
+            limit,
+            "m/s",
+            prim=body.prim,
+            time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
+            line=body.line,
+            limit_from=f"{self.body_factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
+            "by a far heavier body, and the work of drives and control",
+        )
+
+    @staticmethod
+    def _driven(evidence: Evidence) -> Floats:
+        """The square of the speed that the work of drives, control and fluid may have given, (T, B) [m^2/s^2]."""
+        applied, motion = evidence.motion.applied_work, evidence.motion
+        work = np.zeros(motion.speed.shape) if applied is None else applied.copy()
+        drives = evidence.recording.scalars.get("work/drives")
+        if drives is not None:
+            work[:, motion.jointed] += np.nancumsum(drives)[:, None]
+        most: Floats = 2.0 * np.maximum(np.maximum.accumulate(work, axis=0), 0.0) / motion.mass
+        return most
+
+    def _fluid(self, evidence: Evidence, fluid: Fluid, free: float) -> Finding:
+        track = evidence.track(fluid)
+        sound = fluid.speed_of_sound or float(evidence.recording.metadata.get("speed_of_sound") or math.inf)
+        limit = min(max(self.fluid_factor * free, self.least), sound)
+        square = np.einsum("tni,tni->tn", track.velocity, track.velocity)
+        # What is under everything solid has left the world, and falls on and on: that is a leak, and counted as one.
+        floor = min(_lows(evidence), default=-math.inf) - fluid.spacing
+        fastest = np.sqrt(np.where(track.position[:, :, 2] < floor, 0.0, square).max(axis=1))
+        frame = int(np.argmax(fastest))
+        value, time = float(fastest[frame]), float(track.time[frame])
+        return self.measured(
+            f"{fluid.prim}: its fastest particle has {value:.3g} m/s, at {time:.3f} s",
+            value,
+            limit,
+            "m/s",
+            prim=fluid.prim,
+            time=self._first(track.time, fastest > limit, time),
+            line=fluid.line,
+            limit_from=f"{self.fluid_factor:g} sqrt(v0^2 + 2 g dz), or the speed of sound, beyond which a weakly "
+            "compressible fluid is none",
+        )
+
+    @staticmethod
+    def _first(time: Floats, wrong: NDArray[np.bool_], otherwise: float) -> float:
+        return float(time[np.argmax(wrong)]) if wrong.any() else otherwise
+
+
+def _lows(evidence: Evidence) -> list[float]:
+    """Height of the lowest point of each static shape [m]."""
+    return [_lowest(shape) for static in evidence.world.statics for shape in static.shapes]
+
+
+def _lowest(shape: Shape) -> float:
+    """Height of a static shape's lowest point; a plane's own height [m]."""
+    if shape.kind == "plane":
+        return shape.position[2]
+    low, _ = reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))
+    return float(low[0])
+
+
+@dataclass
+class CheckPenetration(Check):
+    """Solids are not in each other: not deeply at any time, not slightly for long."""
+
+    lasting: float = 0.05  # of the body's smallest extent, for longer than `seconds`
+    brief: float = 0.2  # at any frame
+    seconds: float = 0.1
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The worst pair by its poses, and the solver's own deepest contact if it is recorded."""
+        if not evidence.world.bodies:
+            return []
+        worst: Finding | None = None
+        for pair in overlaps(evidence):
+            size = min(smallest_extent(p.shape) for p in (pair.a, pair.b) if p.body >= 0)
+            finding = self._judge(evidence, pair.depth, size, f"{pair.a.owner} in {pair.b.owner}", pair.a.owner)
+            if worst is None or _share(finding) > _share(worst):
+                worst = finding
+        found = [worst or self.passed("No body is in another, or in a static object")]
+        depth = evidence.recording.scalars.get("contact/penetration")
+        if depth is not None:
+            # Of the bodies that ever had a contact: the solver does not say whose is the deepest.
+            touched = np.flatnonzero(evidence.motion.touched.any(axis=0))
+            rows = touched if len(touched) else range(len(evidence.world.bodies))
+            smallest = min(evidence.solid(int(i)).smallest for i in rows)
+            found.append(self._judge(evidence, np.nan_to_num(depth, nan=0.0), smallest, "the solver's contacts", None))
+        return found
+
+    def _judge(self, evidence: Evidence, depth: Floats, size: float, what: str, prim: str | None) -> Finding:
+        step = float(np.median(np.diff(evidence.time))) if len(evidence.time) > 1 else 1.0
+        frames = min(len(depth), max(1, math.ceil(self.seconds / step)) + 1)
+        held = np.lib.stride_tricks.sliding_window_view(depth, frames).min(axis=1)
+        lasting, brief = float(held.max()), float(depth.max())
+        if lasting / self.lasting > brief / self.brief:
+            value, limit, at = lasting, self.lasting * size, int(np.argmax(held))
+            span, source = f"for {self.seconds:g} s or longer", f"{self.lasting:g} of the smallest extent, {size:.3g} m"
+        else:
+            value, limit, at = brief, self.brief * size, int(np.argmax(depth))
+            span, source = "for a moment", f"{self.brief:g} of the smallest extent, {size:.3g} m, at any time"
+        time = float(evidence.time[at])
+        return self.measured(
+            f"Deepest penetration, {what}: {max(value, 0.0) * 1e3:.2g} mm {span}, at {time:.3f} s",
+            value,
+            limit,
+            "m",
+            prim=prim,
+            time=time,
+            line=evidence.line(prim),
+            limit_from=source,
+        )
+
+
+def _share(finding: Finding) -> float:
+    return (finding.value or 0.0) / finding.limit if finding.limit else math.inf
+
+
+@dataclass
+class CheckFluidContained(Check):
+    """The fluid stays in its container: not through the walls, not through the floor, hardly over the rim."""
+
+    share: float = 0.01  # of the particles
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The largest share outside, for each fluid that has a container."""
+        return [contained(self, evidence, fluid, self.share) for fluid in evidence.world.fluids if fluid.container]
+
+
+def contained(check: Check, evidence: Evidence, fluid: Fluid, share: float) -> Finding:
+    """A finding about the largest share of a fluid's particles outside its container at any time."""
+    if evidence.container_of(fluid) is None:
+        raise MissingError(f"{fluid.prim} has no container in the world: {fluid.container}")
+    outside = evidence.outside(fluid)
+    times = evidence.track(fluid).time
+    value = float(outside.max())
+    time = float(times[np.argmax(outside > share)] if value > share else times[np.argmax(outside)])
+    return check.measured(
+        f"{value:.2%} of {fluid.prim} is outside {fluid.container}",
+        value,
+        share,
+        "share of particles",
+        prim=fluid.prim,
+        time=time,
+        expected=0.0,
+        line=fluid.line,
+        limit_from=f"{share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m",
+    )
+
+
+@dataclass
+class CheckDensity(Check):
+    """The fluid keeps its density: a weakly compressible solver that does not is not simulating a liquid."""
+
+    mean: float = 0.02  # mean error of the particles' densities
+    percentile: float = 0.06  # error that 99 % of them keep to
+    times: float = 0.95  # at this share of the frames: an impact may compress the fluid for a moment
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """Mean and 99th percentile of the relative error, for each fluid."""
+        found = []
+        for fluid in evidence.world.fluids:
+            track = evidence.track(fluid)
+            if track.density.shape[:1] != track.position.shape[:1] or track.density.size == 0:
+                found += self._from_scalars(evidence, fluid)
+                continue
+            error = np.abs(track.density / fluid.density - 1.0)
+            rank = min(error.shape[1] - 1, int(0.99 * error.shape[1]))
+            tail = np.partition(error, rank, axis=1)[:, rank]
+            found.append(self._held(fluid, error.mean(axis=1), track.time, self.mean, "mean density error"))
+            found.append(self._held(fluid, tail, track.time, self.percentile, "99th percentile of the density error"))
+        return found
+
+    def _from_scalars(self, evidence: Evidence, fluid: Fluid) -> list[Finding]:
+        values = evidence.recording.scalars.get("fluid/density_error_mean")
+        if values is None:
+            return [self.failed(f"{fluid.prim}: its density is not in the recording", prim=fluid.prim)]
+        return [self._held(fluid, np.abs(values), evidence.time, self.mean, "mean density error")]
+
+    def _held(self, fluid: Fluid, error: Floats, time: Floats, limit: float, what: str) -> Finding:
+        # Not interpolated, so that the value is one that was recorded; NaN sorts last, and fails.
+        value = float(np.sort(error)[max(0, math.ceil(self.times * len(error)) - 1)])
+        return self.measured(
+            f"{fluid.prim}: {what} {value:.2%}, at {self.times:.0%} of the times or better",
+            value,
+            limit,
+            "1",
+            prim=fluid.prim,
+            time=float(time[np.argmax(error > limit)] if value > limit else time[np.nanargmax(error)]),
+            expected=0.0,
+            line=fluid.line,
+            limit_from="a weakly compressible liquid stays within about 1 %; as much again for splashes",
+        )
+
+
+@dataclass
+class CheckWaterLevel(Check):
+    """The surface that the particles show is where their volume says it is: a sum over both solver and recording."""
+
+    spacings: float = 1.0
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The difference, for each fluid in a container whose surface can be seen."""
+        found = []
+        for fluid in evidence.world.fluids:
+            if evidence.container_of(fluid) is None:
+                continue
+            level = evidence.level(fluid)
+            if level.seen is None:
+                continue
+            height = max(level.height - level.floor, 0.0)
+            slosh = self._speed(evidence, fluid) * math.sqrt(height / max(evidence.gravity, 1e-9))
+            where = f"{level.seen - level.floor:.4g} m above the floor, by volume {level.height - level.floor:.4g} m"
+            found.append(
+                self.measured(
+                    f"{fluid.prim}: its surface stands {where}",
+                    abs(level.seen - level.height),
+                    self.spacings * fluid.spacing + slosh,
+                    "m",
+                    prim=fluid.prim,
+                    time=evidence.window_start,
+                    expected=0.0,
+                    line=fluid.line,
+                    limit_from=f"{self.spacings:g} particle spacing, which they resolve, and v sqrt(H / g): as high as "
+                    "it still sloshes",
+                )
+            )
+        return found
+
+    @staticmethod
+    def _speed(evidence: Evidence, fluid: Fluid) -> float:
+        """The particles' root mean square speed over the final window [m/s]."""
+        track = evidence.track(fluid)
+        v = track.velocity[track.time >= evidence.window_start - 1e-9]
+        return math.sqrt(float(np.mean(np.einsum("tni,tni->tn", v, v)))) if v.size else 0.0

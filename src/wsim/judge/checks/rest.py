@@ -1,0 +1,232 @@
+"""Checks of what is at rest: carried by its weight, not trembling, not creeping."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.evidence.geometry import rotate
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckRestForce(Check):
+    """Contact forces on a body at rest add up to its weight, less what fluid and control carry."""
+
+    share: float = 0.1  # of its weight
+    still: float = 0.02  # of sqrt(g L), L its smallest extent: slower is at rest
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The body at rest whose contact forces are farthest from that, over the final window."""
+        motion, recording = evidence.motion, evidence.recording
+        wet = bool(evidence.world.fluids or recording.metadata.get("controlled")) and recording.applied_impulse is None
+        if wet or not np.any(recording.contact_force) or evidence.gravity <= 0.0 or int(evidence.window.sum()) < 2:
+            return []
+        span = float(evidence.time[-1] - evidence.time[evidence.window][0])
+        force = np.asarray(recording.contact_force[evidence.window], dtype=np.float64).mean(axis=0)
+        if recording.applied_impulse is not None:
+            force += np.asarray(recording.applied_impulse[evidence.window][1:], dtype=np.float64).sum(axis=0) / span
+        gained = motion.mass[:, None] * (motion.v[-1] - motion.v[evidence.window][0]) / span
+        lacking = force + motion.mass[:, None] * motion.gravity - gained
+        # A contact that flips from step to step is seen in one phase of it at every frame: the velocity that the places
+        # do not show then is the impulse that the force is off by, in each step.
+        shown = (motion.com[-1] - motion.com[evidence.window][0]) / span
+        flips = 2.0 * np.linalg.norm(motion.v[evidence.window].mean(axis=0) - shown, axis=1)
+        hidden = motion.mass * flips / motion.dt
+        found = [
+            self._finding(evidence, int(i), lacking[i], force[i], float(hidden[i]))
+            for i in np.flatnonzero(~motion.jointed & ~motion.kinematic)
+            if self._rests(evidence, int(i))
+        ]
+        return sorted(found, key=lambda finding: finding.margin or 0.0)[: max(1, sum(not f.passed for f in found))]
+
+    def _rests(self, evidence: Evidence, i: int) -> bool:
+        limit = self.still * evidence.velocity_scale(evidence.solid(i).smallest)
+        here = evidence.window
+        touched = bool(evidence.motion.touched[here, i].all())
+        return touched and float(evidence.motion.speed[here, i].max()) < limit
+
+    def _finding(self, evidence: Evidence, i: int, lacking: Floats, force: Floats, hidden: float) -> Finding:
+        body = evidence.world.bodies[i]
+        weight = body.mass * evidence.gravity
+        value = float(np.linalg.norm(lacking))
+        limit = self.share * weight + hidden
+        wrong = value > limit
+        shown = float(-force @ evidence.motion.gravity / evidence.gravity**2)
+        target = RepairTarget(
+            kind="physical parameter", prim=body.prim, parameter="mass", direction="change", suggested=shown, unit="kg",
+            why="the forces on it are those of another mass",
+        )  # fmt: skip
+        return self.measured(
+            f"{body.prim} rests, and {value:.3g} N are missing from the {weight:.4g} N that carry it"
+            if wrong
+            else "Contacts carry the weight of what rests",
+            value,
+            limit,
+            "N",
+            prim=body.prim,
+            time=evidence.window_start,
+            expected=0.0,
+            line=body.line,
+            limit_from=f"{self.share:g} of its weight, a mean over the final window, and what flips from step to step",
+            target=target if wrong else None,
+        )
+
+
+@dataclass
+class CheckJitter(Check):
+    """A body that stays where it is does not tremble: its velocity does not flip from frame to frame, on and on."""
+
+    parts: int = 4  # of the window, in the calmest of which it still trembles: a bounce dies away
+    contact: float = 0.9  # of the frames, in which what does not bounce is in contact
+    steps: float = 2.0  # of gravity in a time step, which is what a contact may be late by
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The body that trembles most over the final window."""
+        motion = evidence.motion
+        here = np.flatnonzero(evidence.window)
+        loose = np.flatnonzero(~motion.jointed & ~motion.kinematic)
+        if len(here) < 4 * self.parts or not len(loose):
+            return []
+        h = motion.h[here[:-1]][:, None, None]
+        moved = np.diff(motion.com[here][:, loose], axis=0) / h
+        flips = [
+            np.maximum(_flips(places), _flips(rates))
+            for places, rates in zip(
+                np.array_split(moved, self.parts), np.array_split(motion.v[here][:, loose], self.parts), strict=True
+            )
+        ]
+        tremble = np.min(flips, axis=0)
+        size = np.array([evidence.solid(int(i)).smallest for i in loose])
+        stays = np.linalg.norm(motion.com[here[-1]][loose] - motion.com[here[0]][loose], axis=1) < size
+        touched = motion.touched[here][:, loose].mean(axis=0)
+        bounces = (touched > 0.0) & (touched < self.contact)  # it is in the air between
+        tremble = np.where(stays & ~bounces, tremble, 0.0)
+        rounding = 4.0 * FLOAT32 * np.abs(motion.com[here][:, loose]).max(axis=(0, 2)) / float(h.min())
+        limit = self.steps * max(evidence.gravity, 1.0) * motion.dt + rounding
+        n = int(np.argmax(tremble / limit))
+        body = evidence.world.bodies[loose[n]]
+        wrong = tremble[n] > limit[n]
+        target = RepairTarget(
+            kind="time step", prim=body.prim, parameter="time_step", direction="lower", why="its contacts chatter"
+        )
+        return [
+            self.measured(
+                f"{body.prim} trembles by {tremble[n]:.3g} m/s from frame to frame at the end"
+                if wrong
+                else "Nothing trembles at the end",
+                float(tremble[n]),
+                float(limit[n]),
+                "m/s",
+                prim=body.prim,
+                time=evidence.window_start,
+                span=(evidence.window_start, float(evidence.time[-1])),
+                expected=0.0,
+                line=body.line,
+                limit_from=f"{self.steps:g} g dt, dt = {motion.dt * 1e3:.3g} ms: a contact is late by a step at most",
+                target=target if wrong else None,
+            )
+        ]
+
+
+def _flips(rate: Floats) -> Floats:
+    """The amplitude of what alternates from frame to frame in rates (n, B, 3), (B,): a median, blind to single hits."""
+    bend = np.linalg.norm(rate[2:] - 2.0 * rate[1:-1] + rate[:-2], axis=2) / 4.0
+    amplitude: Floats = np.median(bend, axis=0)
+    return amplitude
+
+
+@dataclass
+class CheckCreep(Check):
+    """What stands on the ground by friction does not creep: it slides and is slowed, or stands."""
+
+    share: float = 0.01  # of its smallest extent a second
+    slowed: float = 0.2  # of what the least friction in the world would take in the window
+    upright: float = 3.0  # [deg] from the vertical, to which a cylinder stands on its end
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The body with flat faces that creeps fastest over the final window."""
+        motion, here = evidence.motion, np.flatnonzero(evidence.window)
+        if len(here) < 3 or evidence.gravity <= 0.0:
+            return []
+        span = float(evidence.time[here[-1]] - evidence.time[here[0]])
+        found = []
+        for i in np.flatnonzero(~motion.jointed & ~motion.kinematic & motion.touched[here].all(axis=0)):
+            shapes = evidence.solid(int(i)).shapes
+            mu = min((shape.friction for shape in shapes), default=0.0)
+            flat = all(self._flat(evidence, int(i), shape) for shape in shapes)
+            if not flat or mu <= 0.0 or self._carried(evidence, int(i)) or self._afloat(evidence, int(i)):
+                continue
+            way = motion.com[here[-1], i] - motion.com[here[0], i]
+            speed = float(np.linalg.norm(way)) / span
+            # By the places, whose drift is what is asked: a half of the window against the other.
+            middle = motion.com[here[len(here) // 2], i]
+            halves = np.linalg.norm([middle - motion.com[here[0], i], motion.com[here[-1], i] - middle], axis=1)
+            steady = abs(halves[1] - halves[0]) / (span / 2) < self.slowed * mu * evidence.gravity * span / 2
+            size = evidence.solid(int(i)).smallest
+            limit = self.share * size + 8.0 * FLOAT32 * float(np.abs(motion.com[here, i]).max()) / span
+            found.append(self._finding(evidence, int(i), speed if steady else 0.0, limit))
+        return sorted(found, key=lambda finding: finding.margin or 0.0)[: max(1, sum(not f.passed for f in found))]
+
+    def _flat(self, evidence: Evidence, i: int, shape: Shape) -> bool:
+        """Whether a shape of body i does not roll: it has flat faces, or stands on its flat end all the window."""
+        if shape.kind != "cylinder":
+            return shape.kind in ("box", "mesh")
+        axis = rotate(np.array(shape.rotation), np.array([0.0, 0.0, 1.0]))
+        up = np.abs(rotate(evidence.body_q[evidence.window, i, 3:], axis[None])[:, 2])
+        return bool(up.min() > math.cos(math.radians(self.upright)))
+
+    @staticmethod
+    def _carried(evidence: Evidence, i: int) -> bool:
+        """Whether something else that moves is with it: it may ride, or be pushed."""
+        motion, here = evidence.motion, np.flatnonzero(evidence.window)[:-1]
+        others = np.ones(len(motion.mass), dtype=bool)
+        others[i] = False
+        return bool(motion.meets[here, i].any() and (motion.speed[here][:, others] > 1e-3).any())
+
+    @staticmethod
+    def _afloat(evidence: Evidence, i: int) -> bool:
+        """Whether it is in a fluid, which may carry it."""
+        last = np.array([len(evidence.motion.h) - 1])
+        return bool(evidence.world.fluids) and bool(evidence.motion.wet(i, last).any())
+
+    def _finding(self, evidence: Evidence, i: int, speed: float, limit: float) -> Finding:
+        body = evidence.world.bodies[i]
+        wrong = speed > limit
+        return self.measured(
+            f"{body.prim} creeps by {speed * 1e3:.3g} mm/s at the end, and nothing slows it"
+            if wrong
+            else "What stands by friction does not creep",
+            speed,
+            limit,
+            "m/s",
+            prim=body.prim,
+            time=evidence.window_start,
+            span=(evidence.window_start, float(evidence.time[-1])),
+            expected=0.0,
+            line=body.line,
+            limit_from=f"{self.share:g} of its smallest extent a second",
+            target=RepairTarget(
+                kind="settlement",
+                prim=body.prim,
+                parameter="friction",
+                direction="raise",
+                why="friction does not hold it",
+            )
+            if wrong
+            else None,
+        )

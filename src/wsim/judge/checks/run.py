@@ -1,0 +1,198 @@
+"""Checks of the run as such: is it whole, finite, and of the world that was asked for?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+
+
+@dataclass
+class CheckFinite(Check):
+    """Every pose, velocity, force and particle is a finite number, and every rotation a unit quaternion."""
+
+    rotation_error: float = 1e-3  # of a quaternion's length
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The first time and prim at which a value is not finite."""
+        recording = evidence.recording
+        first: tuple[float, str, str] | None = None
+        for what, array in (
+            ("pose", recording.body_q),
+            ("velocity", recording.body_qd),
+            ("contact force", recording.contact_force),
+        ):
+            for frame, i in np.argwhere(~np.isfinite(array).all(axis=2))[:1]:
+                first = _earlier(first, (float(evidence.time[frame]), evidence.world.bodies[i].prim, what))
+        for prim, track in recording.fluids.items():
+            for what, array in (
+                ("particle positions", track.position),
+                ("particle velocities", track.velocity),
+                ("particle densities", track.density),
+            ):
+                bad = ~np.isfinite(array).all(axis=tuple(range(1, array.ndim)))
+                if bad.any():
+                    first = _earlier(first, (float(track.time[np.argmax(bad)]), prim, what))
+        if first is not None:
+            time, prim, what = first
+            message = f"{prim}: the {what} is not a finite number from {time:.3f} s on"
+            return [self.failed(message, prim=prim, time=time, line=evidence.line(prim), limit_from="NaN or infinity")]
+        return [self._rotations(evidence)]
+
+    def _rotations(self, evidence: Evidence) -> Finding:
+        error = np.abs(np.linalg.norm(evidence.body_q[:, :, 3:], axis=2) - 1.0)
+        if error.size == 0:
+            return self.passed("Every value is finite")
+        frame, i = np.unravel_index(int(np.argmax(error)), error.shape)
+        prim = evidence.world.bodies[i].prim
+        value = float(error[frame, i])
+        message = "Every value is finite, every rotation a unit quaternion"
+        if value > self.rotation_error:
+            message = f"{prim}: its rotation is no unit quaternion at {evidence.time[frame]:.3f} s"
+        return self.measured(
+            message,
+            value,
+            self.rotation_error,
+            "1",
+            prim=prim,
+            time=float(evidence.time[frame]),
+            line=evidence.line(prim),
+            limit_from="a quaternion's length is 1, to single precision and the integrator's drift",
+        )
+
+
+def _earlier(a: tuple[float, str, str] | None, b: tuple[float, str, str]) -> tuple[float, str, str]:
+    return b if a is None or b[0] < a[0] else a
+
+
+@dataclass
+class CheckComplete(Check):
+    """The recording covers the planned time, in order, and holds the particles of every fluid."""
+
+    frames_missing: float = 1.5  # at the end
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for the time covered, and one for each thing that is missing."""
+        found = []
+        planned = evidence.plan.simulation.duration if evidence.plan is not None else evidence.world.duration
+        error = evidence.recording.metadata.get("error")
+        reached = float(evidence.time[-1])
+        limit = planned - self.frames_missing / evidence.world.frame_rate
+        message = f"The recording covers {reached:.3f} s of {planned:g} s"
+        found.append(
+            self.measured(
+                f"{message}: {error}" if error and reached < limit else message,
+                reached,
+                limit,
+                "s",
+                at_most=False,
+                time=reached,
+                expected=planned,
+                limit_from=f"the planned duration less {self.frames_missing:g} frames",
+            )
+        )
+        back = np.flatnonzero(np.diff(evidence.time) <= 0)
+        if len(back):
+            found.append(self.failed("Recorded times do not increase", time=float(evidence.time[back[0]])))
+        # Half the frames is far below any thinning a recorder does, and far above what a stalled one leaves.
+        wanted = 0.5 * min(reached, planned) * evidence.world.frame_rate
+        if len(evidence.time) < wanted:
+            message = f"The recording has {len(evidence.time)} frames, where {2 * wanted:.0f} were asked for"
+            found.append(
+                self.measured(message, len(evidence.time), wanted, "frames", at_most=False, limit_from="half of them")
+            )
+        for fluid in evidence.world.fluids:
+            track = evidence.recording.fluids.get(fluid.prim)
+            if track is None or len(track.time) == 0 or track.position.shape[1] == 0:
+                message = f"{fluid.prim}: the recording holds no particles of it"
+                found.append(self.failed(message, prim=fluid.prim, line=fluid.line))
+        return found
+
+
+@dataclass
+class CheckLog(Check):
+    """The run's log has no error and no overflow warning."""
+
+    levels: tuple[str, ...] = ("ERROR", "CRITICAL", "FATAL")
+    words: tuple[str, ...] = ("overflow",)
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each bad line, or one for none."""
+        found = []
+        for entry in evidence.recording.log:
+            bad = entry.level.upper() in self.levels or any(word in entry.text.lower() for word in self.words)
+            if bad:
+                message = f"{entry.level.upper()} in the log: {entry.text}"
+                line = evidence.line(entry.prim)
+                found.append(self.failed(message, prim=entry.prim, time=entry.time, line=line))
+        return found or [self.passed("The log has no error and no overflow")]
+
+
+@dataclass
+class CheckPlanObjects(Check):
+    """The world has the plan's objects, in their roles, and no others."""
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each object that is missing, misplaced or extra, or one for none."""
+        if evidence.plan is None:
+            return []
+        world = evidence.world
+        has = {
+            "container": {c.prim for c in world.containers},
+            "fluid": {f.prim for f in world.fluids},
+            "dynamic": {b.prim for b in world.bodies},
+            "static": {s.prim for s in world.statics},
+        }
+        everything = {"/".join(prim.split("/")[:3]) for prims in has.values() for prim in prims}
+        found = []
+        for item in evidence.plan.objects:
+            prim = evidence.prim(item.name)
+            kind = item.role if item.role in ("container", "fluid") else item.state
+            if prim not in everything:
+                found.append(self.failed(f"The plan's {item.name} is not in the world: no {prim}", prim=prim))
+            elif prim not in has[kind]:
+                actual = next((name for name, prims in has.items() if prim in prims), "something else")
+                message = f"{prim} is {actual}; the plan has it as {kind}"
+                found.append(self.failed(message, prim=prim, line=evidence.line(prim)))
+        planned = {evidence.prim(item.name) for item in evidence.plan.objects}
+        for prim in sorted(everything - planned):
+            message = f"{prim} is in the world, but not in the plan"
+            found.append(self.failed(message, prim=prim, line=evidence.line(prim)))
+        return found or [self.passed(f"The world has the plan's {len(planned)} objects and no others")]
+
+
+@dataclass
+class CheckPlanControl(Check):
+    """A world is steered by `control` where the plan asks for it, and only there: unseen hands could do anything."""
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding where the plan asks for control or the program has one, none for another world."""
+        plan, controlled = evidence.plan, bool(evidence.recording.metadata.get("controlled"))
+        if plan is None:
+            return []
+        asked = [item.name for item in plan.objects if item.registration.actuation]
+        asked += [step.title for step in plan.steps if "control" in f"{step.title} {step.shows}".lower()]
+        if bool(asked) == controlled:
+            return [self.passed(f"The plan asks for control: {asked[0]}")] if controlled else []
+        message = (
+            "The program's control acts on the world, and the plan asks for none: what happens may be its doing"
+            if controlled
+            else f"The plan asks for control ({asked[0]}), and the program has no control(world, t)"
+        )
+        return [
+            self.failed(
+                message,
+                limit_from="a step that names control, or an object's actuation",
+                target=RepairTarget(
+                    kind="controller", parameter="control", direction="remove" if controlled else "add"
+                ),
+            )
+        ]

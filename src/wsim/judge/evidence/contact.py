@@ -1,0 +1,150 @@
+"""How deep shapes are in each other, from their recorded poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.geometry import conjugate, depth_inside, matrices, multiply, radius_about, rotate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+
+MOST_VERTICES = 200  # of a mesh that are probed
+CHUNK = 2048  # frames probed at once
+
+
+@dataclass
+class Placed:
+    """A colliding shape through time."""
+
+    owner: str  # prim of its body or static
+    body: int  # row of its body, or -1
+    shape: Shape
+    position: Floats  # (T, 3)
+    rotation: Floats  # (T, 4)
+    radius: float  # of a ball about it [m]
+
+
+@dataclass
+class Overlap:
+    """Two shapes that come into each other."""
+
+    a: Placed
+    b: Placed
+    depth: Floats  # (T,) [m]; not positive when apart
+
+
+def placed_shapes(evidence: Evidence) -> list[Placed]:
+    """All colliding shapes, those of bodies first."""
+    placed = []
+    frames = len(evidence.time)
+    for i, body in enumerate(evidence.world.bodies):
+        q = evidence.body_q[:, i, 3:]
+        for shape in body.shapes:
+            if shape.collides:
+                position, turned = evidence.body_q[:, i, :3], q
+                if any(shape.position):
+                    position = position + rotate(q, np.array(shape.position, dtype=np.float64))
+                if any(shape.rotation[:3]):
+                    turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
+                placed.append(Placed(body.prim, i, shape, position, turned, radius_about(shape)))
+    for static in evidence.world.statics:
+        for shape in static.shapes:
+            if shape.collides:
+                fixed = np.broadcast_to(np.array(shape.position, dtype=np.float64), (frames, 3))
+                turned = np.broadcast_to(np.array(shape.rotation, dtype=np.float64), (frames, 4))
+                placed.append(Placed(static.prim, -1, shape, fixed, turned, radius_about(shape)))
+    return placed
+
+
+def overlaps(evidence: Evidence) -> list[Overlap]:
+    """Every pair of shapes, of different owners and with no joint between them, that overlap at some time.
+
+    A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
+    edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
+    """
+    shapes = evidence.placed
+    jointed = {frozenset((joint.parent, joint.child)) for joint in evidence.world.joints}
+    # Two can only meet if the boxes about all the places that each is ever in do.
+    low = np.array([shape.position.min(axis=0) - shape.radius for shape in shapes]).reshape(-1, 3)
+    high = np.array([shape.position.max(axis=0) + shape.radius for shape in shapes]).reshape(-1, 3)
+    found = []
+    for index, a in enumerate(shapes):
+        if a.body < 0:
+            break
+        later = slice(index + 1, None)
+        may_meet = np.all((low[index] <= high[later]) & (low[later] <= high[index]), axis=1)
+        for b in (shapes[index + 1 + k] for k in np.flatnonzero(may_meet)):
+            if a.owner == b.owner or frozenset((a.owner, b.owner)) in jointed:
+                continue
+            depth = _depth(a, b)
+            if depth is not None and depth.max() > 0.0:
+                found.append(Overlap(a, b, depth))
+    return found
+
+
+def distance(evidence: Evidence, one: str, other: str) -> Floats:
+    """The gap between two objects at each frame, (T,) [m]; not positive when they touch, inf where nothing collides."""
+    shapes = evidence.placed
+    near = np.ones(len(evidence.time), dtype=bool)
+    gap = np.full(len(near), np.inf)
+    for a in (shape for shape in shapes if shape.owner == one):
+        for b in (shape for shape in shapes if shape.owner == other):
+            gap = np.minimum(gap, -np.maximum(_probe(a, b, near), _probe(b, a, near)))
+    return gap
+
+
+def _depth(a: Placed, b: Placed) -> Floats | None:
+    near = np.ones(len(a.position), dtype=bool)
+    if np.isfinite(b.radius):
+        near = np.linalg.norm(a.position - b.position, axis=1) < a.radius + b.radius
+    if not near.any():
+        return None
+    depth = np.full(len(near), -np.inf)
+    depth[near] = np.maximum(_probe(a, b, near), _probe(b, a, near))
+    return depth
+
+
+def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
+    """How deep the points of a are in b, (n,) [m]."""
+    if a.shape.kind == "plane":
+        return np.full(int(near.sum()), -np.inf)
+    points, margin = probe_points(a.shape)
+    frames = np.flatnonzero(near)
+    depth = np.empty(len(frames))
+    for start in range(0, len(frames), CHUNK):  # so many frames at once as the processor's cache holds
+        part = frames[start : start + CHUNK]
+        back = conjugate(b.rotation[part])
+        local = rotate(back, a.position[part] - b.position[part])[:, :, None]
+        if points.any():  # else it is the middle of a ball, however turned
+            local = local + matrices(multiply(back, a.rotation[part])) @ points.T
+        depth[start : start + CHUNK] = depth_inside(b.shape, np.moveaxis(local, 1, -1)).max(axis=1)
+    return depth + margin
+
+
+def probe_points(shape: Shape) -> tuple[Floats, float]:
+    """Points (P, 3) in a shape's frame, and the radius of the ball that each stands for [m]."""
+    if shape.kind == "sphere":
+        return np.zeros((1, 3)), shape.size[0]
+    if shape.kind == "capsule":
+        z = np.linspace(-0.5, 0.5, 9) * shape.size[1]
+        return np.column_stack([np.zeros((9, 2)), z]), shape.size[0]
+    if shape.kind == "cylinder":
+        angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+        ring = np.column_stack([np.cos(angle), np.sin(angle)]) * shape.size[0]
+        ends = [np.column_stack([r, np.full(len(r), z * shape.size[1])]) for z in (-0.5, 0.0, 0.5) for r in (ring,)]
+        return np.concatenate([*ends, [[0.0, 0.0, -0.5 * shape.size[1]], [0.0, 0.0, 0.5 * shape.size[1]]]]), 0.0
+    if shape.kind == "mesh" and shape.vertices:
+        vertices = np.array(shape.vertices, dtype=np.float64)
+        return vertices[:: max(1, len(vertices) // MOST_VERTICES)], 0.0
+    ticks = (-0.5, 0.0, 0.5)
+    grid = np.array([[x, y, z] for x in ticks for y in ticks for z in ticks if (x, y, z) != (0.0, 0.0, 0.0)])
+    return grid * np.array(shape.size), 0.0

@@ -1,0 +1,68 @@
+"""How well joints hold, from the recorded poses of the bodies at their ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.geometry import conjugate, multiply, rotate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Joint, Quat, Vec3
+
+    Floats = NDArray[np.float64]
+
+AXES = {"X": 0, "Y": 1, "Z": 2}
+
+
+@dataclass(frozen=True)
+class JointTrack:
+    """One joint through time, (T,) each."""
+
+    apart: Floats  # how far its anchors are from where it holds them [m]
+    turned: Floats  # angle by which its ends are turned against what it allows [rad]
+    position: Floats  # its own motion: of a hinge [rad], of a slider [m]; 0 for the others
+
+
+def track_of(evidence: Evidence, joint: Joint) -> JointTrack | None:
+    """A joint's track; None where the recording does not say where its anchors are."""
+    if joint.parent_anchor is None or joint.child_anchor is None:
+        return None
+    above, above_turn = _anchor(evidence, joint.parent, joint.parent_anchor, joint.parent_turn)
+    below, below_turn = _anchor(evidence, joint.child, joint.child_anchor, joint.child_turn)
+    offset = rotate(conjugate(above_turn), below - above)  # in the parent's anchor
+    turn = multiply(conjugate(above_turn), below_turn)
+    turn = np.where(turn[:, 3:] < 0.0, -turn, turn)
+    axis = AXES[joint.axis]
+    angle = 2.0 * np.arctan2(np.linalg.norm(turn[:, :3], axis=1), turn[:, 3])
+    position = np.zeros(len(offset))
+    if joint.kind == "prismatic":
+        position = offset[:, axis].copy()
+        offset[:, axis] = 0.0
+    elif joint.kind == "revolute":
+        position = np.unwrap(2.0 * np.arctan2(turn[:, axis], turn[:, 3]))
+        # How far the hinge's axis, seen from its parent, leans.
+        along = np.zeros(3)
+        along[axis] = 1.0
+        leaning = np.linalg.norm(np.cross(rotate(turn, along[None]), along), axis=1)
+        angle = np.arcsin(np.clip(leaning, 0.0, 1.0))
+    elif joint.kind == "spherical":
+        angle = np.zeros(len(offset))
+    return JointTrack(np.linalg.norm(offset, axis=1), angle, position)
+
+
+def _anchor(evidence: Evidence, prim: str | None, position: Vec3, turn: Quat) -> tuple[Floats, Floats]:
+    """Where an anchor is in the world, (T, 3) and (T, 4)."""
+    own = np.array(turn, dtype=np.float64)
+    if prim is None:
+        frames = len(evidence.time)
+        return np.tile(np.array(position, dtype=np.float64), (frames, 1)), np.tile(own, (frames, 1))
+    q = evidence.body_q[:, evidence.index(prim)]
+    return q[:, :3] + rotate(q[:, 3:], np.array(position)[None]), multiply(
+        q[:, 3:], np.broadcast_to(own, q[:, 3:].shape)
+    )

@@ -1,0 +1,1 @@
+"""Objectives: what a plan says must happen, a class for each kind."""

@@ -1,0 +1,120 @@
+"""What the objectives share: one planned objective put to the evidence, and what carries a body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.geometry import rotate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.plan.schema import Objective
+    from wsim.scene.world import Fluid
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class ObjectiveCheck(Check):
+    """One objective of the plan. A prim that is not there is a failed finding, not an error."""
+
+    objective: Objective
+
+    def run(self, evidence: Evidence) -> list[Finding]:
+        """The findings, each with the objective's sentence and its object's prim and line."""
+        prim = evidence.prim(self.objective.object)
+        try:
+            found = self.evaluate(evidence)
+        except MissingError as error:
+            found = [self.failed(f"{prim}: {error.args[0]}")]
+        except Exception as error:  # noqa: BLE001 - as for every check
+            found = [self.failed(f"{prim}: {self.name} could not be evaluated: {type(error).__name__}: {error}")]
+        for finding in found:
+            finding.objective = self.sentence
+            finding.prim = finding.prim or prim
+            finding.line = finding.line or evidence.line(finding.prim)
+        return found
+
+    @property
+    def sentence(self) -> str:
+        """The objective in words."""
+        given = self.objective
+        return given.sentence or " ".join(word for word in (given.object, given.kind, given.ref) if word)
+
+    def ref(self) -> str:
+        """The other object's name; MissingError."""
+        if self.objective.ref is None:
+            raise MissingError(f'"{self.objective.kind}" needs another object, and the plan names none')
+        return self.objective.ref
+
+
+@dataclass
+class Support:
+    """What a body is to rest on."""
+
+    top: Floats  # its height at each frame, (T,) [m]
+    over: NDArray[np.bool_]  # whether the body's centre is over it, (T,)
+    fluid: Fluid | None = None  # the fluid that stands on it
+    name: str = ""
+
+
+def support_of(evidence: Evidence, i: int, prim: str) -> Support:
+    """The top of a container's floor, a static object or another body, under body i; MissingError."""
+    frames = len(evidence.time)
+    where = evidence.body_q[:, i, :3]
+    container = evidence.container(prim)
+    if container is not None:
+        p = evidence.local(container, where)
+        half = np.array(container.inner_size) / 2
+        over = (np.abs(p[:, 0]) <= half[0]) & (np.abs(p[:, 1]) <= half[1])
+        fluid = next((f for f in evidence.world.fluids if f.container == prim), None)
+        return Support(np.full(frames, container.inner_center[2] - half[2]), over, fluid, "the inner floor of " + prim)
+    static = evidence.static(prim)
+    if static is not None:
+        return _on_static(evidence, where, prim)
+    j = evidence.index(prim)
+    top = evidence.ends(j)[1]
+    low, high = _footprint(evidence, j)
+    over = np.all((where[:, :2] >= low) & (where[:, :2] <= high), axis=1)
+    return Support(top, over, None, prim)
+
+
+def _on_static(evidence: Evidence, where: Floats, prim: str) -> Support:
+    """The highest of a static object's shapes under each position."""
+    static = evidence.static(prim)
+    frames = len(where)
+    top = np.full(frames, -np.inf)
+    for shape in static.shapes if static is not None else []:
+        q = np.array(shape.rotation, dtype=np.float64)
+        if shape.kind == "plane":
+            normal = rotate(q, np.array([0.0, 0.0, 1.0]))
+            offset = where[:, :2] - np.array(shape.position[:2])
+            top = np.maximum(top, shape.position[2] - (offset @ normal[:2]) / normal[2])
+            continue
+        half = np.array([shape.size[0]] * 2 if shape.kind != "box" else shape.size[:2]) / (
+            2 if shape.kind == "box" else 1
+        )
+        height = shape.size[2] / 2 if shape.kind == "box" else shape.size[-1] / (1 if shape.kind == "sphere" else 2)
+        local = rotate(q * np.array([-1.0, -1.0, -1.0, 1.0]), where - np.array(shape.position))
+        over = np.all(np.abs(local[:, :2]) <= half, axis=1)
+        top = np.where(over, np.maximum(top, shape.position[2] + height), top)
+    return Support(top, np.isfinite(top), None, prim)
+
+
+def _footprint(evidence: Evidence, j: int) -> tuple[Floats, Floats]:
+    """The bounding rectangle of a body seen from above, at each frame, (T, 2) each."""
+    q = evidence.body_q[:, j]
+    lows, highs = [], []
+    for surface in evidence.solid(j).surfaces:
+        points = rotate(q[:, None, 3:], surface.vertices[None])[:, :, :2] + q[:, None, :2]
+        lows.append(points.min(axis=1))
+        highs.append(points.max(axis=1))
+    return np.min(lows, axis=0), np.max(highs, axis=0)

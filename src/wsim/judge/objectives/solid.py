@@ -1,0 +1,254 @@
+"""Objectives about bodies and what carries them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.checks.check import Check
+from wsim.judge.evidence.geometry import conjugate, rotate
+from wsim.judge.objectives.objective import ObjectiveCheck, Support, support_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+
+    Floats = NDArray[np.float64]
+
+ROUND = ("sphere", "cylinder", "capsule")
+
+
+@dataclass
+class CheckSettled(Check):
+    """What is to float or rest has come to rest, so that a mean over the last second means something.
+
+    Floating or round bodies may drift or roll: only their vertical speed counts.
+    """
+
+    factor: float = 0.05  # of sqrt(g L), L the body's smallest extent
+    seconds: float = 0.5
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each body that an objective wants floating, under water or at rest."""
+        if evidence.plan is None:
+            return []
+        found = []
+        wanted = [o for o in evidence.plan.objectives if o.kind in ("floats", "submerged", "rests_on")]
+        for name in dict.fromkeys(objective.object for objective in wanted):
+            prim = evidence.prim(name)
+            if any(body.prim == prim for body in evidence.world.bodies):
+                found.append(self._speed(evidence, evidence.index(prim)))
+        return found
+
+    def _speed(self, evidence: Evidence, i: int) -> Finding:
+        body, solid = evidence.world.bodies[i], evidence.solid(i)
+        vertical = bool(evidence.world.fluids) or any(shape.kind in ROUND for shape in solid.shapes)
+        v = evidence.body_qd[evidence.last(self.seconds), i, :3]
+        speed = math.sqrt(float(np.mean(v[:, 2] ** 2 if vertical else np.sum(v**2, axis=1))))
+        limit = self.factor * evidence.velocity_scale(solid.smallest)
+        return self.measured(
+            f"{body.prim} has {'a vertical speed' if vertical else 'a speed'} of {speed:.3g} m/s (rms) at the end",
+            speed,
+            limit,
+            "m/s",
+            prim=body.prim,
+            time=float(evidence.time[-1]) - self.seconds,
+            line=body.line,
+            limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L",
+        )
+
+
+@dataclass
+class ObjectiveRestsOn(ObjectiveCheck):
+    """The body ends on the other object: touching it from above, not moving up or down, carried by it."""
+
+    share: float = 0.05  # gap: of the body's height,
+    spacings: float = 0.25  # or of the particle spacing where there is fluid
+    force: float = 0.25  # of the weight that the contact must carry
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The gap [m], and where contact forces are recorded, the force [N]."""
+        prim = evidence.prim(self.objective.object)
+        i = evidence.index(prim)
+        support = support_of(evidence, i, evidence.prim(self.ref()))
+        if not support.over[evidence.window].all():
+            time = evidence.earliest(evidence.since(~support.over))
+            return [self.failed(f"{prim} is not over {support.name} at the end", time=time)]
+        found = [self._gap(evidence, i, support)]
+        force = self._force(evidence, i, support)
+        return [*found, force] if force is not None else found
+
+    def _gap(self, evidence: Evidence, i: int, support: Support) -> Finding:
+        low, high = evidence.ends(i)
+        gap = low - support.top
+        here = evidence.window
+        tolerance = self.objective.tolerance or max(
+            self.share * float((high - low)[here].mean()),
+            self.spacings * support.fluid.spacing if support.fluid else 0.0,
+        )
+        value = float(gap[here].mean())
+        prim = evidence.world.bodies[i].prim
+        failing = abs(value) > tolerance
+        since = evidence.since(np.abs(gap) > tolerance)
+        word = "does not rest on" if failing else "rests on"
+        return self.measured(
+            f"{prim} {word} {support.name}: its lowest point is {value * 1e3:.3g} mm above it",
+            value,
+            tolerance if value >= 0 else -tolerance,
+            "m",
+            at_most=value >= 0,
+            expected=0.0,
+            time=evidence.earliest(since if failing else None),
+            limit_from="the plan's tolerance"
+            if self.objective.tolerance
+            else f"{self.share:g} of the body's height"
+            + (f", or {self.spacings:g} particle spacings if more" if support.fluid else ""),
+        )
+
+    def _force(self, evidence: Evidence, i: int, support: Support) -> Finding | None:
+        """The mean contact force against weight less buoyancy; None where no force was recorded."""
+        force = np.asarray(evidence.recording.contact_force[evidence.window, i, 2], dtype=np.float64)
+        if not np.any(evidence.recording.contact_force):
+            return None
+        body = evidence.world.bodies[i]
+        weight = body.mass * evidence.gravity
+        buoyancy, film = self._by_fluid(evidence, i, support)
+        expected, value = weight - buoyancy, float(force.mean())
+        above = value > expected
+        limit = expected + self.force * weight + film if above else expected - self.force * weight
+        source = f"{self.force:g} of its weight about weight less buoyancy, as a mean over the final window"
+        if above and film > 0.0:
+            source += f", and {film:.3g} N for the fluid that particles cannot bring under it"
+        return self.measured(
+            f"{body.prim} is carried with {value:.4g} N; its weight {'less buoyancy' if buoyancy else 'alone'} is "
+            f"{expected:.4g} N",
+            value,
+            limit,
+            "N",
+            at_most=above,
+            expected=expected,
+            time=evidence.window_start,
+            limit_from=source,
+        )
+
+    @staticmethod
+    def _by_fluid(evidence: Evidence, i: int, support: Support) -> tuple[float, float]:
+        """Buoyancy, and the lift that is lost where no particle fits between body and floor [N].
+
+        Nothing presses up on the part of the body's underside that is within a spacing of the floor: at the most the
+        still fluid's pressure there, times the body's section a spacing above its lowest point.
+        """
+        fluid = support.fluid
+        if fluid is None:
+            return 0.0, 0.0
+        solid = evidence.solid(i)
+        position, rotation = evidence.resting_pose(i)
+        z, level = float(position[2]), evidence.level(fluid).height
+        bottom = float(evidence.ends(i)[0][evidence.window].mean())
+        specific = fluid.density * evidence.gravity
+        thin = 0.05 * fluid.spacing
+        height = bottom + min(fluid.spacing, solid.smallest / 2)
+        slab = solid.volume_below(rotation, z, height + thin) - solid.volume_below(rotation, z, height - thin)
+        film = specific * max(0.0, level - bottom) * slab / (2 * thin)
+        return specific * solid.volume_below(rotation, z, level), film
+
+
+@dataclass
+class ObjectiveStaysOn(ObjectiveCheck):
+    """The body stays on the other object all the time."""
+
+    share: float = 0.1  # of the body's height
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding: the largest gap at any time [m]."""
+        prim = evidence.prim(self.objective.object)
+        i = evidence.index(prim)
+        support = support_of(evidence, i, evidence.prim(self.ref()))
+        low, high = evidence.ends(i)
+        tolerance = self.objective.tolerance or self.share * float((high - low)[0])
+        gap = np.where(support.over, np.abs(low - support.top), np.inf)
+        off = gap > tolerance
+        time = float(evidence.time[np.argmax(off)]) if off.any() else float(evidence.time[-1])
+        source = "the plan's tolerance" if self.objective.tolerance else f"{self.share:g} of the body's height"
+        value = float(gap.max())
+        if not math.isfinite(value):
+            return [
+                self.failed(
+                    f"{prim} leaves {support.name} at {time:.3f} s: it is no longer over it",
+                    time=time,
+                    limit=tolerance,
+                    unit="m",
+                    limit_from=source,
+                )
+            ]
+        word = "leaves" if off.any() else "stays on"
+        message = f"{prim} {word} {support.name}: the gap reaches {value * 1e3:.3g} mm"
+        return [self.measured(message, value, tolerance, "m", expected=0.0, time=time, limit_from=source)]
+
+
+@dataclass
+class ObjectiveTopples(ObjectiveCheck):
+    """The body ends tilted, or lower than it was."""
+
+    tilt: float = 45.0  # [deg]
+    drop: float = 0.5  # of its height
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding: the tilt [deg] or the drop [m], whichever comes nearer to its limit."""
+        i = evidence.index(evidence.prim(self.objective.object))
+        body = evidence.world.bodies[i]
+        low, high = evidence.ends(i)
+        height = float((high - low)[0])
+        up = rotate(conjugate(evidence.body_q[0, i, 3:]), np.array([0.0, 0.0, 1.0]))
+        cosine = rotate(evidence.body_q[:, i, 3:], np.broadcast_to(up, (len(evidence.time), 3)))[:, 2]
+        tilt = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+        if all(shape.kind == "sphere" for shape in evidence.solid(i).shapes):
+            tilt = np.zeros_like(tilt)  # a ball has no upright
+        fall = low[0] - low
+        share = np.maximum(tilt / self.tilt, fall / (self.drop * height))
+        fallen = share >= 1.0
+        end = float(share[evidence.window].mean())
+        time = float(evidence.time[np.argmax(fallen)]) if fallen.any() else float(evidence.time[-1])
+        tilted = float(tilt[evidence.window].mean())
+        fell = float(fall[evidence.window].mean())
+        word = "has toppled" if end >= 1.0 else "still stands"
+        message = f"{body.prim} {word}: tilted by {tilted:.3g} degrees, {fell:.3g} m lower than at the start"
+        by_drop = fell / (self.drop * height) > tilted / self.tilt
+        value, limit, unit = (fell, self.drop * height, "m") if by_drop else (tilted, self.tilt, "deg")
+        source = f"a tilt of {self.tilt:g} degrees, or a fall by {self.drop:g} of its height"
+        return [self.measured(message, value, limit, unit, at_most=False, time=time, limit_from=source)]
+
+
+@dataclass
+class ObjectiveSettles(ObjectiveCheck):
+    """The body comes to rest: it neither moves nor turns."""
+
+    factor: float = 0.02  # of sqrt(g L)
+    seconds: float = 0.5
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding: the speed of its fastest point (rms) [m/s]."""
+        prim = evidence.prim(self.objective.object)
+        i = evidence.index(prim)
+        size = evidence.solid(i).smallest
+        twist = evidence.body_qd[:, i]
+        speed = np.linalg.norm(twist[:, :3], axis=1) + np.linalg.norm(twist[:, 3:], axis=1) * size / 2
+        limit = self.objective.tolerance or self.factor * evidence.velocity_scale(size)
+        value = math.sqrt(float(np.mean(speed[evidence.last(self.seconds)] ** 2)))
+        word = "moves" if value > limit else "is at rest"
+        return [
+            self.measured(
+                f"{prim} {word}: {value:.3g} m/s (rms) at the end",
+                value,
+                limit,
+                "m/s",
+                expected=0.0,
+                time=evidence.earliest(evidence.since(speed > limit), float(evidence.time[-1]) - self.seconds),
+                limit_from=f"{self.factor:g} sqrt(g L), L = {size:.3g} m: a head of {self.factor**2 / 2:.2g} L",
+            )
+        ]

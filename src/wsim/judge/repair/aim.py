@@ -1,0 +1,72 @@
+"""What to change so that a failed finding passes.
+
+A check that knows says so itself, with `target=` in its finding. For the others there is one rule for each check or
+objective class, in the tables of `targets_run`, `targets_objectives` and `targets_language`. What no rule covers gets
+a target that says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from wsim.judge.verdict import Finding, RepairTarget
+
+if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
+
+    Rule = Callable[[Finding, Evidence], RepairTarget]
+
+# What fails before there is a recording: the program's own text is to be mended.
+STAGES = {
+    "build": "the program stopped before its world was made: its message says where",
+    "stage": "the stage that the program made is not one that can be simulated: its message says what is wrong",
+}
+
+
+def aim(findings: Sequence[Finding], evidence: Evidence | None = None) -> None:
+    """Give every failed finding its repair target, in place.
+
+    Args:
+        findings: Of one verdict; those that passed are left without a target.
+        evidence: What they were made from; without it only the program's own failures have a rule.
+    """
+    for finding in findings:
+        finding.target = None if finding.passed else finding.target or _target(finding, evidence)
+    broken = next((finding for finding in findings if finding.check == "CheckFinite" and not finding.passed), None)
+    if broken is not None:
+        for finding in findings:
+            if finding.objective is not None and not finding.passed:
+                finding.target = broken.target  # nothing can be told of it before its numbers are finite
+
+
+def _target(finding: Finding, evidence: Evidence | None) -> RepairTarget:
+    if finding.check == "control":
+        return RepairTarget(
+            kind="controller", parameter="control", direction="change", why="the program's control failed"
+        )
+    if finding.check in STAGES:
+        return RepairTarget(kind="program", direction="change", why=STAGES[finding.check])
+    rule = rules().get(finding.check)
+    if rule is None or evidence is None:
+        return unknown(finding)
+    try:
+        return rule(finding, evidence)
+    except Exception:  # noqa: BLE001 - evidence too broken for the check may be so for the rule: nothing is known then
+        return unknown(finding)
+
+
+def unknown(finding: Finding) -> RepairTarget:
+    """The target where nothing says which number to change."""
+    where = "the line that made it" if finding.line else "the program"
+    why = f"no formula says which number to change: compare {where} with the finding's message"
+    return RepairTarget(kind="program", prim=finding.prim, direction="change", why=why)
+
+
+def rules() -> dict[str, Rule]:
+    """The rule of each check and objective class, by its name."""
+    from wsim.judge.repair.language import formula
+    from wsim.judge.repair.objectives import OBJECTIVES
+    from wsim.judge.repair.run import CHECKS
+
+    return {**CHECKS, **OBJECTIVES, "ObjectiveFormula": formula}

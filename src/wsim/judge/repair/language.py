@@ -1,0 +1,192 @@
+"""Repair targets of objectives that are formulas: those of the predicate that decides."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.repair.objectives import (
+    collides_with,
+    fallen_through,
+    floats,
+    friction,
+    objective_of,
+    stays_inside,
+    submerged,
+    swings,
+)
+from wsim.judge.repair.run import leak, longer_run, settled, shorter_step
+from wsim.judge.verdict import Finding, RepairTarget
+
+if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.language.measure import Measure
+    from wsim.judge.repair.aim import Rule
+    from wsim.plan.schema.formula import Predicate
+
+SAME = 1e-6  # share by which a finding's value may differ from its measure's
+
+
+def decider(finding: Finding, evidence: Evidence) -> tuple[Predicate, Measure] | None:
+    """The predicate, and its measure, that a finding's number comes from; None where the finding has none."""
+    from wsim.judge.language.measure import MEASURERS
+    from wsim.judge.language.signals import Signals
+    from wsim.plan.schema.formula import Ordered, Predicate
+
+    item = objective_of(finding, evidence)
+    if item is None or item.formula is None or finding.value is None:
+        return None
+    signals = Signals.of(evidence)
+    for node in item.formula.walk():
+        if isinstance(node, Predicate) and not isinstance(node, Ordered):
+            for measure in MEASURERS[type(node)](node, signals):
+                if (measure.prim, measure.unit) == (finding.prim, finding.unit):
+                    values = np.broadcast_to(measure.value, (1, len(signals.time)))[0]
+                    if np.isclose(values, finding.value, rtol=SAME, atol=1e-12).any():
+                        return node, measure
+    return None
+
+
+def formula(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """The rule of the predicate that decides; an event that comes about after its window is late."""
+    found = decider(finding, evidence)
+    if found is None:
+        why = "an event is missing, or comes in another order: compare the times in the message"
+        return RepairTarget(kind="program", prim=finding.prim, parameter="order", direction="change", why=why)
+    predicate, measure = found
+    late = _late(predicate, measure, finding, evidence)
+    return late or RULES[predicate.op](finding.model_copy(update={"span": None}), evidence)  # type: ignore[attr-defined]
+
+
+def _late(predicate: Predicate, measure: Measure, finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """The target of an event that happens, but after the moment that decides."""
+    margin = np.broadcast_to(measure.margin, (1, len(evidence.time)))[0]
+    after = evidence.time[(margin >= 0.0) & (evidence.time > (finding.time or 0.0))]
+    if predicate.alone != "eventually" or not len(after):
+        return None
+    late = float(after[0]) - (finding.time or 0.0)
+    why = f"it comes about at {after[0]:.3g} s, {late:.3g} s after the moment that decides: a nearer or a faster start"
+    return RepairTarget(
+        kind="settlement", prim=finding.prim, parameter="position", direction="change", unit="m", why=why
+    )
+
+
+# ---- rules that only predicates have
+def rests(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Not still; below what should carry it; or above it."""
+    if finding.unit != "m":
+        return settled(finding, evidence)
+    predicate = decider(finding, evidence)
+    ref = evidence.prim(getattr(predicate[0], "ref", "")) if predicate is not None else ""
+    i = evidence.index(finding.prim or "")
+    fall = -float(evidence.body_qd[evidence.window, i, 2].mean())
+    if fall > 0.0 and evidence.static(ref) is not None:
+        return fallen_through(finding, evidence, finding.prim or "", ref)
+    return longer_run(evidence, None, "it is not there yet, or stands on something else")
+
+
+def reaches(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It stops short, or goes another way."""
+    short = abs((finding.value or 0.0) - (finding.limit or 0.0))
+    start = evidence.body(finding.prim or "").velocity
+    why = f"it stays {short:.3g} m short of where it must get: faster, or aimed better"
+    return RepairTarget(
+        kind="physical parameter", prim=finding.prim, parameter="velocity",
+        direction="change", current=float(np.linalg.norm(start)), unit="m/s", why=why,
+    )  # fmt: skip
+
+
+def apart(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Two that must not touch."""
+    why = "it comes too near: start it farther off, or send it another way"
+    return RepairTarget(
+        kind="settlement", prim=finding.prim, parameter="position", direction="change", unit="m", why=why
+    )
+
+
+def upright(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A wider foot tips later: the angle at which it does is that of its middle over its edge."""
+    why = "it tips where its middle is over its edge: a wider or a lower body, or a weaker push"
+    return RepairTarget(kind="geometry", prim=finding.prim, parameter="size", direction="change", unit="m", why=why)
+
+
+def speed(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """The start decides how fast it is, by as much as is missing."""
+    value, limit = finding.value or 0.0, finding.limit or 0.0
+    now = float(np.linalg.norm(evidence.body(finding.prim or "").velocity))
+    way = "raise" if value < limit else "lower"
+    return RepairTarget(
+        kind="physical parameter", prim=finding.prim, parameter="velocity", direction=way,
+        current=now, suggested=max(0.0, now + limit - value), unit="m/s", why="it starts with that much less or more",
+    )  # fmt: skip
+
+
+def path(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What follows a path is steered."""
+    why = "it leaves its path: what steers it must turn sooner or go slower"
+    return RepairTarget(kind="controller", prim=finding.prim, parameter="path", direction="change", why=why)
+
+
+def grips(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What slips has too little friction."""
+    return friction(finding, evidence, "raise", None, "it slips where it should roll: more friction turns it")
+
+
+def conserves(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A fluid's mass leaks; energy and momentum go with the step's error."""
+    if finding.unit == "kg":
+        return leak(finding, evidence)
+    return shorter_step(
+        evidence, 0.5, "what is conserved drifts with the step's error; half the step is the first to try"
+    )
+
+
+def collides(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """They miss, pass through each other, or bounce otherwise than asked."""
+    if finding.unit != "1" or finding.expected is None:
+        return collides_with(finding, evidence)
+    body = evidence.body(finding.prim or "")
+    now = body.shapes[0].restitution if body.shapes else None
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="restitution",
+        direction="raise" if (finding.value or 0.0) < finding.expected else "lower", current=now,
+        suggested=finding.expected, why="the share of the speed of approach with which it parts",
+    )  # fmt: skip
+
+
+def fills_to(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """As much fluid as the level needs: the level is as high as the volume."""
+    value, expected = finding.value or 0.0, finding.expected
+    fluid = evidence.fluid(finding.prim or "")
+    now = fluid.size[2]
+    return RepairTarget(
+        kind="fluid", prim=fluid.prim, parameter="level", direction="raise" if value < (expected or 0.0) else "lower",
+        current=now, suggested=now * expected / value if expected and value > 0.0 else None, unit="m",
+        why="in the same container the level is as high as the volume",
+    )  # fmt: skip
+
+
+RULES: dict[str, Rule] = {
+    "reaches": reaches,
+    "stays_within": apart,
+    "rests_on": rests,
+    "supported_by": rests,
+    "contained_in": stays_inside,
+    "stays_inside": stays_inside,
+    "floats": floats,
+    "sinks": submerged,
+    "submerged": submerged,
+    "touches": collides_with,
+    "never_touches": apart,
+    "upright": upright,
+    "speed_between": speed,
+    "follows_path": path,
+    "crosses": reaches,
+    "swings": swings,
+    "rolls_without_slip": grips,
+    "settles": settled,
+    "conserves": conserves,
+    "collides_with": collides,
+    "fills_to": fills_to,
+}

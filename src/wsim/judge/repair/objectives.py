@@ -1,0 +1,386 @@
+"""Repair targets of the plan's objectives."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.geometry import rotate, smallest_extent
+from wsim.judge.objectives.objective import ObjectiveCheck
+from wsim.judge.repair.run import (
+    add_collision,
+    collides,
+    density,
+    finer,
+    leak,
+    longer_run,
+    overlapping_start,
+    planned_density,
+    settled,
+    shapes_of,
+    shorter_step,
+    time_step,
+)
+from wsim.judge.verdict import Finding, RepairTarget
+
+if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.repair.aim import Rule
+    from wsim.plan.schema import Objective
+    from wsim.scene.world import Fluid
+
+SAME = 0.01  # share by which two densities differ by rounding alone
+
+
+def objective_of(finding: Finding, evidence: Evidence) -> Objective | None:
+    """The plan's objective that a finding answers."""
+    items = evidence.plan.objectives if evidence.plan is not None else []
+    return next((item for item in items if sentence_of(item) == finding.objective), None)
+
+
+def sentence_of(item: Objective) -> str:
+    """An objective in words, as its findings carry it."""
+    if item.formula is None:
+        return ObjectiveCheck(item).sentence
+    from wsim.judge.language.objective import ObjectiveFormula
+
+    return ObjectiveFormula(item).sentence
+
+
+def ref_of(finding: Finding, evidence: Evidence) -> str:
+    """The prim of the other object of a finding's objective, or nothing."""
+    item = objective_of(finding, evidence)
+    if item is None:
+        return ""
+    name = item.ref
+    if item.formula is not None:
+        from wsim.judge.repair.language import decider
+
+        found = decider(finding, evidence)
+        others = (
+            (getattr(found[0], field, None) for field in ("ref", "fluid", "target", "center", "on")) if found else ()
+        )
+        name = next((other for other in others if isinstance(other, str)), None)
+    return evidence.prim(name) if name is not None else ""
+
+
+def own_density(evidence: Evidence, prim: str, to: float | None, why: str) -> RepairTarget:
+    """Another density of a body [kg/m^3]."""
+    now = density(evidence, prim)
+    return RepairTarget(
+        kind="physical parameter", prim=prim, parameter="density", direction=_way(now, to), current=now, suggested=to,
+        unit="kg/m^3", why=why,
+    )  # fmt: skip
+
+
+def _way(now: float, to: float | None) -> str:
+    return "change" if to is None or to == now else "raise" if to > now else "lower"
+
+
+def _fluid(finding: Finding, evidence: Evidence) -> Fluid | None:
+    ref = ref_of(finding, evidence)
+    return next((fluid for fluid in evidence.world.fluids if ref in (fluid.prim, fluid.container)), None)
+
+
+def floats(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Too heavy, or not of the planned density; else the particles are too coarse for its draft."""
+    prim, fluid = finding.prim or "", evidence.fluid(ref_of(finding, evidence))
+    container = evidence.container_of(fluid)
+    if container is not None and finding.expected == 0.0:
+        return _too_small(evidence, container.prim, finding.value or 0.0)
+    now, planned = density(evidence, prim), planned_density(evidence, prim)
+    if now >= fluid.density:
+        to = planned if planned is not None and planned < fluid.density else None
+        why = f"what floats is lighter than the fluid's {fluid.density:g} kg/m^3"
+        return own_density(evidence, prim, to, why).model_copy(update={"direction": "lower"})
+    if planned is not None and abs(planned / now - 1.0) > SAME:
+        why = f"the plan's material; it floats as deep as its share of the fluid's {fluid.density:g} kg/m^3"
+        return own_density(evidence, prim, planned, why)
+    value, limit, expected = finding.value, finding.limit, finding.expected
+    if value is None or limit is None or expected is None or value == expected:
+        return settled(finding, evidence)
+    share = abs(limit - expected) / abs(value - expected)
+    why = "its density gives another draft than is seen; the draft's error shrinks with the spacing"
+    return finer(evidence, fluid, share, why)
+
+
+def _too_small(evidence: Evidence, prim: str, beyond: float) -> RepairTarget:
+    container = evidence.container(prim)
+    now = min(container.inner_size[:2]) if container is not None else None
+    return RepairTarget(
+        kind="geometry", prim=prim, parameter="inner_size", direction="raise", current=now,
+        suggested=None if now is None else now + 2 * beyond, unit="m", why="a body gets out of it: room for its way",
+    )  # fmt: skip
+
+
+def submerged(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Too light to go under, or the fluid too shallow to cover it."""
+    prim, fluid = finding.prim or "", evidence.fluid(ref_of(finding, evidence))
+    now, planned = density(evidence, prim), planned_density(evidence, prim)
+    if now <= fluid.density:
+        to = planned if planned is not None and planned > fluid.density else None
+        why = f"what sinks is heavier than the fluid's {fluid.density:g} kg/m^3"
+        return own_density(evidence, prim, to, why).model_copy(update={"direction": "raise"})
+    level = evidence.level(fluid)
+    i = evidence.index(prim)
+    height = float((evidence.ends(i)[1] - evidence.ends(i)[0])[evidence.window].mean())
+    depth = level.height - level.floor
+    if height > depth:
+        return RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="level", direction="raise", current=depth,
+            suggested=depth + (height - depth) + fluid.spacing, unit="m", why="it is taller than the fluid is deep",
+        )  # fmt: skip
+    return longer_run(evidence, None, "it is heavy enough to sink, and the fluid deep enough: it has not got there yet")
+
+
+def rests_on(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Above it: too light or not there yet. Below it: nothing stops it. Beside it: put it over it."""
+    prim, ref = finding.prim or "", ref_of(finding, evidence)
+    if finding.unit == "N":
+        return settled(finding, evidence)
+    if finding.value is None:
+        why = f"it must come down over {ref}"
+        return RepairTarget(kind="settlement", prim=prim, parameter="position", direction="change", unit="m", why=why)
+    if finding.value < 0:
+        return fallen_through(finding, evidence, prim, ref)
+    fluid = _fluid(finding, evidence)
+    if fluid is not None and density(evidence, prim) < fluid.density:
+        return submerged(finding, evidence)
+    i = evidence.index(prim)
+    fall = -float(evidence.body_qd[evidence.window, i, 2].mean())
+    if fall > 0.0:
+        wanted = float(evidence.time[-1]) + finding.value / fall
+        return longer_run(evidence, wanted, f"it is still coming down at {fall:.2g} m/s")
+    why = f"it hangs {finding.value:.3g} m above {ref}: its collision shape is larger than it looks"
+    return RepairTarget(kind="geometry", prim=prim, parameter="collision", direction="change", why=why)
+
+
+def fallen_through(finding: Finding, evidence: Evidence, prim: str, ref: str) -> RepairTarget:
+    """What went through another object: one of the two collides with nothing, or it was too fast for the step."""
+    for owner in (ref, prim):
+        if not collides(evidence, owner):
+            return add_collision(owner)
+    return tunnelled(finding, evidence, prim, ref)
+
+
+def tunnelled(finding: Finding, evidence: Evidence, prim: str, ref: str) -> RepairTarget:
+    """In a step a body may cross half of the thinnest thing in its way, or it passes between two steps.
+
+    Ericson (2005), Real-Time Collision Detection, section 5.5.
+    """
+    start = overlapping_start(evidence, prim)
+    if start is not None:
+        return start
+    shapes = [shape for owner in (prim, ref) for shape in shapes_of(evidence, owner)]
+    sizes = [smallest_extent(shape) for shape in shapes if shape.kind != "plane"]
+    speed = float(np.linalg.norm(evidence.body_qd[:, evidence.index(prim), :3], axis=1).max())
+    now = time_step(evidence)
+    if not sizes or not now or speed <= 0.0 or not math.isfinite(speed):
+        return shorter_step(evidence, 0.5, "it passes what should stop it between two steps")
+    share = min(0.5, 0.5 * min(sizes) / speed / now)
+    return shorter_step(
+        evidence, share, f"at {speed:.3g} m/s it may cross half of {min(sizes):.3g} m in a step, or it passes through"
+    )
+
+
+def stays_on(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It slides off: on a slope friction must be more than its tangent."""
+    static = evidence.static(ref_of(finding, evidence))
+    slope = _slope(static.shapes[0].rotation) if static is not None and static.shapes else 0.0
+    steepest = f"a body stays on a slope of {math.degrees(slope):.3g} degrees where friction is above its tangent"
+    why = steepest if slope > 0.01 else "it slides or is carried off: more friction holds it"
+    return friction(finding, evidence, "raise", math.tan(slope) if slope > 0.01 else None, why)
+
+
+def _slope(rotation: tuple[float, float, float, float]) -> float:
+    normal = rotate(np.array(rotation, dtype=np.float64), np.array([0.0, 0.0, 1.0]))
+    return math.acos(min(1.0, abs(float(normal[2]))))
+
+
+def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, why: str) -> RepairTarget:
+    """Another friction of the finding's body."""
+    body = evidence.body(finding.prim or "")
+    now = body.shapes[0].friction if body.shapes else None
+    if to is not None and now is not None and (to > now) != (way == "raise"):
+        to = None  # friction is on the right side of it already: it is not what is wrong, or not alone
+    return RepairTarget(
+        kind="physical parameter",
+        prim=body.prim,
+        parameter="friction",
+        direction=way,
+        current=now,
+        suggested=to,
+        why=why,
+    )
+
+
+def stays_inside(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A fluid leaks; a body goes through a wall or over it."""
+    if any(fluid.prim == finding.prim for fluid in evidence.world.fluids):
+        return leak(finding, evidence)
+    prim, ref = finding.prim or "", ref_of(finding, evidence)
+    container = evidence.container(ref)
+    if container is None:
+        return RepairTarget(kind="missing object", prim=ref, direction="add", why="there is nothing to stay inside of")
+    frame = evidence.recording.frame_index(finding.time or 0.0)
+    p = evidence.local(container, evidence.body_q[frame, evidence.index(prim), :3])
+    if p[2] > container.inner_size[2] / 2:
+        return _too_small(evidence, ref, abs(finding.value or 0.0))
+    return fallen_through(finding, evidence, prim, ref)
+
+
+def topples(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A push must bring the energy that lifts the centre over the edge."""
+    i = evidence.index(finding.prim or "")
+    body = evidence.world.bodies[i]
+    low, high = evidence.ends(i)
+    height = float(high[0] - low[0])
+    lift = 0.5 * (math.hypot(height, evidence.solid(i).smallest) - height)
+    work = body.mass * evidence.gravity * lift
+    why = f"to tip it over its edge takes {work:.3g} J: a faster or heavier push, or a hit higher up"
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="velocity", direction="raise", unit="m/s", why=why
+    )
+
+
+def swings(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Let go too low, too short a run for a period, a period that the hinge spoils, or energy from the step."""
+    if finding.unit == "deg" and finding.expected is None:
+        return RepairTarget(
+            kind="settlement", prim=finding.prim, parameter="rotation", direction="raise", current=finding.value,
+            suggested=finding.limit, unit="deg", why="at rest below its hinge it has nowhere to swing from",
+        )  # fmt: skip
+    if finding.unit == "deg":
+        return shorter_step(
+            evidence, 0.5, "it rises above its start: the integration adds energy; half the step is the first to try"
+        )
+    if finding.value is None and finding.expected is not None and finding.expected > evidence.world.duration:
+        return longer_run(evidence, 2 * finding.expected, "a period takes longer than the run")
+    why = "its hinge holds it back or drives it: a pendulum's period needs one with no friction, damping or drive"
+    return RepairTarget(kind="joint", prim=finding.prim, parameter="damping", direction="lower", why=why)
+
+
+def tilts(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """The lever needs more weight on that side."""
+    ref = ref_of(finding, evidence)
+    why = "the side goes down whose weight times arm is greater"
+    return RepairTarget(
+        kind="physical parameter", prim=ref, parameter="density", direction="raise", current=density(evidence, ref),
+        unit="kg/m^3", why=why,
+    )  # fmt: skip
+
+
+def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Under friction a way goes as the square of the speed it starts with."""
+    body = evidence.body(finding.prim or "")
+    speed = float(np.linalg.norm(body.velocity))
+    value, limit = finding.value or 0.0, finding.limit or 0.0
+    if any(joint.child == body.prim or joint.parent == body.prim for joint in evidence.world.joints) and not speed:
+        why = "a joint moves it: its drive must push harder or longer"
+        return RepairTarget(kind="drive", prim=body.prim, parameter="target", direction="raise", why=why)
+    if speed > 0.0:
+        to = speed * math.sqrt(limit / value) if 0.0 < value < limit else None
+        return RepairTarget(
+            kind="physical parameter", prim=body.prim, parameter="velocity", direction="raise", current=speed,
+            suggested=to, unit="m/s", why="under friction it gets as far as v^2 / (2 mu g)",
+        )  # fmt: skip
+    return friction(
+        finding, evidence, "lower", _tangent(finding, evidence), "it starts at rest: less friction lets it go"
+    )
+
+
+def _tangent(finding: Finding, evidence: Evidence) -> float | None:
+    """The tangent of the slope that a finding's objective names; None where it names none."""
+    static = evidence.static(ref_of(finding, evidence))
+    slope = _slope(static.shapes[0].rotation) if static is not None and static.shapes else 0.0
+    return math.tan(slope) if slope > 0.01 else None
+
+
+def slides(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It gets not far enough, or rolls where it is to slide."""
+    if finding.unit == "m":
+        return moves(finding, evidence)
+    return friction(finding, evidence, "lower", None, "friction turns it: with less it slides")
+
+
+def rolls_down(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A ball rolls without slipping where friction is above 2/7 of the slope's tangent."""
+    if finding.unit == "m":
+        return moves(finding, evidence)
+    tangent = _tangent(finding, evidence)
+    slipping = finding.unit == "1" or (finding.value or 0.0) > (finding.expected or 0.0)
+    if not slipping:
+        return friction(finding, evidence, "lower", None, "something holds a ball back that should roll freely")
+    to = 2.0 / 7.0 * tangent if tangent is not None else None
+    return friction(
+        finding, evidence, "raise", to, "a ball rolls without slipping where friction is above 2/7 tan(slope)"
+    )
+
+
+def flies(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It lands too soon, or something beside gravity acts on it."""
+    prim, value, limit = finding.prim or "", finding.value or 0.0, finding.limit or 0.0
+    if finding.unit == "s":
+        rise = 0.5 * evidence.gravity * limit
+        why = f"a flight of {limit:g} s takes {rise:.3g} m/s upwards, or as much height"
+        return RepairTarget(
+            kind="physical parameter", prim=prim, parameter="velocity.z", direction="raise",
+            current=evidence.body(prim).velocity[2], suggested=rise, unit="m/s", why=why,
+        )  # fmt: skip
+    step, last = time_step(evidence), float(evidence.time[-1])
+    if step is not None and 0.0 < limit < value <= evidence.gravity * step * last:
+        return shorter_step(evidence, limit / value, "the integration's error, g dt t / 2, is as large as this")
+    why = "something beside gravity acts on it: a drive, damping, a joint or a control"
+    return RepairTarget(kind="physical parameter", prim=prim, parameter="forces", direction="remove", why=why)
+
+
+def collides_with(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """They miss each other, pass through each other, or the contact loses momentum."""
+    prim, ref = finding.prim or "", ref_of(finding, evidence)
+    if finding.unit == "kg m/s":
+        return shorter_step(evidence, 0.5, "the contact loses momentum: half the step is the first to try")
+    missing = next((owner for owner in (prim, ref) if not collides(evidence, owner)), None)
+    if missing is not None:
+        return add_collision(missing)
+    if finding.unit == "m/s":
+        return tunnelled(finding, evidence, prim, ref)
+    why = f"it passes {finding.value or 0.0:.3g} m beside {ref}: aim it there"
+    return RepairTarget(
+        kind="physical parameter", prim=prim, parameter="velocity", direction="change", unit="m/s", why=why
+    )
+
+
+def fills(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """More than the container holds, or still on its way."""
+    fluid, container = evidence.fluid(finding.prim or ""), evidence.container(ref_of(finding, evidence))
+    if container is None:
+        return RepairTarget(kind="missing object", direction="add", why="there is nothing to fill")
+    room, volume = math.prod(container.inner_size), math.prod(fluid.size)
+    if volume > room:
+        top = volume / math.prod(container.inner_size[:2])
+        return RepairTarget(
+            kind="geometry", prim=container.prim, parameter="inner_size.z", direction="raise",
+            current=container.inner_size[2], suggested=top, unit="m", why="there is more fluid than it holds",
+        )  # fmt: skip
+    return longer_run(evidence, None, "it holds that much: the rest is still on its way, or is poured beside it")
+
+
+OBJECTIVES: dict[str, Rule] = {
+    "ObjectiveFloats": floats,
+    "ObjectiveSubmerged": submerged,
+    "ObjectiveRestsOn": rests_on,
+    "ObjectiveStaysOn": stays_on,
+    "ObjectiveStaysInside": stays_inside,
+    "ObjectiveTopples": topples,
+    "ObjectiveSettles": settled,
+    "ObjectiveSwings": swings,
+    "ObjectiveTilts": tilts,
+    "ObjectiveMoves": moves,
+    "ObjectiveSlides": slides,
+    "ObjectiveRollsDown": rolls_down,
+    "ObjectiveFlies": flies,
+    "ObjectiveCollidesWith": collides_with,
+    "ObjectiveFills": fills,
+}

@@ -1,0 +1,287 @@
+"""Repair targets of the checks that hold for any world."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.contact import overlaps
+from wsim.judge.evidence.geometry import smallest_extent
+from wsim.judge.verdict import Finding, RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.repair.aim import Rule
+    from wsim.scene.world import Container, Fluid, Shape
+
+    Floats = NDArray[np.float64]
+
+SOUND_OVER_SPEED = 10.0  # Monaghan (1994): density varies by about (v / c)^2, which is then 1 %
+
+
+# ---- what several rules suggest
+def shorter_step(evidence: Evidence, share: float, why: str) -> RepairTarget:
+    """A time step of a share of the one that was taken [s]."""
+    step = time_step(evidence)
+    suggested = step * share if step else None
+    return RepairTarget(
+        kind="time step", parameter="time_step", direction="lower", current=step, suggested=suggested, unit="s", why=why
+    )
+
+
+def longer_run(evidence: Evidence, seconds: float | None, why: str) -> RepairTarget:
+    """A run that lasts so long [s]."""
+    now = evidence.world.duration
+    return RepairTarget(
+        kind="settlement", parameter="duration", direction="raise", current=now, suggested=seconds, unit="s", why=why
+    )
+
+
+def time_step(evidence: Evidence) -> float | None:
+    """The step that was taken, where the recording or the stage tells it [s]."""
+    step = evidence.recording.metadata.get("time_step") or evidence.world.time_step
+    return float(step) if step else None
+
+
+def density(evidence: Evidence, prim: str) -> float:
+    """A body's mean density [kg/m^3]; MissingError."""
+    i = evidence.index(prim)
+    return evidence.world.bodies[i].mass / evidence.solid(i).volume
+
+
+def planned_density(evidence: Evidence, prim: str) -> float | None:
+    """The density of the material that the plan has for a prim [kg/m^3]."""
+    items = evidence.plan.objects if evidence.plan is not None else []
+    item = next((item for item in items if evidence.prim(item.name) == prim), None)
+    return item.material.density if item is not None and item.material is not None else None
+
+
+def collides(evidence: Evidence, prim: str) -> bool:
+    """Whether a prim is there and has a shape that others can touch."""
+    return any(shape.collides for shape in shapes_of(evidence, prim))
+
+
+def shapes_of(evidence: Evidence, prim: str) -> list[Shape]:
+    """The shapes of a body or a static object; none of what is not there."""
+    found = [shape for body in evidence.world.bodies if body.prim == prim for shape in body.shapes]
+    return found + [shape for static in evidence.world.statics if static.prim == prim for shape in static.shapes]
+
+
+def add_collision(prim: str) -> RepairTarget:
+    """A collision shape for what has none."""
+    why = "none of its shapes collides, so that nothing can stand on it or stop at it"
+    return RepairTarget(kind="geometry", prim=prim, parameter="collision", direction="add", why=why)
+
+
+# ---- rules
+def finite(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Numbers that are not finite, or rotations that are none, come from a step beyond the solver's stability."""
+    why = "values grow without bound where the step is longer than the solver is stable for; half is the first to try"
+    return shorter_step(evidence, 0.5, why)
+
+
+def complete(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Too short a run was asked for, or the run broke off."""
+    if finding.prim is not None:
+        why = "the recording holds no particles of it: it is empty, or smaller than a particle"
+        return RepairTarget(kind="fluid", prim=finding.prim, parameter="level", direction="raise", why=why)
+    if finding.unit == "s" and finding.expected is not None:
+        if finding.expected > evidence.world.duration:
+            return longer_run(evidence, finding.expected, "the plan asks for more than the program simulates")
+        return finite(finding, evidence)
+    why = "the recorder did not keep up with the frame rate that was asked for"
+    return RepairTarget(
+        kind="program", parameter="frame_rate", direction="lower", current=evidence.world.frame_rate, why=why
+    )
+
+
+def log(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """An overflow is contacts that the solver had no room for; another error is the solver's own account."""
+    if "overflow" in finding.message.lower():
+        why = "more contacts than the solver has room for: fewer shapes that touch, and none that start overlapping"
+        return RepairTarget(kind="geometry", prim=finding.prim, parameter="shapes", direction="change", why=why)
+    if "finite" in finding.message.lower():
+        return finite(finding, evidence)
+    return RepairTarget(kind="program", prim=finding.prim, direction="change", why="the log's error says what to mend")
+
+
+def plan_objects(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """An object of the plan that the world lacks, or has in another role, or one that the plan does not have."""
+    prim = finding.prim
+    planned = {evidence.prim(item.name) for item in evidence.plan.objects} if evidence.plan is not None else set()
+    if prim not in planned:
+        why = "the plan does not have it"
+        return RepairTarget(kind="extra object", prim=prim, direction="remove", why=why)
+    owners = (evidence.world.bodies, evidence.world.statics, evidence.world.containers, evidence.world.fluids)
+    if prim in {item.prim for group in owners for item in group}:
+        return RepairTarget(
+            kind="program", prim=prim, parameter="role", direction="change", why="the plan has it in another role"
+        )
+    return RepairTarget(kind="missing object", prim=prim, direction="add", why="the plan has it, the world does not")
+
+
+def explosion(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A start inside another shape is pushed apart; sound must outrun a fluid; else the step is too long."""
+    fluid = next((fluid for fluid in evidence.world.fluids if fluid.prim == finding.prim), None)
+    if fluid is not None:
+        sound = sound_speed(evidence, fluid)
+        if sound and finding.limit is not None and finding.limit >= sound * (1 - 1e-9):
+            return faster_sound(
+                evidence,
+                fluid,
+                SOUND_OVER_SPEED * (finding.value or sound),
+                "sound must be ten times as fast as the fluid",
+            )
+        return shorter_step(
+            evidence, 0.5, "particles that outrun gravity were thrown by the solver; half the step is the first to try"
+        )
+    start = overlapping_start(evidence, finding.prim)
+    if start is not None:
+        return start
+    return shorter_step(
+        evidence, 0.5, "no fall in this scene gives that speed: the solver made it; half the step is the first to try"
+    )
+
+
+def penetration(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A start inside another shape, or a contact that gives way: its depth is speed times step."""
+    start = overlapping_start(evidence, finding.prim)
+    if start is not None:
+        return start
+    value, limit = finding.value or 0.0, finding.limit or 0.0
+    share = limit / value if 0.0 < limit < value else 0.5
+    return shorter_step(evidence, share, "a contact gives way by speed times step, so that depth shrinks with the step")
+
+
+def overlapping_start(evidence: Evidence, prim: str | None) -> RepairTarget | None:
+    """The target for a body that starts inside another object: apart by as much."""
+    pairs = [pair for pair in overlaps(evidence) if prim in (pair.a.owner, pair.b.owner) or prim is None]
+    deepest = max(pairs, key=lambda pair: float(pair.depth[0]), default=None)
+    if deepest is None:
+        return None
+    depth = float(deepest.depth[0])
+    size = min(smallest_extent(part.shape) for part in (deepest.a, deepest.b) if part.body >= 0)
+    if depth <= 1e-3 * size:  # touching
+        return None
+    why = f"it starts {depth:.3g} m inside {deepest.b.owner}: move them apart by that"
+    owner = deepest.a.owner
+    return RepairTarget(kind="settlement", prim=owner, parameter="position", direction="change", unit="m", why=why)
+
+
+def leak(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Over the rim: higher walls. Through a wall: one that is as thick as the particles need, or a shorter step."""
+    fluid = evidence.fluid(finding.prim or "")
+    container = evidence.container_of(fluid)
+    if container is None:
+        return RepairTarget(
+            kind="missing object", prim=fluid.container, direction="add", why="the fluid has no container"
+        )
+    exit_heights = _exits(evidence, container, fluid)
+    rim = container.inner_size[2]
+    if len(exit_heights) and np.mean(exit_heights > rim - fluid.spacing) > 0.5:
+        return RepairTarget(
+            kind="geometry", prim=container.prim, parameter="inner_size.z", direction="raise", current=rim,
+            suggested=max(float(exit_heights.max()), rim) + fluid.spacing, unit="m",
+            why="it goes over the rim; this is how high it is where it does, and a spacing more",
+        )  # fmt: skip
+    if not collides(evidence, container.prim):
+        return add_collision(container.prim)
+    static = evidence.static(container.prim)
+    wall = (
+        min((smallest_extent(shape) for shape in static.shapes), default=math.inf) if static is not None else math.inf
+    )
+    if wall < fluid.spacing:
+        return RepairTarget(
+            kind="geometry", prim=container.prim, parameter="wall", direction="raise", current=wall,
+            suggested=fluid.spacing, unit="m", why="it goes through a wall that is thinner than a particle",
+        )  # fmt: skip
+    return shorter_step(evidence, 0.5, "it goes through walls that are thick enough: half the step is the first to try")
+
+
+def _exits(evidence: Evidence, container: Container, fluid: Fluid) -> Floats:
+    """Height above the inner floor at which each particle that gets out did so, (n,) [m]."""
+    track = evidence.track(fluid)
+    out = np.array([evidence.strayed(container, fluid, frame) for frame in track.position])
+    gone = np.flatnonzero(out.any(axis=0))
+    first = np.argmax(out[:, gone], axis=0)
+    # Between two frames one may fall below the rim that it came over: it was above it at the frame before.
+    when = np.stack([first, np.maximum(first - 1, 0)])
+    where = evidence.local(container, np.asarray(track.position[when, gone], dtype=np.float64))
+    heights: Floats = where[..., 2].max(axis=0) + container.inner_size[2] / 2
+    return heights
+
+
+def fluid_density(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Density errors fall with the square of the speed of sound."""
+    fluid = evidence.fluid(finding.prim or "")
+    sound = sound_speed(evidence, fluid)
+    if not sound or not finding.value or not finding.limit or finding.value <= finding.limit:
+        return shorter_step(
+            evidence, 0.5, "the density drifts with the step's error; half the step is the first to try"
+        )
+    wanted = sound * math.sqrt(finding.value / finding.limit)
+    return faster_sound(evidence, fluid, wanted, "the density error of a weakly compressible fluid goes as (v / c)^2")
+
+
+def faster_sound(evidence: Evidence, fluid: Fluid, wanted: float, why: str) -> RepairTarget:
+    """A stiffer fluid [m/s]."""
+    return RepairTarget(
+        kind="fluid", prim=fluid.prim, parameter="speed_of_sound", direction="raise",
+        current=sound_speed(evidence, fluid), suggested=wanted, unit="m/s", why=why,
+    )  # fmt: skip
+
+
+def sound_speed(evidence: Evidence, fluid: Fluid) -> float | None:
+    """A fluid's speed of sound as it was simulated [m/s]."""
+    sound = fluid.speed_of_sound or evidence.recording.metadata.get("speed_of_sound")
+    return float(sound) if sound else None
+
+
+def water_level(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Particles that stand higher or lower than their volume: finer ones keep the volume better."""
+    fluid = evidence.fluid(finding.prim or "")
+    return finer(evidence, fluid, 0.5, "particles that do not fill their volume are too coarse for this vessel")
+
+
+def finer(evidence: Evidence, fluid: Fluid, share: float, why: str) -> RepairTarget:
+    """A share of the particle spacing [m]."""
+    return RepairTarget(
+        kind="resolution", prim=fluid.prim, parameter="spacing", direction="lower", current=fluid.spacing,
+        suggested=fluid.spacing * share, unit="m", why=why,
+    )  # fmt: skip
+
+
+def settled(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What dies down needs time, by its own decay; what does not is kept going by the solver."""
+    i = evidence.index(finding.prim or "")
+    speed = np.linalg.norm(evidence.body_qd[:, i, :3], axis=1)
+    end = float(evidence.time[-1])
+    half = min(1.0, 0.25 * (end - float(evidence.time[0])))
+    late = evidence.time > end - half
+    early = (evidence.time > end - 2 * half) & ~late
+    before, after = (float(np.sqrt(np.mean(speed[part] ** 2))) for part in (early, late))
+    if after >= before or not finding.limit or not finding.value:
+        return shorter_step(
+            evidence, 0.5, "it does not die down: contacts or fluid keep it going; half the step is the first to try"
+        )
+    rate = math.log(before / after) / half
+    wanted = end + max(0.0, math.log(finding.value / finding.limit)) / rate + half
+    return longer_run(evidence, wanted, f"its speed falls by half in {math.log(2) / rate:.2g} s: by then it is at rest")
+
+
+CHECKS: dict[str, Rule] = {
+    "CheckFinite": finite,
+    "CheckComplete": complete,
+    "CheckLog": log,
+    "CheckPlanObjects": plan_objects,
+    "CheckExplosion": explosion,
+    "CheckPenetration": penetration,
+    "CheckFluidContained": leak,
+    "CheckDensity": fluid_density,
+    "CheckWaterLevel": water_level,
+    "CheckSettled": settled,
+}

@@ -1,0 +1,107 @@
+"""What a prompt speaks of: things, where they are, what they are to do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from wsim.plan.schema import Assumption
+from wsim.rules.lexicon import Noun, lexicon
+
+if TYPE_CHECKING:
+    from wsim.rules.phrases import Phrase
+
+ROUND = ("sphere", "cylinder", "capsule")
+
+
+@dataclass
+class Beside:
+    """Where a thing is by another: a row of the plan to be."""
+
+    predicate: str  # a side, a facing, or "between"
+    ref: Thing
+    other: Thing | None = None
+    gap: float | None = None  # [m]
+
+
+@dataclass(eq=False)
+class Thing:
+    """One phrase's objects: alike, and doing the same."""
+
+    phrase: Phrase
+    count: int
+    arrangement: str = ""  # "stack": on one another; "row": behind one another
+    place: str | None = None  # "water" or "ground"
+    support: Thing | None = None  # what it stands on or drops on, if that is another thing
+    inside: Thing | None = None  # the vessel that it is in
+    beside: list[Beside] = field(default_factory=list)
+    does: list[str] = field(default_factory=list)  # float, sink, submerge, drop, rest, roll, slide, topple, ...
+    drop_height: float | None = None  # [m] above what it drops on
+    target: Thing | None = None  # what it rolls, slides or flies into
+    meets: Thing | None = None  # what comes at it as it comes at that
+    path: Thing | None = None  # the ramp that it is on
+    off: bool = False  # leaves its support
+    speed: float | None = None  # [m/s]
+    angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
+    direction: str | None = None
+    rod: Phrase | None = None  # what it hangs on
+
+    @property
+    def kind(self) -> str:
+        """What one of them is: a noun's key."""
+        return self.phrase.kind
+
+    @property
+    def noun(self) -> Noun:
+        """The lexicon's entry."""
+        return lexicon().nouns[self.phrase.kind]
+
+    @property
+    def round(self) -> bool:
+        """Whether it can roll."""
+        return self.noun.primitive == "sphere"
+
+    @property
+    def group(self) -> bool:
+        """Whether the prompt speaks of its objects as of one: a stack, a row."""
+        return bool(self.arrangement)
+
+    @property
+    def words(self) -> str:
+        """The prompt's words for it."""
+        return self.phrase.words
+
+
+@dataclass
+class Pour:
+    """Water that is poured."""
+
+    vessel: Thing | None  # None: into a tank
+    height: float | None  # [m] above the rim
+
+
+@dataclass
+class Cast:
+    """All that the prompt speaks of."""
+
+    things: list[Thing] = field(default_factory=list)
+    tank: str | None = None  # the prompt's words for it, if it was named
+    water: str | None = None
+    pour: Pour | None = None
+    duration: float | None = None  # [s], if it was given
+    assumptions: list[Assumption] = field(default_factory=list)
+
+    def assume(self, subject: str, choice: str, why: str) -> None:
+        """Note a choice that the prompt left open."""
+        self.assumptions.append(Assumption(subject=subject, choice=choice, why=why))
+
+    @property
+    def wet(self) -> bool:
+        """Whether the scene has a tank of water that stands in it from the start."""
+        if self.pour is not None:
+            return False
+        return self.tank is not None or self.water is not None or any(thing.place == "water" for thing in self.things)
+
+    def family(self, *families: str) -> list[Thing]:
+        """The things of some families, in the prompt's order."""
+        return [thing for thing in self.things if thing.noun.family in families]

@@ -1,0 +1,71 @@
+"""What a prompt says, as its grammar has it: things, what they do, and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from wsim.rules.lexicon import Side
+
+
+@dataclass
+class Phrase:
+    """A thing as the prompt names it."""
+
+    kind: str  # a noun's key, or "group", "water", "ground", "part", "pronoun"
+    words: str
+    definite: bool = False
+    plural: bool = False
+    count: int | None = None
+    material: str | None = None
+    color: str | None = None
+    scale: float | None = None  # against the default size
+    length: float | None = None  # [m], of whatever the noun's length is
+    measures: dict[str, float] = field(
+        default_factory=dict
+    )  # "x", "y", "z", "radius", "diameter" [m], "mass", "density"
+    edges: tuple[float, float, float] | None = None  # [m]
+    angle: float | None = None  # [deg], of an incline
+    arrangement: str = ""  # of a group: "stack" or "row"
+    members: Phrase | None = None  # of a group
+    part: str | None = None  # "surface", "top", "bottom", "end", "middle", "edge", of `owner`
+    owner: Phrase | None = None
+    filled: bool = False  # a container that was said to hold water
+    places: list[Place] = field(default_factory=list)
+
+
+@dataclass
+class Place:
+    """Where something is, goes to or comes from, how fast, and for how long."""
+
+    preposition: str  # a key of the lexicon, or "side", "between", "speed", "angle", "time", "toward", "bare"
+    phrase: Phrase | None = None
+    other: Phrase | None = None  # the second of "between"
+    side: Side | None = None
+    length: float | None = None  # [m]: "from 0.5 m", "0.2 m in front of"
+    value: float | None = None  # [m/s], [deg] or [s]
+    direction: str | None = None
+    words: str = ""
+
+
+@dataclass
+class Action:
+    """What a thing does."""
+
+    verb: str
+    words: str
+    target: Phrase | None = None
+    particle: str | None = None
+    places: list[Place] = field(default_factory=list)
+
+
+@dataclass
+class Clause:
+    """Things, and what they all do."""
+
+    subjects: list[Phrase] = field(default_factory=list)
+    actions: list[Action] = field(default_factory=list)
+
+    @property
+    def words(self) -> str:
+        """The clause, near enough for a message."""
+        return " ".join([", ".join(phrase.words for phrase in self.subjects), *(a.words for a in self.actions)]).strip()

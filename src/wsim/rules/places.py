@@ -1,0 +1,224 @@
+"""Where things are: the places of a phrase or an action, put to the cast."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wsim.errors import UserError
+from wsim.rules.cast import Beside, Thing
+from wsim.rules.grammar import NotUnderstood
+
+if TYPE_CHECKING:
+    from wsim.rules.meaning import Reader
+    from wsim.rules.phrases import Phrase, Place
+
+_ORDER = "knows these words, but not in this order"
+SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
+
+
+def stand(reader: Reader, thing: Thing, places: list[Place]) -> None:
+    """Where a thing is, when nothing says what it does there."""
+    for place in places:
+        if common(reader, thing, place):
+            continue
+        at = place.phrase
+        if place.length is not None or place.preposition not in ("in", "inside", "on", "at") or at is None:
+            raise NotUnderstood([f"{thing.words} {place.words}"], "knows these words, but cannot place them")
+        if at.kind == "group" and at.members is None and place.preposition == "in":
+            arrange(reader, thing, at.arrangement)
+            continue
+        _stand_at(reader, thing, place, at)
+
+
+def _stand_at(reader: Reader, thing: Thing, place: Place, at: Phrase) -> None:
+    found = where(reader, at)
+    if isinstance(found, Thing):
+        if place.preposition in ("in", "inside"):
+            put_inside(reader, thing, found)
+        elif found.noun.family == "rod":
+            hang(reader, thing, found)
+            return
+        else:
+            support(reader, thing, found)
+        do(thing, "rest")
+    elif found == "water":
+        put(thing, "water")
+        if place.preposition == "on" or part(at) in ("surface", "top"):
+            do(thing, "float")
+        elif part(at) == "bottom":
+            do(thing, "sink")
+    else:
+        put(thing, "ground")
+        do(thing, "rest")
+
+
+def common(reader: Reader, thing: Thing, place: Place) -> bool:
+    """Take a place that means the same whatever the thing does; False for the others."""
+    if place.preposition == "side":
+        _beside(reader, thing, place)
+    elif place.preposition == "between":
+        _between(reader, thing, place)
+    elif place.preposition == "time":
+        reader.cast.duration = place.value
+    elif place.preposition == "speed":
+        thing.speed = place.value
+    elif place.preposition == "angle" and thing.noun.family == "ramp":
+        thing.phrase.angle = place.value
+    else:
+        return False
+    return True
+
+
+def _beside(reader: Reader, thing: Thing, place: Place) -> None:
+    assert place.side is not None and place.phrase is not None
+    predicate = place.side.predicate
+    other = where(reader, place.phrase)
+    if predicate == "SPAWNED-ABOVE":
+        _above(reader, thing, place, other)
+        return
+    if not isinstance(other, Thing) or other is thing:
+        raise NotUnderstood([place.words], "places things by other things, not so:")
+    if predicate == "under":
+        if other.noun.family != "solid":
+            raise NotUnderstood(
+                [place.words], f"builds a {other.kind} as a solid body that has no room under it, so not this:"
+            )
+        support(reader, other, thing)
+        do(thing, "rest")
+        return
+    if other.count > 1 and not other.group:
+        raise NotUnderstood([place.phrase.words], "cannot tell which of them this is")
+    if predicate not in SIDES and place.length is not None:
+        raise NotUnderstood([place.words], _ORDER)
+    if place.side.assume:
+        reader.cast.assume(thing.words, place.side.assume, f"the prompt says {place.words!r}, not on which side")
+    thing.beside.append(Beside(predicate, other, gap=place.length))
+    if predicate in SIDES:
+        put(thing, "ground")
+        put(other, "ground")
+        do(thing, "rest")
+
+
+def _above(reader: Reader, thing: Thing, place: Place, other: str | Thing) -> None:
+    """Above a thing is where a fall begins."""
+    if place.length is not None:
+        thing.drop_height = place.length
+    elif thing.drop_height is None and not isinstance(other, Thing):
+        raise NotUnderstood([place.words], "needs a height, as in '0.5 m above the water':")
+    if isinstance(other, Thing):
+        support(reader, thing, other)
+    else:
+        put(thing, other)
+    if "drop" not in thing.does and "hang" not in thing.does:
+        reader.cast.assume(thing.words, "falls from there", "nothing is said to hold it up")
+        do(thing, "drop")
+
+
+def _between(reader: Reader, thing: Thing, place: Place) -> None:
+    assert place.phrase is not None
+    if place.other is None:
+        raise NotUnderstood([place.words], "needs to be told between which two things:")
+    first, second = where(reader, place.phrase), where(reader, place.other)
+    if not isinstance(first, Thing) or not isinstance(second, Thing) or len({thing, first, second}) < 3:
+        raise NotUnderstood([place.words], "places things between two other things, not so:")
+    thing.beside.append(Beside("between", first, second))
+    for one in (thing, first, second):
+        put(one, "ground")
+    do(thing, "rest")
+
+
+def where(reader: Reader, phrase: Phrase) -> str | Thing:
+    """The water, the ground, or a thing."""
+    if phrase.kind == "ground":
+        reader.scenery(phrase)
+        return "ground"
+    if phrase.kind == "part":
+        if phrase.owner is not None:
+            return where(reader, phrase.owner)
+        if phrase.part in ("surface", "bottom"):
+            return "water"
+        raise NotUnderstood([phrase.words], "cannot tell of what this is a part")
+    if reader.is_scenery(phrase):
+        reader.scenery(phrase)
+        return "water"
+    if phrase.kind == "pronoun":
+        if reader.cast.wet and all(thing.place == "water" for thing in reader.last):
+            return "water"
+        return reader.pronoun(phrase, [])[0]
+    return reader.thing(phrase)
+
+
+def part(phrase: Phrase) -> str | None:
+    """Which part of its owner a phrase names."""
+    return phrase.part if phrase.kind == "part" else None
+
+
+def put(thing: Thing, place: str) -> None:
+    """Say that a thing is in the water or on the ground."""
+    if thing.place is not None and thing.place != place:
+        raise UserError(f"{thing.words!r} cannot be in the water and on the ground")
+    if place == "water" and thing.noun.family != "solid":
+        raise NotUnderstood([thing.words], "puts blocks, balls and the like in water, but not this:")
+    thing.place = place
+
+
+def support(reader: Reader, thing: Thing, other: Thing) -> None:
+    """Stand a thing on another."""
+    if other is thing:
+        raise NotUnderstood([thing.words], "cannot place a thing on itself:")
+    if other.place == "water":
+        raise UserError(
+            f"{thing.words!r} on {other.words!r}: the builtin planner stacks things on the ground, not in water"
+        )
+    if other.count > 1 and not other.group:
+        raise NotUnderstood([other.words], "cannot tell which of them this is")
+    if other.noun.family in ("vessel", "rod", "pendulum") or thing.noun.family not in ("solid", "vessel"):
+        raise NotUnderstood([f"{thing.words} on {other.words}"], "cannot stand this on that:")
+    put(thing, "ground")
+    put(other, "ground")
+    if other.noun.family == "ramp":
+        thing.path = other
+        return
+    crowded = any(one is not thing and one.support is other for one in reader.cast.things)
+    if crowded and other.noun.family != "furniture":
+        raise UserError(f"{other.words!r}: the builtin planner puts one thing, or a stack, on another, not two")
+    thing.support = other
+
+
+def put_inside(reader: Reader, thing: Thing, other: Thing) -> None:
+    """Put a thing in a vessel."""
+    if other.noun.family != "vessel" or thing.noun.family != "solid" or other.count > 1:
+        raise NotUnderstood([f"{thing.words} in {other.words}"], "puts things in a bowl or a bucket, but not this:")
+    if thing.count > 1 or any(one is not thing and one.inside is other for one in reader.cast.things):
+        raise UserError(f"{other.words!r}: the builtin planner puts one thing in it, not more")
+    thing.inside = other
+    put(thing, "ground")
+    put(other, "ground")
+
+
+def hang(reader: Reader, thing: Thing, rod: Thing) -> None:
+    """Hang a thing on a rod, which is then no thing of its own."""
+    if rod.count > 1 or thing.count > 1 or not thing.round:
+        raise NotUnderstood([f"{thing.words} on {rod.words}"], "hangs one ball on a rod, but not this:")
+    reader.cast.things = [one for one in reader.cast.things if one is not rod]
+    thing.rod = rod.phrase
+    put(thing, "ground")
+    do(thing, "hang")
+
+
+def arrange(reader: Reader, thing: Thing, arrangement: str) -> None:
+    """Stack things, or stand them in a row."""
+    if thing.count < 2:
+        raise UserError(f"{thing.words!r}: a {arrangement} has at least two things; give a number")
+    thing.arrangement = arrangement
+    put(thing, "ground")
+    do(thing, "rest")
+
+
+def do(thing: Thing, what: str) -> None:
+    """Note what a thing does."""
+    if what not in thing.does:
+        thing.does.append(what)
+    for a, b in (("float", "sink"), ("float", "submerge")):
+        if a in thing.does and b in thing.does:
+            raise UserError(f"{thing.words!r} cannot both {a} and {b}; the prompt asks for both")

@@ -1,0 +1,101 @@
+"""The builtin planner: a prompt becomes a plan by rules, offline, without a language model.
+
+It never invents and never skips: every word of the prompt is consumed by a rule (the only words without a meaning of
+their own are articles and joiners), and every choice that the prompt left open is an `Assumption` of the plan.
+
+A prompt that physics contradicts ("a steel block floats") is planned as it was said: what must happen is the user's to
+say, and whether it does is the judge's to find, with evidence. An assumption that starts with "warning:" says
+beforehand that it will not. A prompt that contradicts itself ("a ball floats and sinks") is refused.
+"""
+
+from __future__ import annotations
+
+import re
+
+from wsim.errors import UserError
+from wsim.plan.layout import layout
+from wsim.plan.schema import Plan, SimulationPlan
+from wsim.plan.steps import steps
+from wsim.plan.views import cameras
+from wsim.rules.cast import Cast
+from wsim.rules.grammar import NotUnderstood, parse
+from wsim.rules.lexicon import lexicon
+from wsim.rules.meaning import understand
+from wsim.rules.scenes.ground import build_ground
+from wsim.rules.scenes.incline import build_inclines
+from wsim.rules.scenes.mechanisms import build_pendulum, build_seesaw
+from wsim.rules.scenes.motion import ground_object
+from wsim.rules.scenes.part import Part
+from wsim.rules.scenes.pour import build_pour
+from wsim.rules.scenes.tank import build_tank
+
+__all__ = ["NotUnderstood", "plan"]
+
+FRAME_RATE = 24.0  # [1/s]: the cinema's; a fifth fewer pictures than 30
+LONGEST = 60.0  # that a prompt may ask for [s]
+
+
+def plan(prompt: str) -> Plan:
+    """The plan for a prompt about things in a tank of water, on the ground, on tables, ramps or hinges.
+
+    Raises:
+        NotUnderstood: names the words that no rule took.
+        UserError: the prompt contradicts itself or asks for more than the planner builds.
+    """
+    cast = understand(parse(prompt))
+    scene = _scene(cast)
+    duration = _duration(cast, scene)
+    _note_what_is_common(cast, prompt, duration)
+    common = {
+        "title": " ".join(prompt.split()).rstrip("."),
+        "prompt": prompt,
+        "simulation": SimulationPlan(duration=duration, spacing=scene.spacing, frame_rate=FRAME_RATE),
+    }
+    placed = layout(Plan(objects=scene.objects, **common))
+    whole = Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common)
+    return Plan.model_validate(
+        {
+            **whole.model_dump(),
+            "objectives": scene.objectives,
+            "cameras": cameras(whole, above=scene.surface),
+            "steps": steps(whole),
+            "assumptions": cast.assumptions,
+        }
+    )
+
+
+def _scene(cast: Cast) -> Part:
+    taken = {"ground", "side", "top", "pivot", "hold"}
+    scene = Part(objects=[ground_object()])
+    if cast.wet:
+        scene.add(build_tank(cast, taken))
+    for build in (build_pour, build_inclines, build_pendulum, build_seesaw):
+        made = build(cast, taken)
+        if made.objects and cast.wet:
+            raise UserError("the builtin planner builds ramps, hinges and what is poured without a tank of water")
+        scene.add(made)
+    if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
+        fixed = Part(objects=scene.objects[1:] if not cast.wet else [], names=scene.names)
+        scene.add(build_ground(cast, taken, fixed, behind="tank" if cast.wet else None))
+    return scene
+
+
+def _duration(cast: Cast, scene: Part) -> float:
+    if cast.duration is None:
+        return scene.duration
+    if not 0.1 <= cast.duration <= LONGEST:
+        raise UserError(f"{cast.duration:g} s is outside 0.1 to {LONGEST:g} s, the builtin planner's range")
+    return cast.duration
+
+
+def _note_what_is_common(cast: Cast, prompt: str, duration: float) -> None:
+    words = re.findall(r"[a-z]+", prompt.lower())
+    if not set(words) & set(lexicon().words_of("GROUND")):
+        cast.assume("scene", "on level ground", "something has to carry it")
+    if cast.duration is None:
+        cast.assume("scene", f"{duration:g} s long", "time to come to rest; the prompt gives no duration")
+    if "then" in words:
+        cast.assume(
+            "scene", "everything starts at once", "'then' gives no time, and the builtin planner schedules nothing"
+        )
+    cast.assume("cameras", "side and top", "the prompt names no view")

@@ -1,0 +1,225 @@
+"""Things on the ground and on each other: rows, stacks, tables and what is on them, drops."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wsim.errors import UserError
+from wsim.plan.layout import WALL
+from wsim.plan.schema import Objective, PlanObject, Relation
+from wsim.rules.cast import Beside
+from wsim.rules.places import SIDES
+from wsim.rules.scenes.motion import hit, meet, move, struck, throw_height
+from wsim.rules.scenes.part import Part, fall_time
+from wsim.rules.sizes import bodies
+
+if TYPE_CHECKING:
+    from wsim.rules.cast import Cast, Thing
+
+GAP = 0.15  # between neighbours on the ground [m]
+GAP_ABOVE = 0.08  # between neighbours on a table [m]
+ROW_SHARE = 0.5  # of their height, between things in a row: each then reaches the next as it falls
+DROP_HEIGHT = 0.5  # [m]
+
+
+def build_ground(cast: Cast, taken: set[str], scene: Part, behind: str | None = None) -> Part:
+    """Everything that stands on the ground, in a row along Y, or in front of a tank.
+
+    Args:
+        cast: What the prompt speaks of.
+        taken: Names in use; grows.
+        scene: What is there already.
+        behind: Name of the tank that the row stands in front of.
+    """
+    part = Part(duration=3.0, names=scene.names)
+    things = [thing for thing in cast.things if thing.place == "ground" and id(thing) not in scene.names]
+    _settle_sides(things, cast)
+    ends = _Ends(behind or next((o.name for o in scene.objects), None), "FRONT-OF" if behind else "LEFT-OF")
+    # What carries another comes first: its name is needed.
+    for thing in sorted(things, key=lambda thing: _depth(thing, [])):
+        if thing.target is None and "meet" not in thing.does:
+            _place(thing, cast, taken, part, ends)
+    for thing in things:
+        if "meet" in thing.does:
+            meet(thing, cast, taken, part)
+        elif thing.target is not None:
+            hit(thing, cast, taken, part)
+    for thing in cast.things:
+        if thing.target is not None and thing.path is not None:
+            struck(thing, part)
+    return part
+
+
+class _Ends:
+    """Where rows end: what the next thing without a place of its own stands beside."""
+
+    def __init__(self, ground: str | None, side: str) -> None:
+        self.side = side
+        self.last: dict[int | None, str] = {} if ground is None else {None: ground}
+
+    def row(self, thing: Thing) -> Relation | None:
+        """The row that puts a thing beside the last one on the same support."""
+        on = None if thing.support is None else id(thing.support)
+        if on not in self.last:
+            return None
+        side, gap = (self.side, GAP) if on is None else ("LEFT-OF", GAP_ABOVE)
+        return Relation(predicate=side, ref=self.last[on], gap=gap)
+
+    def grow(self, thing: Thing, name: str) -> None:
+        """Note a new end."""
+        self.last[None if thing.support is None else id(thing.support)] = name
+
+
+def _settle_sides(things: list[Thing], cast: Cast) -> None:
+    """Turn "between" into two sides, and let what is beside a thing on a table stand on that table, too."""
+    for thing in things:
+        for beside in [b for b in thing.beside if b.predicate == "between"]:
+            thing.beside.remove(beside)
+            assert beside.other is not None
+            thing.beside.append(Beside("LEFT-OF", beside.ref, gap=beside.gap))
+            if not _sides(beside.other):
+                beside.other.beside.append(Beside("LEFT-OF", thing, gap=beside.gap))
+            cast.assume(thing.words, "in a row from right to left", "the prompt says between, not along which line")
+    for _ in things:
+        for thing in things:
+            for beside in _sides(thing):
+                on = beside.ref.support
+                if on is not None and thing.support is None and on is not thing and "drop" not in thing.does:
+                    thing.support = on
+                    cast.assume(thing.words, f"on {on.words}", f"{beside.ref.words} is there")
+
+
+def _sides(thing: Thing) -> list[Beside]:
+    return [beside for beside in thing.beside if beside.predicate in SIDES]
+
+
+def _depth(thing: Thing, seen: list[Thing]) -> int:
+    if thing in seen:
+        names = " and ".join(repr(one.words) for one in seen[:2])
+        raise UserError(f"{names} cannot stand on each other, or beside each other in a circle")
+    needs = [thing.support, thing.inside, *(beside.ref for beside in thing.beside)]
+    below = [one for one in needs if one is not None and one.target is None]
+    return 1 + max((_depth(one, [*seen, thing]) for one in below), default=-1)
+
+
+def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -> None:
+    """Add a thing's objects."""
+    if thing.support is not None and thing.count > 1 and not thing.group and thing.support.noun.family != "furniture":
+        raise UserError(
+            f"{thing.words!r} on {thing.support.words!r}: the builtin planner puts one thing, or a stack, on another"
+        )
+    below = part.names[id(thing.support)][-1] if thing.support is not None else None
+    height = _drop_height(thing, cast, part)
+    made = bodies(thing, cast, taken)
+    part.names[id(thing)] = [item.name for item in made]
+    for index, item in enumerate(made):
+        stacked = thing.arrangement == "stack" and index > 0
+        lower = made[index - 1].name if stacked else below
+        start = _start(thing, lower, height, part, stacked)
+        rows = [start, *(_in_plane(thing, made, index, part, ends) if not stacked else [])]
+        rows += [] if stacked else _facing(thing, part)
+        item = move(thing, item, cast, part, below)
+        part.objects.append(item.related(rows + item.relations))
+        at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
+        part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
+
+
+def _start(thing: Thing, lower: str | None, height: float | None, part: Part, stacked: bool) -> Relation:
+    if stacked:
+        return Relation(predicate="PLACE-ON", ref=lower)
+    if thing.inside is not None:
+        vessel = part.names[id(thing.inside)][0]
+        if height is not None:
+            rim = WALL + next(item.size[2] for item in part.objects if item.name == vessel)
+            return Relation(predicate="SPAWNED-ABOVE", value=round(rim + height, 6))
+        return Relation(predicate="PLACE-IN", ref=vessel)
+    if height is not None:
+        return Relation(predicate="SPAWNED-ABOVE", ref=lower, value=height)
+    if lower is not None:
+        return Relation(predicate="PLACE-ON", ref=lower)
+    return Relation(predicate="PLACE-ON-BASE")
+
+
+def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends: _Ends) -> list[Relation]:
+    """The rows that say where in the plane an object is."""
+    item = made[index]
+    if thing.inside is not None:
+        vessel = part.names[id(thing.inside)][0]
+        centred = ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB") if "drop" in thing.does else ()
+        return [Relation(predicate=predicate, ref=vessel) for predicate in centred]
+    if thing.arrangement == "row" and index > 0:
+        gap = round(ROW_SHARE * (item.size[-1] if len(item.size) > 1 else 2 * item.size[0]), 3)
+        return [Relation(predicate="FRONT-OF", ref=made[index - 1].name, gap=gap)]
+    sides = _sides(thing) if index == 0 else []
+    if not sides:
+        # On the middle of what carries it, unless something is there already.
+        row = ends.row(thing)
+        ends.grow(thing, item.name)
+        return [] if row is None else [row]
+    gap = GAP if thing.support is None else GAP_ABOVE
+    rows = []
+    for beside in sides:
+        ref = part.names[id(beside.ref)][-1 if beside.ref.arrangement != "stack" else 0]
+        rows.append(Relation(predicate=beside.predicate, ref=ref, gap=gap if beside.gap is None else beside.gap))
+        on = None if thing.support is None else id(thing.support)
+        if beside.predicate == "LEFT-OF" and ends.last.get(on) == ref:
+            ends.grow(thing, item.name)
+    return rows
+
+
+def _facing(thing: Thing, part: Part) -> list[Relation]:
+    return [
+        Relation(predicate=beside.predicate, ref=part.names[id(beside.ref)][0])
+        for beside in thing.beside
+        if beside.predicate not in SIDES
+    ]
+
+
+def _drop_height(thing: Thing, cast: Cast, part: Part) -> float | None:
+    if "throw" in thing.does:
+        return throw_height(thing, cast) if thing.support is None else thing.drop_height
+    if "drop" not in thing.does:
+        return None
+    height = thing.drop_height
+    if height is None:
+        height = DROP_HEIGHT
+        cast.assume(thing.words, f"dropped from {height:g} m above what it lands on", "the prompt gives no height")
+    part.duration = max(part.duration, round(2.0 + 2 * fall_time(height), 1))
+    return height
+
+
+def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, cast: Cast) -> list[Objective]:
+    name = item.name
+    if "topple" in thing.does:
+        wanted = last or thing.arrangement == "row"
+        what = "stack falls" if thing.arrangement == "stack" else f"{thing.kind} falls"
+        return [Objective(kind="topples", object=name, sentence=f"The {what}: {name} comes down.")] if wanted else []
+    if item.state != "dynamic" or {"slide", "push", "throw"} & {*thing.does} or thing.off:
+        return []  # those of what moves come with its motion
+    if "roll" in thing.does:
+        on = lower or "ground"
+        return [Objective(kind="stays_on", object=name, ref=on, sentence=f"{name} stays on the {on}.")]
+    if _hit(thing, cast):
+        if last:
+            cast.assume(thing.words, "nothing is asked of it", "the prompt says that it is hit, not what comes of that")
+        return []
+    if thing.inside is not None:
+        return [Objective(kind="stays_inside", object=name, ref=lower, sentence=f"{name} stays inside {lower}.")]
+    if lower is None:
+        return [Objective(kind="rests_on", object=name, ref="ground", sentence=f"{name} comes to rest on the ground.")]
+    if item.primitive == "sphere" or thing.noun.lies or "drop" in thing.does:
+        if item.primitive in ("box", "cylinder") and not thing.noun.lies:
+            return [Objective(kind="rests_on", object=name, ref=lower, sentence=f"{name} comes to rest on {lower}.")]
+        if thing.support is not None and thing.support.noun.family == "furniture" and "drop" in thing.does:
+            return [Objective(kind="collides_with", object=name, ref=lower, sentence=f"{name} falls on {lower}.")]
+        cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
+        return []
+    return [Objective(kind="stays_on", object=name, ref=lower, sentence=f"{name} stays on {lower}.")]
+
+
+def _hit(thing: Thing, cast: Cast) -> bool:
+    """Whether something goes into it, or drops on the stack that it is."""
+    return any(
+        other.target is thing or (thing.group and "drop" in other.does and other.support is thing)
+        for other in cast.things
+    )

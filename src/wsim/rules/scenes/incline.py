@@ -1,0 +1,154 @@
+"""Ramps, and what rolls, slides or rests on them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from wsim.errors import UserError
+from wsim.plan.schema import Objective, PlanObject, Pose
+from wsim.rules.scenes.part import GRAVITY, Part, pair_friction, tidy
+from wsim.rules.sizes import bodies
+
+if TYPE_CHECKING:
+    from wsim.rules.cast import Cast, Thing
+
+ROLLING_ANGLE = 20.0  # [deg], where the prompt gives none
+ABOVE, BELOW = 8.0, 6.0  # from the angle of friction to that of what slides, or of what rests [deg]
+STEEPEST = 60.0  # [deg]
+EDGE = 0.08  # from the ramp's upper end to what starts on it [m]
+START_GAP = 0.001  # between the ramp and what starts on it [m]
+SPHERE = 2 / 7  # of tan(angle): the least friction with which a ball rolls without slipping, and a ball's share of g
+
+
+def build_inclines(cast: Cast, taken: set[str]) -> Part:
+    """The ramp and what is on it; its foot points along +X.
+
+    Raises:
+        UserError: more than one ramp, or more on it than fits.
+    """
+    part = Part()
+    ramps = cast.family("ramp")
+    if not ramps:
+        return part
+    if len(ramps) > 1 or ramps[0].count > 1:
+        raise UserError(f"{ramps[-1].words!r}: the builtin planner builds one ramp")
+    ramp = ramps[0]
+    riders = [thing for thing in cast.things if thing.path is ramp]
+    made = {id(thing): bodies(thing, cast, taken)[0] for thing in riders if thing.count == 1}
+    if len(made) < len(riders):
+        raise UserError(f"{ramp.words!r}: the builtin planner puts single things on a ramp; give one of each")
+    [slab] = bodies(ramp, cast, taken)
+    angle = _angle(ramp, slab, [(thing, made[id(thing)]) for thing in riders], cast)
+    turn, (length, _, thick) = math.radians(angle), slab.size
+    pose = Pose(
+        position=(0.0, 0.0, tidy(length / 2 * math.sin(turn) + thick / 2 * math.cos(turn))),
+        rotation_deg=(0.0, angle, 0.0),
+    )
+    slab = slab.model_copy(update={"pose": pose})
+    part.objects.append(slab)
+    part.names[id(ramp)] = [slab.name]
+    across = _across(slab, list(made.values()), ramp)
+    for thing, y in zip(riders, across, strict=True):
+        _rider(thing, made[id(thing)], slab, angle, y, part, cast)
+    return part
+
+
+def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]], cast: Cast) -> float:
+    """The prompt's angle; else one at which the riders do what they are to do."""
+    given = ramp.phrase.angle
+    if given is not None:
+        if not 1.0 <= given <= STEEPEST:
+            raise UserError(f"{ramp.words!r}: {given:g} degrees is outside 1 to {STEEPEST:g}, the planner's range")
+        for thing, item in riders:
+            _warn(thing, item, slab, given, cast)
+        return given
+    angle, why = ROLLING_ANGLE, "the prompt gives no angle"
+    for thing, item in riders:
+        friction = pair_friction(item, slab)
+        limit = math.degrees(math.atan(friction))
+        if "slide" in thing.does:
+            angle = 5.0 * math.ceil((limit + ABOVE) / 5)
+            why = f"steeper than the angle of friction, {limit:.1f} degrees at a friction of {friction:g}"
+        elif "roll" in thing.does:
+            why = (
+                f"a friction of {friction:g} is above 2/7 tan({angle:g} degrees) = "
+                f"{SPHERE * math.tan(math.radians(angle)):.2f}, so that a ball rolls and does not slip"
+            )
+        else:
+            angle = max(2.0, 5.0 * math.floor((limit - BELOW) / 5))
+            why = f"flatter than the angle of friction, {limit:.1f} degrees at a friction of {friction:g}"
+    if angle > STEEPEST:
+        raise UserError(f"{ramp.words!r}: to slide there would take {angle:g} degrees; give smoother materials")
+    cast.assume(ramp.words, f"inclined by {angle:g} degrees", why)
+    return angle
+
+
+def _warn(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, cast: Cast) -> None:
+    friction = pair_friction(item, slab)
+    slips = math.tan(math.radians(angle)) > friction
+    text = f"at {angle:g} degrees and a friction of {friction:g}"
+    if "slide" in thing.does and not slips:
+        cast.assume(thing.words, f"warning: {text} it stays", "the plan asks for what the prompt says")
+    elif "rest" in thing.does and slips and not thing.round:
+        cast.assume(thing.words, f"warning: {text} it slides", "the plan asks for what the prompt says")
+
+
+def _across(slab: PlanObject, items: list[PlanObject], ramp: Thing) -> list[float]:
+    """Where each starts across the ramp [m]."""
+    widths = [2 * item.size[0] if item.primitive != "box" else item.size[1] for item in items]
+    room = slab.size[1] - sum(widths)
+    if room < 0.02 * (len(items) + 1):
+        raise UserError(f"{ramp.words!r} is {slab.size[1]:g} m wide, too narrow for what is on it; give smaller things")
+    gap, at, places = room / (len(items) + 1), -slab.size[1] / 2, []
+    for width in widths:
+        places.append(at + gap + width / 2)
+        at += gap + width
+    return places
+
+
+def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: float, part: Part, cast: Cast) -> None:
+    turn, (length, _, thick) = math.radians(angle), slab.size
+    if "roll" in thing.does and not thing.round:
+        raise UserError(f"{thing.words!r}: the builtin planner rolls balls only")
+    if item.primitive not in ("box", "sphere"):
+        raise UserError(f"{thing.words!r}: the builtin planner puts balls and boxes on a ramp")
+    half = item.size[0] if item.primitive == "sphere" else item.size[2] / 2
+    along = item.size[0] if item.primitive == "sphere" else item.size[0] / 2
+    s, h = -length / 2 + EDGE + along, thick / 2 + half + START_GAP
+    assert slab.pose is not None
+    x0, _, z0 = slab.pose.position
+    position = (
+        tidy(x0 + s * math.cos(turn) + h * math.sin(turn)),
+        tidy(y),
+        tidy(z0 - s * math.sin(turn) + h * math.cos(turn)),
+    )
+    rotation = (0.0, angle if item.primitive == "box" else 0.0, 0.0)
+    speed = thing.speed or 0.0
+    velocity = (tidy(speed * math.cos(turn)), 0.0, tidy(-speed * math.sin(turn)))
+    pose = Pose(position=position, rotation_deg=rotation)
+    part.posed.append(item.model_copy(update={"pose": pose, "velocity": velocity}))
+    part.names[id(thing)] = [item.name]
+    _objective(thing, item, slab, angle, part, cast)
+
+
+def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, part: Part, cast: Cast) -> None:
+    turn, name = math.radians(angle), item.name
+    friction = pair_friction(item, slab)
+    way = round(0.6 * slab.size[0], 3)  # the rest is where it starts, and the foot
+    if "roll" in thing.does:
+        pull = GRAVITY * math.sin(turn) * (1 - SPHERE)
+        sentence = f"{name} rolls down {slab.name}."
+        part.objectives.append(Objective(kind="rolls_down", object=name, ref=slab.name, value=way, sentence=sentence))
+    elif {"slide", "push"} & {*thing.does}:
+        pull = GRAVITY * (math.sin(turn) - friction * math.cos(turn))
+        sentence = f"{name} slides down {slab.name}."
+        part.objectives.append(Objective(kind="slides", object=name, ref=slab.name, value=way, sentence=sentence))
+    elif thing.round:
+        cast.assume(thing.words, "nothing is asked of it", "what is round does not rest on a ramp")
+        pull = GRAVITY * math.sin(turn) * (1 - SPHERE)
+    else:
+        part.objectives.append(Objective(kind="settles", object=name, sentence=f"{name} stays at rest on {slab.name}."))
+        pull = 0.0
+    time = math.sqrt(2 * slab.size[0] / pull) if pull > 0.1 else 1.0
+    part.duration = max(part.duration, round(time + (2.0 if thing.target is not None else 0.5), 1))

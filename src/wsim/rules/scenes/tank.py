@@ -1,0 +1,212 @@
+"""A tank of water and what is in it: resolution, sizes, start heights, objectives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from wsim.errors import UserError
+from wsim.plan.layout import extents
+from wsim.plan.schema import Material, Objective, PlanObject, Relation
+from wsim.rules.materials import GLASS_LOOK, WATER, WATER_DENSITY
+from wsim.rules.scenes.part import Part
+from wsim.rules.sizes import bodies, mean_density, thickness, volume
+
+if TYPE_CHECKING:
+    from wsim.rules.cast import Cast, Thing
+
+LAYERS_FLOATING = 4.5  # particle spacings in the height of what floats, at least
+LAYERS_SINKING = 4.0  # and in what sinks
+LAYERS_DRAFT = 1.2  # and in the expected draft
+LAYERS_DEPTH = 4.6  # and in the tallest thing, so that the water is ten or so deep
+GAP_SPACINGS = 3.2  # between neighbours and to the walls: the kernels of two bodies then do not overlap
+LEVEL_HEIGHTS = 2.1  # water depth against the tallest thing
+DEPTH_WIDTHS = 2.5  # tank's extent along Y against the widest thing
+FREEBOARD_SPACINGS = 4.0
+START_GAP = 0.005  # a floating thing starts this far above the water, so that it settles gently [m]
+SINK_GAP = 0.01  # and one that sinks without being dropped [m]
+DROP_HEIGHT = 0.15  # [m]
+MOST_PARTICLES = 40_000
+DURATION = 3.5  # [s], for things 0.14 m tall
+
+
+@dataclass
+class Swimmer:
+    """A thing in the water, and one plan object of it."""
+
+    thing: Thing
+    item: PlanObject
+    end: Literal["floats", "sinks", "submerged"]  # what is to become of it
+    relation: Relation  # how it starts
+
+
+def build_tank(cast: Cast, taken: set[str]) -> Part:
+    """The tank, its water and the things in it, in one row along X.
+
+    Raises:
+        UserError: more things than one tank holds.
+    """
+    taken |= {"tank", "water"}
+    swimmers = [one for thing in cast.things if thing.place == "water" for one in _swimmers(thing, cast, taken)]
+    spacing, inner, level = _dimensions(swimmers, cast)
+    tank = PlanObject.proxy(
+        name="tank",
+        role="container",
+        primitive="tank",
+        size=inner,
+        material=GLASS_LOOK,
+        state="static",
+        relations=[Relation(predicate="PLACE-ON-BASE")],
+        words=cast.tank or "",
+    )
+    water = PlanObject.proxy(
+        name="water",
+        role="fluid",
+        primitive="fluid",
+        material=WATER,
+        state="fluid",
+        relations=[
+            Relation(predicate="PLACE-IN", ref="tank"),
+            Relation(predicate="FREE-SURFACE-AT", value=level),
+        ],
+        words=cast.water or "",
+    )
+    objects = [tank, water]
+    gap = round(GAP_SPACINGS * spacing, 6)
+    for left, swimmer in zip([None, *_row(swimmers)], _row(swimmers), strict=False):
+        relations = [swimmer.relation]
+        if left is not None:
+            relations.append(Relation(predicate="FRONT-OF", ref=left.item.name, gap=gap))
+        objects.append(swimmer.item.related(relations + swimmer.item.relations))
+    objectives = [_objective(swimmer) for swimmer in swimmers]
+    objectives.append(
+        Objective(kind="stays_inside", object="water", ref="tank", sentence="The water stays inside the tank.")
+    )
+    tallest = max((extents(s.item, _lying(s.item))[2] for s in swimmers), default=0.14)
+    duration = math.ceil(2 * DURATION * max(1.0, math.sqrt(tallest / 0.14))) / 2
+    return Part(
+        objects=objects, objectives=objectives, duration=duration, spacing=spacing, surface=round(0.02 + level, 6)
+    )
+
+
+def _lying(item: PlanObject) -> tuple[float, float, float]:
+    return (90.0, 0.0, 0.0) if item.relation("LIES-ALONG-Y") is not None else (0.0, 0.0, 0.0)
+
+
+def _swimmers(thing: Thing, cast: Cast, taken: set[str]) -> list[Swimmer]:
+    items = bodies(thing, cast, taken)
+    assert items[0].material is not None
+    end = _end(thing, items[0].material, mean_density(items[0]), cast)
+    start = _start(thing, end, cast)
+    return [Swimmer(thing, item, end, start) for item in items]
+
+
+def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Literal["floats", "sinks", "submerged"]:
+    """What was asked for, even if it cannot happen; the material decides where nothing was."""
+    ratio = f"{material.name}, {density:g} kg/m^3, in water of {WATER_DENSITY:g} kg/m^3"
+    light = density < WATER_DENSITY
+    if "float" in thing.does:
+        if not light:
+            cast.assume(
+                thing.words, f"warning: {ratio} sinks", "the plan asks for what the prompt says; the judge will not"
+            )
+        return "floats"
+    if "sink" in thing.does or "submerge" in thing.does:
+        if light:
+            cast.assume(
+                thing.words, f"warning: {ratio} floats", "the plan asks for what the prompt says; the judge will not"
+            )
+        return "sinks" if "sink" in thing.does else "submerged"
+    cast.assume(thing.words, "expected to float" if light else "expected to sink", f"{ratio}; the prompt does not say")
+    return "floats" if light else "sinks"
+
+
+def _start(thing: Thing, end: str, cast: Cast) -> Relation:
+    if "drop" in thing.does:
+        height = thing.drop_height
+        if height is None:
+            height = DROP_HEIGHT
+            cast.assume(thing.words, f"dropped from {height:g} m above the water", "the prompt gives no height")
+        return Relation(predicate="SPAWNED-ABOVE", ref="water", value=height)
+    if end == "floats":
+        return Relation(predicate="FLOATS-AT-SURFACE", ref="water", gap=START_GAP)
+    cast.assume(thing.words, f"let go {SINK_GAP:g} m above the water", "the prompt does not say where it comes from")
+    return Relation(predicate="SPAWNED-ABOVE", ref="water", value=SINK_GAP)
+
+
+def _row(swimmers: list[Swimmer]) -> list[Swimmer]:
+    """From back to front: what drops in comes down in the middle of what floats."""
+    resting = [s for s in swimmers if s.relation.predicate == "FLOATS-AT-SURFACE"]
+    dropped = [s for s in swimmers if s.relation.predicate != "FLOATS-AT-SURFACE"]
+    middle = (len(resting) + 1) // 2
+    return resting[:middle] + dropped + resting[middle:]
+
+
+def _dimensions(swimmers: list[Swimmer], cast: Cast) -> tuple[float, tuple[float, float, float], float]:
+    """Particle spacing, the tank's inner size and the water's level [m]: whole numbers of spacings."""
+    boxes = [extents(s.item, _lying(s.item)) for s in swimmers] or [(0.2, 0.2, 0.14)]
+    tallest = max(box[2] for box in boxes)
+    wanted = _spacing(swimmers, tallest)
+    spacing = wanted
+    while True:
+        gap = GAP_SPACINGS * spacing
+        depth = _up(DEPTH_WIDTHS * max(box[1] for box in boxes), spacing)
+        length = _up(max(sum(box[0] for box in boxes) + gap * (len(boxes) + 1), 1.2 * depth), spacing)
+        level = _up(LEVEL_HEIGHTS * tallest, spacing)
+        count = length * depth * level / spacing**3
+        if count <= MOST_PARTICLES:
+            break
+        spacing = round(spacing * 1.1, 4)
+    if spacing > 1.5 * wanted:
+        raise UserError(
+            f"the tank for these things would need {round(length * depth * level / wanted**3):,} particles of water; "
+            f"the builtin planner uses up to {MOST_PARTICLES:,}: ask for fewer things, or sizes closer to each other"
+        )
+    if spacing > wanted:
+        cast.assume("water", f"particles {spacing:g} m apart", f"{wanted:g} m would take more than {MOST_PARTICLES:,}")
+    # Everything that is heavier than its draft allows counts as fully under water: the rise is then an upper bound.
+    rise = sum(volume(s.item) * min(1.0, _ratio(s.item)) for s in swimmers) / (length * depth)
+    height = math.ceil((level + rise + FREEBOARD_SPACINGS * spacing) / 0.05 - 1e-9) * 0.05
+    inner = (length, depth, round(height, 6))
+    cast.assume(
+        "tank", f"{length:g} x {depth:g} x {inner[2]:g} m inside", "the prompt gives no size; it fits the things"
+    )
+    cast.assume("water", f"{level:g} m deep", f"{LEVEL_HEIGHTS:g} times the tallest thing")
+    cast.assume(
+        "water", f"about {round(count):,} particles, {spacing:g} m apart", "enough layers in the thinnest thing"
+    )
+    if cast.water is None:
+        cast.assume("tank", "holds water", "the prompt names a tank, or what floats or sinks, but no water")
+    if cast.tank is None:
+        cast.assume("water", "in a glass tank", "the prompt names no vessel")
+    return spacing, inner, level
+
+
+def _spacing(swimmers: list[Swimmer], tallest: float) -> float:
+    limits = [tallest / LAYERS_DEPTH]
+    for swimmer in swimmers:
+        across = thickness(swimmer.item)
+        if swimmer.end == "floats":
+            limits += [across / LAYERS_FLOATING, _ratio(swimmer.item) * across / LAYERS_DRAFT]
+        else:
+            limits.append(across / LAYERS_SINKING)
+    return math.floor(min(limits) * 1000 + 1e-6) / 1000 or 0.001
+
+
+def _ratio(item: PlanObject) -> float:
+    return mean_density(item) / WATER_DENSITY
+
+
+def _up(length: float, spacing: float) -> float:
+    """A length, up to the next whole number of spacings."""
+    return round(math.ceil(length / spacing - 1e-6) * spacing, 6)
+
+
+def _objective(swimmer: Swimmer) -> Objective:
+    name = swimmer.item.name
+    if swimmer.end == "floats":
+        return Objective(kind="floats", object=name, ref="water", sentence=f"{name} floats on the water.")
+    if swimmer.end == "submerged":
+        return Objective(kind="submerged", object=name, ref="water", sentence=f"{name} is under water.")
+    return Objective(kind="rests_on", object=name, ref="tank", sentence=f"{name} sinks and rests on the tank's floor.")

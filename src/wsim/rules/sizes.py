@@ -1,0 +1,203 @@
+"""How large the builtin planner makes a thing, of what, and in what colour, where the prompt leaves it open."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from wsim.errors import UserError
+from wsim.plan.schema import External, Material, PlanObject, Proxy, Registration, Relation
+from wsim.rules.lexicon import lexicon
+from wsim.rules.materials import material_named
+
+if TYPE_CHECKING:
+    from wsim.rules.cast import Cast, Thing
+
+_FLOATING_RADIUS = 0.09  # of a ball that is lighter than water: it must draw more than a particle or two [m]
+SMALLEST, LARGEST = 0.02, 5.0  # what a length in the prompt may be [m]
+LIGHTEST, HEAVIEST = 0.001, 10_000.0  # and a mass [kg]
+
+
+def material_of(thing: Thing, cast: Cast) -> Material:
+    """The thing's material, its colour applied; what was not said is noted."""
+    word = thing.phrase.material
+    if word is None:
+        word = thing.noun.material or _default_material(thing)
+        cast.assume(thing.words, f"of {word}", "the prompt names no material")
+    elif word == "metal":
+        cast.assume(thing.words, "of steel", "the prompt says metal, not which")
+    material = material_named(word)
+    if thing.phrase.color is not None:
+        material = material.model_copy(update={"color": lexicon().colors[thing.phrase.color], "opacity": 1.0})
+    if word in ("wood", "wooden"):
+        cast.assume(thing.words, f"wood of {material.density:g} kg/m^3", "the prompt does not say which wood")
+    density = thing.phrase.measures.get("density")
+    return material if density is None else material.model_copy(update={"density": density})
+
+
+def _default_material(thing: Thing) -> str:
+    if "float" in thing.does or thing.noun.primitive == "box" or thing.noun.lies:
+        return "steel" if "sink" in thing.does or "submerge" in thing.does else "wood"
+    return "steel" if "roll" in thing.does or thing.place == "water" else "rubber"
+
+
+def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) -> tuple[float, ...]:
+    """Size as the plan has it [m]: box edges, a radius, or radius and height.
+
+    Raises:
+        UserError: the prompt's length is out of range.
+    """
+    noun, phrase = thing.noun, thing.phrase
+    size = noun.afloat if thing.place == "water" else noun.size
+    if len(size) == 1 and thing.place == "water" and material.density < water_density:
+        size = (_FLOATING_RADIUS,)
+    given = [v for k, v in phrase.measures.items() if k in ("x", "y", "z", "radius", "diameter")]
+    for length in (*given, *([] if phrase.length is None else [phrase.length]), *(phrase.edges or ())):
+        if not SMALLEST <= length <= LARGEST:
+            raise UserError(
+                f"{thing.words!r}: {length:g} m is outside {SMALLEST:g} to {LARGEST:g} m, the builtin planner's range"
+            )
+    why = "the prompt gives no size"
+    if phrase.length is not None:
+        size = _from_length(thing, phrase.length, size)
+        why = f"{phrase.length:g} m is {_MEANS[noun.length]}"
+    elif phrase.scale is not None:
+        size = tuple(round(edge * phrase.scale, 4) for edge in size)
+        why = "the prompt says only how large against the usual"
+    if given or phrase.edges:
+        size = _measured(thing, size)
+        why = "the prompt's own measures; the rest is the usual"
+    cast.assume(thing.words, _describe(noun.primitive, size), why)
+    return size
+
+
+_MEANS = {
+    "edges": "taken as every edge",
+    "edge": "its edge",
+    "diameter": "taken as the diameter",
+    "x": "taken as the length",
+    "y": "taken as the width",
+    "z": "taken as the height",
+}
+
+
+def _from_length(thing: Thing, length: float, default: tuple[float, ...]) -> tuple[float, ...]:
+    noun = thing.noun
+    if noun.primitive == "sphere":
+        return (round(length / 2, 6),)
+    if noun.primitive in ("cylinder", "capsule"):
+        return (round(default[0] * length / default[1], 6), length)
+    if noun.length in ("edges", "edge"):
+        return (length, length, length)
+    axis = "xyz".index(noun.length)
+    return tuple(length if i == axis else edge for i, edge in enumerate(default))
+
+
+def _measured(thing: Thing, size: tuple[float, ...]) -> tuple[float, ...]:
+    """The size with the measures that the prompt names: "0.5 m long", "with a radius of 5 cm"."""
+    primitive, measures = thing.noun.primitive, thing.phrase.measures
+    known = {"box": {"x", "y", "z"}, "tank": {"x", "y", "z"}, "sphere": {"radius", "diameter"}}
+    if thing.phrase.edges and primitive not in ("box", "tank"):
+        raise UserError(f"{thing.words!r}: a {thing.kind} has no three edges; give one of its own measures")
+    strange = set(measures) - known.get(primitive, {"radius", "diameter", "z", "x"}) - {"mass", "density"}
+    if strange:
+        raise UserError(f"{thing.words!r}: a {thing.kind} has no {min(strange)}; give one of its own measures")
+    made = [float(edge) for edge in size]
+    if primitive in ("box", "tank"):
+        made = list(thing.phrase.edges or made)
+        for i, axis in enumerate("xyz"):
+            made[i] = measures.get(axis, made[i])
+        return tuple(made)
+    made[0] = measures.get("radius", measures.get("diameter", 2 * made[0]) / 2)
+    if len(made) > 1:
+        made[1] = measures.get("z", measures.get("x", made[1]))
+    return tuple(round(edge, 6) for edge in made)
+
+
+def _describe(primitive: str, size: tuple[float, ...]) -> str:
+    if primitive in ("box", "tank"):
+        return f"{size[0]:g} x {size[1]:g} x {size[2]:g} m"
+    if primitive == "sphere":
+        return f"radius {size[0]:g} m"
+    return f"radius {size[0]:g} m, length {size[1]:g} m"
+
+
+def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
+    """The thing's objects, without rows or motion."""
+    noun = thing.noun
+    material = material_of(thing, cast)
+    size = size_of(thing, material, 1000.0, cast)
+    proxy = Proxy(primitive=noun.primitive, size=size)
+    static = noun.family in ("furniture", "ramp", "vessel")
+    if noun.asset is not None:
+        cast.assume(
+            thing.words, f"a {noun.primitive} stands for it", "a program cannot load the catalogue's assets yet"
+        )
+    made = PlanObject(
+        name="thing",
+        role={"furniture": "background", "vessel": "container", "ramp": "terrain"}.get(noun.family, "rigid_body"),
+        construction=proxy if noun.asset is None else External(candidate=noun.asset, stand_in=proxy),
+        material=None if noun.family == "vessel" else material,
+        state="static" if static else "dynamic",
+        registration=Registration(mass=None if static else _mass(thing)),
+        words=thing.words,
+    )
+    rows = [Relation(predicate="LIES-ALONG-Y")] if noun.lies else []
+    return [made.model_copy(update={"name": name}).related(rows) for name in names(thing, taken)]
+
+
+def _mass(thing: Thing) -> float | None:
+    mass = thing.phrase.measures.get("mass")
+    if mass is None:
+        plain = thing.phrase.material is None and thing.phrase.scale is None and thing.phrase.length is None
+        return thing.noun.mass if plain and not thing.phrase.measures and thing.phrase.edges is None else None
+    if not LIGHTEST <= mass <= HEAVIEST:
+        raise UserError(
+            f"{thing.words!r}: {mass:g} kg is outside {LIGHTEST:g} to {HEAVIEST:g} kg, the builtin planner's range"
+        )
+    return mass
+
+
+def mean_density(item: PlanObject) -> float:
+    """Of a body, from its mass if it has one [kg/m^3]."""
+    if item.registration.mass is not None:
+        return item.registration.mass / volume(item)
+    return item.material.density if item.material is not None else 1000.0
+
+
+def thickness(item: PlanObject) -> float:
+    """The smallest extent of a thing [m]: what the fluid's particles have to resolve."""
+    if item.primitive in ("sphere", "capsule"):
+        return 2 * item.size[0]
+    if item.primitive == "cylinder":
+        return min(2 * item.size[0], item.size[1])
+    return min(item.size)
+
+
+def volume(item: PlanObject) -> float:
+    """Volume of a thing [m^3]."""
+    if item.primitive == "sphere":
+        return 4 / 3 * math.pi * item.size[0] ** 3
+    if item.primitive == "cylinder":
+        return math.pi * item.size[0] ** 2 * item.size[1]
+    if item.primitive == "capsule":
+        radius, height = item.size
+        return math.pi * radius**2 * (height + 4 / 3 * radius)
+    return math.prod(item.size)
+
+
+def names(thing: Thing, taken: set[str]) -> list[str]:
+    """A name for each of the thing's objects: wooden_block_1, steel_ball; marks them as taken."""
+    stem = "_".join(word for word in (thing.phrase.color, thing.phrase.material, thing.kind) if word)
+    if thing.count == 1 and stem not in taken:
+        taken.add(stem)
+        return [stem]
+    chosen: list[str] = []
+    number = 1
+    while len(chosen) < thing.count:
+        name = f"{stem}_{number}"
+        if name not in taken:
+            taken.add(name)
+            chosen.append(name)
+        number += 1
+    return chosen

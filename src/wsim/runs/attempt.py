@@ -1,0 +1,196 @@
+"""One program tried: checked, built, looked at, simulated, recorded; cheap passes first, no further than it fails."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field, replace
+from enum import IntEnum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from wsim.runs.accept import Trajectory
+from wsim.judge.verdict import Finding, RepairTarget, Verdict
+from wsim.runs.pipeline import Settings, build_in, conclude, no_world, reject, simulate_and_judge
+from wsim.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan
+
+
+class Reached(IntEnum):
+    """How far an attempt came: the pass that it failed, or all."""
+
+    VALIDATION = 0
+    BUILD = 1
+    FRAMES = 2
+    PHYSICS = 3
+    RECORDING = 4
+    REVIEW = 5
+    ALL = 6
+
+
+Rank = tuple[int, int, float]
+NUMERICS = ("time_step", "spacing", "speed_of_sound")
+
+
+@dataclass
+class Attempt:
+    """A program, how far it came, and what was found.
+
+    Attributes:
+        folder: The iteration's, with the artefacts of the passes that ran.
+        program: Its text.
+        reached: The pass that it failed.
+        verdict: Of that pass.
+        earlier: The trajectory of the pass without pictures, where there was one.
+        review: What the reviewer saw, as text.
+        seen: The differences from the plan that a reviewer's model saw; None: none looked.
+        repair: What the judge wants mended first, as text.
+    """
+
+    folder: Path
+    program: str
+    reached: Reached = Reached.VALIDATION
+    verdict: Verdict = field(default_factory=lambda: Verdict(status="blocked", summary="not tried"))
+    earlier: Trajectory | None = None
+    review: str = ""
+    seen: list[str] | None = None
+    repair: str = ""
+
+    @property
+    def number(self) -> int:
+        """Of the iteration, from 1."""
+        return int(self.folder.name)
+
+    @property
+    def rank(self) -> Rank:
+        """Greater is better: further, then fewer failures, then less far from the limits."""
+        failures = self.verdict.failures
+        different = {(finding.check, finding.prim, finding.objective) for finding in failures}
+        return (int(self.reached), -len(different), -sum(map(_short, failures)))
+
+
+def _short(finding: Finding) -> float:
+    """By how much a finding misses its limit, as a share of it, between 0 and 1; 1 where it has no numbers."""
+    if finding.margin is None or finding.margin >= 0.0:
+        return 1.0
+    scale = max(abs(finding.limit or 0.0), abs(finding.expected or 0.0))
+    return round(-finding.margin / (scale - finding.margin), 6)
+
+
+def attempt(
+    folder: Path,
+    plan: Plan | None,
+    settings: Settings | None = None,
+    progress: Progress = silent,
+    cheap_first: bool = True,
+) -> Attempt:
+    """Run the passes over `folder/program.py`, up to the first that fails.
+
+    Validation, build, one frame a camera, physics without pictures, the full recording. Each pass leaves its files in
+    `folder`, and verdict.json is that of the last.
+
+    Args:
+        folder: An iteration's, with a program.py.
+        plan: What the world is held to.
+        settings: Device, parameters, limits; without pictures there are no frames, and the physics are all.
+        progress: Told how far it is.
+        cheap_first: False goes from the build to the full recording: where nothing would be repaired, the cheap passes
+            only take time.
+    """
+    settings = settings or Settings()
+    made = Attempt(folder, (folder / "program.py").read_text(encoding="utf-8"))
+    looks = [_framed, _moved] if settings.pictures else []
+    passes = [_validated, _built, *looks, _recorded] if cheap_first else [_built, _recorded]
+    for run in passes:
+        try:
+            verdict = run(made, plan, settings, progress)
+        except (ValueError, RuntimeError, LookupError, ArithmeticError) as error:
+            if not cheap_first:
+                raise
+            verdict = _broken(error)  # a stage that passed its check and breaks the simulator is the coder's to mend
+        if verdict is not None:
+            made.verdict = conclude(folder, verdict)
+            if verdict.status != "accepted":
+                return made
+    made.reached = Reached.ALL
+    return made
+
+
+def _broken(error: Exception) -> Verdict:
+    text = " ".join(str(error).split())[:400]
+    message = f"the simulator cannot run this stage: {type(error).__name__}: {text}"
+    return reject(Finding(check="simulation", passed=False, message=message), "The simulator cannot run this stage.")
+
+
+def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+    from wsim.program.validator import validate
+
+    made.reached = Reached.VALIDATION
+    problems = validate(made.program, plan)
+    if not problems:
+        return None
+    findings = [
+        Finding(
+            check="program",
+            passed=False,
+            message=problem.sentence,
+            line=f"program.py:{problem.line}",
+            target=RepairTarget(kind="program"),
+        )
+        for problem in problems
+    ]
+    return Verdict(status="rejected", summary=f"Mistakes in the program: {len(problems)}.", findings=findings)
+
+
+def _built(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+    made.reached = Reached.BUILD
+    built = build_in(made.folder, settings, progress)
+    return None if built.ok else no_world(made.folder, built)
+
+
+def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+    """One frame a camera: a view in which nothing of the plan is to be seen fails before anything is simulated."""
+    from wsim.sim.stills import Stills
+
+    made.reached = Reached.FRAMES
+    named = {f"/World/{item.name}" for item in plan.objects if item.primitive != "ground"} if plan else set()
+    findings = []
+    for still in Stills(made.folder / "stage.usda", settings.device, progress=progress).draw_start():
+        pixels = {prim: count for prim, count in still.pixels.items() if prim in named and count}
+        if named & set(still.pixels) and not pixels:
+            findings.append(
+                Finding(
+                    check="CheckView",
+                    passed=False,
+                    message=f"{still.camera.prim} shows nothing of the plan at the start",
+                    prim=still.camera.prim,
+                    time=0.0,
+                    limit_from="a camera is there to show something",
+                    target=RepairTarget(kind="camera", prim=still.camera.prim, why="look at the objects"),
+                )
+            )
+    if not findings:
+        return None
+    return Verdict(status="rejected", summary=f"Cameras that show nothing: {len(findings)}.", findings=findings)
+
+
+def _moved(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+    made.reached = Reached.PHYSICS
+    quick = replace(settings, pictures=False, verify=False)
+    verdict = simulate_and_judge(made.folder, made.folder / "program.py", plan, quick, progress)
+    if verdict.status == "accepted":
+        made.earlier = Trajectory.of(made.folder / "recording.rrd")
+    return verdict
+
+
+def _recorded(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+    made.reached = Reached.RECORDING
+    return simulate_and_judge(made.folder, made.folder / "program.py", plan, settings, progress)
+
+
+def numerics(program: str) -> list[str]:
+    """How a program has its world computed: the values that it gives for time steps and particle spacings."""
+    calls = (node for node in ast.walk(ast.parse(program)) if isinstance(node, ast.Call))
+    given = (keyword for call in calls for keyword in call.keywords if keyword.arg in NUMERICS)
+    return sorted(f"{keyword.arg}={ast.unparse(keyword.value)}" for keyword in given)

@@ -1,0 +1,261 @@
+"""Walls, friction and rest: each planted fault of a size is found, and what mechanics does is not."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import (
+    EDGE,
+    RADIUS,
+    RATE,
+    STEP,
+    G,
+    ask,
+    ball,
+    bouncing,
+    box,
+    edited,
+    ground,
+    only,
+    record,
+    resting,
+    slab,
+    sliding,
+    thrown,
+    times,
+    with_world,
+)  # fmt: skip
+from wsim.judge.checks.contact import CheckFriction, CheckSupport, CheckTunnelling
+from wsim.judge.checks.rest import CheckCreep, CheckJitter, CheckRestForce
+from wsim.scene.world import Shape
+
+
+def shot(speed, height=0.5, wall=0.02, other=None):
+    """A ball that flies at a wall in the plane x = 0.05 as if it were not there."""
+    t = times(1.0)
+    zero = np.zeros_like(t)
+    place = np.stack([speed * (t - 0.5), zero, zero + height], axis=1)
+    velocity = np.stack([zero + speed, zero, zero], axis=1)
+    sheet = slab("wall", (wall, 2.0, 1.0), (0.05, 0.0, 0.5))
+    return record([ball()], place, velocity, t, statics=[ground(), sheet])
+
+
+# ---- through walls
+def test_a_ball_that_is_through_a_wall_in_a_frame_is_found():
+    finding = only(ask(CheckTunnelling(), shot(6.0)))
+    assert not finding.passed and finding.prim == "/World/ball" and "/World/wall" in finding.message
+    assert finding.span == (pytest.approx(0.5), pytest.approx(0.5 + 1 / RATE))
+    assert finding.value == pytest.approx(6.0 / RATE, rel=1e-4)
+    assert finding.target.kind == "time step" and finding.target.suggested == pytest.approx(0.25 * 0.02 / 6.0)
+
+
+@pytest.mark.parametrize("sound", [lambda: shot(6.0, height=1.4), lambda: shot(-0.0), resting, thrown])
+def test_over_a_wall_or_at_rest_before_it_nothing_is_passed_through(sound):
+    assert only(ask(CheckTunnelling(), sound())).passed
+
+
+def test_a_ball_that_comes_back_from_a_wall_has_not_passed_it():
+    right = shot(6.0)
+    x = right.body_q[:, 0, 0]
+    back = edited(right, "body_q", (slice(None), 0, 0), -2.0 * np.maximum(x + 0.05, 0.0))
+    assert only(ask(CheckTunnelling(), back)).passed
+
+
+def test_a_ball_that_cuts_a_corner_has_not_passed_it():
+    """In by the top and out by the side: it may have gone round the edge between."""
+    t = times(1.0)
+    zero = np.zeros_like(t)
+    place = np.stack([6.0 * (t - 0.5), zero, 1.0 - 3.0 * (t - 0.515)], axis=1)
+    corner = record([ball()], place, np.tile([6.0, 0.0, -3.0], (len(t), 1)), t, statics=[
+        slab("wall", (0.4, 2.0, 1.0), (-0.15, 0.0, 0.5)),
+    ])  # fmt: skip
+    assert only(ask(CheckTunnelling(), corner)).passed
+
+
+def test_two_bodies_that_pass_through_each_other_are_found():
+    t = times(1.0)
+    x = np.stack([8.0 * (t - 0.51), -8.0 * (t - 0.51)], axis=1)
+    place = np.stack([x, 0.0 * x, 0.0 * x + 1.0], axis=2)
+    velocity = np.tile([[8.0, 0.0, 0.0], [-8.0, 0.0, 0.0]], (len(t), 1, 1))
+    wrong = record([ball(), box(size=(0.1, 0.1, 0.1))], place, velocity, t)
+    assert {f.prim for f in ask(CheckTunnelling(), wrong) if not f.passed} & {"/World/ball", "/World/box"}
+    missed = edited(wrong, "body_q", (slice(None), 0, 1), 0.5)
+    assert only(ask(CheckTunnelling(), missed)).passed
+
+
+# ---- friction
+@pytest.mark.parametrize(
+    ("pull", "passes"),
+    [(0.5, True), (0.36, True), (0.6, True), (0.28, False), (0.02, False), (0.65, False), (1.0, False)],
+)
+def test_a_box_slides_as_its_friction_has_it(pull, passes):
+    finding = only(ask(CheckFriction(), sliding(pull * G)))
+    assert finding.passed == passes and finding.value == pytest.approx(pull * G, rel=1e-3)
+    assert finding.expected == pytest.approx(0.5 * G, rel=1e-5)
+    if not passes:
+        assert finding.target.direction == ("lower" if pull > 0.5 else "raise")
+
+
+def test_what_does_not_slide_on_level_ground_says_nothing_of_friction():
+    assert ask(CheckFriction(), resting()) == []
+    assert ask(CheckFriction(), thrown()) == []
+    rolling = edited(sliding(0.0), "body_qd", (slice(None), 0, 4), 3.0 / RADIUS)
+    assert ask(CheckFriction(), with_world(rolling, bodies=[ball("box")])) == []
+
+
+def test_a_table_is_level_ground_as_far_as_it_goes():
+    right = sliding(0.1 * G)
+    for middle, passes in ((0.0, [False]), (-6.5, [])):
+        table = slab("table", (12.0, 1.0, 0.1), (middle, 0.0, -0.05))
+        on_it = right.world.model_copy(update={"statics": [table]})
+        assert [f.passed for f in ask(CheckFriction(), replace(right, world=on_it))] == passes
+
+
+def test_a_box_beside_a_wall_may_be_slowed_by_it():
+    right = sliding(0.65 * G)
+    wall = slab("wall", (3.0, 0.1, 0.3), (1.0, 0.16, 0.15))
+    beside = right.world.model_copy(update={"statics": [ground(), wall]})
+    assert ask(CheckFriction(), replace(right, world=beside)) == []
+
+
+# ---- carried
+@pytest.mark.parametrize(("share", "passes"), [(1.0, True), (0.95, True), (0.85, False), (1.15, False), (1 / 3, False)])
+def test_what_rests_is_carried_by_its_weight(share, passes):
+    right = resting()
+    finding = only(ask(CheckRestForce(), replace(right, contact_force=np.float32(share) * right.contact_force)))
+    assert finding.passed == passes
+    assert finding.value == pytest.approx(abs(1 - share) * 4.0 * G, abs=1e-3)
+    if not passes:
+        assert finding.target.suggested == pytest.approx(share * 4.0, rel=1e-3)
+
+
+def test_a_fluid_carries_its_share():
+    right = resting()
+    half = replace(right, contact_force=np.float32(0.5) * right.contact_force)
+    impulse = np.zeros((len(half.time), 1, 3), dtype=np.float32)
+    impulse[1:, 0, 2] = 0.5 * 4.0 * G / RATE
+    work = np.zeros((len(half.time), 1), dtype=np.float32)
+    assert not only(ask(CheckRestForce(), half)).passed
+    assert only(ask(CheckRestForce(), replace(half, applied_impulse=impulse, applied_work=work))).passed
+
+
+def test_what_moves_or_is_not_touched_need_not_be_carried():
+    assert ask(CheckRestForce(), sliding(0.1 * G, speed=6.0)) == []
+    assert ask(CheckRestForce(), thrown()) == []
+
+
+# ---- trembling
+def trembling(amplitude, seconds=2.0):
+    right = resting(seconds)
+    flips = amplitude * (-1.0) ** np.arange(len(right.time))
+    return edited(right, "body_q", (slice(None), 0, 0), flips)
+
+
+@pytest.mark.parametrize(("share", "passes"), [(0.9, True), (1.1, False), (5.0, False)])
+def test_a_body_that_trembles_is_found_from_two_steps_of_gravity_on(share, passes):
+    speed = 2.0 * G * STEP  # by the limit
+    finding = only(ask(CheckJitter(), trembling(share * speed / RATE / 2.0)))
+    assert finding.passed == passes == (finding.target is None) and finding.value == pytest.approx(
+        share * speed, rel=0.02
+    )
+
+
+def test_a_tremble_of_two_millimetres_is_found_and_velocities_count_too():
+    assert not only(ask(CheckJitter(), trembling(0.002))).passed
+    right = resting()
+    flips = 0.05 * (-1.0) ** np.arange(len(right.time))
+    assert not only(ask(CheckJitter(), edited(right, "body_qd", (slice(None), 0, 2), flips))).passed
+
+
+@pytest.mark.parametrize("sound", [resting, lambda: sliding(0.5 * G), lambda: bouncing(0.6, 4.0), thrown])
+def test_rest_sliding_and_bounces_that_die_away_are_no_tremble(sound):
+    assert only(ask(CheckJitter(), sound())).passed
+
+
+def bowled(share=1.0, speed=8.0, spin=0.0):
+    """A ball that slides on the ground with a share of the friction that it should have, and is turned by it."""
+    t = times(0.5)
+    pull, zero = share * 0.5 * G, np.zeros_like(t)
+    slip = speed - spin * RADIUS
+    on = np.minimum(t, slip / (3.5 * pull)) if pull > 0.0 else t
+    v = speed - pull * on
+    place = np.stack([speed * t - pull * on * (t - on / 2), zero, zero + RADIUS], axis=1)
+    turning = np.stack([zero, spin + 2.5 * pull * on / RADIUS, zero], axis=1)
+    force = np.stack([zero - 4.0 * pull * (on == t), zero, zero + 4.0 * G], axis=1)
+    velocity = np.stack([v, zero, zero], axis=1)
+    return record([ball()], place, velocity, t, spin=turning, force=force, statics=[ground()])
+
+
+@pytest.mark.parametrize(("share", "passes"), [(1.0, True), (0.65, True), (0.5, False), (0.0, False), (1.4, False)])
+def test_a_ball_that_slides_is_slowed_until_it_rolls(share, passes):
+    finding = only(ask(CheckFriction(), bowled(share)))
+    assert finding.passed == passes and finding.value == pytest.approx(share * 0.5 * G, rel=0.01, abs=1e-3)
+
+
+def test_a_ball_that_rolls_has_no_friction_to_lose():
+    assert ask(CheckFriction(), bowled(spin=8.0 / RADIUS)) == []
+
+
+# ---- pressed on by what is there
+@pytest.mark.parametrize(
+    ("gap", "passes"), [(-0.001, True), (0.0, True), (0.0019, True), (0.0022, False), (0.03, False)]
+)
+def test_a_body_that_is_carried_by_nothing_is_found(gap, passes):
+    wrong = edited(resting(), "body_q", (slice(None), 0, 2), gap)
+    finding = only(ask(CheckSupport(), wrong))
+    assert finding.passed == passes and finding.value == pytest.approx(max(gap, 0.0), abs=1e-7)
+    # A hundredth of its size, and what it falls by in two steps.
+    assert finding.limit == pytest.approx(0.01 * EDGE + 4.0 * G * STEP**2, rel=1e-3)
+    assert passes or finding.span == (0.0, pytest.approx(2.0))
+    assert ask(CheckSupport(), replace(wrong, contact_force=np.zeros_like(wrong.contact_force))) == []
+
+
+def test_a_body_that_hits_a_wall_between_frames_was_there_a_step_ago():
+    hit = shot(6.0)
+    frame = int(np.argmin(np.abs(hit.body_q[:, 0, 0] + 0.06 + 6.0 * STEP)))
+    force = hit.contact_force.copy()
+    force[frame, 0, 0] = -100.0
+    near = edited(hit, "body_q", (frame, 0, 0), -0.06 - 6.0 * STEP - hit.body_q[frame, 0, 0])
+    assert only(ask(CheckSupport(), replace(near, contact_force=force))).passed
+    far = edited(near, "body_q", (frame, 0, 0), -0.1)
+    assert not only(ask(CheckSupport(), replace(far, contact_force=force))).passed
+
+
+# ---- creeping
+@pytest.mark.parametrize(
+    ("speed", "passes"), [(0.0, True), (0.9 * 0.01 * EDGE, True), (1.1 * 0.01 * EDGE, False), (0.01, False)]
+)
+def test_a_box_that_creeps_is_found_from_a_hundredth_of_its_size_a_second_on(speed, passes):
+    right = resting()
+    finding = only(ask(CheckCreep(), edited(right, "body_q", (slice(None), 0, 0), speed * right.time)))
+    assert finding.passed == passes and finding.value == pytest.approx(speed, abs=2e-6)
+
+
+@pytest.mark.parametrize(("tilt", "asked"), [(0.0, True), (2.0, True), (90.0, False)])
+def test_a_mug_that_stands_on_its_end_creeps_as_a_box_does_and_one_on_its_side_may_roll(tilt, asked):
+    right = resting()
+    mug = Shape(prim="/World/box/g", kind="cylinder", size=(EDGE / 2, EDGE))
+    body = right.world.bodies[0].model_copy(update={"shapes": [mug]})
+    q = right.body_q.copy()
+    q[:, 0, 3:] = [math.sin(math.radians(tilt) / 2), 0.0, 0.0, math.cos(math.radians(tilt) / 2)]
+    q[:, 0, 0] += 0.02 * right.time.astype(np.float32)
+    findings = ask(CheckCreep(), replace(with_world(right, bodies=[body]), body_q=q))
+    assert [f.passed for f in findings] == ([False] if asked else [])
+
+
+def test_a_box_that_slides_and_is_slowed_does_not_creep():
+    assert only(ask(CheckCreep(), sliding(0.5 * G, speed=9.0))).passed
+    assert ask(CheckCreep(), sliding(0.0, speed=0.01, friction=0.0)) == []  # nothing to hold it
+
+
+def test_a_box_on_a_cart_is_carried():
+    t = times(2.0)
+    zero = np.zeros_like(t)
+    place = np.stack([np.stack([0.2 * t, zero, zero + z], axis=1) for z in (0.1, 0.3)], axis=1)
+    velocity = np.tile([[0.2, 0.0, 0.0]] * 2, (len(t), 1, 1))
+    force = np.tile([[0.0, 0.0, 4.0 * G]] * 2, (len(t), 1, 1))
+    both = record([box("cart"), box("load")], place, velocity, t, force=force, statics=[ground()])
+    assert ask(CheckCreep(), both) == []
+    assert math.isclose(both.body_q[-1, 1, 0], 0.4, rel_tol=1e-6)

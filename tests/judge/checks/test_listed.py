@@ -1,0 +1,21 @@
+"""No check is forgotten: what the modules define is what the judge asks."""
+
+import importlib
+import inspect
+import pkgutil
+
+import wsim.judge.checks
+from wsim.judge.checks.check import Check
+from wsim.judge.decide import physics_checks, run_checks
+
+
+def test_every_check_is_asked_once():
+    defined = {
+        name
+        for module in pkgutil.iter_modules(wsim.judge.checks.__path__, "wsim.judge.checks.")
+        for name, thing in vars(importlib.import_module(module.name)).items()
+        if inspect.isclass(thing) and issubclass(thing, Check) and thing is not Check
+    }
+    asked = [check.name for check in [*run_checks(), *physics_checks()]]
+    assert len(defined) > 25 and defined <= set(asked)
+    assert len(asked) == len(set(asked))

@@ -1,0 +1,229 @@
+"""Motion from frame to frame, in the air and in its energy: mechanics passes, each planted fault is found."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import (
+    RATE,
+    STEP,
+    G,
+    ask,
+    bouncing,
+    box,
+    edited,
+    only,
+    record,
+    resting,
+    sliding,
+    swinging,
+    thrown,
+    times,
+    with_world,
+)
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
+from wsim.judge.evidence.geometry import conjugate, multiply, rotate
+from wsim.rules.planner import plan as make_plan
+
+SOUND = [thrown, resting, lambda: bouncing(0.8), lambda: sliding(0.5 * G), swinging]
+
+
+@pytest.mark.parametrize("make", SOUND)
+def test_sound_motion_passes_all(make):
+    for check in (CheckContinuity(), CheckFreeFlight(), CheckFreeTurning(), CheckEnergy()):
+        findings = ask(check, make())
+        assert [f.message for f in findings if not f.passed] == []
+
+
+# ---- from frame to frame
+def test_a_teleport_for_one_frame_is_found_at_its_frame():
+    wrong = edited(resting(), "body_q", (20, 0, 0), 0.03)
+    finding = next(f for f in ask(CheckContinuity(), wrong) if not f.passed)
+    assert finding.unit == "m" and finding.value == pytest.approx(0.03, rel=1e-3)
+    assert finding.limit == pytest.approx(G / RATE**2, rel=1e-2)  # what may fall and be caught within a frame
+    assert finding.span == (pytest.approx(19 / RATE), pytest.approx(20 / RATE))
+    assert finding.target.kind == "program"
+
+
+def test_the_limit_of_a_teleport_is_where_it_says():
+    limit = G / RATE**2
+    for size, passes in ((0.95 * limit, True), (1.05 * limit, False)):
+        findings = ask(CheckContinuity(), edited(resting(), "body_q", (20, 0, 1), size))
+        assert findings[0].passed == passes
+
+
+def test_velocities_that_the_places_do_not_follow_are_found():
+    wrong = edited(resting(), "body_qd", (slice(10, 30), 0, 0), 1.0)
+    assert not ask(CheckContinuity(), wrong)[0].passed
+
+
+def test_a_turn_for_one_frame_is_found():
+    right = resting()
+    q = right.body_q.copy()
+    q[20, 0, 3:] = [0.0, 0.0, math.sin(math.radians(30)), math.cos(math.radians(30))]
+    turn = ask(CheckContinuity(), replace(right, body_q=q))[1]
+    assert not turn.passed and turn.value == pytest.approx(math.radians(60), rel=1e-3)
+    q[20, 0, 3:] = [0.0, 0.0, math.sin(0.02), math.cos(0.02)]
+    assert ask(CheckContinuity(), replace(right, body_q=q))[1].passed
+
+
+def test_a_body_that_is_moved_by_a_script_may_jump():
+    wrong = edited(resting(), "body_q", (20, 0, 0), 0.5)
+    body = wrong.world.bodies[0].model_copy(update={"kinematic": True})
+    assert ask(CheckContinuity(), with_world(wrong, bodies=[body])) == []
+
+
+# ---- in the air
+@pytest.mark.parametrize("factor", [0.8, 1.2])
+def test_gravity_a_fifth_off_is_found_in_the_air(factor):
+    strange, gravity = ask(CheckFreeFlight(), thrown(g=factor * G))
+    assert not strange.passed and strange.value == pytest.approx(0.2 * G, rel=0.01)
+    assert not gravity.passed and gravity.value == pytest.approx(factor * G, rel=1e-3)
+    assert gravity.expected == pytest.approx(G) and gravity.limit == pytest.approx(G * (1.02 if factor > 1 else 0.98))
+    assert gravity.target.parameter == "gravity" and gravity.target.direction == ("lower" if factor > 1 else "raise")
+
+
+@pytest.mark.parametrize(("factor", "passes"), [(1.015, True), (0.985, True), (1.025, False), (0.975, False)])
+def test_gravity_is_known_to_two_per_cent(factor, passes):
+    assert ask(CheckFreeFlight(), thrown(g=factor * G))[1].passed == passes
+
+
+def test_a_push_with_nothing_there_to_push_is_found():
+    t = times(1.0)
+    right = thrown()
+    kick = np.where(t >= 0.5, 1.0, 0.0)
+    wrong = edited(right, "body_qd", (slice(None), 0, 1), kick)
+    wrong = edited(wrong, "body_q", (slice(None), 0, 1), np.maximum(t - 0.5, 0.0))
+    strange = ask(CheckFreeFlight(), wrong)[0]
+    assert not strange.passed and strange.time == pytest.approx(0.5) and strange.value == pytest.approx(RATE, rel=0.05)
+
+
+def test_a_push_that_is_recorded_is_no_mystery():
+    pushed = edited(thrown(), "body_qd", (slice(15, None), 0, 1), 1.0)
+    impulse = np.zeros((31, 1, 3), dtype=np.float32)
+    impulse[15, 0, 1] = 4.0
+    told = replace(pushed, applied_impulse=impulse, applied_work=np.zeros((31, 1), dtype=np.float32))
+    assert ask(CheckFreeFlight(), told)[0].passed
+    assert not ask(CheckFreeFlight(), replace(told, applied_impulse=-impulse))[0].passed
+
+
+def test_a_bounce_within_a_frame_is_no_mystery_and_one_in_mid_air_is():
+    right = bouncing(0.8)
+    assert ask(CheckFreeFlight(), right)[0].passed
+    raised = edited(right, "body_q", (slice(None), 0, 2), 2.0)
+    assert not ask(CheckFreeFlight(), raised)[0].passed
+
+
+def test_control_that_is_not_recorded_leaves_nothing_to_say():
+    assert ask(CheckFreeFlight(), replace(thrown(g=5.0), metadata={"controlled": True})) == []
+
+
+def tumbling(torque=0.0, seconds=1.0):
+    """A brick that flies and tumbles by Euler's equations; from 0.5 s on a torque [N m] along Z works on it."""
+    right = thrown(seconds)
+    brick = box("ball", (0.4, 0.2, 0.1), 4.0)
+    moments = np.diag(np.array(brick.inertia).reshape(3, 3))
+    q, spin, momentum = np.array([0.0, 0.0, 0.0, 1.0]), [], np.array([0.05, 0.4, 0.02])
+    poses, steps = right.body_q.copy(), 40
+    for k in range(len(right.time)):
+        poses[k, 0, 3:] = q
+        spin.append(rotate(q, rotate(conjugate(q), momentum) / moments))
+        for _ in range(steps):
+            w = rotate(q, rotate(conjugate(q), momentum) / moments)
+            q = q + 0.5 / (RATE * steps) * multiply(np.array([*w, 0.0]), q)
+            q /= np.linalg.norm(q)
+        momentum = momentum + np.array([0.0, 0.0, torque if right.time[k] >= 0.5 else 0.0]) / RATE
+    speeds = right.body_qd.copy()
+    speeds[:, 0, 3:] = spin
+    return with_world(replace(right, body_q=poses, body_qd=speeds), bodies=[brick])
+
+
+def test_what_tumbles_in_the_air_keeps_its_angular_momentum():
+    finding = only(ask(CheckFreeTurning(), tumbling()))
+    assert finding.passed and finding.value < 1e-3
+    w = np.linalg.norm(tumbling().body_qd[:, 0, 3:], axis=1)
+    assert np.ptp(w) > 0.02 * w.mean()  # it is not the rate that is kept
+
+
+def test_a_torque_from_nowhere_is_found():
+    still = 0.02 * 4.0 * G * math.hypot(0.4, 0.2, 0.1) / 2
+    finding = only(ask(CheckFreeTurning(), tumbling(torque=1.5 * still)))
+    assert not finding.passed and finding.value == pytest.approx(1.5 * still, rel=0.01)
+    assert finding.time >= 0.5 and still < finding.limit < 1.5 * still
+    controlled = replace(tumbling(torque=1.5 * still), metadata={"controlled": True})
+    assert ask(CheckFreeTurning(), controlled) == []
+    landed = edited(tumbling(torque=1.5 * still), "body_q", (slice(None), 0, 2), -3.7)
+    assert only(ask(CheckFreeTurning(), landed)).passed  # the ground may have turned it
+
+
+@pytest.mark.parametrize(("g", "passes"), [(9.78, True), (9.81, True), (9.7, False), (10.0, False), (0.8 * G, False)])
+def test_the_world_has_the_earths_gravity(g, passes):
+    finding = only(ask(CheckGravity(), with_world(thrown(), gravity=(0.0, 0.0, -g)), make_plan("A ball is thrown")))
+    assert finding.passed == passes and finding.value == pytest.approx(g)
+    assert finding.target is None or finding.target.suggested == 9.81
+
+
+def test_elsewhere_gravity_may_be_another():
+    moon = make_plan("A ball is thrown").model_copy(update={"prompt": "A ball is thrown on the moon"})
+    assert ask(CheckGravity(), with_world(thrown(), gravity=(0.0, 0.0, -1.62)), moon) == []
+    assert ask(CheckGravity(), thrown()) == []  # without a plan nobody asked for the Earth's
+
+
+# ---- energy
+def test_a_pendulum_that_gains_two_per_cent_is_found():
+    alone, together = ask(CheckEnergy(), swinging(growth=0.005))  # 2 % in 4 s
+    for finding in (alone, together):
+        assert not finding.passed
+        assert finding.value == pytest.approx(0.02 * 2.0 * G * 0.5 * (1 - math.cos(0.8)), rel=0.2)
+    assert alone.prim == "/World/rod" and alone.span[0] < 0.5 < alone.span[1]
+    assert ask(CheckEnergy(), swinging(growth=0.0015))[0].passed  # 0.6 %
+    most = 0.01 * 2.0 * G * 0.5 * (1 - math.cos(0.8))
+    late = 2.0 * G * np.linalg.norm(swinging().body_qd[:, 0, :3], axis=1).max() * STEP / 2
+    assert ask(CheckEnergy(), swinging())[0].limit == pytest.approx(most + late, rel=0.005)  # and nothing for contacts
+    assert ask(CheckEnergy(), swinging(growth=-0.05))[0].passed  # friction in the hinge
+
+
+@pytest.mark.parametrize(("restitution", "passes"), [(1.0, True), (0.5, True), (1.05, False)])
+def test_a_ball_comes_up_no_higher_than_it_was(restitution, passes):
+    assert ask(CheckEnergy(), bouncing(restitution, seconds=1.2))[0].passed == passes
+
+
+def test_work_that_is_recorded_may_lift_and_work_that_is_not_may_not():
+    t = times(2.0)
+    zero = np.zeros_like(t)
+    rising = record(
+        [thrown().world.bodies[0]], np.stack([zero, zero, 1.0 + t], 1), np.stack([zero, zero, zero + 1], 1), t
+    )
+    assert not ask(CheckEnergy(), rising)[0].passed
+    work = np.full((len(t), 1), 4.0 * G / RATE, dtype=np.float32)
+    work[0] = 0.0
+    impulse = np.zeros((len(t), 1, 3), dtype=np.float32)
+    assert ask(CheckEnergy(), replace(rising, applied_work=work, applied_impulse=impulse))[0].passed
+    assert not ask(CheckEnergy(), replace(rising, applied_work=0.9 * work, applied_impulse=impulse))[0].passed
+    assert ask(CheckEnergy(), replace(rising, metadata={"controlled": True})) == []
+
+
+def test_what_a_spring_of_a_contact_holds_comes_back():
+    """In the midst of a hit a ball is slow and low; its energy is in the contact: force times depth."""
+    right = bouncing(0.9, seconds=1.0, rate=100.0)
+    hit = int(np.argmin(right.body_q[:, 0, 2]))
+    deep = edited(right, "body_qd", (hit, 0, 2), -right.body_qd[hit, 0, 2])
+    depth = np.zeros(len(right.time))
+    depth[hit] = 0.01
+    force = right.contact_force.copy()
+    force[hit, 0, 2] = 4.0 * G * 1.0 / 0.01
+    told = replace(deep, contact_force=force, scalars={"contact/penetration": depth})
+    assert ask(CheckEnergy(), told)[0].passed
+    assert not ask(CheckEnergy(), deep)[0].passed
+
+
+def test_a_contact_that_flips_from_step_to_step_may_give_what_it_hides():
+    """A body that stands still and tells of a speed is shaken by its contact; smooth motion hides nothing."""
+    right = resting()
+    share = np.linspace(0.0, 1.0, len(right.time), dtype=np.float32)
+    shaken = edited(right, "body_qd", (slice(None), 0, 0), 0.5 * share)
+    assert ask(CheckEnergy(), shaken)[0].passed
+    assert not ask(CheckEnergy(), replace(shaken, contact_force=np.zeros_like(right.contact_force)))[0].passed

@@ -1,0 +1,28 @@
+"""Prompts of each kind become worlds that the judge accepts: composed, built, simulated on the CPU, judged."""
+
+import pytest
+
+from wsim.program.compose import compose
+from wsim.rules.planner import plan
+from wsim.runs.pipeline import Settings, run_program
+
+PROMPTS = [
+    "A steel ball rolls down a wooden ramp for 1.4 seconds",
+    "An oak cube slides down a 35 degree ramp",
+    "A 0.4 m pendulum swings from 30 degrees",
+    "A red ball and a blue ball collide for 1 second",
+    "A ball is thrown at 5 m/s at an angle of 30 degrees for 1.2 seconds",
+    "A box is pushed to the left at 2 m/s for 1 second",
+    "A box falls onto a seesaw",
+    "A tower of 2 blocks stands on a table for 1 second",
+]
+
+
+@pytest.mark.parametrize("prompt", PROMPTS)
+def test_a_world_is_accepted(prompt, tmp_path):
+    made = plan(prompt)
+    (tmp_path / "program.py").write_text(compose(made))
+    verdict = run_program(tmp_path / "program.py", tmp_path, made, Settings(device="cpu", pictures=False))
+    assert verdict.status == "accepted", verdict.summary
+    judged = {finding.objective for finding in verdict.findings if finding.objective}
+    assert judged == {objective.sentence for objective in made.objectives}
