@@ -24,7 +24,6 @@ from typing import Any
 import numpy as np
 
 from wsim.judge import judge
-from wsim.judge.decide import decide
 from wsim.judge.worlds import judge_worlds, weigh
 from wsim.plan.schema import Plan
 from wsim.recording import Frame, RecordingWriter, read
@@ -164,7 +163,7 @@ def many_worlds(count: int, processes: int | None, simulate: bool, device: str) 
 
     worlds, seconds = simulated(count, device) if simulate else (copies(count), None)
     plan = plan_of(worlds.world, 3)
-    decide(worlds.recording(0), plan)  # imports
+    judge(worlds.recording(0), plan)  # imports
     began, busy = time.perf_counter(), _processor_seconds()
     found = judge_worlds(worlds, plan, processes)
     judging, busy = time.perf_counter() - began, _processor_seconds() - busy

@@ -11,7 +11,7 @@ import pytest
 
 from wsim.plan.schema import Plan
 from wsim.recording.frames import LogLine
-from wsim.recording.reader import FluidTrack, Recording
+from wsim.recording.recording import FluidTrack, Recording
 from wsim.rules.materials import material_named
 from wsim.rules.planner import plan as make_plan
 from wsim.scene.world import Body, Container, Fluid, Shape, Static, World

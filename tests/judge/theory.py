@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from wsim.judge.evidence.evidence import Evidence
-from wsim.recording.reader import Recording
+from wsim.recording.recording import Recording
 from wsim.scene.world import Body, Camera, Joint, Shape, Static, World
 
 G, RATE, STEP = 9.81, 30.0, 1.0 / 900.0

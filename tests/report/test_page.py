@@ -11,7 +11,6 @@ from wsim.errors import UserError
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.recording import Frame, RecordingWriter
 from wsim.report import write
-from wsim.report.page import write_page
 from wsim.runs.folder import RunFolder
 from wsim.scene.world import Body, Shape, World
 
@@ -209,7 +208,7 @@ def test_a_browser_shows_it(rejected: Path, tmp_path: Path, width: int) -> None:
 
 @needs_chromium
 def test_a_large_video_is_linked_and_plays(accepted: Path, tmp_path: Path) -> None:
-    path = write_page(accepted, most_video_bytes=1000)
+    path = write(accepted, most_video_bytes=1000)
     page = Elements(path)
     assert [video["src"] for video in page.all("video")] == ["iterations/01/video.mp4"]
     shown = browser.probe(path, tmp_path / "profile")

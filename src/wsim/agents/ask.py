@@ -64,9 +64,12 @@ class Desk:
             ModelError: If it gave nothing that can be used.
             BudgetError: If tokens or time ran out.
         """
+        # a second to load: builtin roles need none
         from pydantic_ai import Agent, BinaryContent, ModelRetry, TextOutput
+
+        # a second to load: builtin roles need none
         from pydantic_ai.exceptions import ContentFilterError, UnexpectedModelBehavior, UsageLimitExceeded
-        from pydantic_ai.usage import UsageLimits
+        from pydantic_ai.usage import UsageLimits  # a second to load: builtin roles need none
 
         from wsim.agents.relay import Relay
 
@@ -112,7 +115,7 @@ class Desk:
 
 def _offered(tool: Tool, workspace: Workspace | None, called: list[str]) -> Any:
     """One of wsim's tools, as the model's; `called` is what was called for this answer."""
-    from pydantic_ai import Tool as Offered
+    from pydantic_ai import Tool as Offered  # a second to load: builtin roles need none
 
     def call(**given: Any) -> str:
         assert workspace is not None

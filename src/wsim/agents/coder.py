@@ -10,6 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import UnusableError
 from wsim.program.patch import PatchError, apply, parse
+from wsim.program.validator import validate
+from wsim.skills import pick as by_words
+from wsim.skills import skills
+from wsim.tools import TOOLS as ALL
 
 if TYPE_CHECKING:
     from wsim.agents.ask import Desk
@@ -69,7 +73,6 @@ def repair(desk: Desk, situation: Situation, plan: Plan | None, workspace: Works
         ModelError: If no answer became a program that validates.
         BudgetError: If tokens or time ran out.
     """
-    from wsim.tools import TOOLS as ALL
 
     def accept(answer: str) -> Patched:
         given_up = CANNOT.match(answer)
@@ -89,8 +92,6 @@ def _patched(answer: str, situation: Situation, plan: Plan | None) -> str:
     Raises:
         UserError: The edits do not fit, change nothing, were tried, or make a program with mistakes.
     """
-    from wsim.program.validator import validate
-
     try:
         text = apply(situation.program, parse(answer))
     except PatchError as error:
@@ -118,9 +119,6 @@ def _runs_alike(one: str, other: str) -> bool:
 
 def pick(situation: Situation) -> list[Any]:
     """The skills for a situation: what mends that which fails, then what the plan is about."""
-    from wsim.skills import pick as by_words
-    from wsim.skills import skills
-
     wanted = situation.repair or "\n".join(line for line in situation.verdict if not line.startswith("passed:"))
     found = [skill for skill in skills() if skill.name == SKILL_OF.get(situation.repair.partition(" (")[0])]
     for words in (wanted, "\n".join(situation.plan)):

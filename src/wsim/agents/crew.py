@@ -11,6 +11,7 @@ from wsim.agents.ask import Desk
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN
 from wsim.judge.verdict import Verdict
+from wsim.rules.planner import plan
 from wsim.runs.attempt import Attempt, Reached
 from wsim.tools import Workspace
 from wsim.tools.plan import plan_lines
@@ -55,8 +56,6 @@ class Crew:
         """
         if self.has("planner"):
             return planner.plan_with(self.desk, prompt, pictures, image)
-        from wsim.rules.planner import plan
-
         return plan(prompt)
 
     def look(self, tried: Attempt, plan: Plan) -> None:

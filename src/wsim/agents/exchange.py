@@ -130,7 +130,7 @@ def _clean(text: str) -> str:
 
 def response_of(reply: dict[str, Any], model: str, usage: dict[str, int]) -> ModelResponse:
     """The reply that plain data tells of."""
-    from pydantic_ai.messages import ModelResponse, TextPart, ToolCallPart
+    from pydantic_ai.messages import ModelResponse, TextPart, ToolCallPart  # a second to load: builtin roles need none
     from pydantic_ai.usage import RequestUsage
 
     parts: list[Any] = [TextPart(reply["text"])] if reply.get("text") else []

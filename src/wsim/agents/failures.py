@@ -31,7 +31,7 @@ class ModelError(Exception):
 
 def failure(error: BaseException) -> ModelError:
     """What a client's exception means; anything unknown is the server's."""
-    from pydantic_ai import exceptions
+    from pydantic_ai import exceptions  # a second to load: builtin roles need none
 
     text = " ".join(str(error).split())[:300] or type(error).__name__
     if isinstance(error, TimeoutError | exceptions.ModelTimeoutError | exceptions.ModelRequestTimeout):

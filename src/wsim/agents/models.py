@@ -118,7 +118,7 @@ def connect(name: str, role: str) -> Model:
     Raises:
         UserError: If there is no such provider, or it lacks its key.
     """
-    from pydantic_ai.exceptions import UserError as ModelUserError
+    from pydantic_ai.exceptions import UserError as ModelUserError  # a second to load: builtin roles need none
     from pydantic_ai.models import infer_model
 
     model, url = _parted(name)
@@ -127,7 +127,7 @@ def connect(name: str, role: str) -> Model:
         model, url = model.removeprefix("openai:"), base
     try:
         if url:
-            from pydantic_ai.models.openai import OpenAIChatModel
+            from pydantic_ai.models.openai import OpenAIChatModel  # a second to load: builtin roles need none
             from pydantic_ai.providers.openai import OpenAIProvider
 
             key = os.environ.get("OPENAI_API_KEY") or "none"

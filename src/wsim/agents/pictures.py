@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
+from PIL import Image
+
 from wsim.errors import UserError
 
 LARGEST = 640  # px, of the longer edge
@@ -17,8 +19,6 @@ def small_jpeg(path: Path) -> bytes:
     Raises:
         UserError: If it is not there, or is no picture.
     """
-    from PIL import Image
-
     try:
         with Image.open(path) as picture:
             rgb = picture.convert("RGB")

@@ -7,7 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import object_in
+from wsim.assets import search
 from wsim.errors import UserError
+from wsim.judge.language import parse
+from wsim.plan.store import made
+from wsim.program.compose import compose
+from wsim.program.validator import validate
 
 if TYPE_CHECKING:
     from wsim.agents.ask import Desk
@@ -42,10 +47,6 @@ def read_plan(answer: dict[str, Any], prompt: str) -> Plan:
     Raises:
         UserError: What is wrong with it, with its path in the plan.
     """
-    from wsim.plan.store import made
-    from wsim.program.compose import compose
-    from wsim.program.validator import validate
-
     data = {"title": prompt[:80], **answer, "prompt": prompt}
     if isinstance(data.get("objects"), list):
         data["objects"] = [_written_out(item) if isinstance(item, dict) else item for item in data["objects"]]
@@ -80,8 +81,6 @@ def _written_out(item: dict[str, Any]) -> dict[str, Any]:
 
 
 def _formula(sentence: str, where: str) -> dict[str, Any]:
-    from wsim.judge.language import parse
-
     try:
         return parse(sentence).model_dump(mode="json", exclude_none=True)
     except ValueError as error:
@@ -90,8 +89,6 @@ def _formula(sentence: str, where: str) -> dict[str, Any]:
 
 def _catalogue(prompt: str) -> str:
     """What the catalogue has for the prompt's words."""
-    from wsim.assets import search
-
     lines = []
     for hit in search(prompt, ASSETS):
         size = " x ".join(f"{edge:.3g}" for edge in hit.asset.size)

@@ -241,6 +241,6 @@ def _price(response: ModelResponse) -> float | None:
 
 
 def _absent() -> Model:
-    from pydantic_ai.models.test import TestModel
+    from pydantic_ai.models.test import TestModel  # a second to load: builtin roles need none
 
     return TestModel()

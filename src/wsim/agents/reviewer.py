@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from wsim.agents.ask import UnusableError, object_in
 from wsim.agents.sheet import contact_sheet, shares
+from wsim.runs.folder import write_json
 
 if TYPE_CHECKING:
     from wsim.agents.ask import Desk
@@ -110,8 +111,6 @@ def _read(text: str, names: set[str]) -> Review:
 
 def keep(folder: Path, found: Review | None, by: str) -> None:
     """Write a review into review.json, beside the facts."""
-    from wsim.runs.folder import write_json
-
     path = folder / "review.json"
     data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     write_json(path, data | {"by": by, "review": found.model_dump() if found else {"facts": facts(folder)}})

@@ -6,12 +6,12 @@ import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from PIL import Image
 
-if TYPE_CHECKING:
-    from PIL import Image
+from wsim.recording.video import read_video
 
 TILES, COLUMNS, OTHERS = 6, 3, 2
 TILE, THUMB = (256, 144), (64, 36)  # px, as shown and as compared
@@ -35,8 +35,6 @@ def contact_sheet(folder: Path, order: Sequence[str] = ()) -> tuple[bytes, list[
         folder: An iteration's, with video.mp4, frames and review.json.
         order: Names of cameras, those of the others that come first.
     """
-    from PIL import Image
-
     rows = shares(folder)
     if not rows or not (folder / "video.mp4").is_file():
         return b"", []
@@ -58,10 +56,6 @@ def contact_sheet(folder: Path, order: Sequence[str] = ()) -> tuple[bytes, list[
 
 def _moments(video: Path, count: int) -> list[tuple[float, Image.Image]]:
     """The first and the last frame, and in between those that differ most from all that are chosen already."""
-    from PIL import Image
-
-    from wsim.recording.video import read_video
-
     frames = [
         (time, Image.fromarray(frame).resize(TILE, Image.Resampling.BOX))
         for time, frame in read_video(video, MOST_FRAMES)

@@ -8,27 +8,25 @@ import threading
 
 import typer
 
-from wsim.cli import doctor, generate, judge, mcp, plan, run, tool, view
+from wsim import __version__
+from wsim.cli.verbs import Verbs
 from wsim.errors import UserError
 
 app = typer.Typer(
     name="wsim",
     help="A sentence becomes a physical world: planned, built as OpenUSD, simulated on Newton, judged against physics.",
+    cls=Verbs,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
 )
 STOPPED = 130  # the exit code for Ctrl-C
-for verb in (generate, plan, run, judge, tool, view, mcp, doctor):
-    verb.register(app)
 
 
 @app.callback(invoke_without_command=True)
 def _options(version: bool = typer.Option(False, "--version", help="Print the version and stop.")) -> None:
     if version:
-        from wsim import __version__
-
         print(f"wsim {__version__}")
         raise typer.Exit
 

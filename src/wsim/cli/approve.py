@@ -12,7 +12,10 @@ from pathlib import Path
 
 from wsim.cli.show import console, show_plan
 from wsim.errors import UserError
+from wsim.plan.drawing.picture import draw_picture
+from wsim.plan.layout import layout
 from wsim.plan.schema import Plan
+from wsim.plan.store import load
 from wsim.rules.questions import Planner, Question, answered, questions, read_answers
 
 NO_ANSWER = (
@@ -62,8 +65,6 @@ def with_answers(plan: Plan, planner: Planner | None, answers: Path | None) -> P
 
 def draw(plan: Plan, path: Path) -> Path | None:
     """Draw a plan; None where the picture cannot be written: a plan can be read without it."""
-    from wsim.plan.drawing.picture import draw_picture
-
     try:
         draw_picture(plan, path)
     except OSError:
@@ -122,8 +123,6 @@ def _reply(proposal: Proposal, question: Question) -> None:
 
 def _edit(proposal: Proposal) -> None:
     """Open the plan in the person's editor until it is a plan, or they give up; then it is used as it is written."""
-    from wsim.plan.store import load
-
     path = proposal.folder / "plan.json"
     path.write_text(_editable(proposal.plan).model_dump_json(indent=2) + "\n", encoding="utf-8")
     while True:
@@ -148,8 +147,6 @@ def _editable(plan: Plan) -> Plan:
 
     A plan whose places are not those of its relations keeps them.
     """
-    from wsim.plan.layout import layout
-
     open_ = [item.model_copy(update={"pose": None}) if item.relations else item for item in plan.objects]
     try:
         again = layout(plan.model_copy(update={"objects": open_}))

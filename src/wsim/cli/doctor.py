@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
 import typer
+from rich.table import Table
+from rich.text import Text
+
+from wsim import __version__
+from wsim.agents.models import BUILTIN, ROLES, choose
+from wsim.cli.show import console
+from wsim.errors import UserError
+from wsim.program.sandbox import available
+from wsim.recording.view import has_display
 
 PACKAGES = ("newton", "warp-lang", "mujoco", "mujoco-warp", "usd-core", "rerun-sdk", "numpy", "av", "torch")
 
 
 def doctor() -> None:
     """List devices, versions, isolation and the models configured. Exit code 1 if wsim cannot run here."""
-    from rich.table import Table
-    from rich.text import Text
-
-    from wsim.cli.show import console
-
     table = Table(show_header=False, show_edge=False)
     table.add_column(style="bold")
     table.add_column()
@@ -25,11 +33,6 @@ def doctor() -> None:
 
 
 def _versions() -> list[tuple[str, str]]:
-    import platform
-    from importlib.metadata import PackageNotFoundError, version
-
-    from wsim import __version__
-
     rows = [("wsim", __version__), ("python", platform.python_version())]
     for package in PACKAGES:
         try:
@@ -41,13 +44,11 @@ def _versions() -> list[tuple[str, str]]:
 
 
 def _devices() -> list[tuple[str, str]]:
-    import os
+    import warp as wp  # what is missing is to be told, not to stop this
 
-    import warp as wp
+    from wsim import sim
 
-    from wsim.sim.devices import start_warp
-
-    start_warp()
+    sim.start_warp()
     rows = []
     for device in wp.get_devices():
         memory = f", {device.total_memory / 2**30:.0f} GiB" if device.is_cuda else ""
@@ -58,15 +59,11 @@ def _devices() -> list[tuple[str, str]]:
 
 
 def _isolation() -> list[tuple[str, str]]:
-    from wsim.program.sandbox import available
-
     modes = available()
     return [(f"isolation {mode}", "works" if not why else f"not here: {why}") for mode, why in modes.items()]
 
 
 def _rest() -> list[tuple[str, str]]:
-    from wsim.recording.view import has_display
-
     return [
         ("display", "yes" if has_display() else "none: `wsim view --web` serves a browser"),
         ("models", _models()),
@@ -75,17 +72,9 @@ def _rest() -> list[tuple[str, str]]:
 
 def _models() -> str:
     """Who fills which role, by the environment and wsim.toml."""
-    from wsim.agents.models import BUILTIN, ROLES, choose
-    from wsim.errors import UserError
-
     try:
         models = choose()
     except UserError as error:
         return str(error)
     named = ", ".join(f"{role} {models[role]}" for role in ROLES if models[role] != BUILTIN)
     return named or "builtin for every role (no language model is needed)"
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(doctor)

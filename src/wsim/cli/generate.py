@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from wsim.agents.budget import Budget
+from wsim.agents.models import BUILTIN, choose
+from wsim.cli.approve import approved, with_answers
 from wsim.cli.options import (
     EXIT_CODES,
     Answers,
@@ -26,9 +29,15 @@ from wsim.cli.options import (
     parse_params,
     refuse_image,
 )
+from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
+from wsim.errors import UserError
+from wsim.loop.generate import Options
+from wsim.loop.generate import generate as generate_world
+from wsim.plan.store import load
+from wsim.rules.planner import plan as make_plan
+from wsim.runs.pipeline import Settings
 
 if TYPE_CHECKING:
-    from wsim.loop.generate import Options
     from wsim.plan.schema import Plan
 
 Iterations = Annotated[int, typer.Option("--max-iterations", min=1, max=99, help="Programs that are tried.")]
@@ -73,12 +82,6 @@ def generate(
 
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """
-    from wsim.agents.budget import Budget
-    from wsim.agents.models import choose
-    from wsim.errors import UserError
-    from wsim.loop.generate import Options
-    from wsim.runs.pipeline import Settings
-
     if replay is not None:
         _replay(replay, runs, device)
     if not prompt and plan is None:
@@ -104,10 +107,6 @@ def generate(
 
 
 def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answers: Path | None, yes: bool) -> None:
-    from wsim.agents.models import BUILTIN
-    from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
-    from wsim.loop.generate import generate as generate_world
-
     builtin = options.models.planner == BUILTIN or path is not None
     if builtin:
         refuse_image(options.image)
@@ -136,8 +135,7 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
 
 
 def _replay(recorded: Path, runs: Path, device: str) -> None:
-    from wsim.cli.show import ConsoleProgress, console, show_verdict
-    from wsim.loop.replay import replay
+    from wsim.loop.replay import replay  # a second to load: builtin roles need none
 
     with ConsoleProgress() as progress:
         again = replay(recorded, runs, progress, None if device == "auto" else device)
@@ -152,19 +150,9 @@ def _replay(recorded: Path, runs: Path, device: str) -> None:
 
 def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool) -> Plan | None:
     """The plan to build: a file of answers is a yes, as --yes is; else a person is asked."""
-    from wsim.cli.approve import approved, with_answers
-    from wsim.cli.show import show_plan
-    from wsim.loop.generate import make_plan
-    from wsim.plan.store import load
-
     planner = make_plan if path is None else None
     proposed = with_answers(make_plan(prompt) if path is None else load(path), planner, answers)
     if not (yes or answers):
         return approved(proposed, planner)
     show_plan(proposed)
     return proposed
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(generate)

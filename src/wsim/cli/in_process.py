@@ -7,12 +7,14 @@ import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from wsim.cli.options import EXIT_CODES
+from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
-
-if TYPE_CHECKING:
-    from wsim.scene import Scene
+from wsim.report import write as write_report
+from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings, simulate_and_judge
+from wsim.scene import Scene, SceneError
 
 
 def run_in_process(build: Callable[[Scene], None]) -> None:
@@ -20,13 +22,6 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
 
     Exits like `wsim run`: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in the program's calls.
     """
-    from wsim.cli.options import EXIT_CODES
-    from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.report import write as write_report
-    from wsim.runs.folder import RunFolder
-    from wsim.runs.pipeline import Settings, simulate_and_judge
-    from wsim.scene import Scene, SceneError
-
     program = Path(sys.modules[build.__module__].__file__ or "program.py")
     run = RunFolder.create("runs", program.stem)
     run.record(prompt=None, program=str(program), in_process=True)

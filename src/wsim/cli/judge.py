@@ -7,9 +7,13 @@ from typing import Annotated
 
 import typer
 
+from wsim import importers
 from wsim.cli.options import EXIT_CODES
+from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
+from wsim.plan.store import load
 from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import judge_recording
 
 
 def judge(
@@ -30,10 +34,6 @@ def judge(
     xquat, or with Newton's body_q; body_qd and contact_force may be there.
     The run's own verdict.json is not touched. Exit code: 0 accepted, 1 rejected, 3 blocked.
     """
-    from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.plan.store import load
-    from wsim.runs.pipeline import judge_recording
-
     if (model or save) and target.suffix != ".npz":
         raise UserError(f"{target} is no trajectory; --model and --save go with a .npz file")
     recording, own = find_recording(target)
@@ -47,10 +47,7 @@ def judge(
             verdict = judge_recording(recording, chosen, progress, model)
         show_verdict(verdict, recording.parent)
     if save:
-        from wsim.importers import read_npz
-        from wsim.importers.trajectory import save as save_recording
-
-        save_recording(read_npz(recording, model), save)
+        importers.save(importers.read_npz(recording, model), save)
     raise typer.Exit(EXIT_CODES[verdict.status])
 
 
@@ -74,8 +71,3 @@ def find_recording(target: Path) -> tuple[Path, Path | None]:
     if not recording.is_file():
         raise UserError(f"{iteration} has no recording: its program made no world; see {iteration / 'verdict.json'}")
     return recording, plan if plan.is_file() else None
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(judge)

@@ -10,6 +10,10 @@ import typer
 
 from wsim.cli.options import Device, Isolation, Runs
 from wsim.errors import UserError
+from wsim.mcp.desk import Desk
+from wsim.mcp.server import make_server
+from wsim.mcp.transport import serve_http, serve_stdio, take_stdout
+from wsim.runs.pipeline import Settings
 
 
 def mcp(
@@ -24,13 +28,7 @@ def mcp(
     """Serve wsim's tools to a coding agent, which starts this command and speaks over its stdin and stdout."""
     if port is not None and not http:
         raise UserError(f"--port {port}: only --http has a port; add it, or leave --port out")
-    from wsim.mcp.transport import serve_http, serve_stdio, take_stdout
-
     wire = None if http else take_stdout()
-    from wsim.mcp.desk import Desk
-    from wsim.mcp.server import make_server
-    from wsim.runs.pipeline import Settings
-
     settings = Settings(device=device, isolation=isolation)
     settings.check()
     server = make_server(Desk(runs, settings))
@@ -44,8 +42,3 @@ def mcp(
 
 def _say(text: str) -> None:
     print(f"wsim: {text}", file=sys.stderr, flush=True)
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(mcp)

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Annotated
 
+import PIL.Image
 import typer
 
 from wsim.errors import UserError
@@ -77,12 +78,10 @@ def refuse_image(path: Path | None) -> None:
     """
     if path is None:
         return
-    from PIL import Image as Pictures
-
     try:
-        with Pictures.open(path) as picture:
+        with PIL.Image.open(path) as picture:
             picture.verify()
-    except (OSError, ValueError, SyntaxError, Pictures.DecompressionBombError) as error:
+    except (OSError, ValueError, SyntaxError, PIL.Image.DecompressionBombError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else "it is not a picture"
         raise UserError(f"--image {path}: {reason}; give a PNG or a JPEG") from error
     raise UserError(

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import json
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from wsim.agents.models import BUILTIN, choose
+from wsim.cli.approve import draw, with_answers
 from wsim.cli.options import Answers, Image, Model, PlannerModel, Runs, refuse_image
+from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage
 from wsim.errors import UserError
+from wsim.plan.schema import Plan
+from wsim.plan.store import load
+from wsim.rules.planner import plan as make_plan
+from wsim.rules.questions import questions
+from wsim.runs.folder import write_whole
 
 if TYPE_CHECKING:
     from wsim.agents.models import Models
-    from wsim.plan.schema import Plan
 
 
 def plan(
@@ -30,9 +39,6 @@ def plan(
     runs: Runs = Path("runs"),
 ) -> None:
     """Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two drawings."""
-    from wsim.agents.models import BUILTIN, choose
-    from wsim.runs.folder import write_whole
-
     if schema:
         print(_schema())
         return
@@ -55,18 +61,10 @@ def plan(
 
 
 def _schema() -> str:
-    import json
-
-    from wsim.plan.schema import Plan
-
     return json.dumps(Plan.model_json_schema(), indent=2)
 
 
 def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
-    from wsim.cli.approve import with_answers
-    from wsim.loop.generate import make_plan
-    from wsim.plan.store import load
-
     if bool(prompt) == (file is not None):
         raise UserError(
             'give a sentence, such as wsim plan "A cork ball floats in a tank of water.", or --plan FILE; not both'
@@ -78,8 +76,7 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
 
 def _plan_with(models: Models, prompt: str, image: Path | None, runs: Path) -> Plan:
     """A model's plan; its run's folder keeps what was asked and answered."""
-    from wsim.cli.show import ConsoleProgress, console, show_usage
-    from wsim.loop.generate import Options, generate
+    from wsim.loop.generate import Options, generate  # simulator and judge: a plan by rules needs neither
 
     if not prompt:
         raise UserError('give a sentence, such as wsim plan "A crank drives a piston." --planner-model MODEL')
@@ -93,18 +90,7 @@ def _plan_with(models: Models, prompt: str, image: Path | None, runs: Path) -> P
 
 
 def _show(made: Plan, output: Path | None, planned: bool) -> None:
-    import tempfile
-
-    from wsim.cli.approve import draw
-    from wsim.cli.show import console, show_plan
-    from wsim.rules.questions import questions
-
     path = output.with_suffix(".png") if output else Path(tempfile.mkdtemp(prefix="wsim-plan-")) / "plan.png"
     show_plan(made, questions(made) if planned else (), draw(made, path))
     if output:
         console.print(f"plan: {output}", soft_wrap=True, markup=False)
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(plan)

@@ -8,8 +8,12 @@ from typing import Annotated
 import typer
 
 from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
+from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
+from wsim.plan.store import load
+from wsim.report import write as write_report
 from wsim.runs.folder import RunFolder, write_whole
+from wsim.runs.pipeline import Settings, run_in_folder
 
 
 def run(
@@ -34,11 +38,6 @@ def run(
     Without a plan the judge makes the checks that hold for any world.
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """
-    from wsim.cli.show import ConsoleProgress, show_verdict
-    from wsim.plan.store import load
-    from wsim.report import write as write_report
-    from wsim.runs.pipeline import Settings, run_in_folder
-
     program, plan = find_program(target, plan)
     chosen = load(plan) if plan else None
     settings = Settings(
@@ -82,8 +81,3 @@ def find_program(target: Path, plan: Path | None) -> tuple[Path, Path | None]:
     if target.suffix != ".py":
         raise UserError(f"{target} is not a Python program; give a .py file or the folder of a run")
     return target, plan
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(run)

@@ -13,6 +13,9 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn
 from rich.table import Table
 from rich.text import Text
 
+from wsim.plan.cost import cost_of
+from wsim.plan.drawing.text import draw_text
+
 if TYPE_CHECKING:
     from wsim.judge.verdict import Finding, Verdict
     from wsim.plan.schema import Plan
@@ -79,9 +82,6 @@ def show_plan(plan: Plan, questions: Sequence[Question] = (), picture: Path | No
         questions: What may be answered first.
         picture: Where the drawings were written as a picture.
     """
-    from wsim.plan.cost import cost_of
-    from wsim.plan.drawing.text import draw_text
-
     console.print(_objects(plan))
     for item in plan.objects:
         if item.relations:

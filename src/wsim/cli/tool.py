@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 import sys
 from contextlib import nullcontext
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from wsim.cli.options import Device, Isolation
+from wsim.cli.show import ConsoleProgress
 from wsim.errors import UserError
+from wsim.progress import silent
 from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings
+from wsim.tools import TOOLS, Workspace
 
 if TYPE_CHECKING:
     from wsim.tools import Tool
@@ -36,13 +41,6 @@ def tool(
 
     Exit code: 0 where the tool did what was asked, 1 where it says why not, 2 for a mistake in the command.
     """
-    from difflib import get_close_matches
-
-    from wsim.cli.show import ConsoleProgress
-    from wsim.progress import silent
-    from wsim.runs.pipeline import Settings
-    from wsim.tools import TOOLS, Workspace
-
     if not name:
         print("\n".join(_listed(list(TOOLS.values()))))
         return
@@ -122,8 +120,3 @@ def _usage(chosen: Tool) -> list[str]:
         default = "" if field.is_required() else f" [{json.dumps(field.default)}]"
         lines.append(f"  {name}{default}: {field.description}")
     return lines
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(tool)

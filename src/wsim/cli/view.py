@@ -11,6 +11,9 @@ import typer
 
 from wsim.cli.judge import find_recording
 from wsim.errors import UserError
+from wsim.judge.verdict import Verdict
+from wsim.recording.reader import read_world
+from wsim.recording.view import has_display, open_native, serve_web
 
 
 def view(
@@ -22,8 +25,6 @@ def view(
     ] = None,
 ) -> None:
     """Open a recording in Rerun's viewer; with no display, print the command to use elsewhere."""
-    from wsim.recording.view import has_display, open_native, serve_web
-
     recording, _ = find_recording(target)
     time, prim = _moment(recording, finding) if finding is not None else (None, None)
     if web:
@@ -47,9 +48,6 @@ def view(
 
 def _moment(recording: Path, number: int) -> tuple[float | None, str | None]:
     """Time and prim of a finding of the verdict beside a recording, which is told; None for what cannot be shown."""
-    from wsim.judge.verdict import Verdict
-    from wsim.recording.reader import read_world
-
     path = recording.with_name("verdict.json")
     if not path.is_file():
         raise UserError(f"{path} does not exist; --finding needs the verdict beside the recording")
@@ -69,8 +67,3 @@ def _moment(recording: Path, number: int) -> tuple[float | None, str | None]:
         f"finding {number}{where}: {finding.message}" + ("" if shown == prim else f" ({prim} is not in the recording)")
     )
     return time, shown
-
-
-def register(app: typer.Typer) -> None:
-    """Add the verb."""
-    app.command()(view)

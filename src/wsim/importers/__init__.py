@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wsim.door import door
+
 if TYPE_CHECKING:
-    from pathlib import Path
+    from wsim.importers.trajectory import read_npz, save
 
-    from wsim.recording import Recording
+__all__ = ["read_npz", "save"]
 
-__all__ = ["read_npz"]
-
-
-def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
-    """Read a MuJoCo or Newton trajectory; see `wsim.importers.trajectory.read_npz`."""
-    from wsim.importers.trajectory import read_npz
-
-    return read_npz(path, model)
+__getattr__ = door(__name__, {"read_npz": "trajectory", "save": "trajectory"})

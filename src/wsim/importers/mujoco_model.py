@@ -7,11 +7,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from wsim.errors import UserError
 from wsim.importers.mujoco_state import body_name, load_model
-from wsim.judge.evidence.geometry import conjugate, multiply, rotate
+from wsim.judge.evidence.geometry import Solid, conjugate, multiply, rotate
 from wsim.scene.world import Body, Joint, Shape, Static, World
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
@@ -27,8 +28,6 @@ def world_of(path: Path) -> World:
     Raises:
         UserError: MuJoCo does not read the file, or something collides with a shape that the judge does not know.
     """
-    import mujoco
-
     model = load_model(path)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -59,8 +58,6 @@ def world_of(path: Path) -> World:
 
 
 def _body(model: Any, b: int, pose: Pose, shapes: list[Shape]) -> Body:
-    from wsim.judge.evidence.geometry import Solid
-
     axes = np.stack([rotate(_xyzw(model.body_iquat[b]), axis) for axis in np.eye(3)], axis=1)
     body = Body(
         prim=_prim(body_name(model, b)),
@@ -79,8 +76,6 @@ def _body(model: Any, b: int, pose: Pose, shapes: list[Shape]) -> Body:
 
 def _shape(model: Any, g: int, frame: Pose | None) -> Shape | None:
     """A geometry in its body's frame, or in the world's where `frame` is its fixed body's pose."""
-    import mujoco
-
     kinds = mujoco.mjtGeom
     name = _clean(str(model.geom(g).name) or f"geom_{g}")
     collides = bool(model.geom_contype[g] or model.geom_conaffinity[g])
@@ -136,8 +131,6 @@ def _joints(model: Any, b: int, poses: list[Pose], fixed: list[bool]) -> list[Jo
 
     A body with several joints, or welded to one that moves, is known to hang together with it, but not how.
     """
-    import mujoco
-
     kinds = {
         mujoco.mjtJoint.mjJNT_HINGE: "revolute",
         mujoco.mjtJoint.mjJNT_SLIDE: "prismatic",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from wsim.errors import UserError
@@ -12,8 +13,6 @@ from wsim.errors import UserError
 
 def load_model(path: Path) -> Any:
     """MuJoCo's compiled model of an MJCF or URDF file; UserError with what MuJoCo says of it."""
-    import mujoco
-
     try:
         return mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
@@ -33,8 +32,6 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
     Raises:
         UserError: If the states are not those of the model.
     """
-    import mujoco
-
     model = load_model(path)
     for name, array, width in (("qpos", qpos, model.nq), ("qvel", qvel, model.nv)):
         if array.shape != (len(qpos), width):

@@ -12,7 +12,12 @@ import numpy as np
 from pydantic import ValidationError
 
 from wsim.errors import UserError
-from wsim.recording.reader import Recording
+from wsim.importers.mujoco_model import world_of
+from wsim.importers.mujoco_state import bodies_of_states
+from wsim.judge.evidence.geometry import conjugate, multiply, rotate
+from wsim.recording import Frame, RecordingWriter
+from wsim.recording.recording import Recording
+from wsim.scene.describe import describe
 from wsim.scene.world import World
 
 if TYPE_CHECKING:
@@ -53,8 +58,6 @@ def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
     if "time" not in arrays:
         raise UserError(f"{path} has no array time (T,) [s]; it has {sorted(arrays)}")
     if {"qpos", "qvel"} <= set(arrays):
-        from wsim.importers.mujoco_state import bodies_of_states
-
         if model is None or Path(model).suffix not in (".xml", ".mjcf"):
             raise UserError(f"{path} holds qpos and qvel: give the MJCF that they are of with --model scene.xml")
         arrays |= bodies_of_states(Path(model), arrays["qpos"], arrays["qvel"])
@@ -70,12 +73,8 @@ def read_model(path: Path) -> World:
     if not path.is_file():
         raise UserError(f"{path}: no such model")
     if path.suffix in (".xml", ".mjcf", ".urdf"):
-        from wsim.importers.mujoco_model import world_of
-
         return world_of(path)
     if path.suffix in (".usd", ".usda", ".usdc"):
-        from wsim.scene.describe import describe
-
         return describe(path)
     if path.suffix == ".json":
         return _world(path.read_text(encoding="utf-8"), str(path))
@@ -124,8 +123,6 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
 
 def save(recording: Recording, path: Path) -> Path:
     """Write an imported recording as wsim's own, so that a viewer opens it."""
-    from wsim.recording import Frame, RecordingWriter
-
     metadata = {key: value for key, value in recording.metadata.items() if key != "complete"}
     with RecordingWriter(path, recording.world, metadata) as writer:
         for k, t in enumerate(recording.time):
@@ -135,8 +132,6 @@ def save(recording: Recording, path: Path) -> Path:
 
 def velocities(time: Array, body_q: Array, world: World) -> Array:
     """Velocities (T, B, 6) of the centres of mass by central differences of poses (T, B, 7), second order inside."""
-    from wsim.judge.evidence.geometry import conjugate, multiply, rotate
-
     com = np.array([body.com for body in world.bodies], dtype=np.float64).reshape(-1, 3)
     q = body_q[:, :, 3:]
     center = body_q[:, :, :3] + rotate(q, np.broadcast_to(com, (*q.shape[:2], 3)))

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from wsim.judge.checks.check import Check
     from wsim.judge.objectives.objective import ObjectiveCheck
     from wsim.plan.schema import Plan
-    from wsim.recording.reader import Recording
+    from wsim.recording.recording import Recording
 
 OBJECTIVES: dict[str, type[ObjectiveCheck]] = {
     "floats": ObjectiveFloats,
@@ -108,8 +108,16 @@ def physics_checks() -> list[Check]:
     ]
 
 
-def decide(recording: Recording, plan: Plan | None) -> Verdict:
-    """The verdict on a recording, and on a plan if there is one."""
+def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
+    """Judge what happened.
+
+    Args:
+        recording: The evidence; nothing else is looked at.
+        plan: What was asked for. Without one, only the checks that hold for any world are made.
+
+    Returns:
+        Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge.
+    """
     evidence = Evidence(recording, plan)
     if len(evidence.time) == 0:
         finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.decide import decide
+from wsim.judge.decide import judge
+from wsim.judge.language import Signals, evaluate
 from wsim.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -83,15 +84,13 @@ def judge_worlds(
 
 def weigh(worlds: Trajectories, formula: Formula) -> Outcome:
     """One formula on all worlds in one go: what a sweep is ranked by. Raises as `wsim.judge.language.evaluate`."""
-    from wsim.judge.language import Signals, evaluate
-
     arrays = (worlds.body_q, worlds.body_qd, worlds.contact_force)
     return evaluate(formula, Signals(worlds.world, worlds.time, *arrays, mass=worlds.mass))
 
 
 def verdict_of(worlds: Trajectories, plan: Plan | None, k: int) -> Verdict:
     """World k's verdict in full."""
-    return decide(worlds.recording(k), plan)
+    return judge(worlds.recording(k), plan)
 
 
 def _parts(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator[list[Row]]:

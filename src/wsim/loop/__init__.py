@@ -1,1 +1,1 @@
-"""The loop: a sentence becomes a judged world, and a recorded run is made again."""
+"""The loop: a sentence becomes a judged world (`generate`), and a recorded run is made again (`replay`)."""

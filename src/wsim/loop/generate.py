@@ -7,18 +7,28 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wsim.agents.ask import Desk
 from wsim.agents.budget import Budget, BudgetError, Ledger
+from wsim.agents.crew import Crew, verdict_of
 from wsim.agents.failures import ModelError
-from wsim.agents.models import BUILTIN, Models
+from wsim.agents.models import BUILTIN, Models, reach
+from wsim.agents.pictures import small_jpeg
 from wsim.agents.transcript import Transcript
+from wsim.judge.verdict import Verdict
+from wsim.plan.drawing.picture import draw_picture
+from wsim.program.compose import compose
 from wsim.progress import Progress, silent
+from wsim.report import write as write_report
+from wsim.rules.planner import plan as make_plan
+from wsim.runs.accept import accept
+from wsim.runs.attempt import Reached, attempt, numerics
 from wsim.runs.folder import RunFolder, write_whole
-from wsim.runs.pipeline import Settings
+from wsim.runs.pipeline import Settings, conclude
+from wsim.tools import Workspace
+from wsim.tools.iterations import add
 
 if TYPE_CHECKING:
-    from wsim.agents.crew import Crew
     from wsim.agents.relay import Replay
-    from wsim.judge.verdict import Verdict
     from wsim.plan.schema import Plan
     from wsim.runs.attempt import Attempt
 
@@ -79,9 +89,6 @@ def generate(
         NotUnderstood: If the builtin planner cannot ground the prompt; nothing is left behind.
         UserError: If a model cannot be reached by its name, or the picture is none; nothing is left behind.
     """
-    from wsim.agents.models import reach
-    from wsim.report import write as write_report
-
     options = options or Options()
     if options.replay is None:
         reach(options.models)
@@ -109,8 +116,6 @@ def generate(
 
 def _loop(run: RunFolder, crew: Crew, plan: Plan, options: Options) -> Verdict:
     """Try, look, judge, repair the best, until one is accepted or the run must end."""
-    from wsim.agents.crew import verdict_of
-
     programs = [_first_draft(run, plan)]
     best: Attempt | None = None
     undone: list[Attempt] = []
@@ -140,11 +145,6 @@ def _candidates(crew: Crew, best: Attempt, undone: Sequence[Attempt], plan: Plan
 
 def _try(run: RunFolder, crew: Crew, plan: Plan, options: Options, best: Attempt | None, text: str) -> Attempt:
     """One program through all passes, the review, the judge, and acceptance."""
-    from wsim.judge.verdict import Verdict
-    from wsim.runs.attempt import Reached, attempt, numerics
-    from wsim.runs.pipeline import conclude
-    from wsim.tools.iterations import add
-
     folder = add(run, text, best.program if best else None)
     settings = options.settings
     if best is not None and numerics(text) != numerics(_text(run.iteration(1))):
@@ -171,8 +171,6 @@ def _text(folder: Path) -> str:
 
 def _assess(run: RunFolder, crew: Crew, plan: Plan, options: Options, tried: Attempt, best: Attempt | None) -> None:
     """The review, the judge, and acceptance of a program that was tried; one that is no better is not asked about."""
-    from wsim.runs.accept import accept
-
     if tried.verdict.status == "accepted":
         crew.look(tried, plan)
     if best is None or tried.rank > best.rank:
@@ -185,8 +183,6 @@ def _assess(run: RunFolder, crew: Crew, plan: Plan, options: Options, tried: Att
 
 def _plan(run: RunFolder, crew: Crew, prompt: str, plan: Plan | None, reference: bytes | None) -> Plan:
     """The plan, kept in the run's folder with its drawing."""
-    from wsim.plan.drawing.picture import draw_picture
-
     if plan is None:
         if reference is not None:
             (run.path / REFERENCE).write_bytes(reference)
@@ -201,18 +197,12 @@ def _plan(run: RunFolder, crew: Crew, prompt: str, plan: Plan | None, reference:
 
 def _first_draft(run: RunFolder, plan: Plan) -> str:
     """The program that the plan composes: what every later one is a patch of."""
-    from wsim.program.compose import compose
-
     program = compose(plan)
     Transcript(run.path).builtin("coder", "plan.json", program)
     return program
 
 
 def _crew(run: RunFolder, options: Options, progress: Progress) -> Crew:
-    from wsim.agents.ask import Desk
-    from wsim.agents.crew import Crew
-    from wsim.tools import Workspace
-
     ledger = Ledger(options.budget)
 
     def watched(stage: str, done: float, total: float) -> None:
@@ -255,8 +245,6 @@ def _blocked(
     best: Attempt | None = None,
 ) -> Verdict:
     """The verdict on a run that could not go on: why, and the best so far."""
-    from wsim.judge.verdict import Verdict
-
     run.record(cause=cause)
     if best is None or verdict_of is None:
         return Verdict(status="blocked", summary=cause)
@@ -267,13 +255,4 @@ def _reference(options: Options) -> bytes | None:
     """A reference picture as a small JPEG; the recorded one, byte for byte, in a replay."""
     if options.image is None:
         return None
-    from wsim.agents.pictures import small_jpeg
-
     return small_jpeg(options.image) if options.replay is None else options.image.read_bytes()
-
-
-def make_plan(prompt: str) -> Plan:
-    """The builtin planner's plan of a prompt."""
-    from wsim.rules.planner import plan
-
-    return plan(prompt)

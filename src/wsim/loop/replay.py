@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from wsim.agents.budget import Budget
 from wsim.agents.models import BUILTIN, ROLES, Models
+from wsim.agents.relay import Replay
 from wsim.errors import UserError
+from wsim.loop.generate import REFERENCE, Options, generate
+from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder
 from wsim.runs.pipeline import Settings
@@ -49,10 +52,6 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
     Raises:
         UserError: If the folder is no such run.
     """
-    from wsim.agents.relay import Replay
-    from wsim.loop.generate import REFERENCE, Options, generate
-    from wsim.plan.store import load
-
     recorded = RunFolder.open(recorded).path
     facts = _facts(recorded)
     models = Models(**{role: facts["models"].get(role, BUILTIN) for role in ROLES})

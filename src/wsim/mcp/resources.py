@@ -11,6 +11,8 @@ from pathlib import Path
 
 from wsim.errors import UserError
 from wsim.mcp.desk import HOW_TO_OPEN, Desk
+from wsim.plan.schema import Plan
+from wsim.skills import skills
 
 SCHEMA = "wsim://plan-schema"
 RUN_FILES = {
@@ -38,8 +40,6 @@ def readables(desk: Desk) -> dict[str, Readable]:
 
 def _skills() -> Iterator[Readable]:
     """Each skill as `skill://NAME`, and the texts beside it as `skill://NAME/PATH`."""
-    from wsim.skills import skills
-
     for skill in skills():
         uri, front = f"skill://{skill.name}", skill.folder / "SKILL.md"
         yield Readable(uri, skill.name, skill.description, _kind(front), partial(_text, front))
@@ -52,8 +52,6 @@ def _skills() -> Iterator[Readable]:
 
 def _schema() -> Readable:
     def read() -> str:
-        from wsim.plan.schema import Plan
-
         return json.dumps(Plan.model_json_schema(), separators=(",", ":"))
 
     return Readable(SCHEMA, "plan-schema", "JSON schema of a plan, for write_plan.", "application/schema+json", read)

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from wsim.agents.models import BUILTIN
+from wsim.agents.transcript import Transcript
 from wsim.errors import UserError
+from wsim.judge.verdict import Verdict
 from wsim.mcp.desk import Desk
+from wsim.plan.drawing.picture import draw_picture
+from wsim.plan.store import save
+from wsim.program.compose import compose
+from wsim.rules.planner import plan as plan_of
 from wsim.runs.folder import RunFolder
 from wsim.tools.base import Arguments, Result, Tool, Workspace
+from wsim.tools.iterations import add, numbered
+from wsim.tools.plan import ReadPlan, read_plan
 
 
 class MakePlan(Arguments):
@@ -68,9 +77,6 @@ def run_tools(desk: Desk) -> dict[str, Tool]:
 
 def draft_program(workspace: Workspace, _: DraftProgram) -> Result:
     """The plan as a program, in a new iteration."""
-    from wsim.program.compose import compose
-    from wsim.tools.iterations import add
-
     plan = workspace.plan
     if plan is None:
         raise UserError("the run has no plan; write one with write_plan")
@@ -80,13 +86,7 @@ def draft_program(workspace: Workspace, _: DraftProgram) -> Result:
 
 def _planned(desk: Desk, prompt: str) -> Result:
     """A new run, with the builtin planner's plan in it, drawn."""
-    from wsim.agents.transcript import Transcript
-    from wsim.loop.generate import BUILTIN, make_plan
-    from wsim.plan.drawing.picture import draw_picture
-    from wsim.plan.store import save
-    from wsim.tools.plan import ReadPlan, read_plan
-
-    plan = make_plan(prompt)
+    plan = plan_of(prompt)
     run = desk.start(plan.title)
     run.record(prompt=plan.prompt, models={"planner": BUILTIN})
     Transcript(run.path).builtin("planner", prompt, plan.model_dump(mode="json"))
@@ -98,9 +98,6 @@ def _planned(desk: Desk, prompt: str) -> Result:
 
 def _about(run: RunFolder) -> str:
     """Which run it is, and how far it came."""
-    from wsim.judge.verdict import Verdict
-    from wsim.tools.iterations import numbered
-
     title, iterations = run.facts().get("title") or "no title", numbered(run)
     verdict = iterations[-1] / "verdict.json" if iterations else None
     status = "not judged yet"

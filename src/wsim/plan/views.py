@@ -11,7 +11,7 @@ from itertools import product
 
 from wsim.plan.layout import Box, LayoutError, extents, solids
 from wsim.plan.layout.bodies import around, hollow, is_hollow
-from wsim.plan.layout.boxes import union
+from wsim.plan.layout.boxes import turned, union
 from wsim.plan.rooms import between_walls
 from wsim.plan.schema import CameraPlan, Plan, PlanObject, Vec3
 
@@ -183,8 +183,6 @@ def _within(eye: Vec3, room: Box, margin: float) -> Vec3:
 
 
 def _hollow_in_world(item: PlanObject) -> Box:
-    from wsim.plan.layout.boxes import turned
-
     free = hollow(item)
     assert item.pose is not None  # the callers have looked
     x, y, z = item.pose.position

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun.blueprint as rrb
 
 from wsim.recording.columns import HEIGHT_ROOT, LOG_ENTITY, SCALAR_ROOT, TIMELINE, entity_path
 from wsim.recording.shapes import rotate
@@ -26,8 +27,6 @@ def make_blueprint(world: World, *, paused: bool = False, entity: str | None = N
         paused: Whether the viewer is to stand still at the beginning.
         entity: A prim for the 3D view to look at and follow.
     """
-    import rerun.blueprint as rrb
-
     scene = rrb.Spatial3DView(
         name="Scene",
         origin="/",
@@ -55,8 +54,6 @@ def make_blueprint(world: World, *, paused: bool = False, entity: str | None = N
 
 
 def _plots(world: World) -> list[Any]:
-    import rerun.blueprint as rrb
-
     energy = f"{SCALAR_ROOT}energy/**"
     plots = [rrb.TimeSeriesView(name="Energy [J]", origin="/", contents=[energy])]
     if world.bodies:
@@ -66,15 +63,11 @@ def _plots(world: World) -> list[Any]:
 
 
 def _log() -> Any:
-    import rerun.blueprint as rrb
-
     return rrb.TextLogView(name="Log", origin="/", contents=[f"{LOG_ENTITY}/**", "/World/**"])
 
 
 def _eye(world: World, entity: str | None) -> Any | None:
     """Near the first camera, turned aside: from its very place its own picture would hide the scene."""
-    import rerun.blueprint as rrb
-
     tracked = entity_path(entity) if entity is not None else None
     if not world.cameras:
         return rrb.EyeControls3D(tracking_entity=tracked) if tracked is not None else None

@@ -9,6 +9,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun as rr
 
 from wsim.recording import columns as names
 from wsim.recording.shapes import ROOT_FRAME, is_nested, rgba
@@ -70,8 +71,6 @@ class BodyBuffer:
 
     @staticmethod
     def _pose(q: Floats, nested: bool) -> list[Any]:
-        import rerun as rr
-
         # Poses are the world's: for a body below another, say so, or Rerun stacks the two.
         frame = {"parent_frame": [ROOT_FRAME] * len(q)} if nested else {}
         return list(rr.Transform3D.columns(translation=q[:, :3], quaternion=q[:, 3:], **frame))
@@ -123,8 +122,6 @@ class FluidBuffer:
 
     def flush(self) -> None:
         """Write the frames that wait."""
-        import rerun as rr
-
         if not self._times:
             return
         position, velocity, density = (np.concatenate(arrays) for arrays in zip(*self._rows, strict=True))
@@ -199,8 +196,6 @@ def _palette(color: tuple[float, float, float]) -> NDArray[np.uint32]:
 
 
 def _jpeg_columns(blobs: list[NDArray[np.uint8]]) -> list[Any]:
-    import rerun as rr
-
     return list(rr.EncodedImage.columns(blob=blobs, media_type=["image/jpeg"] * len(blobs)))
 
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
+import rerun as rr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -64,15 +66,11 @@ def nanoseconds(seconds: float) -> int:
 
 def entity_path(path: str) -> str:
     """A prim path or a slash-separated name as a Rerun entity path, its parts escaped."""
-    import rerun as rr
-
     return "/" + str(rr.new_entity_path([part for part in path.split("/") if part])).lstrip("/")
 
 
 def time_column(times_ns: Iterable[int]) -> Any:
     """Times [ns] as an index column."""
-    import rerun as rr
-
     return rr.TimeColumn(TIMELINE, duration=np.asarray(list(times_ns), dtype="timedelta64[ns]"))
 
 
@@ -94,9 +92,6 @@ def column(name: str, values: NDArray[Any] | list[str], lengths: list[int] | Non
         values: Array (n,) or (n, k), or strings. Bits are kept: no cast, no null for NaN.
         lengths: Values in each row; sums to n.
     """
-    import pyarrow as pa
-    import rerun as rr
-
     if isinstance(values, list):
         array = pa.array(values, pa.string())
     elif values.ndim == 2:

@@ -10,8 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun as rr
+from rerun.chunk import Chunk, RrdReader
 
 from wsim.errors import UserError
+from wsim.recording.blueprint import make_blueprint
 from wsim.recording.columns import APPLICATION, FRAME_ENTITY, TIMELINE, nanoseconds
 from wsim.recording.reader import read_world
 
@@ -33,11 +36,6 @@ def write_excerpt(path: str | Path, copy: str | Path, time: float | None = None,
     Raises:
         UserError: The recording cannot be read, knows no such prim, or has no frame as early as `time`.
     """
-    import rerun as rr
-    from rerun.chunk import RrdReader
-
-    from wsim.recording.blueprint import make_blueprint
-
     world = read_world(path)
     _check_entity(world, entity)
     chunks = list(RrdReader(path).stream())
@@ -68,8 +66,6 @@ def _frame_start(chunks: list[Any], ns: int, path: Path) -> int:
 
 
 def _from(chunks: list[Any], start: int) -> Iterator[Any]:
-    from rerun.chunk import Chunk
-
     for chunk in chunks:
         if chunk.is_static:
             yield chunk

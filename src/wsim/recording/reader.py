@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import ValidationError
+from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
 from wsim.recording import columns as names
-from wsim.recording.frames import FluidFrame, Frame, LogLine
+from wsim.recording.frames import LogLine
+from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
 from wsim.recording.table import Clock, Table
 from wsim.scene.world import World
 
@@ -28,123 +28,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float32]
     Times = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class FluidTrack:
-    """One fluid through time; its frames may be fewer than the recording's."""
-
-    time: Times  # (T,) [s]
-    position: Floats  # (T, N, 3) [m]
-    velocity: Floats  # (T, N, 3) [m/s]
-    density: Floats  # (T, N) [kg/m^3]
-
-
-@dataclass(frozen=True, eq=False)
-class ImageTrack(Sequence["NDArray[np.uint8]"]):
-    """One camera's pictures through time, decoded when they are asked for."""
-
-    time: Times  # (T,) [s]
-    jpegs: list[Any]  # Arrow scalars of bytes
-
-    def __len__(self) -> int:
-        return len(self.jpegs)
-
-    def __getitem__(self, index: Any) -> Any:
-        """The picture (H, W, 3) uint8 RGB at an index; a list of them for a slice."""
-        if isinstance(index, slice):
-            return [self[i] for i in range(*index.indices(len(self)))]
-        import cv2
-
-        bgr: Any = cv2.imdecode(np.frombuffer(self.jpeg(index), np.uint8), cv2.IMREAD_COLOR)
-        return np.ascontiguousarray(bgr[:, :, ::-1])
-
-    def __iter__(self) -> Iterator[NDArray[np.uint8]]:
-        return (self[i] for i in range(len(self)))
-
-    def jpeg(self, index: int) -> bytes:
-        """The picture's file as it was stored."""
-        return bytes(self.jpegs[index])
-
-    def at(self, t: float) -> NDArray[np.uint8]:
-        """The picture nearest to time `t` [s], (H, W, 3) uint8 RGB."""
-        image: NDArray[np.uint8] = self[_nearest(self.time, t)]
-        return image
-
-
-@dataclass(frozen=True, eq=False)
-class SeenTrack:
-    """How much of a camera's picture each object takes up, through time."""
-
-    time: Times  # (T,) [s]
-    objects: list[str]  # prims
-    share: Floats  # (T, objects)
-
-
-@dataclass(frozen=True, eq=False)
-class Recording:
-    """What happened in a world. T frames, B bodies in the order of `world.bodies`."""
-
-    path: Path
-    world: World
-    metadata: dict[str, Any]
-    time: Times  # (T,) [s], as it was given to the writer
-    body_q: Floats  # (T, B, 7) [x y z qx qy qz qw], world
-    body_qd: Floats  # (T, B, 6) [vx vy vz wx wy wz]
-    contact_force: Floats  # (T, B, 3) [N]
-    fluids: dict[str, FluidTrack]  # by prim
-    scalars: dict[str, Times]  # by name, (T,); NaN where a frame had none
-    log: list[LogLine]  # in order of time, then of writing
-    images: Mapping[str, ImageTrack]  # by camera prim
-    seen: Mapping[str, SeenTrack] = field(default_factory=dict)  # by camera prim; empty where nothing was drawn
-    applied_impulse: Floats | None = None  # (T, B, 3) [N s], of fluid and control since the frame before
-    applied_work: Floats | None = None  # (T, B) [J], likewise
-
-    @property
-    def complete(self) -> bool:
-        """Whether the run got to its end; if not, `metadata["error"]` may say why."""
-        return bool(self.metadata.get("complete", False))
-
-    def body_index(self, prim: str) -> int:
-        """The row of a body; KeyError naming the known ones."""
-        for i, body in enumerate(self.world.bodies):
-            if body.prim == prim:
-                return i
-        raise KeyError(f"no body {prim!r}; the recording has {[b.prim for b in self.world.bodies]}")
-
-    def position(self, prim: str) -> Floats:
-        """A body's positions (T, 3) [m]."""
-        return self.body_q[:, self.body_index(prim), :3]
-
-    def rotation(self, prim: str) -> Floats:
-        """A body's rotations (T, 4), xyzw."""
-        return self.body_q[:, self.body_index(prim), 3:]
-
-    def velocity(self, prim: str) -> Floats:
-        """Velocities (T, 3) of a body's centre of mass [m/s]."""
-        return self.body_qd[:, self.body_index(prim), :3]
-
-    def angular_velocity(self, prim: str) -> Floats:
-        """A body's angular velocities (T, 3) [rad/s]."""
-        return self.body_qd[:, self.body_index(prim), 3:]
-
-    def force(self, prim: str) -> Floats:
-        """Net contact forces (T, 3) on a body [N]."""
-        return self.contact_force[:, self.body_index(prim)]
-
-    def frame_index(self, t: float) -> int:
-        """The index of the frame nearest to time `t` [s]; ValueError when there is no frame."""
-        return _nearest(self.time, t)
-
-    def frame_at(self, t: float) -> Frame:
-        """The frame nearest to time `t` [s]; fluids that have no particles recorded then are left out."""
-        i = self.frame_index(t)
-        fluids = {}
-        for prim, track in self.fluids.items():
-            for j in np.flatnonzero(track.time == self.time[i]):
-                fluids[prim] = FluidFrame(track.position[j], track.velocity[j], track.density[j])
-        scalars = {name: float(values[i]) for name, values in self.scalars.items()}
-        return Frame(self.body_q[i], self.body_qd[i], self.contact_force[i], fluids, scalars)
 
 
 def read(path: str | Path) -> Recording:
@@ -184,8 +67,6 @@ def read_world(path: str | Path) -> World:
 
 
 def _load(path: Path) -> Table:
-    from rerun.chunk import RrdReader
-
     if not path.is_file():
         raise UserError(f"no recording at {path}")
     table = Table()
@@ -304,9 +185,3 @@ def _images(table: Table, world: World, clock: Clock) -> dict[str, ImageTrack]:
         ns, cells = table.cells(names.entity_path(camera.prim), names.IMAGE)
         tracks[camera.prim] = ImageTrack(clock.seconds(ns), [cell[0].values.to_numpy() for cell in cells])
     return tracks
-
-
-def _nearest(times: Times, t: float) -> int:
-    if not len(times):
-        raise ValueError("the recording has no frames")
-    return int(np.argmin(np.abs(times - t)))

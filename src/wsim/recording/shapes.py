@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun as rr
 
 from wsim.recording.columns import entity_path
 
@@ -20,8 +21,6 @@ ROOT_FRAME = "tf#/"  # Rerun's name for the world's frame
 
 def log_scene(stream: Any, world: World) -> None:
     """Log shapes, cameras and what is known of each prim, all static, to a Rerun stream."""
-    import rerun as rr
-
     stream.log("World", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
     reach = scene_reach(world)
     owners: list[Body | Static] = [*world.bodies, *world.statics]
@@ -41,8 +40,6 @@ def log_scene(stream: Any, world: World) -> None:
 
 def log_camera(stream: Any, camera: Camera, width: int, height: int, nested: bool = False) -> None:
     """Log a camera's pose and pinhole, static; `width` and `height` [pixels] are those of its pictures."""
-    import rerun as rr
-
     focal = 0.5 * width / math.tan(math.radians(camera.fov) / 2)
     distance = float(np.linalg.norm(np.subtract(camera.target, camera.eye)))
     pose = rr.Transform3D(
@@ -98,8 +95,6 @@ def shape_visual(shape: Shape, reach: float = 2.0) -> Any | None:
     The shape's own pose is in the archetype rather than in a transform of its entity, so that a shape whose prim is
     the body itself is drawn right too.
     """
-    import rerun as rr
-
     color = rgba(shape.color, shape.opacity)
     pose = {"centers": [shape.position], "quaternions": [shape.rotation]}
     look = {"colors": [color], "fill_mode": rr.components.FillMode.Solid}
@@ -133,8 +128,6 @@ def rotate(quaternion: tuple[float, float, float, float], vectors: NDArray[np.fl
 
 
 def _mesh_visual(shape: Shape, color: list[int]) -> Any | None:
-    import rerun as rr
-
     if not shape.vertices:
         return None
     vertices = rotate(shape.rotation, np.asarray(shape.vertices, dtype=np.float64)) + np.asarray(shape.position)
@@ -150,8 +143,6 @@ def _mesh_visual(shape: Shape, color: list[int]) -> Any | None:
 
 def _facts(owner: Body | Static) -> Any:
     """What the viewer's selection panel says of a prim."""
-    import rerun as rr
-
     facts: dict[str, Any] = {"prim": owner.prim}
     if owner.line is not None:
         facts["line"] = owner.line

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.recording.frames import LogLine
-from wsim.recording.reader import Recording
+from wsim.recording.recording import Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import av
 import numpy as np
 
 if TYPE_CHECKING:
@@ -51,8 +52,6 @@ class VideoWriter:
         Raises:
             ValueError: It has another size or type, or the video is closed.
         """
-        import av
-
         if self._closed:
             raise ValueError(f"{self.path} is closed; nothing more can be written")
         if frame.ndim != 3 or frame.shape[2] != 3 or frame.dtype != np.uint8 or 0 in frame.shape:
@@ -101,8 +100,6 @@ class VideoWriter:
             self.discard()
 
     def _open(self, shape: tuple[int, ...]) -> None:
-        import av
-
         self.path.parent.mkdir(parents=True, exist_ok=True)
         self._shape = shape
         self._container = av.open(str(self.partial_path), "w", format="mp4", options={"movflags": "+faststart"})
@@ -140,8 +137,6 @@ def read_video(path: str | Path, most: int) -> Iterator[tuple[float, NDArray[np.
     Yields:
         Time [s] and picture (H, W, 3) uint8 RGB.
     """
-    import av
-
     with av.open(str(path)) as container:
         stream = container.streams.video[0]
         last = stream.frames - 1

@@ -11,11 +11,14 @@ import time as clock
 import urllib.error
 import urllib.parse
 import urllib.request
+import webbrowser
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
 
 from wsim.errors import UserError
+from wsim.recording.excerpt import write_excerpt
 
 LOCALHOST = "127.0.0.1"
 START_SECONDS = 30.0
@@ -27,8 +30,6 @@ def rerun_binary() -> str:
     Raises:
         UserError: It is not installed.
     """
-    from importlib.util import find_spec
-
     override = os.environ.get("RERUN_CLI_PATH")
     spec = find_spec("rerun_cli")
     if override:
@@ -155,8 +156,6 @@ def serve_web(
     stream = urllib.parse.quote(f"rerun+http://{LOCALHOST}:{data_port}/proxy", safe="")
     server = WebServer(f"http://{LOCALHOST}:{port}/?url={stream}", port, data_port, process)
     if open_browser:
-        import webbrowser
-
         webbrowser.open(server.url)
     return server
 
@@ -166,8 +165,6 @@ def _files(path: Path, time: float | None, entity: str | None) -> list[str]:
         raise UserError(f"no recording at {path}")
     if time is None and entity is None:
         return [str(path)]
-    from wsim.recording.excerpt import write_excerpt
-
     copy = Path(tempfile.mkdtemp(prefix="wsim-view-")) / path.name
     return [str(write_excerpt(path, copy, time, entity))]
 

@@ -10,11 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun as rr
+from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
 from wsim.recording import columns as names
+from wsim.recording.blueprint import make_blueprint
 from wsim.recording.buffers import BodyBuffer, FluidBuffer, RowBuffer
 from wsim.recording.frames import Frame
+from wsim.recording.shapes import is_nested, log_camera, log_scene
 from wsim.scene.world import World
 
 if TYPE_CHECKING:
@@ -129,8 +133,6 @@ class RecordingWriter:
             raise ValueError(f"image of {camera_prim}: expected (H, W, 3) uint8, got {rgb.shape} {rgb.dtype}")
         height, width = rgb.shape[:2]
         if self._image_sizes[camera_prim] != (width, height):  # the frustum must fit the pictures
-            from wsim.recording.shapes import is_nested, log_camera
-
             log_camera(self._stream, camera, width, height, nested=is_nested(camera_prim, self.world))
             self._image_sizes[camera_prim] = (width, height)
         _, jpeg = cv2.imencode(".jpg", rgb[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
@@ -198,9 +200,6 @@ class RecordingWriter:
         self._flushed_at = time.monotonic()
 
     def _write_setup(self, blueprint: bool) -> None:
-        from wsim.recording.blueprint import make_blueprint
-        from wsim.recording.shapes import log_scene
-
         self._stream.send_recording_name(self.world.name)
         self._send_property(
             {names.WORLD: [self.world.model_dump_json()], names.VERSION: np.array([names.FORMAT_VERSION])}
@@ -256,8 +255,6 @@ class RecordingWriter:
 
 
 def _open_stream(path: Path, name: str) -> Any:
-    import rerun as rr
-
     stream = rr.RecordingStream(names.APPLICATION)
     if not rr.is_enabled(stream):
         raise UserError("Rerun is switched off by the environment variable RERUN; unset it to record")
@@ -272,8 +269,6 @@ def _open_stream(path: Path, name: str) -> Any:
 
 def _check_whole(path: Path, frames: int) -> None:
     """Rerun's file writer works in the background and only prints its errors: look at what it left."""
-    from rerun.chunk import RrdReader
-
     try:
         RrdReader(path).store()  # reads the footer, which is written last
     except (RuntimeError, ValueError) as error:

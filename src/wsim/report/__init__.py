@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import TYPE_CHECKING
+
+from wsim.door import door
+
+if TYPE_CHECKING:
+    from wsim.report.page import write
 
 __all__ = ["write"]
 
-
-def write(run_dir: str | Path) -> Path:
-    """Write `report.html` in the folder of a run, from what the run left there.
-
-    A run that failed early has no recording, video or plan: the report shows what there is.
-
-    Args:
-        run_dir: The run's folder.
-
-    Returns:
-        The report's path.
-
-    Raises:
-        UserError: There is no such folder.
-    """
-    from wsim.report.page import write_page
-
-    return write_page(Path(run_dir))
+__getattr__ = door(__name__, {"write": "page"})

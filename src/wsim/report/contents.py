@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from wsim import recording
 from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
+from wsim.plan.store import load
 from wsim.report.records import Acceptance, Loop, Review, review_of, sums_of
 from wsim.runs.folder import RunFolder
 
@@ -169,15 +171,11 @@ def _acceptance(path: Path) -> Acceptance:
 
 
 def _plan(path: Path) -> Plan:
-    from wsim.plan.store import load
-
     return load(path)
 
 
 def _recording(path: Path) -> Recording:
-    from wsim.recording import read
-
-    return read(path)
+    return recording.read(path)
 
 
 def _section(checks: dict[str, Any], name: str) -> dict[str, Any]:

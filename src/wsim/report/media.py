@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from wsim.report.locate import ring_of, where_is
 from wsim.report.numbers import quantity
 
@@ -96,7 +98,6 @@ def _still_caption(path: Path) -> str:
 def _thumbnail(data: bytes, caption: str, ring: tuple[float, float, float] | None = None) -> Picture | None:
     """A picture made small, with a ring (x, y, radius) in widths of the picture; None if it cannot be decoded."""
     import cv2
-    import numpy as np
 
     image: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
     if image is None:

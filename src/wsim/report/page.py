@@ -9,8 +9,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.repair.objectives import sentence_of
 from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
@@ -23,6 +25,8 @@ from wsim.report.ending import which_is_shown, why_it_ended
 from wsim.report.facts import make_facts, make_parameters
 from wsim.report.fixes import command, describe, make_fixes
 from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_reference, find_stills, find_video
+from wsim.report.moments import moment_chart
+from wsim.report.plots import make_charts
 from wsim.report.source import SourceLine, source_lines, statement
 from wsim.runs.folder import write_whole
 
@@ -48,8 +52,22 @@ class Row:
     try_it: str = ""  # the command that does
 
 
-def write_page(run_dir: Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path:
-    """Write a run's report.html; raises as `wsim.report.write`."""
+def write(run_dir: str | Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path:
+    """Write `report.html` in the folder of a run, from what the run left there.
+
+    A run that failed early has no recording, video or plan: the report shows what there is.
+
+    Args:
+        run_dir: The run's folder.
+        most_video_bytes: A longer video is left out.
+
+    Returns:
+        The report's path.
+
+    Raises:
+        UserError: There is no such folder.
+    """
+    run_dir = Path(run_dir)
     contents = gather(run_dir)
     html = render(context(contents, most_video_bytes))
     path = run_dir / "report.html"
@@ -60,7 +78,6 @@ def write_page(run_dir: Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path:
 
 def render(values: dict[str, Any]) -> str:
     """The template with its values."""
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     def source(name: str) -> str:
         return files("wsim.report").joinpath(name).read_text(encoding="utf-8")
@@ -82,8 +99,6 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
     )
     charts: list[Chart] = []
     if recording is not None:
-        from wsim.report.plots import make_charts
-
         charts = make_charts(recording, [row.finding for row in rows])
     cards = _illustrated(failed[:MOST_CARDS], contents)
     world = recording.world if recording is not None else None
@@ -161,9 +176,6 @@ def _illustrated(rows: list[Row], contents: RunContents) -> list[Row]:
     """Rows with a plot and a picture of their moment, where the recording has them."""
     if contents.recording is None:
         return rows
-    from wsim.judge.evidence.evidence import Evidence
-    from wsim.report.moments import moment_chart
-
     evidence = Evidence(contents.recording, contents.plan)
     return [
         replace(

@@ -18,6 +18,7 @@ from wsim.judge.evidence.contact import distance, overlaps
 from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.objectives.motion import downhill
 from wsim.judge.objectives.objective import support_of
+from wsim.judge.repair.language import decider
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -134,8 +135,6 @@ def _sources(
 
 def _of_formula(evidence: Evidence, finding: Finding) -> Iterator[Signal]:
     """The measure that decides a formula."""
-    from wsim.judge.repair.language import decider
-
     found = decider(finding, evidence)
     if found is not None:
         measure = found[1]

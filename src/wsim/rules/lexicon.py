@@ -8,6 +8,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Literal
 
+from wsim.assets import load_catalogue
 from wsim.plan.schema import Material
 
 Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw"]
@@ -209,8 +210,6 @@ def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
 
 def _catalogue(made: Lexicon) -> None:
     """The catalogue's other names for what is known, and its other things, as solid stand-ins of their boxes."""
-    from wsim.assets import load_catalogue
-
     by_asset = {noun.asset: noun.key for noun in made.nouns.values() if noun.asset is not None}
     for asset in load_catalogue().values():
         key = by_asset.get(asset.id)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from wsim.errors import UserError
+from wsim.rules.actions import MOVES, act, meet
 from wsim.rules.cast import Cast, Pour, Thing
 from wsim.rules.grammar import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Clause, Phrase
+from wsim.rules.places import stand
 
 MOST_OF_A_KIND = 24
 UNCOUNTED = 3  # how many "some" are: a plural without a number
@@ -40,9 +42,6 @@ class Reader:
     # ---- clauses
     def clause(self, clause: Clause) -> None:
         """Take in one clause."""
-        from wsim.rules.actions import act, meet
-        from wsim.rules.places import stand
-
         subjects: list[Thing] = []
         scenery = []
         pending: list[Phrase] = []
@@ -192,8 +191,6 @@ class Reader:
     # ---- the end
     def settle(self) -> None:
         """Give each thing whose place is open the one that the rest of the scene leaves for it."""
-        from wsim.rules.actions import MOVES
-
         for thing in self.cast.things:
             _check_used(thing)
             if thing.place is not None:

@@ -16,6 +16,7 @@ from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.runs.pipeline import Settings, run_program
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder, write_json, write_whole
+from wsim import recording, sim
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -39,11 +40,9 @@ class Trajectory:
     particles: dict[str, np.ndarray]
 
     @classmethod
-    def of(cls, recording: Path) -> Trajectory:
+    def of(cls, path: Path) -> Trajectory:
         """A recording's."""
-        from wsim.recording import read
-
-        found = read(recording)
+        found = recording.read(path)
         ends = {prim: np.asarray(track.position[-1]) for prim, track in found.fluids.items() if len(track.time)}
         return cls(np.asarray(found.time), np.asarray(found.body_q), ends)
 
@@ -181,9 +180,7 @@ def _reproduced(apart: float, exact: bool) -> Finding:
 
 
 def _on_cpu(settings: Settings) -> bool:
-    from wsim.sim.devices import pick_device
-
-    return pick_device(settings.device) == "cpu"
+    return sim.pick_device(settings.device) == "cpu"
 
 
 def _stamp(run: RunFolder, partial: Path, apart: float, stripped: bool) -> None:

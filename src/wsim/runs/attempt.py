@@ -12,6 +12,8 @@ from wsim.runs.accept import Trajectory
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.runs.pipeline import Settings, build_in, conclude, no_world, reject, simulate_and_judge
 from wsim.progress import Progress, silent
+from wsim.program.validator import validate
+from wsim import sim
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -124,8 +126,6 @@ def _broken(error: Exception) -> Verdict:
 
 
 def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
-    from wsim.program.validator import validate
-
     made.reached = Reached.VALIDATION
     problems = validate(made.program, plan)
     if not problems:
@@ -151,12 +151,10 @@ def _built(made: Attempt, plan: Plan | None, settings: Settings, progress: Progr
 
 def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
     """One frame a camera: a view in which nothing of the plan is to be seen fails before anything is simulated."""
-    from wsim.sim.stills import Stills
-
     made.reached = Reached.FRAMES
     named = {f"/World/{item.name}" for item in plan.objects if item.primitive != "ground"} if plan else set()
     findings = []
-    for still in Stills(made.folder / "stage.usda", settings.device, progress=progress).draw_start():
+    for still in sim.Stills(made.folder / "stage.usda", settings.device, progress=progress).draw_start():
         pixels = {prim: count for prim, count in still.pixels.items() if prim in named and count}
         if named & set(still.pixels) and not pixels:
             findings.append(

@@ -16,13 +16,23 @@ from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder, write_json, write_whole
+from wsim.program.control import ControlError
+from wsim.assets import assets_folder
+from wsim.program.sandbox import build
+from wsim import importers, recording, sim
+from wsim.program.control import has_control
+from wsim.runs.verify import Verification
+from wsim.program.control import ControlLayout, ControlProcess, has_control
+from wsim.scene.describe import describe
+from wsim.sim.control import ArrayController, driven_joints
+from wsim.judge import judge
+from wsim.program.sandbox import Limits
+from wsim.program.sandbox.isolation import choose
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
-    from wsim.program.sandbox import BuildResult, Limits
-    from wsim.sim.control import ArrayController
+    from wsim.program.sandbox import BuildResult
     from wsim.sim.simulation import Simulation, SimulationResult
-    from wsim.runs.verify import Verification
 
 
 RERUN_FACTS = ("variant", "seed", "time_step", "spacing_ratio", "status", "summary", "seconds")  # for run.json
@@ -43,8 +53,6 @@ class Settings:
 
     def limits(self) -> Limits:
         """The sandbox's limits."""
-        from wsim.program.sandbox import Limits
-
         return Limits(wall_seconds=self.build_timeout, memory_bytes=self.build_memory)
 
     def check(self) -> None:
@@ -53,13 +61,9 @@ class Settings:
         Raises:
             UserError: If one is not.
         """
-        from wsim.program.sandbox.isolation import choose
-
         choose(self.isolation)
         if self.device not in ("auto", "cpu"):
-            from wsim.sim.devices import pick_device
-
-            pick_device(self.device)
+            sim.pick_device(self.device)
 
 
 def run_in_folder(
@@ -142,8 +146,6 @@ def simulate_and_judge(
         settings: Device, parameters, limits.
         progress: Told how far it is.
     """
-    from wsim.program.control import ControlError
-
     before = checks_of(folder)
     build, seconds = before.get("build"), dict(before.get("seconds", {}))
     try:
@@ -164,9 +166,6 @@ def simulate_and_judge(
 
 def build_stage(program: Path, stage: Path, settings: Settings, progress: Progress = silent) -> BuildResult:
     """Run the program's `build` in the sandbox."""
-    from wsim.assets import assets_folder
-    from wsim.program.sandbox import build
-
     progress("building the stage", 0, 1)
     built = build(
         program,
@@ -203,10 +202,8 @@ def open_simulation(
     stage: Path, program: Path, settings: Settings, progress: Progress = silent, seeds: Sequence[int] = (0,)
 ) -> Iterator[Simulation]:
     """A simulation of a stage, a copy of the world for each seed, with the program's own `control` if it has one."""
-    from wsim.sim import Simulation
-
     with _controller(program, stage, settings) as controller:
-        yield Simulation(
+        yield sim.Simulation(
             stage,
             device=settings.device,
             world_count=len(seeds),
@@ -221,29 +218,20 @@ def verification(
     folder: Path, program: Path, plan: Plan | None, settings: Settings, progress: Progress = silent
 ) -> Verification:
     """What runs an accepted world again. Copies go side by side on CUDA, where no `control` steps them one by one."""
-    from wsim.program.control import has_control
-    from wsim.sim.devices import pick_device
-    from wsim.runs.verify import Verification
-
     def open_(stage: Path, time_step: float | None, seeds: Sequence[int]) -> AbstractContextManager[Simulation]:
         return open_simulation(stage, program, replace(settings, time_step=time_step), progress, seeds)
 
     controlled = has_control(program.read_text(encoding="utf-8", errors="replace"))
-    side_by_side = pick_device(settings.device).startswith("cuda") and not controlled
+    side_by_side = sim.pick_device(settings.device).startswith("cuda") and not controlled
     return Verification(folder, plan, open_, side_by_side, settings.time_step, progress)
 
 
 @contextlib.contextmanager
 def _controller(program: Path, stage: Path, settings: Settings) -> Iterator[ArrayController | None]:
     """The program's `control`, if it has one, running in the sandbox."""
-    from wsim.program.control import ControlLayout, ControlProcess, has_control
-
     if not has_control(program.read_text(encoding="utf-8", errors="replace")):
         yield None
         return
-    from wsim.scene.describe import describe
-    from wsim.sim.control import ArrayController, driven_joints
-
     world = describe(stage)
     layout = ControlLayout([body.prim for body in world.bodies], driven_joints(world))
     with ControlProcess(program, layout, settings.limits(), settings.isolation) as process:
@@ -251,15 +239,11 @@ def _controller(program: Path, stage: Path, settings: Settings) -> Iterator[Arra
 
 
 def judge_recording(
-    recording: Path, plan: Plan | None, progress: Progress = silent, model: Path | None = None
+    path: Path, plan: Plan | None, progress: Progress = silent, model: Path | None = None
 ) -> Verdict:
     """Read a recording back and judge it; a trajectory.npz is one of someone else's, of what `model` describes."""
-    from wsim.importers import read_npz
-    from wsim.judge import judge
-    from wsim.recording import read
-
     progress("judging", 0, 2)
-    evidence = read_npz(recording, model) if recording.suffix == ".npz" else read(recording)
+    evidence = importers.read_npz(path, model) if path.suffix == ".npz" else recording.read(path)
     progress("judging", 1, 2)
     verdict = judge(evidence, plan)
     progress("judging", 2, 2)

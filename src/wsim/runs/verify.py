@@ -15,6 +15,14 @@ from wsim.judge.convergence import CheckConverged, Rerun
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.progress import Progress
 from wsim.runs.folder import write_whole
+from pxr import Sdf, Usd
+from wsim.scene import schema
+from wsim.judge.decide import conclude
+from wsim.scene.describe import describe
+from wsim import recording
+from wsim.program.control import ControlError
+from wsim.judge import judge
+from wsim.sim.collect import collect
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -140,9 +148,6 @@ class Verification:
 
     def check(self, first: Verdict) -> Verdict:
         """The verdict with what the reruns add to it: a `CheckConverged` finding or more for each variant."""
-        from wsim.judge.decide import conclude
-        from wsim.scene.describe import describe
-
         world = describe(self.folder / "stage.usda")
         found: list[Finding] = []
         chosen = variants(world, self._time_step(), self._given or world.time_step or None, self._batches(world))
@@ -153,9 +158,7 @@ class Verification:
         return conclude([*first.findings, *found])
 
     def _time_step(self) -> float:
-        from wsim.recording import read
-
-        return float(read(self.folder / "recording.rrd").metadata["time_step"])
+        return float(recording.read(self.folder / "recording.rrd").metadata["time_step"])
 
     def _batches(self, world: World) -> bool:
         return self._side_by_side and not world.fluids
@@ -166,8 +169,6 @@ class Verification:
 
     def _run(self, variant: Variant, progress: Progress) -> list[Rerun]:
         """Simulate and judge a variant; its recording and verdict stay in its folder."""
-        from wsim.program.control import ControlError
-
         began, folder = time.perf_counter(), self.folder / "verify" / variant.slug
         folder.mkdir(parents=True, exist_ok=True)
         stage, facts = self._stage(variant, folder), {}
@@ -187,15 +188,11 @@ class Verification:
         ]
 
     def _judge(self, simulation: Simulation, variant: Variant, folder: Path, progress: Progress) -> list[Verdict]:
-        from wsim.judge import judge
-        from wsim.recording import read
-        from wsim.sim.collect import collect
-
         if len(variant.seeds) > 1:
             worlds = collect(simulation, progress)
             return [judge(worlds.recording(k), self.plan) for k in range(worlds.world_count)]
         simulation.run(folder / "recording.rrd", metadata={"variant": variant.name}, progress=progress)
-        verdict = judge(read(folder / "recording.rrd"), self.plan)
+        verdict = judge(recording.read(folder / "recording.rrd"), self.plan)
         write_whole(folder / "verdict.json", verdict.model_dump_json(indent=2) + "\n")
         return [verdict]
 
@@ -217,10 +214,6 @@ def with_spacing(stage: Path, target: Path, ratio: float) -> Path:
         target: The file to write.
         ratio: Of the new spacing to the old.
     """
-    from pxr import Sdf, Usd
-
-    from wsim.scene import schema
-
     target.unlink(missing_ok=True)
     below = Sdf.Layer.FindOrOpen(str(stage))
     layer = Sdf.Layer.CreateNew(str(target))

@@ -36,7 +36,7 @@ class Catalogued(Author):
         Raises:
             SceneError: If the catalogue has no such asset, or it has joints and is to be static.
         """
-        from wsim.assets import AssetError, get
+        from wsim.assets import AssetError, get  # with pydantic, and few programs name an asset
 
         call = Call("asset", name)
         path = self._path(call)

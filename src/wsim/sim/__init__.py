@@ -1,19 +1,26 @@
-"""Stage → Newton model of one or many worlds → stepped → recorded."""
+"""Stage → Newton model of one or many worlds → stepped → recorded. Newton takes seconds to load: see `wsim.door`."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wsim.door import door
+
 if TYPE_CHECKING:
+    from wsim.sim.devices import pick_device, start_warp
     from wsim.sim.simulation import Simulation, SimulationResult
+    from wsim.sim.stills import Stills, cameras_of
 
-__all__ = ["Simulation", "SimulationResult"]
+__all__ = ["Simulation", "SimulationResult", "Stills", "cameras_of", "pick_device", "start_warp"]
 
-
-def __getattr__(name: str) -> object:
-    """Load the simulation when it is first used: it brings Newton and Warp."""
-    if name in __all__:
-        from wsim.sim import simulation
-
-        return getattr(simulation, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = door(
+    __name__,
+    {
+        "Simulation": "simulation",
+        "SimulationResult": "simulation",
+        "Stills": "stills",
+        "cameras_of": "stills",
+        "pick_device": "devices",
+        "start_warp": "devices",
+    },
+)

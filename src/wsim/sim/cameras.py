@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import warp as wp
+from newton.sensors import SensorCamera
 
 from wsim.kernels.render import composite, display
 from wsim.progress import silent
@@ -147,8 +148,6 @@ class CameraRenderer:
         self._fluid_gap = wp.array(gaps, dtype=wp.float32, device=self._device)
 
     def _init_sensor(self) -> None:
-        from newton.sensors import SensorCamera
-
         style = self.style
         self._sun = _unit(_sun_direction(self.world, style))
         self._sensor = SensorCamera(self.model, load_textures=False)
@@ -161,8 +160,6 @@ class CameraRenderer:
         )
 
     def _view(self, camera: Camera) -> _View:
-        from newton.sensors import SensorCamera
-
         w, h, device = camera.width, camera.height, self._device
         fov = render_views.vertical_fov(camera)
         return _View(

@@ -6,6 +6,8 @@ import os
 import sys
 from pathlib import Path
 
+import warp as wp
+
 from wsim.errors import UserError
 
 
@@ -15,8 +17,6 @@ def start_warp() -> None:
     On a machine without a CUDA driver its C code writes a warning straight to standard error, which no setting of
     Warp's stops, so the descriptor points elsewhere for that moment.
     """
-    import warp as wp
-
     wp.config.log_level = wp.LOG_WARNING
     sys.stderr.flush()
     kept = os.dup(2)
@@ -35,8 +35,6 @@ def pick_device(name: str) -> str:
     Raises:
         UserError: If there is no such device.
     """
-    import warp as wp
-
     start_warp()
     known = [str(device) for device in wp.get_devices()]
     if name == "auto":

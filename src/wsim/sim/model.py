@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import newton
 import numpy as np
 
 from wsim.errors import UserError
@@ -15,6 +16,7 @@ from wsim.sim.contacts import harden_contacts
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.shapes import OpenBox
+from wsim.solvers.solver_sph import SolverSPH
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -49,10 +51,6 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     Raises:
         UserError: If the stage holds what the solvers cannot simulate.
     """
-    import newton
-
-    from wsim.solvers.solver_sph import SolverSPH
-
     single = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
     SolverSPH.register_custom_attributes(single)
@@ -72,8 +70,6 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
 
 
 def _sph_config(world: World) -> Any | None:
-    from wsim.solvers.solver_sph import SolverSPH
-
     if not world.fluids:
         return None
     fluid = common_fluid(world)

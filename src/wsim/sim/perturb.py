@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import newton
 import numpy as np
 
 from wsim.sim.model import Built
@@ -40,8 +41,6 @@ def perturb(built: Built, state: Any, seeds: Sequence[int]) -> None:
 
 
 def _perturb_joints(built: Built, state: Any, seeds: Sequence[int]) -> None:
-    import newton
-
     model = built.model
     if model.joint_count == 0:
         return

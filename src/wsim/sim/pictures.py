@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.progress import Progress
+from wsim.recording.video import VideoWriter
+from wsim.sim.cameras import CameraRenderer
 from wsim.sim.seen import ObjectPixels, still_name, write_png
 
 if TYPE_CHECKING:
@@ -43,9 +45,6 @@ class Pictures:
         frames: int,
         progress: Progress,
     ) -> None:
-        from wsim.recording.video import VideoWriter
-        from wsim.sim.cameras import CameraRenderer
-
         self.simulation, self.writer = simulation, writer
         self.frames_dir = Path(frames_dir) if frames_dir else None
         self.review = Path(review) if review else None

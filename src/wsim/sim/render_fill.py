@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import newton
 import numpy as np
 import warp as wp
 
@@ -68,8 +69,6 @@ class SolidFill:
 
 def _points_inside(model: Any, index: int, spacing: float) -> np.ndarray:
     """A lattice in the shape's frame, between INSET and SHELL spacings under its skin, (N, 3) [m]."""
-    import newton
-
     kind = int(model.shape_type.numpy()[index])
     size = np.asarray(model.shape_scale.numpy()[index], dtype=np.float64)
     deep, shell = INSET * spacing, SHELL * spacing

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import newton
 import numpy as np
 import warp as wp
 
@@ -52,8 +53,6 @@ class Pane:
     @classmethod
     def of(cls, model: Any, index: int, shape: Shape) -> Pane:
         """The pane of the model's shape `index`, which the world describes as `shape`."""
-        import newton
-
         is_box = int(model.shape_type.numpy()[index]) == int(newton.GeoType.BOX)
         mesh = None if is_box else mesh_of(model, index)
         half = model.shape_scale.numpy()[index] if mesh is None else 0.5 * np.ptp(mesh.points.numpy(), axis=0)
@@ -124,8 +123,6 @@ def shapes_by_label(model: Any, world: World) -> Iterator[tuple[int, Shape, bool
 
 def hide(model: Any, state: Any, hidden: list[int]) -> None:
     """Leave shapes out of what rays of the model's camera meet; the model's flags stay as they were."""
-    import newton
-
     if not hidden:
         return
     flags = model.shape_flags.numpy().copy()
@@ -138,8 +135,6 @@ def hide(model: Any, state: Any, hidden: list[int]) -> None:
 
 def mesh_of(model: Any, index: int) -> wp.Mesh:
     """A closed mesh of any shape that is not a box, in the shape's frame."""
-    import newton
-
     kind = newton.GeoType(int(model.shape_type.numpy()[index]))
     size = [float(s) for s in model.shape_scale.numpy()[index]]
     if kind == newton.GeoType.SPHERE:

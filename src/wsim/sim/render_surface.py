@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import warp as wp
+from newton.geometry import ParticleSurface
 
 from wsim.kernels.render import surface as kernels
 from wsim.sim.render_fill import SolidFill
@@ -33,8 +34,6 @@ class FluidSurface:
     """
 
     def __init__(self, fluid: Fluid, container: Container | None, fill: SolidFill, device: wp.Device) -> None:
-        from newton.geometry import ParticleSurface
-
         self.fluid = fluid
         self._container = container
         self._fill = fill

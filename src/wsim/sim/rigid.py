@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import newton
 import numpy as np
 import warp as wp
+from newton import JointType, ShapeFlags
 
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.sim.ledger import Ledger
@@ -21,8 +23,6 @@ def contact_capacity(model: Any) -> int:
     Every moving shape may touch its neighbours; counting all pairs is safe and small for few shapes, and beyond that a
     body has no room for more than about a dozen neighbours (the kissing number of equal spheres).
     """
-    from newton import ShapeFlags
-
     collides = (model.shape_flags.numpy() & int(ShapeFlags.COLLIDE_SHAPES)) != 0
     worlds = max(1, model.world_count)
     moving = int((collides & (model.shape_body.numpy() >= 0)).sum()) // worlds
@@ -33,8 +33,6 @@ def contact_capacity(model: Any) -> int:
 
 def _is_mechanism(model: Any) -> bool:
     """Whether any joint is more than the free joint of a loose body."""
-    from newton import JointType
-
     return model.joint_count > 0 and bool((model.joint_type.numpy() != int(JointType.FREE)).any())
 
 
@@ -56,8 +54,6 @@ class RigidBodies:
     """
 
     def __init__(self, model: Any, controlled: bool = False) -> None:
-        import newton
-
         self.model = model
         self.on_c = not model.device.is_cuda and model.world_count <= 1
         capacity = contact_capacity(model)

@@ -6,13 +6,25 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Protocol
 
+import newton
 import numpy as np
+import warp as wp
 
 from wsim.progress import Progress, silent
+from wsim.recording import RecordingWriter
+from wsim.scene.describe import describe
 from wsim.scene.world import World
+from wsim.sim.devices import pick_device
+from wsim.sim.measure import measure
+from wsim.sim.model import build_model
+from wsim.sim.perturb import perturb
+from wsim.sim.pictures import Pictures
+from wsim.sim.rigid import RigidBodies
+from wsim.solvers.solver_sph import SolverSPH
 
 
 class Controller(Protocol):
@@ -70,15 +82,6 @@ class Simulation:
         progress: Progress = silent,
         seeds: Sequence[int] = (),
     ) -> None:
-        import warp as wp
-
-        from wsim.scene.describe import describe
-        from wsim.sim.devices import pick_device
-        from wsim.sim.model import build_model
-        from wsim.sim.perturb import perturb
-        from wsim.sim.rigid import RigidBodies
-        from wsim.solvers.solver_sph import SolverSPH
-
         if seeds and len(seeds) != world_count:
             raise ValueError(f"seeds: {len(seeds)} were given for {world_count} worlds; give one for each")
         progress("compiling kernels", 0, 3)
@@ -94,8 +97,6 @@ class Simulation:
         self.rigid = RigidBodies(self.model, controller is not None) if self.model.body_count else None
         self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
         self.state, self.control = self.model.state(), self.model.control()
-        import newton
-
         perturb(self.built, self.state, seeds)
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
         self._give_jointed_bodies_their_velocity()
@@ -108,8 +109,6 @@ class Simulation:
 
     def _give_jointed_bodies_their_velocity(self) -> None:
         """Newton's importer keeps the initial velocity of loose bodies only; joints get theirs from the bodies."""
-        import newton
-
         if not self.world.joints:
             return
         twist = self.state.body_qd.numpy()
@@ -125,8 +124,6 @@ class Simulation:
 
     def _warm_up(self) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""
-        import warp as wp
-
         kept, self.state = self.state, self.model.state()
         controller, self._controller = self._controller, None  # it may count its calls
         self.state.assign(kept)
@@ -141,8 +138,6 @@ class Simulation:
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
-        import warp as wp
-
         self.state.clear_forces()
         if self._controller is not None:
             if self.step_count % self._control_every == 0:
@@ -158,8 +153,6 @@ class Simulation:
 
     def advance_frame(self) -> None:
         """Advance by one recorded frame; on CUDA its steps are captured in a graph once and replayed."""
-        import warp as wp
-
         if not self.device.is_cuda or self._controller is not None:
             for _ in range(self.substeps):
                 self.step()
@@ -209,10 +202,6 @@ class Simulation:
             metadata: Kept in the recording beside the simulator's own.
             progress: Told after each frame.
         """
-        from wsim.recording import RecordingWriter
-        from wsim.sim.measure import measure
-        from wsim.sim.pictures import Pictures
-
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
         problems: list[str] = []
@@ -263,8 +252,6 @@ class Simulation:
 
     def facts(self) -> dict[str, Any]:
         """Numbers of the run that the recording keeps."""
-        from importlib.metadata import version
-
         return {
             "device": str(self.device),
             "world_count": max(1, self.model.world_count),

@@ -6,9 +6,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import newton
 import numpy as np
 
 from wsim.progress import Progress, silent
+from wsim.scene.describe import describe
+from wsim.sim import render_views
+from wsim.sim.cameras import CameraRenderer
+from wsim.sim.devices import pick_device
+from wsim.sim.model import build_model
+from wsim.sim.seen import ObjectPixels
 
 if TYPE_CHECKING:
     from wsim.recording import Recording
@@ -47,14 +54,6 @@ class Stills:
     def __init__(
         self, stage: str | Path, device: str = "auto", camera: Camera | None = None, progress: Progress = silent
     ) -> None:
-        import newton
-
-        from wsim.scene.describe import describe
-        from wsim.sim.cameras import CameraRenderer
-        from wsim.sim.devices import pick_device
-        from wsim.sim.model import build_model
-        from wsim.sim.seen import ObjectPixels
-
         world = describe(Path(stage))
         self.world = world if camera is None else world.model_copy(update={"cameras": [camera]})
         self._built = build_model(Path(stage), self.world, pick_device(device))
@@ -112,6 +111,4 @@ def frame_to_draw(recording: Recording, time: float) -> int:
 
 def cameras_of(world: World) -> list[Camera]:
     """The cameras that a world is drawn with: its own, or the default view."""
-    from wsim.sim import render_views
-
     return world.cameras or [render_views.default_camera(world)]

@@ -11,7 +11,11 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
+import trimesh
+import warp as wp
+from scipy.spatial import cKDTree
 
+from wsim.kernels.inside import depth_inside
 from wsim.solvers.sampling import Samples, box_lattice, lattice_axis
 
 Array = np.ndarray
@@ -93,8 +97,6 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
         spacing: Between particles [m].
         convex: Fill the convex hull.
     """
-    import trimesh
-
     mesh = trimesh.Trimesh(vertices, triangles, process=False)
     solid = mesh.convex_hull if convex or not mesh.is_watertight else mesh
     low, high = solid.bounds
@@ -122,8 +124,6 @@ def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: C
         spacing: Thickness of a layer [m].
         depth_of: Depth of any points below the surface [m].
     """
-    from scipy.spatial import cKDTree
-
     ticks = [((np.arange(PIECES) + 0.5) / PIECES - 0.5) * length for length in edge]
     corners = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
     pieces = (cells[:, None, :] + corners).reshape(-1, 3)
@@ -147,8 +147,6 @@ def _spread(cells: Array, depth: Array, edge: Array, spacing: float, depth_of: C
 
 def _cover(seeds: Array, pieces: Array, spacing: float) -> Array:
     """More seeds where a thin part of the solid has none within a spacing, no two in one cell."""
-    from scipy.spatial import cKDTree
-
     away = cKDTree(seeds).query(pieces, workers=-1)[0] if len(seeds) else np.full(len(pieces), np.inf)
     bare = pieces[away > spacing]
     _, first = np.unique(np.floor(bare / spacing), axis=0, return_index=True)
@@ -171,10 +169,6 @@ def _to_mid_depth(points: Array, spacing: float, depth_of: Callable[[Array], Arr
 
 def _depth_of(vertices: Array, triangles: Array) -> Callable[[Array], Array]:
     """How deep points are inside a closed mesh [m]; negative outside."""
-    import warp as wp
-
-    from wsim.kernels.inside import depth_inside
-
     mesh = wp.Mesh(
         wp.array(vertices, dtype=wp.vec3, device="cpu"),
         wp.array(triangles.reshape(-1), dtype=wp.int32, device="cpu"),

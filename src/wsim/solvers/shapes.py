@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from newton import GeoType, ShapeFlags
 
 from wsim.solvers.layers import capsule_layers, cylinder_layers, mesh_layers, sphere_layers
 from wsim.solvers.sampling import (
@@ -77,8 +78,6 @@ def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bo
     Raises:
         ValueError: If a shape other than a box is met in a plane.
     """
-    from newton import GeoType
-
     if kind == GeoType.BOX:
         return box_lattice(2.0 * scale, spacing, plane)
     if plane:
@@ -120,8 +119,6 @@ def sample_boundary(
     Raises:
         ValueError: If a container is too narrow for the spacing.
     """
-    from newton import GeoType, ShapeFlags
-
     walls = frozenset().union(*(c.shapes for c in containers)) if containers else frozenset()
     bodies, poses, kinds = model.shape_body.numpy(), model.shape_transform.numpy(), model.shape_type.numpy()
     scales, flags, worlds = model.shape_scale.numpy(), model.shape_flags.numpy(), model.shape_world.numpy()

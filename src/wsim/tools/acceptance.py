@@ -6,6 +6,8 @@ import json
 
 from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
+from wsim.report import write as write_report
+from wsim.runs.accept import accept as stamp
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.text import number
@@ -17,9 +19,6 @@ class Accept(OfIteration):
 
 def accept(workspace: Workspace, asked: Accept) -> Result:
     """Accept an iteration whose verdict is accepted."""
-    from wsim.report import write as write_report
-    from wsim.runs.accept import accept as stamp
-
     path = file_of(workspace, asked.iteration, "verdict.json", "run_program with the pass physics or full judges it")
     verdict = Verdict.model_validate_json(path.read_text(encoding="utf-8"))
     if verdict.status != "accepted":

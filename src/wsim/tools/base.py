@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from wsim.errors import UserError
+from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.pipeline import Settings
 from wsim.tools.text import capped, relative
@@ -48,8 +49,6 @@ class Workspace:
         path = self.run.path / "plan.json"
         if not path.is_file():
             return None
-        from wsim.plan.store import load
-
         return load(path)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import Field
 
 from wsim.errors import UserError
+from wsim.program.patch import diff
 from wsim.runs.folder import RunFolder
 from wsim.tools.base import Arguments, Workspace
 
@@ -59,8 +60,6 @@ def add(run: RunFolder, program: str, before: str | None = None) -> Path:
         program: The text of program.py.
         before: The text that it was patched from; the difference becomes patch.diff.
     """
-    from wsim.program.patch import diff
-
     known = numbered(run)
     number = int(known[-1].name) + 1 if known else 1
     folder = run.path / "iterations" / f"{number:02d}"

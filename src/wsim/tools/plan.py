@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from wsim.errors import UserError
+from wsim.plan.store import load, save
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 from wsim.tools.iterations import numbered
 from wsim.tools.text import number, numbers, table
@@ -47,8 +48,6 @@ def read_plan(workspace: Workspace, asked: ReadPlan) -> Result:
 
 def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
     """Check a plan, lay it out, and make it the run's."""
-    from wsim.plan.store import load, save
-
     judged = [folder.name for folder in numbered(workspace.run) if (folder / "verdict.json").is_file()]
     if judged:
         raise UserError(

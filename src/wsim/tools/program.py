@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from wsim.errors import UserError
+from wsim.program.patch import Edit, apply, diff
+from wsim.program.validator import validate
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, add, file_of
 from wsim.tools.text import page
@@ -76,8 +78,6 @@ def write_program(workspace: Workspace, asked: WriteProgram) -> Result:
 
 def patch_program(workspace: Workspace, asked: PatchProgram) -> Result:
     """Apply edits to the newest program, check what comes out, and make it a new iteration."""
-    from wsim.program.patch import Edit, apply, diff
-
     before = file_of(workspace, None, "program.py", "write one with write_program").read_text(encoding="utf-8")
     after = apply(before, [Edit(search=edit.search, replace=edit.replace) for edit in asked.edits])
     if after == before:
@@ -101,8 +101,6 @@ def validate_program(workspace: Workspace, asked: ValidateProgram) -> Result:
 
 
 def _problems(workspace: Workspace, text: str) -> list[Problem]:
-    from wsim.program.validator import validate
-
     return validate(text, workspace.plan)
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from pydantic import Field
 
+from wsim import recording
 from wsim.errors import UserError
+from wsim.judge.evidence.evidence import Evidence
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.text import number, table
@@ -40,12 +43,10 @@ class Query(OfIteration):
 
 def query_recording(workspace: Workspace, asked: Query) -> Result:
     """A few numbers of a recording."""
-    from wsim.judge.evidence.evidence import Evidence
-    from wsim.recording import read
     from wsim.tools.signals import find, known
 
     path = file_of(workspace, asked.iteration, "recording.rrd", "run_program with the pass physics or full makes one")
-    evidence = Evidence(read(path), workspace.plan)
+    evidence = Evidence(recording.read(path), workspace.plan)
     if not len(evidence.time):
         raise UserError("the recording has no frames; read_verdict says why")
     if not asked.signal:
@@ -56,8 +57,6 @@ def query_recording(workspace: Workspace, asked: Query) -> Result:
 
 def _window(signal: Signal, asked: Query) -> Signal:
     """What lies in the window asked for."""
-    from dataclasses import replace
-
     low = -np.inf if asked.start is None else asked.start - 1e-9
     high = np.inf if asked.end is None else asked.end + 1e-9
     inside = (signal.time >= low) & (signal.time <= high)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from wsim.program.api import index
+from wsim.skills import pick, skills
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 from wsim.tools.text import page, table
 
@@ -50,8 +53,6 @@ class Skill(Arguments):
 
 def search_api(workspace: Workspace, asked: Words) -> Result:
     """Entries of the index that may be meant, the best first."""
-    from wsim.program.api import index
-
     hits = index().search(asked.words, asked.limit)
     if not hits:
         return Result(f"nothing that a program may use matches {asked.words[:60]!r}; try other words")
@@ -65,8 +66,6 @@ def search_api(workspace: Workspace, asked: Words) -> Result:
 
 def show_api(workspace: Workspace, asked: EntryName) -> Result:
     """One entry: its signature and what its documentation says."""
-    from wsim.program.api import index
-
     entry = index().show(asked.name)
     doc = entry.doc or entry.summary
     lines = [_written(entry), *doc.strip().splitlines()]
@@ -77,8 +76,6 @@ def show_api(workspace: Workspace, asked: EntryName) -> Result:
 
 def search_skills(workspace: Workspace, asked: Skills) -> Result:
     """Skills that fit some words, or all of them."""
-    from wsim.skills import pick, skills
-
     if not asked.words:
         rows = [[skill.name, _shortened(skill.description)] for skill in skills()]
         return Result("\n".join(table(("skill", "when"), rows)))
@@ -91,10 +88,6 @@ def search_skills(workspace: Workspace, asked: Skills) -> Result:
 
 def show_skill(workspace: Workspace, asked: Skill) -> Result:
     """A skill's text, a page at a time, or one of its sections."""
-    from difflib import get_close_matches
-
-    from wsim.skills import skills
-
     known = {skill.name: skill for skill in skills()}
     if asked.name not in known:
         near = get_close_matches(asked.name, known, n=3) or list(known)

@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field
 
+from wsim import sim
 from wsim.runs.folder import write_json
-from wsim.runs.pipeline import checks_of
+from wsim.runs.pipeline import build_in, checks_of, no_world, simulate_and_judge
+from wsim.scene.describe import describe
+from wsim.sim.seen import still_name, write_png
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.text import name_of, number, numbers, table
@@ -49,8 +52,6 @@ def run_program(workspace: Workspace, asked: RunProgram) -> Result:
 
 def _build(workspace: Workspace, program: Path) -> Result | None:
     """Make the stage; the answer where there is none to be had."""
-    from wsim.runs.pipeline import build_in, no_world
-
     folder = program.parent
     if (folder / "stage.usda").is_file():
         return None
@@ -64,8 +65,6 @@ def _build(workspace: Workspace, program: Path) -> Result | None:
 
 
 def _built(workspace: Workspace, folder: Path) -> Result:
-    from wsim.scene.describe import describe
-
     world = describe(folder / "stage.usda")
     log = checks_of(folder).get("build", {}).get("log", "")
     head = f"iterations/{folder.name}/stage.usda: {number(world.duration)} s at {number(world.frame_rate)} frames/s"
@@ -74,11 +73,8 @@ def _built(workspace: Workspace, folder: Path) -> Result:
 
 def _frames(workspace: Workspace, folder: Path) -> Result:
     """A still of each camera at the start, as the full pass has them too."""
-    from wsim.sim.seen import still_name, write_png
-    from wsim.sim.stills import Stills
-
     lines, shares, first = [], [], None
-    for still in Stills(folder / "stage.usda", workspace.settings.device, progress=workspace.progress).draw_start():
+    for still in sim.Stills(folder / "stage.usda", workspace.settings.device, progress=workspace.progress).draw_start():
         path = folder / "frames" / still_name(still.camera.prim, still.time)
         if not path.is_file():
             write_png(path, still.rgb)
@@ -118,8 +114,6 @@ def _full(workspace: Workspace, folder: Path) -> Result:
 
 def _simulate(workspace: Workspace, folder: Path, pictures: bool) -> None:
     """Simulate and judge; recording, verdict and the rest replace those of a narrower pass, file by file."""
-    from wsim.runs.pipeline import simulate_and_judge
-
     settings = replace(workspace.settings, pictures=pictures, verify=workspace.settings.verify and pictures)
     with _kept(folder / "recording.rrd"):
         simulate_and_judge(folder, folder / "program.py", workspace.plan, settings, workspace.progress)

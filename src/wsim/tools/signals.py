@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from wsim.errors import UserError
+from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.evidence import Evidence, MissingError
+from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.tools.text import name_of, prim_of
 
 if TYPE_CHECKING:
@@ -126,15 +129,11 @@ def _prims(evidence: Evidence) -> str:
 
 # ---- of bodies
 def _rotation(evidence: Evidence, i: int) -> Values:
-    from scipy.spatial.transform import Rotation
-
     return np.asarray(Rotation.from_quat(evidence.body_q[:, i, 3:]).as_euler("xyz", degrees=True))
 
 
 def _tilt(evidence: Evidence, i: int) -> Values:
     """The angle between what pointed up at the start and up."""
-    from wsim.judge.evidence.geometry import conjugate, rotate
-
     up = np.array([0.0, 0.0, 1.0])
     q = evidence.body_q[:, i, 3:]
     own = rotate(conjugate(q[0]), up)
@@ -155,8 +154,6 @@ def _draft(evidence: Evidence, i: int) -> Values:
 
 
 def _gap(evidence: Evidence, prim: str, other: str) -> Values:
-    from wsim.judge.evidence.contact import distance
-
     solids = [body.prim for body in evidence.world.bodies] + [static.prim for static in evidence.world.statics]
     if not other or prim_of(other) not in solids or prim_of(other) == prim:
         names = ", ".join(name_of(solid) for solid in solids if solid != prim)

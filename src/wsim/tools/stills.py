@@ -7,14 +7,18 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field, FiniteFloat
 
+from wsim import recording, sim
 from wsim.errors import UserError
+from wsim.scene.describe import describe
+from wsim.scene.world import Camera
+from wsim.sim.seen import still_name, write_png
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.run import picture_lines
 from wsim.tools.text import name_of, number, prim_of
 
 if TYPE_CHECKING:
-    from wsim.scene.world import Camera, World
+    from wsim.scene.world import World
 
 Point = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 OWN = "/World/own_view"
@@ -31,22 +35,17 @@ class StillOf(OfIteration):
 
 def still(workspace: Workspace, asked: StillOf) -> Result:
     """A PNG, and how many pixels of it each object has."""
-    from wsim.recording import read
-    from wsim.scene.describe import describe
-    from wsim.sim.seen import still_name, write_png
-    from wsim.sim.stills import Stills
-
     stage = file_of(workspace, asked.iteration, "stage.usda", "run_program with the pass build makes one")
     path = stage.with_name("recording.rrd")
     if asked.time > 0.0 and not path.is_file():
         file_of(workspace, asked.iteration, path.name, "run_program with the pass physics records; time=0 needs none")
-    recording = read(path) if path.is_file() else None
-    if recording is not None and not len(recording.time):
+    found = recording.read(path) if path.is_file() else None
+    if found is not None and not len(found.time):
         raise UserError(f"iterations/{stage.parent.name}/{path.name} has no frames; see the verdict")
-    if recording is not None and asked.time > recording.time[-1] + 0.5 / recording.world.frame_rate:
-        raise UserError(f"time: {number(asked.time)} s is after the recording's end at {number(recording.time[-1])} s")
-    stills = Stills(stage, workspace.settings.device, _camera(describe(stage), asked), workspace.progress)
-    (drawn,) = stills.draw(recording, asked.time) if recording is not None else stills.draw_start()
+    if found is not None and asked.time > found.time[-1] + 0.5 / found.world.frame_rate:
+        raise UserError(f"time: {number(asked.time)} s is after the recording's end at {number(found.time[-1])} s")
+    stills = sim.Stills(stage, workspace.settings.device, _camera(describe(stage), asked), workspace.progress)
+    (drawn,) = stills.draw(found, asked.time) if found is not None else stills.draw_start()
     name = still_name(_file_stem(asked) or drawn.camera.prim, drawn.time)
     target = stage.parent / "stills" / name
     write_png(target, drawn.rgb)
@@ -61,9 +60,6 @@ def _camera(world: World, asked: StillOf) -> Camera:
     Raises:
         UserError: If there is none of that name, or eye and target are no view.
     """
-    from wsim.scene.world import Camera
-    from wsim.sim.stills import cameras_of
-
     if (asked.eye is None) is not (asked.target is None):
         raise UserError("eye and target go together; give both, or the name of a camera")
     if asked.eye is not None and asked.target is not None:
@@ -72,7 +68,7 @@ def _camera(world: World, asked: StillOf) -> Camera:
         if math.dist(asked.eye, asked.target) < 1e-6:
             raise UserError(f"eye and target are both ({', '.join(map(number, asked.eye))}); move one of them")
         return Camera(prim=OWN, eye=asked.eye, target=asked.target)
-    known = {camera.prim: camera for camera in cameras_of(world)}
+    known = {camera.prim: camera for camera in sim.cameras_of(world)}
     if not asked.camera:
         return next(iter(known.values()))
     if prim_of(asked.camera) not in known:

@@ -6,6 +6,9 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import wsim
+from wsim.assets import assets_folder
+
 LIMIT = 2000  # characters of an answer: about 600 tokens
 DIGITS = 4  # significant, of a number
 ROOT = "/World/"
@@ -87,9 +90,6 @@ def capped(text: str, narrow: str) -> str:
 
 def relative(text: str, run: Path) -> str:
     """Text that is the same on any machine: paths begin at the run's folder, or at a package's; no addresses."""
-    import wsim
-    from wsim.assets import assets_folder
-
     packages = Path(wsim.__file__).parents[1]
     for folder, instead in ((run.resolve(), ""), (run, ""), (assets_folder().resolve(), "assets/"), (packages, "")):
         if "/" in str(folder).strip("/"):  # a single word may be anything's name

@@ -24,7 +24,7 @@ from wsim.judge.checks.camera import CheckInFrame, CheckSeen
 from wsim.judge.checks.mass import CheckMass
 from wsim.judge.checks.plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.plan.schema import Actuation, Plan
-from wsim.recording.reader import SeenTrack
+from wsim.recording.recording import SeenTrack
 from wsim.scene.world import Motor, Parameter
 
 SIZE = (0.4, 0.2, 0.1)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from wsim.judge import judge
-from wsim.recording.reader import FluidTrack, Recording
+from wsim.recording.recording import FluidTrack, Recording
 from wsim.rules.planner import plan as make_plan
 from wsim.scene.world import Body, Container, Fluid, Shape, Static, World
 

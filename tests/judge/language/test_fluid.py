@@ -7,7 +7,7 @@ import pytest
 
 from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.language import Signals, evaluate, parse
-from wsim.recording.reader import FluidTrack
+from wsim.recording.recording import FluidTrack
 
 BLOCK, BALL, WATER = "wooden_block", "steel_ball", "/World/water"
 LEVEL = 0.3 + (0.6 * 0.0056 + 4 / 3 * np.pi * 0.06**3) / (0.66 * 0.51)  # over the floor, with what both displace

@@ -13,7 +13,7 @@ from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import Signals, evaluate, from_json, parse, python
 from wsim.plan.schema import Objective
 from wsim.plan.schema.formula import VOCABULARY
-from wsim.recording.reader import FluidTrack, Recording
+from wsim.recording.recording import FluidTrack, Recording
 from wsim.scene.world import Container, Fluid, Shape, World
 
 ROOT = Path(__file__).parents[3]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.contact import placed_shapes
 from wsim.judge.evidence.geometry import Solid, conjugate, mean_rotation, rotate
 from wsim.judge.evidence.joints import JointTrack, track_of
 from wsim.judge.evidence.motion import Motion
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.contact import Placed
     from wsim.plan.schema import Plan
-    from wsim.recording.reader import FluidTrack, Recording
+    from wsim.recording.recording import FluidTrack, Recording
     from wsim.scene.world import Body, Container, Fluid, Joint, Static
 
     Floats = NDArray[np.float64]
@@ -151,8 +152,6 @@ class Evidence:
     @cached_property
     def placed(self) -> list[Placed]:
         """All colliding shapes through time, those of bodies first."""
-        from wsim.judge.evidence.contact import placed_shapes
-
         return placed_shapes(self)
 
     def joint(self, joint: Joint) -> JointTrack | None:

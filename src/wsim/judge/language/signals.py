@@ -12,7 +12,7 @@ import numpy as np
 
 from wsim.judge.evidence.evidence import Evidence, MissingError
 from wsim.judge.evidence.geometry import conjugate, rotate
-from wsim.recording.reader import Recording
+from wsim.recording.recording import Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

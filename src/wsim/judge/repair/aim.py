@@ -10,6 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+from wsim.judge.repair.language import formula
+from wsim.judge.repair.objectives import OBJECTIVES
+from wsim.judge.repair.run import CHECKS
 from wsim.judge.verdict import Finding, RepairTarget
 
 if TYPE_CHECKING:
@@ -65,8 +68,4 @@ def unknown(finding: Finding) -> RepairTarget:
 
 def rules() -> dict[str, Rule]:
     """The rule of each check and objective class, by its name."""
-    from wsim.judge.repair.language import formula
-    from wsim.judge.repair.objectives import OBJECTIVES
-    from wsim.judge.repair.run import CHECKS
-
     return {**CHECKS, **OBJECTIVES, "ObjectiveFormula": formula}

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.language.measure import MEASURERS
+from wsim.judge.language.signals import Signals
 from wsim.judge.repair.objectives import (
     collides_with,
     fallen_through,
@@ -18,22 +20,18 @@ from wsim.judge.repair.objectives import (
 )
 from wsim.judge.repair.run import leak, longer_run, settled, shorter_step
 from wsim.judge.verdict import Finding, RepairTarget
+from wsim.plan.schema.formula import Ordered, Predicate
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.measure import Measure
     from wsim.judge.repair.aim import Rule
-    from wsim.plan.schema.formula import Predicate
 
 SAME = 1e-6  # share by which a finding's value may differ from its measure's
 
 
 def decider(finding: Finding, evidence: Evidence) -> tuple[Predicate, Measure] | None:
     """The predicate, and its measure, that a finding's number comes from; None where the finding has none."""
-    from wsim.judge.language.measure import MEASURERS
-    from wsim.judge.language.signals import Signals
-    from wsim.plan.schema.formula import Ordered, Predicate
-
     item = objective_of(finding, evidence)
     if item is None or item.formula is None or finding.value is None:
         return None

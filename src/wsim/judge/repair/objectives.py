@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.geometry import rotate, smallest_extent
+from wsim.judge.language.objective import ObjectiveFormula
 from wsim.judge.objectives.objective import ObjectiveCheck
 from wsim.judge.repair.run import (
     add_collision,
@@ -44,8 +45,6 @@ def sentence_of(item: Objective) -> str:
     """An objective in words, as its findings carry it."""
     if item.formula is None:
         return ObjectiveCheck(item).sentence
-    from wsim.judge.language.objective import ObjectiveFormula
-
     return ObjectiveFormula(item).sentence
 
 

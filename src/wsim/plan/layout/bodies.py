@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from wsim.assets import get
 from wsim.plan.layout.boxes import TOUCH, WALL, Box, Matrix, Solid, rotation
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.schema import FromAsset, PlanObject, Vec3
@@ -18,8 +19,6 @@ UPRIGHT: Vec3 = (0.0, 0.0, 0.0)
 
 def entry(item: PlanObject) -> Any:
     """The catalogue's entry of an asset."""
-    from wsim.assets import get
-
     if not isinstance(item.built, FromAsset):
         raise LayoutError(f"{item.name} is no asset of the catalogue")
     return get(item.built.asset)

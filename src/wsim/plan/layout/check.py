@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi
+
 from wsim.plan import templates
 from wsim.plan.layout.bodies import convex, local_size, solids
 from wsim.plan.layout.boxes import TOUCH, depth
@@ -109,8 +111,6 @@ def _density(item: PlanObject) -> float | None:
 
 def volume(item: PlanObject) -> float:
     """Volume of a primitive [m^3]."""
-    from math import pi
-
     x, y, z = local_size(item)
     r = x / 2
     return {

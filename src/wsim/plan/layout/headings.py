@@ -6,6 +6,8 @@ import hashlib
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from wsim.plan.layout.bodies import local_size
 from wsim.plan.layout.boxes import TOUCH, angle_between, turned
 from wsim.plan.layout.errors import LayoutError
@@ -127,8 +129,6 @@ def by_row(world: World, row: Row) -> float | None:
 
 def drawn(seed: int, name: str, within: tuple[float, float] | None) -> float:
     """A yaw that depends on the plan's seed and the object's name alone [deg]."""
-    import numpy as np
-
     digest = hashlib.sha256(name.encode()).digest()
     random = np.random.default_rng([seed, int.from_bytes(digest[:8], "little")])
     low, high = sorted(within or (-180.0, 180.0))

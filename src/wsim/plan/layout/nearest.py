@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from wsim.plan.layout.areas import Area, room_in
 from wsim.plan.layout.boxes import GAP, TOUCH, Box, turned
 
@@ -211,8 +213,6 @@ def _first_free(
     limits: list[tuple[float, float, float, float]],
 ) -> tuple[float, float] | None:
     """The place nearest to the wish that no open rectangle holds and all half planes have."""
-    import numpy as np
-
     rects = np.array(blocked).reshape(-1, 4)
     axes = [_edges(k, wish, here, rects, limits) if moves[k] else np.array([here[k]]) for k in (0, 1)]
     for most in MOST_EDGES:
@@ -240,8 +240,6 @@ def _edges(
     limits: list[tuple[float, float, float, float]],
 ) -> Any:
     """Coordinates along an axis where something ends, and the wish itself, nearest first."""
-    import numpy as np
-
     bounds = [wish[k]]
     for a, b, low, high in limits:
         factor, other = (a, b) if k == 0 else (b, a)
@@ -262,8 +260,6 @@ def _inside(px: Any, py: Any, limits: list[tuple[float, float, float, float]]) -
 
 
 def _clear(px: Any, py: Any, rects: Any) -> Any:
-    import numpy as np
-
     edge = 2e-6  # places are rounded to a micrometre
     hit = np.zeros(len(px), dtype=bool)
     near = rects[

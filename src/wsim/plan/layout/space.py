@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from wsim.plan.layout.areas import Area, areas, check_room_above, rider_of, room_in
 from wsim.plan.layout.bodies import convex, is_hollow
 from wsim.plan.layout.boxes import TOUCH, Box, turned
@@ -98,8 +100,6 @@ class Space:
         return abs(along) <= limit[0] + TOUCH / 2 and abs(across) <= limit[1] + TOUCH / 2
 
     def _overlaps(self, places: Places, among: list[str]) -> Iterator[tuple[str, str]]:
-        import numpy as np
-
         owners = [name for name in among for _ in self.parts.get(name, [])]
         if not owners:
             return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -244,8 +245,6 @@ class Relation(Strict):
     def _arguments(self) -> Relation:
         spec = PREDICATES.get(self.predicate)
         if spec is None:
-            from difflib import get_close_matches
-
             near = get_close_matches(self.predicate, PREDICATES, n=1, cutoff=0.4)
             way = f"did you mean {near[0]}?" if near else f"the predicates are {', '.join(PREDICATES)}"
             raise ValueError(f"there is no predicate {self.predicate!r}; {way}")

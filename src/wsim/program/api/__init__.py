@@ -10,7 +10,9 @@ Built from the packages themselves, once for each installation, and cached.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from wsim.door import door
 
 if TYPE_CHECKING:
     from wsim.program.api.entry import Entry, Parameter
@@ -19,12 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Entry", "Hit", "Index", "Parameter", "index"]
 
-_PLACES = {"Entry": "entry", "Parameter": "entry", "Index": "lookup", "index": "lookup", "Hit": "search"}
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _PLACES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    return getattr(import_module(f"{__name__}.{_PLACES[name]}"), name)
+__getattr__ = door(
+    __name__, {"Entry": "entry", "Parameter": "entry", "Index": "lookup", "index": "lookup", "Hit": "search"}
+)

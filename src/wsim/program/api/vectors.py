@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import svds
 
 from wsim.program.api.entry import Entry
 from wsim.program.api.words import words
@@ -34,9 +36,6 @@ class Term:
 
 def build(entries: Sequence[Entry]) -> tuple[dict[str, Term], Floats]:
     """Terms by word, and the entries' vectors of meaning, (entries, DIMENSIONS), of length 1."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.linalg import svds
-
     counts = [_counts(entry) for entry in entries]
     documents = Counter(word for count in counts for word in count)
     vocabulary = {word: i for i, word in enumerate(sorted(documents))}

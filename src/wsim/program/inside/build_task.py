@@ -8,7 +8,10 @@ import stat
 import traceback
 from typing import Any
 
+from pxr import Work
+
 from wsim.program.inside.load import ProgramError, explain, function, load
+from wsim.scene import Scene
 
 _CHUNK = 1 << 20
 
@@ -26,10 +29,6 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
 
 
 def _author(job: dict[str, Any], program: str) -> None:
-    from pxr import Work
-
-    from wsim.scene import Scene
-
     Work.SetConcurrencyLimit(1)  # one address space is shared by all threads, and a large machine would start many
     module = load(program)
     call = function(module, "build", "scene")

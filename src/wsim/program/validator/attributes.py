@@ -6,6 +6,8 @@ import ast
 import math
 from importlib import import_module
 
+import numpy as np
+
 from wsim.program.api.entry import Entry
 from wsim.program.validator import imports
 from wsim.program.validator.state import State
@@ -151,8 +153,6 @@ def _former(holder: str, name: str) -> str:
     """What NumPy itself says of a name that it no longer has."""
     if holder != "numpy":
         return ""
-    import numpy as np
-
     try:
         expired: dict[str, str] = import_module("numpy._expired_attrs_2_0").__expired_attributes__
     except (ImportError, AttributeError):

@@ -5,12 +5,16 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Any
+
+import numpy as np
 
 from wsim.program.api.entry import Entry
 from wsim.program.validator import constants, imports, units, usd
 from wsim.program.validator.arguments import Arguments, Misfit, misfit
 from wsim.program.validator.attributes import Attributes
+from wsim.program.validator.scratch import BODIES, JOINTS
 from wsim.program.validator.types import fits, type_of
 from wsim.program.validator.values import (
     UNKNOWN,
@@ -27,6 +31,7 @@ from wsim.program.validator.values import (
     elements,
     plain,
 )
+from wsim.scene import Drive
 
 _SCENE = "wsim.scene.Scene."
 _TURNS = {f"{module}.{name}" for module in ("math", "numpy") for name in ("sin", "cos", "tan")}
@@ -240,8 +245,6 @@ class Calls(Attributes):
             return
         if not isinstance(value.value, str) or "asset" in world.names.values():
             return
-        from wsim.program.validator.scratch import BODIES, JOINTS
-
         wanted = JOINTS if entry.short == "joint" else BODIES
         known = {name for name, method in world.names.items() if method in wanted}
         name = value.value.removeprefix("/World/")
@@ -288,8 +291,6 @@ class Calls(Attributes):
 
     def _dtype(self, value: Value, node: ast.AST) -> None:
         """The name of a type of numbers."""
-        import numpy as np
-
         if isinstance(value, Const) and isinstance(value.value, str):
             try:
                 np.dtype(value.value)
@@ -367,8 +368,6 @@ def _callable(value: Value) -> bool:
 
 def _drive(bound: dict[str, Any]) -> Value:
     """A motor of the validator's own, if all is known of it."""
-    from wsim.scene import Drive
-
     try:
         return Const(Drive(**{name: plain(value) for name, (value, _) in bound.items()}))
     except (NotKnownError, TypeError):
@@ -380,7 +379,5 @@ def _are_numbers(items: Items) -> bool:
 
 
 def _spelt(name: str, known: Any) -> str:
-    from difflib import get_close_matches
-
     close = get_close_matches(name, list(known), n=1, cutoff=0.5)
     return f'"{close[0]}"' if close else ""

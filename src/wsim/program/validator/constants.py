@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from pxr import Sdf
 
 from wsim.program.validator.values import UNKNOWN, Const, Dict, Items, NotKnownError, Value, elements, plain, wrapped
 
@@ -149,8 +150,6 @@ def pure(name: str, arguments: Sequence[Value], keywords: dict[str, Value]) -> V
     if name == "builtins.dict":
         return _dictionary(arguments, keywords)
     if name == "pxr.Sdf.Path":
-        from pxr import Sdf
-
         text = arguments[0].value if len(arguments) == 1 and isinstance(arguments[0], Const) else None
         return Const(Sdf.Path(text)) if isinstance(text, str) and Sdf.Path.IsValidPathString(text) else UNKNOWN
     built = _BUILTINS.get(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Callable
+from difflib import get_close_matches
 from typing import Any
 
 from wsim.program.validator import constants
@@ -89,8 +90,6 @@ class Expressions(Objects):
 
     def _spelt(self, name: str) -> str:
         """A name of the program that is spelt like this, or an entry of the index of that name."""
-        from difflib import get_close_matches
-
         known: set[str] = set()
         scope: Scope | None = self.scope
         while scope is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import replace
+from difflib import get_close_matches
 
 from wsim.program.validator.arguments import Arguments
 from wsim.program.validator.calls import Calls
@@ -120,8 +121,6 @@ class Objects(Calls):
     @staticmethod
     def spelt(name: str, known: list[str]) -> str:
         """The name that is spelt most like this one."""
-        from difflib import get_close_matches
-
         close = get_close_matches(name, known, n=1, cutoff=0.6)
         return f'"{close[0]}"' if close else ""
 

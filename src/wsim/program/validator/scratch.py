@@ -8,9 +8,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from pathlib import PurePath
 from typing import Any
 
+from wsim.assets import AssetError, get
 from wsim.program.validator.values import Const, Instance, Items, NotKnownError, Unknown, Value, plain
+from wsim.scene import Scene, SceneError
+from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
 
 _MOST_CALLS = 400
 _SHAPE = {"size": (1.0, 1.0, 1.0)}
@@ -48,8 +52,6 @@ class World:
     """
 
     def __init__(self) -> None:
-        from wsim.scene import Scene
-
         self._scene, self._probe = Scene(), Scene()
         self._numbers = itertools.count()
         self._tried: dict[tuple[str, str, str], str] = {}
@@ -167,8 +169,6 @@ class World:
 
     def _refuses_set(self, arguments: Mapping[str, Value]) -> str:
         """What the scene says to a fluid with these of its arguments, whatever their values."""
-        from wsim.scene import Scene
-
         scene = Scene()
         good: dict[str, Any] = {
             "fills": scene.tank("tank", inner_size=(1.0, 1.0, 1.0)), "level": 0.5, "size": (0.5, 0.5, 0.5),
@@ -206,8 +206,6 @@ class World:
             needs[other] = (-123.4, 56.7, 8.9)
         scene = self._probe
         if alone or method == "fluid":
-            from wsim.scene import Scene
-
             scene = Scene()
             if method.startswith("joint_"):
                 needs["child"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
@@ -220,8 +218,6 @@ class World:
 
 def _no_asset(identifier: object) -> str:
     """What the catalogue says to an id that it does not have."""
-    from wsim.assets import AssetError, get
-
     try:
         get(identifier) if isinstance(identifier, str) else None
     except AssetError as error:
@@ -231,10 +227,6 @@ def _no_asset(identifier: object) -> str:
 
 def _mesh(arguments: Mapping[str, Value]) -> str:
     """What is wrong with how a mesh is read and collides. Its file is not opened: it need not be there yet."""
-    from pathlib import PurePath
-
-    from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
-
     file, up = _known(arguments.get("file")), _known(arguments.get("up_axis"))
     if isinstance(file, str) and PurePath(file).suffix.lower() not in FORMATS:
         return f'mesh: file = "{file}" must end in one of {", ".join(FORMATS)}'
@@ -249,8 +241,6 @@ def _mesh(arguments: Mapping[str, Value]) -> str:
 
 
 def _refusal(error: Exception) -> str:
-    from wsim.scene import SceneError
-
     return str(error) if isinstance(error, SceneError) else ""
 
 

@@ -12,6 +12,7 @@ from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index, rank
 from wsim.program.api.words import parts, related, stem
 from wsim.program.validator.problem import Problems
+from wsim.program.validator.scratch import World
 from wsim.program.validator.values import UNKNOWN, Function, Named, Scope, Value
 
 _NEAR = 0.55
@@ -45,8 +46,6 @@ class State:
     """
 
     def __init__(self, index: Index, tree: ast.Module) -> None:
-        from wsim.program.validator.scratch import World
-
         self.index, self.tree = index, tree
         self.problems = Problems()
         self.module = self.scope = Scope(assigned(tree.body))

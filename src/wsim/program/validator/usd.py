@@ -8,6 +8,8 @@ from difflib import get_close_matches
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from pxr import Sdf
+
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index
 from wsim.program.validator.arguments import Arguments
@@ -60,8 +62,6 @@ def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any
 
 def _value_type(reader: Calls, value: Value, node: ast.AST) -> None:
     """The name of a type of attributes."""
-    from pxr import Sdf
-
     if isinstance(value, Const) and isinstance(value.value, str) and not Sdf.ValueTypeNames.Find(value.value):
         reader.problems.add(node, "value", f'USD has no type "{value.value}"')
 

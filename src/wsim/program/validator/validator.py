@@ -7,6 +7,7 @@ import dataclasses
 import warnings
 from typing import TYPE_CHECKING
 
+from wsim.program.api.lookup import index
 from wsim.program.validator.problem import Problem
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ def validate(text: str, plan: Plan | None = None) -> list[Problem]:
     except (ValueError, RecursionError, MemoryError) as error:
         return [Problem(1, 1, "syntax", f"this cannot be read as Python: {error}")]
 
-    from wsim.program.api.lookup import index
     from wsim.program.validator.reader import Reader
 
     reader = Reader(index(), tree)

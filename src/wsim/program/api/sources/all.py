@@ -10,6 +10,7 @@ from importlib import metadata
 from pathlib import Path
 
 from wsim.program.api.entry import Entry
+from wsim.program.api.sources import pxr_bindings, python_package, usd_schemas
 
 Part = str  # "programs" or "lower"
 PACKAGES = {
@@ -46,7 +47,7 @@ def entries(part: Part, progress: Callable[[str], None]) -> Iterator[Entry]:
 
 
 def _scene() -> Iterator[Entry]:
-    from wsim.program.api.sources.python_source import Package
+    from wsim.program.api.sources.python_source import Package  # griffe, for an index that is made anew
 
     package = Package("wsim", "wsim")
     names = ("wsim.scene", "wsim.program.control_world", "wsim.assets")
@@ -60,32 +61,24 @@ def _without(found: Iterable[Entry], modules: tuple[str, ...]) -> Iterator[Entry
 
 
 def _pxr() -> Iterator[Entry]:
-    from wsim.program.api.sources import pxr_bindings
-
     return pxr_bindings.entries()
 
 
 def _schemas() -> Iterator[Entry]:
-    from wsim.program.api.sources import usd_schemas
-
     return usd_schemas.entries()
 
 
 def _numpy() -> Iterator[Entry]:
-    from wsim.program.api.sources import python_package
-
     return python_package.entries(python_package.NUMPY, "numpy")
 
 
 def _standard() -> Iterator[Entry]:
-    from wsim.program.api.sources import python_package
-
     return python_package.entries(python_package.STANDARD, "python")
 
 
 def _lower(name: str) -> Callable[[], Iterator[Entry]]:
     def read() -> Iterator[Entry]:
-        from wsim.program.api.sources.python_source import Package
+        from wsim.program.api.sources.python_source import Package  # griffe, for an index that is made anew
 
         try:
             package = Package(name, name, programs=False)

@@ -15,6 +15,8 @@ from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
 
+import pxr
+
 from wsim.program.api.docstring import clean, summary
 from wsim.program.api.entry import Entry, Parameter
 from wsim.program.api.sources.pxr_results import results
@@ -31,8 +33,6 @@ _TEMPLATES = (
 
 def modules() -> list[ModuleType]:
     """All of pxr's that can be imported."""
-    import pxr
-
     found = []
     for each in pkgutil.iter_modules(pxr.__path__):
         try:

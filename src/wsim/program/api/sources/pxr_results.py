@@ -8,6 +8,8 @@ import subprocess
 import sys
 from typing import Any
 
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
+
 _SECONDS = 60.0
 # What only looks, or adds to the stage in memory.
 _HARMLESS = re.compile(
@@ -44,8 +46,6 @@ class _Looker:
     """Calls what it can with what it has; what comes out is one more thing to call with."""
 
     def __init__(self) -> None:
-        from pxr import Gf, Sdf, Usd, UsdGeom
-
         stage = Usd.Stage.CreateInMemory()
         cube = UsdGeom.Cube.Define(stage, "/World/sample")
         UsdGeom.Xform.Define(stage, "/World/sample/child")
@@ -67,8 +67,6 @@ class _Looker:
         self.found: dict[str, set[str]] = {}
 
     def look(self) -> dict[str, str]:
-        from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
-
         schemas = [UsdGeom, UsdPhysics, UsdShade, UsdLux]
         for module in (Usd, Sdf, Gf, *schemas):
             for key, value in sorted(vars(module).items()):
@@ -90,13 +88,9 @@ class _Looker:
             self._call(name, function, None if isinstance(member, staticmethod) else self._instance(kind))
 
     def _makes(self, kind: type, key: str) -> bool:
-        from pxr import Usd
-
         return key == "Get" and issubclass(kind, Usd.SchemaBase)
 
     def _instance(self, kind: type) -> Any:
-        from pxr import Sdf, Usd, UsdGeom
-
         known: dict[type, Any] = {
             Usd.Stage: self.by_cpp["UsdStage"], Usd.Prim: self.by_cpp["UsdPrim"], Usd.Object: self.by_cpp["UsdPrim"],
             Usd.Attribute: self.cube.GetSizeAttr(), Usd.Property: self.cube.GetSizeAttr(),

@@ -7,6 +7,9 @@ import importlib
 from collections.abc import Iterator
 from typing import Any
 
+from pxr import Plug, Tf, Usd
+
+import wsim.scene  # noqa: F401 - registers wsim's schema, before USD reads its schemas
 from wsim.program.api.docstring import summary, unit
 from wsim.program.api.entry import Entry
 
@@ -15,10 +18,6 @@ INSTANCE = "__INSTANCE_NAME__"
 
 def entries() -> Iterator[Entry]:
     """Each schema by its name, `PhysicsMassAPI`, and its own attributes by theirs, `PhysicsMassAPI.physics:mass`."""
-    from pxr import Usd
-
-    import wsim.scene  # noqa: F401 - registers wsim's schema, before USD reads its schemas
-
     with contextlib.suppress(ImportError):
         importlib.import_module("newton_usd_schemas")  # registers Newton's
     registry = Usd.SchemaRegistry()
@@ -37,8 +36,6 @@ def entries() -> Iterator[Entry]:
 
 def _names() -> dict[str, tuple[str, ...]]:
     """Schema names, with those of the schemas they inherit from."""
-    from pxr import Plug, Tf, Usd
-
     registry = Usd.SchemaRegistry
     found = {}
     for kind in Plug.Registry().GetAllDerivedTypes(Tf.Type.FindByName("UsdSchemaBase")):

@@ -1,0 +1,50 @@
+"""The verbs. A new one is a file in this folder, with a function of its name, and a line here.
+
+A verb's file is loaded when the verb is called, so that it can import what it needs at its top; the help of wsim as a
+whole loads none of them.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+VERBS = {
+    "generate": "Plan a world from a sentence, build it, simulate it, judge it, and with a model repair it until it is "
+    "right.",
+    "plan": "Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two "
+    "drawings.",
+    "run": "Run a program: build its stage in the sandbox, simulate it, and judge it.",
+    "judge": "Judge a recording: the checks that hold for any world, and the plan's objectives.",
+    "tool": "Call one of the tools that agents work with, or list them; `wsim tool NAME` alone shows what one takes.",
+    "view": "Open a recording in Rerun's viewer; with no display, print the command to use elsewhere.",
+    "mcp": "Serve wsim's tools to a coding agent, which starts this command and speaks over its stdin and stdout.",
+    "doctor": "List devices, versions, isolation and the models configured. Exit code 1 if wsim cannot run here.",
+}
+
+
+class Verb(TyperCommand):
+    """Stands for a verb until it is called."""
+
+    def make_context(self, info_name: str | None, args: list[str], *rest: Any, **given: Any) -> Any:
+        """Load the verb; from here on it is the command."""
+        assert self.name is not None
+        return load(self.name).make_context(info_name, args, *rest, **given)
+
+
+class Verbs(TyperGroup):
+    """The command `wsim`."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self.commands = {name: Verb(name, callback=None, help=text) for name, text in VERBS.items()}
+
+
+def load(name: str) -> Any:
+    """The command of a verb's file."""
+    only = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
+    only.command(name)(getattr(import_module(f"wsim.cli.{name}"), name))
+    return typer.main.get_command(only)
