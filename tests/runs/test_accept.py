@@ -11,10 +11,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from wsim.runs.accept import Trajectory, accept, bare
 from wsim.judge.verdict import Verdict
-from wsim.runs.pipeline import Settings, run_program
+from wsim.runs.accept import Trajectory, accept, bare
 from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings, run_program
 
 HEAD = "from wsim.scene import Scene\n\n\n"
 SETTINGS = Settings(device="cpu", pictures=False)

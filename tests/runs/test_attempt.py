@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from tests.agents.flies import flies
-from wsim.runs.attempt import Attempt, Reached, attempt
 from wsim.judge.verdict import Finding, Verdict
-from wsim.runs.pipeline import Settings
 from wsim.program.compose import compose
+from wsim.runs.attempt import Attempt, Reached, attempt
 from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings
 from wsim.tools.iterations import add
 
 PLAN = flies()

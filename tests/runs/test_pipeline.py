@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from wsim.judge.verdict import Verdict
-from wsim.runs.pipeline import Settings, run_in_folder, run_program
 from wsim.program.sandbox import available
 from wsim.recording import Recording, read
 from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings, run_in_folder, run_program
 
 G = 9.81
 BUILD = """\

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from wsim.judge.verdict import Verdict
-from wsim.runs.pipeline import Settings, run_in_folder
 from wsim.plan.schema import Plan
 from wsim.recording import read
 from wsim.runs.folder import RunFolder
+from wsim.runs.pipeline import Settings, run_in_folder
+from wsim.runs.verify import FINER, SEEDS, Verification, variants, with_spacing
 from wsim.scene import Scene
 from wsim.sim import Simulation
 from wsim.sim.perturb import PLACE
-from wsim.runs.verify import FINER, SEEDS, Verification, variants, with_spacing
 
 G, SPEED, FRICTION, STEP = 9.81, 1.0, 0.1, 0.02
 # Velocity first, then position: in steps of dt a block comes to rest v dt / 2 short of v^2 / (2 mu g).

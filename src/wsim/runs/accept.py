@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim import recording, sim
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
-from wsim.runs.pipeline import Settings, run_program
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder, write_json, write_whole
-from wsim import recording, sim
+from wsim.runs.pipeline import Settings, run_program
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan

@@ -8,12 +8,12 @@ from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from wsim.runs.accept import Trajectory
-from wsim.judge.verdict import Finding, RepairTarget, Verdict
-from wsim.runs.pipeline import Settings, build_in, conclude, no_world, reject, simulate_and_judge
-from wsim.progress import Progress, silent
-from wsim.program.validator import validate
 from wsim import sim
+from wsim.judge.verdict import Finding, RepairTarget, Verdict
+from wsim.program.validator import validate
+from wsim.progress import Progress, silent
+from wsim.runs.accept import Trajectory
+from wsim.runs.pipeline import Settings, build_in, conclude, no_world, reject, simulate_and_judge
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan

@@ -12,22 +12,19 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wsim import importers, recording, sim
+from wsim.assets import assets_folder
+from wsim.judge import judge
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
+from wsim.program.control import ControlError, ControlLayout, ControlProcess, has_control
+from wsim.program.sandbox import Limits, build
+from wsim.program.sandbox.isolation import choose
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder, write_json, write_whole
-from wsim.program.control import ControlError
-from wsim.assets import assets_folder
-from wsim.program.sandbox import build
-from wsim import importers, recording, sim
-from wsim.program.control import has_control
 from wsim.runs.verify import Verification
-from wsim.program.control import ControlLayout, ControlProcess, has_control
 from wsim.scene.describe import describe
 from wsim.sim.control import ArrayController, driven_joints
-from wsim.judge import judge
-from wsim.program.sandbox import Limits
-from wsim.program.sandbox.isolation import choose
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -218,6 +215,7 @@ def verification(
     folder: Path, program: Path, plan: Plan | None, settings: Settings, progress: Progress = silent
 ) -> Verification:
     """What runs an accepted world again. Copies go side by side on CUDA, where no `control` steps them one by one."""
+
     def open_(stage: Path, time_step: float | None, seeds: Sequence[int]) -> AbstractContextManager[Simulation]:
         return open_simulation(stage, program, replace(settings, time_step=time_step), progress, seeds)
 
@@ -238,9 +236,7 @@ def _controller(program: Path, stage: Path, settings: Settings) -> Iterator[Arra
         yield ArrayController(process.step)
 
 
-def judge_recording(
-    path: Path, plan: Plan | None, progress: Progress = silent, model: Path | None = None
-) -> Verdict:
+def judge_recording(path: Path, plan: Plan | None, progress: Progress = silent, model: Path | None = None) -> Verdict:
     """Read a recording back and judge it; a trajectory.npz is one of someone else's, of what `model` describes."""
     progress("judging", 0, 2)
     evidence = importers.read_npz(path, model) if path.suffix == ".npz" else recording.read(path)

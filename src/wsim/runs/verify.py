@@ -11,17 +11,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pxr import Sdf, Usd
+
+from wsim import recording
+from wsim.judge import judge
 from wsim.judge.convergence import CheckConverged, Rerun
+from wsim.judge.decide import conclude
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
+from wsim.program.control import ControlError
 from wsim.progress import Progress
 from wsim.runs.folder import write_whole
-from pxr import Sdf, Usd
 from wsim.scene import schema
-from wsim.judge.decide import conclude
 from wsim.scene.describe import describe
-from wsim import recording
-from wsim.program.control import ControlError
-from wsim.judge import judge
 from wsim.sim.collect import collect
 
 if TYPE_CHECKING:

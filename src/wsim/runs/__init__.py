@@ -1,0 +1,1 @@
+"""One program through its passes (attempt, accept), the pipeline, its reruns, the folder of a run."""
