@@ -125,7 +125,8 @@ def cases(half: str, only: Sequence[str] = ()) -> list[Case]:
 
 def record(case: Case) -> Path:
     """The recording of a run, made now unless it is kept."""
-    from wsim.runs.pipeline import Settings, build_stage
+    from wsim.runs.iteration import Iteration
+    from wsim.runs.settings import Settings
 
     folder = case.folder
     recording = folder / "recording.rrd"
@@ -135,7 +136,7 @@ def record(case: Case) -> Path:
     folder.mkdir(parents=True)
     (folder / "name.txt").write_text(case.name + "\n")
     (folder / "program.py").write_text(case.program)
-    built = build_stage(folder / "program.py", folder / "stage.usda", Settings(device="cpu"))
+    built = Iteration(folder, settings=Settings(device="cpu")).build()
     if not built.ok:
         raise RuntimeError(f"the program made no world: {built.finding()}")
     fault = case.fault

@@ -23,7 +23,8 @@ from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.runs.attempt import Attempt, Reached
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings, run_program
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 from wsim.tools import Workspace
 from wsim.tools.plan import plan_lines
 
@@ -40,7 +41,7 @@ def made(plan: Plan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An iteration with pictures, which nobody may change."""
     folder = RunFolder(tmp_path_factory.mktemp("pictured")).iteration(1)
     (folder / "program.py").write_text(compose(plan))
-    assert run_program(folder / "program.py", folder, plan, Settings(device="cpu")).status == "accepted"
+    assert Iteration.of(folder / "program.py", folder, plan, Settings(device="cpu")).run().status == "accepted"
     return folder
 
 

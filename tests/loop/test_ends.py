@@ -21,10 +21,11 @@ from wsim.agents import relay
 from wsim.agents.budget import Budget
 from wsim.agents.models import ROLES, Models
 from wsim.agents.transcript import read
-from wsim.loop.generate import Generated, Options, generate
+from wsim.loop.generate import generate
+from wsim.loop.options import Generated, Options
 from wsim.plan.schema import Plan
 from wsim.progress import silent
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 
 SETTINGS = Settings(device="cpu", pictures=False)
 NO_WORLD = replace(SETTINGS, params={"mass": 1.0})  # the program has no such parameter: it fails in a second

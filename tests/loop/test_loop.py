@@ -16,9 +16,10 @@ from tests.agents.kept import Kept, models
 from tests.agents.scripted import Server, apart, call, status, text
 from wsim.agents import relay
 from wsim.agents.transcript import read
-from wsim.loop.generate import Generated, Options, generate
+from wsim.loop.generate import generate
+from wsim.loop.options import Generated, Options
 from wsim.loop.replay import replay
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 
 SETTINGS = Settings(device="cpu", pictures=False)
 

@@ -18,9 +18,10 @@ from wsim.agents.budget import Budget
 from wsim.agents.models import Models
 from wsim.cli import app
 from wsim.errors import UserError
-from wsim.loop.generate import Options, generate
+from wsim.loop.generate import generate
+from wsim.loop.options import Options
 from wsim.loop.replay import replay
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 
 NO_WORLD = Settings(device="cpu", pictures=False, params={"mass": 1.0})  # no program has it: each fails in a second
 

@@ -12,15 +12,16 @@ from typing import Any
 
 import pytest
 
-from wsim.loop.generate import Options, generate
+from wsim.loop.generate import generate
+from wsim.loop.options import Options
 from wsim.plan.store import load
+from wsim.program.bare import bare
 from wsim.report import write
 from wsim.report.diff import MOST_LINES, difference, make_diff
-from wsim.runs.accept import bare
 from wsim.runs.attempt import Attempt, attempt
 from wsim.runs.folder import RunFolder, write_json
-from wsim.runs.pipeline import Settings
-from wsim.tools.iterations import add
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 
 _spec = importlib.util.spec_from_file_location("report_probe", Path(__file__).parent / "probe.py")
 assert _spec is not None and _spec.loader is not None
@@ -60,7 +61,7 @@ def tried(made: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, l
     patches = [(stuck, None), (stuck.replace("rotation_deg", "rotation_degrees"), stuck), (slow, stuck)]
     patches.append((slow.replace("static=True", "fixed=True"), slow))
     plan = load(run.path / "plan.json")
-    return run.path, [attempt(add(run, text, before), plan, SETTINGS) for text, before in patches]
+    return run.path, [attempt(Iteration(run.add(text, before), plan, SETTINGS)) for text, before in patches]
 
 
 @pytest.fixture

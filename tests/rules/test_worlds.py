@@ -4,7 +4,8 @@ import pytest
 
 from wsim.program.compose import compose
 from wsim.rules.planner import plan
-from wsim.runs.pipeline import Settings, run_program
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 
 PROMPTS = [
     "A steel ball rolls down a wooden ramp for 1.4 seconds",
@@ -22,7 +23,7 @@ PROMPTS = [
 def test_a_world_is_accepted(prompt, tmp_path):
     made = plan(prompt)
     (tmp_path / "program.py").write_text(compose(made))
-    verdict = run_program(tmp_path / "program.py", tmp_path, made, Settings(device="cpu", pictures=False))
+    verdict = Iteration.of(tmp_path / "program.py", tmp_path, made, Settings(device="cpu", pictures=False)).run()
     assert verdict.status == "accepted", verdict.summary
     judged = {finding.objective for finding in verdict.findings if finding.objective}
     assert judged == {objective.sentence for objective in made.objectives}

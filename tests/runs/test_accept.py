@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 
 from wsim.judge.verdict import Verdict
-from wsim.runs.accept import Trajectory, accept, bare
+from wsim.program.bare import bare
+from wsim.runs.accept import accept
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings, run_program
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
+from wsim.runs.trajectory import Trajectory
 
 HEAD = "from wsim.scene import Scene\n\n\n"
 SETTINGS = Settings(device="cpu", pictures=False)
@@ -133,7 +136,7 @@ def accepted(folder: Path, text: str) -> SimpleNamespace:
     run = RunFolder(folder / "run")
     iteration = run.iteration(1)
     (iteration / "program.py").write_text(text)
-    verdict = run_program(iteration / "program.py", iteration, None, SETTINGS)
+    verdict = Iteration.of(iteration / "program.py", iteration, None, SETTINGS).run()
     assert verdict.status == "accepted", verdict.summary
     return SimpleNamespace(run=run, iteration=iteration)
 
@@ -155,7 +158,7 @@ def stamped(run: RunFolder) -> dict[str, object]:
 
 
 def test_the_bare_program_goes_the_same_way_and_is_stamped(ball: SimpleNamespace) -> None:
-    verdict = accept(ball.run, ball.iteration, None, SETTINGS)
+    verdict = accept(ball.run, Iteration(ball.iteration, None, SETTINGS))
     assert verdict.status == "accepted"
     assert stamped(ball.run) == {"stripped": True, "largest_distance_m": 0.0}
     text = (ball.run.path / "accepted" / "program.py").read_text()
@@ -172,13 +175,13 @@ def test_an_earlier_run_of_the_same_program_is_the_second_run(tmp_path: Path, ba
     (iteration / "program.py").write_text(bare((ball.iteration / "program.py").read_text()))
     earlier = Trajectory.of(ball.iteration / "recording.rrd")
     told: list[str] = []
-    verdict = accept(run, iteration, None, SETTINGS, lambda stage, *_: told.append(stage), earlier)
+    verdict = accept(run, Iteration(iteration, None, SETTINGS, lambda stage, *_: told.append(stage)), earlier)
     assert verdict.status == "accepted"
     assert told == []  # nothing had to be run
     assert stamped(run) == {"stripped": False, "largest_distance_m": 0.0}
 
     moved = Trajectory(earlier.time, earlier.body_q + 1e-9, earlier.particles)
-    refused = accept(run, iteration, None, SETTINGS, earlier=moved)
+    refused = accept(run, Iteration(iteration, None, SETTINGS), earlier=moved)
     (finding,) = refused.failures
     assert (refused.status, finding.check, finding.limit) == ("rejected", "CheckReproduced", 0.0)
     assert 1e-10 < finding.value < 1e-8
@@ -201,7 +204,7 @@ RANDOM = "time.time_ns() % 1_000_003 * 1e-7"
 def test_a_program_that_is_another_each_time_is_rejected(tmp_path: Path, more: str) -> None:
     text = program("import time\n" + BALL.format(more=more))
     made = accepted(tmp_path, text)
-    verdict = accept(made.run, made.iteration, None, SETTINGS)
+    verdict = accept(made.run, Iteration(made.iteration, None, SETTINGS))
     assert verdict.status == "rejected"
     (finding,) = verdict.failures
     assert finding.check == "CheckReproduced"
@@ -219,7 +222,7 @@ def test_a_bare_program_that_makes_no_world_is_rejected(tmp_path: Path, ball: Si
     for name in ("stage.usda", "recording.rrd", "verdict.json"):
         (iteration / name).write_bytes((ball.iteration / name).read_bytes())
     (iteration / "program.py").write_text(program("print(x := 1)\n" + BALL.format(more=", velocity=(x, 0, 0)")))
-    verdict = accept(run, iteration, None, SETTINGS)
+    verdict = accept(run, Iteration(iteration, None, SETTINGS))
     assert verdict.status == "rejected"
     assert [finding.check for finding in verdict.failures] == ["build"]
     assert [path.name for path in run.path.iterdir()] == ["iterations"]
@@ -234,6 +237,6 @@ def test_what_is_interrupted_leaves_nothing_half_written(tmp_path: Path, ball: S
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        accept(run, ball.iteration, None, SETTINGS, interrupt)
+        accept(run, Iteration(ball.iteration, None, SETTINGS, interrupt))
     assert list(run.path.iterdir()) == []
     assert Verdict.model_validate_json((ball.iteration / "verdict.json").read_text()) == before

@@ -12,8 +12,8 @@ from wsim.judge.verdict import Finding, Verdict
 from wsim.program.compose import compose
 from wsim.runs.attempt import Attempt, Reached, attempt
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings
-from wsim.tools.iterations import add
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 
 PLAN = flies()
 PROGRAM = compose(PLAN)
@@ -21,7 +21,7 @@ QUIET = Settings(device="cpu", pictures=False)
 
 
 def tried(folder: Path, text: str, settings: Settings = QUIET) -> Attempt:
-    return attempt(add(RunFolder(folder), text), PLAN, settings)
+    return attempt(Iteration(RunFolder(folder).add(text), PLAN, settings))
 
 
 def test_a_program_with_mistakes_is_not_run(tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ def test_accepted_has_checksums(tmp_path):
     iteration = run.iteration(1)
     (iteration / "program.py").write_text("x = 1\n")
     (iteration / "stage.usda").write_text("#usda 1.0\n")
-    accepted = run.accept(iteration)
+    accepted = run.stamp(iteration)
     for line in (accepted / "SHA256SUMS").read_text().splitlines():
         digest, name = line.split()
         assert hashlib.sha256((accepted / name).read_bytes()).hexdigest() == digest

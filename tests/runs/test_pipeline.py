@@ -13,8 +13,10 @@ import pytest
 from wsim.judge.verdict import Verdict
 from wsim.program.sandbox import available
 from wsim.recording import Recording, read
+from wsim.runs.alone import run_in_folder
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings, run_in_folder, run_program
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 
 G = 9.81
 BUILD = """\
@@ -42,7 +44,7 @@ def run(tmp_path: Path):
     def one(body: str, settings: Settings = SETTINGS) -> tuple[Verdict, Path]:
         (tmp_path / "program.py").write_text(BUILD + body)
         folder = RunFolder.create(tmp_path / "runs", "control").iteration(1)
-        return run_program(tmp_path / "program.py", folder, None, settings), folder
+        return Iteration.of(tmp_path / "program.py", folder, None, settings).run(), folder
 
     return one
 
@@ -157,7 +159,7 @@ def test_parameters_and_seed_of_the_program_reach_the_recording(tmp_path: Path) 
     )
     folder = RunFolder.create(tmp_path, "parameters").iteration(1)
     settings = Settings(device="cpu", pictures=False, params={"radius": 0.2})
-    assert run_program(program, folder, None, settings).status == "accepted"
+    assert Iteration.of(program, folder, None, settings).run().status == "accepted"
     recording = recording_of(folder)
     assert recording.metadata["params"] == {"radius": 0.2}
     (ball,) = recording.world.bodies

@@ -13,8 +13,9 @@ import pytest
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
 from wsim.recording import read
+from wsim.runs.alone import run_in_folder
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings, run_in_folder
+from wsim.runs.settings import Settings
 from wsim.runs.verify import FINER, SEEDS, Verification, variants, with_spacing
 from wsim.scene import Scene
 from wsim.sim import Simulation

@@ -16,7 +16,8 @@ from wsim.judge.language.objective import ObjectiveFormula
 from wsim.judge.verdict import Finding, Verdict
 from wsim.plan.schema import Objective
 from wsim.recording import read
-from wsim.runs.pipeline import Settings, build_stage, run_program
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
@@ -77,7 +78,7 @@ def judged(block: Block, folder: Path) -> Verdict:
     folder.mkdir()
     program = folder / "program.py"
     program.write_text(block.program, encoding="utf-8")
-    return run_program(program, folder, settings=Settings(device="cpu", pictures=False, params=block.params))
+    return Iteration.of(program, folder, settings=Settings(device="cpu", pictures=False, params=block.params)).run()
 
 
 @pytest.fixture(scope="module")
@@ -87,11 +88,11 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("block", PYTHON, ids=lambda block: block.name)
 def test_it_builds_a_sound_stage(block: Block, tmp_path: Path) -> None:
-    program, stage = tmp_path / "program.py", tmp_path / "stage.usda"
-    program.write_text(block.program, encoding="utf-8")
-    built = build_stage(program, stage, Settings(params=block.params))
+    iteration = Iteration(tmp_path, settings=Settings(params=block.params))
+    iteration.program.write_text(block.program, encoding="utf-8")
+    built = iteration.build()
     assert built.ok, built
-    world = describe(stage)
+    world = describe(iteration.stage)
     assert world.bodies or world.fluids
     assert block.fragment or world.cameras
     assert all(item.line is not None for item in [*world.bodies, *world.fluids, *world.joints])

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 from wsim.tools import TOOLS, Result, Workspace
 from wsim.tools.text import LIMIT
 

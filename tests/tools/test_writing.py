@@ -10,7 +10,6 @@ from tests.tools.conftest import RIGID, call_tool, done, refused
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
 from wsim.tools import TOOLS, Workspace
-from wsim.tools.iterations import add
 from wsim.tools.text import LIMIT
 
 BLOCKS = "Three wooden blocks float on the water in a glass tank."
@@ -89,7 +88,7 @@ def test_no_json_no_plan(empty: Workspace) -> None:
 
 def test_a_plan_by_which_an_iteration_was_judged_stays(empty: Workspace) -> None:
     done(empty, "write_plan", plan=data_of(BLOCKS))
-    folder = add(empty.run, RIGID)
+    folder = empty.run.add(RIGID)
     (folder / "verdict.json").write_text("{}")
     before = (empty.run.path / "plan.json").read_text()
     assert "iteration 01 was judged by the plan" in refused(empty, "write_plan", plan=data_of("A ball falls."))
@@ -149,7 +148,7 @@ def test_a_program_with_mistakes_is_kept_only_if_told_to(empty: Workspace) -> No
 
 def test_reading_a_program_by_pages(empty: Workspace) -> None:
     lines = ["def build(scene):", *(f"    scene.ground()  # {k}, and words to fill the line up" for k in range(200))]
-    add(empty.run, "\n".join(lines) + "\n")
+    empty.run.add("\n".join(lines) + "\n")
     seen: list[str] = []
     first = 1
     while True:

@@ -10,7 +10,6 @@ from wsim.agents import coder, judge, planner, reviewer
 from wsim.agents.ask import Desk
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN
-from wsim.judge.verdict import Verdict
 from wsim.rules.planner import plan
 from wsim.runs.attempt import Attempt, Reached
 from wsim.tools import Workspace
@@ -160,12 +159,3 @@ def _told(tried: Attempt, why: str) -> str:
     failed = "; ".join(dict.fromkeys(f"{f.check}: {f.message}" for f in tried.verdict.failures[:4]))
     head = f"iteration {tried.number}: {why} It failed at {tried.reached.name.lower()}: {failed}"
     return "\n".join([head, *changed])
-
-
-def verdict_of(best: Attempt, cause: str) -> Verdict:
-    """The verdict on a run that ends without an accepted world: why, and the best that there is."""
-    return Verdict(
-        status="blocked",
-        summary=f"{cause}. Best so far: iteration {best.number}: {best.verdict.summary}",
-        findings=best.verdict.findings,
-    )

@@ -31,11 +31,11 @@ from wsim.cli.options import (
 )
 from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
 from wsim.errors import UserError
-from wsim.loop.generate import Options
 from wsim.loop.generate import generate as generate_world
+from wsim.loop.options import Options
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan

@@ -13,7 +13,8 @@ from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.report import write as write_report
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings, simulate_and_judge
+from wsim.runs.iteration import Iteration
+from wsim.runs.settings import Settings
 from wsim.scene import Scene, SceneError
 
 
@@ -32,13 +33,14 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
         build(scene)
         scene.save(folder / "stage.usda")
         with ConsoleProgress() as progress:
-            verdict = simulate_and_judge(folder, program, None, Settings(isolation="none"), progress)
+            iteration = Iteration(folder, None, Settings(isolation="none"), progress, program)
+            verdict = iteration.conclude(iteration.happen())
     except (UserError, SceneError) as error:
         run.record(status="stopped", summary=str(error))
         print(f"{_place(error, program)}: {error}", file=sys.stderr)
         raise SystemExit(2) from None
     if verdict.status == "accepted":
-        run.accept(folder)
+        run.stamp(folder)
     run.record(status=verdict.status, summary=verdict.summary)
     show_verdict(verdict, run.path, write_report(run.path))
     raise SystemExit(EXIT_CODES[verdict.status])

@@ -13,7 +13,7 @@ from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import judge_recording
+from wsim.runs.iteration import judge_recording
 
 
 def judge(

@@ -13,7 +13,7 @@ from wsim.errors import UserError
 from wsim.mcp.desk import Desk
 from wsim.mcp.server import make_server
 from wsim.mcp.transport import serve_http, serve_stdio, take_stdout
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 
 
 def mcp(

@@ -76,7 +76,9 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
 
 def _plan_with(models: Models, prompt: str, image: Path | None, runs: Path) -> Plan:
     """A model's plan; its run's folder keeps what was asked and answered."""
-    from wsim.loop.generate import Options, generate  # simulator and judge: a plan by rules needs neither
+    # Simulator and judge: a plan by rules needs neither.
+    from wsim.loop.generate import generate
+    from wsim.loop.options import Options
 
     if not prompt:
         raise UserError('give a sentence, such as wsim plan "A crank drives a piston." --planner-model MODEL')

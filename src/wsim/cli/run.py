@@ -12,8 +12,9 @@ from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.report import write as write_report
+from wsim.runs.alone import run_in_folder
 from wsim.runs.folder import RunFolder, write_whole
-from wsim.runs.pipeline import Settings, run_in_folder
+from wsim.runs.settings import Settings
 
 
 def run(

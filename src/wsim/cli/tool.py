@@ -16,7 +16,7 @@ from wsim.cli.show import ConsoleProgress
 from wsim.errors import UserError
 from wsim.progress import silent
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 from wsim.tools import TOOLS, Workspace
 
 if TYPE_CHECKING:

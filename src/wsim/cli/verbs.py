@@ -40,7 +40,10 @@ class Verbs(TyperGroup):
 
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)
-        self.commands = {name: Verb(name, callback=None, help=text) for name, text in VERBS.items()} | self.commands
+        self.commands = {
+            **{name: Verb(name, callback=None, help=text) for name, text in VERBS.items()},
+            **self.commands,
+        }
 
 
 def load(name: str) -> Any:

@@ -10,14 +10,16 @@ from wsim.agents.budget import Budget
 from wsim.agents.models import BUILTIN, ROLES, Models
 from wsim.agents.relay import Replay
 from wsim.errors import UserError
-from wsim.loop.generate import REFERENCE, Options, generate
+from wsim.loop.generate import generate
+from wsim.loop.options import Options
+from wsim.loop.start import REFERENCE
 from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 
 if TYPE_CHECKING:
-    from wsim.loop.generate import Generated
+    from wsim.loop.options import Generated
 
 COMPARED = ("plan.json", "transcript.jsonl")
 COMPARED_IN_ITERATIONS = ("program.py", "patch.diff", "verdict.json")

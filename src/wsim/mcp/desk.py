@@ -10,7 +10,7 @@ from typing import Any
 from wsim.errors import UserError
 from wsim.progress import Progress, silent
 from wsim.runs.folder import RunFolder
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 from wsim.tools.base import Result, Tool, Workspace
 
 NOT_OPEN = "no-run-is-open"  # a folder that is never made

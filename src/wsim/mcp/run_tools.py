@@ -15,7 +15,6 @@ from wsim.program.compose import compose
 from wsim.rules.planner import plan as plan_of
 from wsim.runs.folder import RunFolder
 from wsim.tools.base import Arguments, Result, Tool, Workspace
-from wsim.tools.iterations import add, numbered
 from wsim.tools.plan import ReadPlan, read_plan
 
 
@@ -80,7 +79,7 @@ def draft_program(workspace: Workspace, _: DraftProgram) -> Result:
     plan = workspace.plan
     if plan is None:
         raise UserError("the run has no plan; write one with write_plan")
-    folder = add(workspace.run, compose(plan))
+    folder = workspace.run.add(compose(plan))
     return Result(f"iterations/{folder.name}/program.py written, not run yet; read_program shows it")
 
 
@@ -98,7 +97,7 @@ def _planned(desk: Desk, prompt: str) -> Result:
 
 def _about(run: RunFolder) -> str:
     """Which run it is, and how far it came."""
-    title, iterations = run.facts().get("title") or "no title", numbered(run)
+    title, iterations = run.facts().get("title") or "no title", run.iterations()
     verdict = iterations[-1] / "verdict.json" if iterations else None
     status = "not judged yet"
     if verdict is not None and verdict.is_file():

@@ -10,7 +10,7 @@ from wsim.report.fixes import describe
 
 if TYPE_CHECKING:
     from wsim.report.contents import Iteration, RunContents
-    from wsim.report.records import Tried
+    from wsim.runs.records import Tried
 
 PASSES = ("validation", "build", "frames", "physics", "recording", "review")
 WORDS = {

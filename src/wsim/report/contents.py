@@ -13,8 +13,8 @@ from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
 from wsim.plan.store import load
-from wsim.report.records import Acceptance, Loop, Review, review_of, sums_of
 from wsim.runs.folder import RunFolder
+from wsim.runs.records import Acceptance, Loop, Review, review_of, sums_of
 
 if TYPE_CHECKING:
     from wsim.recording import Recording

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from wsim.report.numbers import NARROW_SPACE, number
-from wsim.report.records import BUILTIN, Account
 from wsim.report.text import duration
+from wsim.runs.records import BUILTIN, Account
 
 if TYPE_CHECKING:
-    from wsim.report.records import Loop
+    from wsim.runs.records import Loop
 
 ROLES = ("planner", "coder", "reviewer", "judge")
 

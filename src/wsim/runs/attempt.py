@@ -6,17 +6,12 @@ import ast
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from wsim import sim
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.program.validator import validate
-from wsim.progress import Progress, silent
-from wsim.runs.accept import Trajectory
-from wsim.runs.pipeline import Settings, build_in, conclude, no_world, reject, simulate_and_judge
-
-if TYPE_CHECKING:
-    from wsim.plan.schema import Plan
+from wsim.runs.iteration import Iteration, no_world, reject
+from wsim.runs.trajectory import Trajectory
 
 
 class Reached(IntEnum):
@@ -80,39 +75,29 @@ def _short(finding: Finding) -> float:
     return round(-finding.margin / (scale - finding.margin), 6)
 
 
-def attempt(
-    folder: Path,
-    plan: Plan | None,
-    settings: Settings | None = None,
-    progress: Progress = silent,
-    cheap_first: bool = True,
-) -> Attempt:
-    """Run the passes over `folder/program.py`, up to the first that fails.
+def attempt(iteration: Iteration, cheap_first: bool = True) -> Attempt:
+    """Run the passes over a program, up to the first that fails.
 
     Validation, build, one frame a camera, physics without pictures, the full recording. Each pass leaves its files in
-    `folder`, and verdict.json is that of the last.
+    the iteration's folder, and verdict.json is that of the last.
 
     Args:
-        folder: An iteration's, with a program.py.
-        plan: What the world is held to.
-        settings: Device, parameters, limits; without pictures there are no frames, and the physics are all.
-        progress: Told how far it is.
+        iteration: With a program.py; if its settings want no pictures there are no frames, and the physics are all.
         cheap_first: False goes from the build to the full recording: where nothing would be repaired, the cheap passes
             only take time.
     """
-    settings = settings or Settings()
-    made = Attempt(folder, (folder / "program.py").read_text(encoding="utf-8"))
-    looks = [_framed, _moved] if settings.pictures else []
+    made = Attempt(iteration.folder, iteration.text)
+    looks = [_framed, _moved] if iteration.settings.pictures else []
     passes = [_validated, _built, *looks, _recorded] if cheap_first else [_built, _recorded]
     for run in passes:
         try:
-            verdict = run(made, plan, settings, progress)
+            verdict = run(made, iteration)
         except (ValueError, RuntimeError, LookupError, ArithmeticError) as error:
             if not cheap_first:
                 raise
             verdict = _broken(error)  # a stage that passed its check and breaks the simulator is the coder's to mend
         if verdict is not None:
-            made.verdict = conclude(folder, verdict)
+            made.verdict = iteration.conclude(verdict)
             if verdict.status != "accepted":
                 return made
     made.reached = Reached.ALL
@@ -125,9 +110,9 @@ def _broken(error: Exception) -> Verdict:
     return reject(Finding(check="simulation", passed=False, message=message), "The simulator cannot run this stage.")
 
 
-def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+def _validated(made: Attempt, iteration: Iteration) -> Verdict | None:
     made.reached = Reached.VALIDATION
-    problems = validate(made.program, plan)
+    problems = validate(made.program, iteration.plan)
     if not problems:
         return None
     findings = [
@@ -143,18 +128,19 @@ def _validated(made: Attempt, plan: Plan | None, settings: Settings, progress: P
     return Verdict(status="rejected", summary=f"Mistakes in the program: {len(problems)}.", findings=findings)
 
 
-def _built(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+def _built(made: Attempt, iteration: Iteration) -> Verdict | None:
     made.reached = Reached.BUILD
-    built = build_in(made.folder, settings, progress)
-    return None if built.ok else no_world(made.folder, built)
+    built = iteration.build()
+    return None if built.ok else no_world(built)
 
 
-def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
     """One frame a camera: a view in which nothing of the plan is to be seen fails before anything is simulated."""
     made.reached = Reached.FRAMES
+    plan = iteration.plan
     named = {f"/World/{item.name}" for item in plan.objects if item.primitive != "ground"} if plan else set()
     findings = []
-    for still in sim.Stills(made.folder / "stage.usda", settings.device, progress=progress).draw_start():
+    for still in sim.Stills(iteration.stage, iteration.settings.device, progress=iteration.progress).draw_start():
         pixels = {prim: count for prim, count in still.pixels.items() if prim in named and count}
         if named & set(still.pixels) and not pixels:
             findings.append(
@@ -173,18 +159,18 @@ def _framed(made: Attempt, plan: Plan | None, settings: Settings, progress: Prog
     return Verdict(status="rejected", summary=f"Cameras that show nothing: {len(findings)}.", findings=findings)
 
 
-def _moved(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+def _moved(made: Attempt, iteration: Iteration) -> Verdict | None:
     made.reached = Reached.PHYSICS
-    quick = replace(settings, pictures=False, verify=False)
-    verdict = simulate_and_judge(made.folder, made.folder / "program.py", plan, quick, progress)
+    quick = replace(iteration.settings, pictures=False, verify=False)
+    verdict = replace(iteration, settings=quick).happen()
     if verdict.status == "accepted":
-        made.earlier = Trajectory.of(made.folder / "recording.rrd")
+        made.earlier = Trajectory.of(iteration.recording)
     return verdict
 
 
-def _recorded(made: Attempt, plan: Plan | None, settings: Settings, progress: Progress) -> Verdict | None:
+def _recorded(made: Attempt, iteration: Iteration) -> Verdict | None:
     made.reached = Reached.RECORDING
-    return simulate_and_judge(made.folder, made.folder / "program.py", plan, settings, progress)
+    return iteration.happen()
 
 
 def numerics(program: str) -> list[str]:

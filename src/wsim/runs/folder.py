@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from wsim.errors import UserError
+from wsim.program.patch import diff
 
 SLUG_LENGTH = 40
 
@@ -90,7 +91,7 @@ class RunFolder:
         Raises:
             UserError: If the run has none.
         """
-        found = sorted((self.path / "iterations").glob("[0-9][0-9]*"))
+        found = self.iterations()
         if not found:
             raise UserError(f"{self.path} has no iterations: the run ended before its program was built")
         return found[-1]
@@ -106,15 +107,47 @@ class RunFolder:
         path = self.path / "run.json"
         return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
-    def accept(self, iteration: Path) -> Path:
-        """Copy an iteration's program and stage to accepted/, with their checksums."""
+    def iterations(self) -> list[Path]:
+        """Folders of all iterations, the oldest first."""
+        found = (path for path in (self.path / "iterations").glob("[0-9]*") if path.name.isdigit())
+        return sorted(found, key=lambda path: int(path.name))
+
+    def add(self, program: str, before: str | None = None) -> Path:
+        """A new iteration that holds a program; its folder is whole or not there.
+
+        Args:
+            program: The text of program.py.
+            before: The text that it was patched from; the difference becomes patch.diff.
+        """
+        known = self.iterations()
+        number = int(known[-1].name) + 1 if known else 1
+        folder = self.path / "iterations" / f"{number:02d}"
+        partial = folder.with_name(f".{folder.name}.partial")
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        (partial / "program.py").write_text(program, encoding="utf-8")
+        if before is not None:
+            (partial / "patch.diff").write_text(diff(before, program), encoding="utf-8")
+        partial.rename(folder)
+        return folder
+
+    def stamp(self, source: Path, acceptance: dict[str, Any] | None = None) -> Path:
+        """Copy a folder's program and stage to accepted/, with their checksums; what was accepted before goes.
+
+        Args:
+            source: The folder.
+            acceptance: What acceptance.json says of them, if anything.
+        """
         target, partial = self.path / "accepted", self.path / "accepted.partial"
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir()
         sums = []
         for name in ("program.py", "stage.usda"):
-            shutil.copyfile(iteration / name, partial / name)
+            shutil.copyfile(source / name, partial / name)
             sums.append(f"{hashlib.sha256((partial / name).read_bytes()).hexdigest()}  {name}\n")
+        if acceptance is not None:
+            write_json(partial / "acceptance.json", acceptance)
         write_whole(partial / "SHA256SUMS", "".join(sums))
+        shutil.rmtree(target, ignore_errors=True)
         partial.rename(target)
         return target

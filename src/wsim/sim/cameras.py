@@ -13,7 +13,7 @@ import numpy as np
 import warp as wp
 from newton.sensors import SensorCamera
 
-from wsim.kernels.render import composite, display
+from wsim.kernels.render import composite, display, faces, sky
 from wsim.progress import silent
 from wsim.sim import render_materials, render_views
 from wsim.sim.render_surface import FluidMesh
@@ -181,7 +181,7 @@ class CameraRenderer:
         style = self.style
         low, high = render_views.bounds(self.world)
         radius = 0.5 * float(np.linalg.norm(high - low))
-        look = composite.Look()
+        look = sky.Look()
         look.sun_direction = wp.vec3(*self._sun)
         look.sun_color = wp.vec3(*style.sun_color)
         look.ambient = wp.vec3(*style.ambient_up)
@@ -217,7 +217,6 @@ class CameraRenderer:
         )
 
     def _composite(self, view: _View) -> None:
-        mesh, glass = self._fluid_mesh, self._glass
         launch_shared(
             composite.composite,
             dim=view.color.shape,
@@ -228,24 +227,24 @@ class CameraRenderer:
                 view.opaque_shape,
                 view.light,
                 self._shape_is_ground,
-                self.model.bvh_shape_world_transforms,
-                glass.shape,
-                glass.box_count,
-                glass.half,
-                glass.mesh,
-                glass.extinction,
-                glass.color,
-                mesh.id,
-                mesh.normals,
-                mesh.fluid_of_vertex,
-                self._fluid_extinction,
-                self._fluid_color,
-                self._fluid_gap,
+                self._media(),
                 view.look,
             ],
             outputs=[view.color, view.depth, view.shape],
             device=self._device,
         )
+
+    def _media(self) -> Any:
+        mesh, glass = self._fluid_mesh, self._glass
+        media = faces.Media()
+        media.shape_pose = self.model.bvh_shape_world_transforms
+        media.glass_shape, media.glass_boxes = glass.shape, glass.box_count
+        media.glass_half, media.glass_mesh = glass.half, glass.mesh
+        media.glass_extinction, media.glass_color = glass.extinction, glass.color
+        media.fluid_mesh, media.fluid_normals, media.fluid_of_vertex = mesh.id, mesh.normals, mesh.fluid_of_vertex
+        media.fluid_extinction, media.fluid_color = self._fluid_extinction, self._fluid_color
+        media.fluid_gap = self._fluid_gap
+        return media
 
     def _compile(self, progress: Progress) -> None:
         """Draw once, with a drop of each fluid, so that later frames take no time for compilation."""

@@ -14,9 +14,12 @@ from wsim.sim.cameras import CameraRenderer
 from wsim.sim.seen import ObjectPixels, still_name, write_png
 
 if TYPE_CHECKING:
+    from newton import State
+
     from wsim.recording import RecordingWriter
+    from wsim.scene.world import World
     from wsim.sim.cameras import CameraImage
-    from wsim.sim.simulation import Simulation
+    from wsim.sim.model import Built
 
 STILLS = 6
 
@@ -25,7 +28,8 @@ class Pictures:
     """Takes a frame's pictures with every camera.
 
     Args:
-        simulation: Whose state is drawn.
+        world: What the stage states.
+        built: Its model.
         writer: Gets the pictures of the stage's cameras.
         video: Path of the first camera's MP4.
         frames_dir: Folder for a few PNGs of every camera, evenly over the run; None writes none.
@@ -37,7 +41,8 @@ class Pictures:
 
     def __init__(
         self,
-        simulation: Simulation,
+        world: World,
+        built: Built,
         writer: RecordingWriter,
         video: str | Path,
         frames_dir: str | Path | None,
@@ -45,16 +50,16 @@ class Pictures:
         frames: int,
         progress: Progress,
     ) -> None:
-        self.simulation, self.writer = simulation, writer
+        self.built, self.writer = built, writer
         self.frames_dir = Path(frames_dir) if frames_dir else None
         self.review = Path(review) if review else None
-        self.renderer = CameraRenderer(simulation.model, simulation.world, progress=progress)
-        self.video = VideoWriter(video, fps=simulation.world.frame_rate)
+        self.renderer = CameraRenderer(built.model, world, progress=progress)
+        self.video = VideoWriter(video, fps=world.frame_rate)
         self.still_frames = {round(k * frames / (STILLS - 1)) for k in range(STILLS)}
         self.stills: list[Path] = []
         self.seen: list[dict[str, Any]] = []
         self.objects = ObjectPixels(self.renderer.shape_prims)
-        self.recorded = {camera.prim for camera in simulation.world.cameras}
+        self.recorded = {camera.prim for camera in world.cameras}
 
     def __enter__(self) -> Pictures:
         """Open the video."""
@@ -69,35 +74,38 @@ class Pictures:
             partial.write_text(json.dumps({"share_of_picture": self.seen}, indent=1) + "\n", encoding="utf-8")
             partial.replace(self.review)
 
-    def take(self, frame: int) -> None:
-        """Draw the present state: the first camera always, the others at the stills."""
-        simulation = self.simulation
+    def take(self, frame: int, time: float, state: State) -> None:
+        """Draw a frame: the first camera always, the others at the stills.
+
+        Args:
+            frame: Its number.
+            time: Simulated [s].
+            state: Of that time.
+        """
         still = frame in self.still_frames
         cameras = None if still else [self.renderer.cameras[0].prim]
-        images = self.renderer.render(simulation.state, self._fluids(), cameras=cameras)
+        images = self.renderer.render(state, self._fluids(state), cameras=cameras)
         for k, (camera, image) in enumerate(images.items()):
             if k == 0:
                 self.video.write(image.rgb)
             if camera in self.recorded:
-                self.writer.image(simulation.time, camera, image.rgb)
+                self.writer.image(time, camera, image.rgb)
             shares = self._shares(image)
-            self.writer.seen(simulation.time, camera, shares)
+            self.writer.seen(time, camera, shares)
             if still:
-                self._keep(camera, image, shares)
+                self._keep(camera, time, image, shares)
 
-    def _fluids(self) -> dict[str, np.ndarray]:
-        parts = self.simulation.built.fluids
-        if not parts:
+    def _fluids(self, state: State) -> dict[str, np.ndarray]:
+        if not self.built.fluids:
             return {}
-        position = self.simulation.state.particle_q.numpy()
-        return {prim: position[part] for prim, part in parts.items()}
+        position = state.particle_q.numpy()
+        return {prim: position[part] for prim, part in self.built.fluids.items()}
 
     def _shares(self, image: CameraImage) -> dict[str, float]:
         """The share of a picture that each object takes up; 0 for one that is not to be seen."""
         return {prim: n / image.shape_index.size for prim, n in self.objects.count(image.shape_index).items()}
 
-    def _keep(self, camera: str, image: CameraImage, shares: dict[str, float]) -> None:
-        time = self.simulation.time
+    def _keep(self, camera: str, time: float, image: CameraImage, shares: dict[str, float]) -> None:
         shown = {prim: round(share, 5) for prim, share in shares.items() if share}
         self.seen.append({"camera": camera, "time": round(time, 4), "objects": shown})
         if self.frames_dir:

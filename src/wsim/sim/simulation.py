@@ -207,9 +207,10 @@ class Simulation:
         problems: list[str] = []
         with ExitStack() as stack:
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
-            pictures = Pictures(self, writer, video, frames_dir, review, frames, progress) if video else None
-            if pictures:
-                stack.enter_context(pictures)
+            pictures = None
+            if video:
+                drawn = Pictures(self.world, self.built, writer, video, frames_dir, review, frames, progress)
+                pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             for frame in range(frames + 1):
                 if frame:
@@ -217,7 +218,7 @@ class Simulation:
                 problems = self.problems()
                 writer.frame(self.time, measure(self.built, self.state, self.rigid))
                 if pictures and not problems:
-                    pictures.take(frame)
+                    pictures.take(frame, self.time, self.state)
                 progress("simulating", frame, frames)
                 for prim, text in self._departures():
                     writer.log(self.time, "WARN", text, prim)

@@ -8,6 +8,7 @@ from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.report import write as write_report
 from wsim.runs.accept import accept as stamp
+from wsim.runs.iteration import Iteration
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.text import number
@@ -24,7 +25,7 @@ def accept(workspace: Workspace, asked: Accept) -> Result:
     if verdict.status != "accepted":
         raise UserError(f"iterations/{path.parent.name} is {verdict.status}; read_verdict says what fails")
     run = workspace.run
-    bare = stamp(run, path.parent, workspace.plan, workspace.settings, workspace.progress)
+    bare = stamp(run, Iteration(path.parent, workspace.plan, workspace.settings, workspace.progress))
     run.record(status=bare.status, summary=bare.summary)
     write_report(run.path)
     if bare.status != "accepted":

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.progress import Progress, silent
-from wsim.runs.pipeline import Settings
+from wsim.runs.settings import Settings
 from wsim.tools.text import capped, relative
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ from pydantic import Field
 from wsim.errors import UserError
 from wsim.plan.store import load, save
 from wsim.tools.base import Arguments, Result, Tool, Workspace
-from wsim.tools.iterations import numbered
 from wsim.tools.text import number, numbers, table
 
 if TYPE_CHECKING:
@@ -48,7 +47,7 @@ def read_plan(workspace: Workspace, asked: ReadPlan) -> Result:
 
 def write_plan(workspace: Workspace, asked: WritePlan) -> Result:
     """Check a plan, lay it out, and make it the run's."""
-    judged = [folder.name for folder in numbered(workspace.run) if (folder / "verdict.json").is_file()]
+    judged = [folder.name for folder in workspace.run.iterations() if (folder / "verdict.json").is_file()]
     if judged:
         raise UserError(
             f"iteration {judged[0]} was judged by the plan that is there: it stays; another plan needs another run"

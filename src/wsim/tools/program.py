@@ -11,7 +11,7 @@ from wsim.errors import UserError
 from wsim.program.patch import Edit, apply, diff
 from wsim.program.validator import validate
 from wsim.tools.base import Arguments, Result, Tool, Workspace
-from wsim.tools.iterations import OfIteration, add, file_of
+from wsim.tools.iterations import OfIteration, file_of
 from wsim.tools.text import page
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def write_program(workspace: Workspace, asked: WriteProgram) -> Result:
     problems = _problems(workspace, asked.text)
     if problems and not asked.anyway:
         return Result("\n".join(["not written:", *_listed(problems)]), ok=False)
-    folder = add(workspace.run, asked.text)
+    folder = workspace.run.add(asked.text)
     return Result("\n".join([f"iterations/{folder.name}/program.py written, not run yet", *_listed(problems)]))
 
 
@@ -85,7 +85,7 @@ def patch_program(workspace: Workspace, asked: PatchProgram) -> Result:
     problems = _problems(workspace, after)
     if problems and not asked.anyway:
         return Result("\n".join(["not written; lines are those of the patched text:", *_listed(problems)]), ok=False)
-    folder = add(workspace.run, after, before)
+    folder = workspace.run.add(after, before)
     head = f"iterations/{folder.name}/program.py written, not run yet"
     return Result("\n".join([head, *_listed(problems), *diff(before, after).splitlines()[2:]]))
 

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from wsim import sim
 from wsim.runs.folder import write_json
-from wsim.runs.pipeline import build_in, checks_of, no_world, simulate_and_judge
+from wsim.runs.iteration import Iteration, no_world
 from wsim.scene.describe import describe
 from wsim.sim.seen import still_name, write_png
 from wsim.tools.base import Result, Tool, Workspace
@@ -55,10 +55,11 @@ def _build(workspace: Workspace, program: Path) -> Result | None:
     folder = program.parent
     if (folder / "stage.usda").is_file():
         return None
-    built = build_in(folder, workspace.settings, workspace.progress)
+    iteration = Iteration(folder, workspace.plan, workspace.settings, workspace.progress)
+    built = iteration.build()
     if built.ok:
         return None
-    no_world(folder, built)
+    iteration.conclude(no_world(built))
     where = f" [{built.line}]" if built.line else ""
     lines = [f"iterations/{folder.name}: the program made no world ({built.kind}){where}: {built.message}"]
     return Result("\n".join([*lines, *built.problems[1:], *_printed(built.log)]), ok=False)
@@ -66,7 +67,7 @@ def _build(workspace: Workspace, program: Path) -> Result | None:
 
 def _built(workspace: Workspace, folder: Path) -> Result:
     world = describe(folder / "stage.usda")
-    log = checks_of(folder).get("build", {}).get("log", "")
+    log = Iteration(folder).checks.get("build", {}).get("log", "")
     head = f"iterations/{folder.name}/stage.usda: {number(world.duration)} s at {number(world.frame_rate)} frames/s"
     return Result("\n".join([head, *_contents(world), *_printed(log)]))
 
@@ -115,8 +116,9 @@ def _full(workspace: Workspace, folder: Path) -> Result:
 def _simulate(workspace: Workspace, folder: Path, pictures: bool) -> None:
     """Simulate and judge; recording, verdict and the rest replace those of a narrower pass, file by file."""
     settings = replace(workspace.settings, pictures=pictures, verify=workspace.settings.verify and pictures)
-    with _kept(folder / "recording.rrd"):
-        simulate_and_judge(folder, folder / "program.py", workspace.plan, settings, workspace.progress)
+    iteration = Iteration(folder, workspace.plan, settings, workspace.progress)
+    with _kept(iteration.recording):
+        iteration.conclude(iteration.happen())
 
 
 @contextlib.contextmanager
@@ -135,7 +137,7 @@ def _kept(recording: Path) -> Iterator[None]:
 
 
 def _judged(folder: Path) -> Result:
-    facts = checks_of(folder).get("simulation", {})
+    facts = Iteration(folder).checks.get("simulation", {})
     lines = [f"iterations/{folder.name}:"]
     if "steps" in facts:
         lines[0] += f" {facts['frames']} frames, {facts['steps']} steps of {number(facts['dt'])} s"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import warp as wp
 
-from wsim.kernels.render import composite, display, surface
+from wsim.kernels.render import display, faces, sky, surface
 
 
 @wp.kernel
@@ -19,25 +19,25 @@ def _curves(x: wp.array(dtype=float), out_srgb: wp.array(dtype=float), out_tone:
 @wp.kernel
 def _fresnel(cosine: wp.array(dtype=float), out: wp.array(dtype=float)):
     i = wp.tid()
-    out[i] = composite.fresnel(cosine[i], 1.0, 1.5)
+    out[i] = faces.fresnel(cosine[i], 1.0, 1.5)
 
 
 @wp.kernel
 def _checker(x: wp.array(dtype=float), width: float, out: wp.array(dtype=float)):
     i, j = wp.tid()
-    wp.atomic_add(out, 0, composite.checker_filtered(x[i], x[j], width))
+    wp.atomic_add(out, 0, sky.checker_filtered(x[i], x[j], width))
     if i == 0 and j == 0:
-        out[1] = composite.checker_filtered(0.5, 0.5, 0.01)
-        out[2] = composite.checker_filtered(1.5, 0.5, 0.01)
-        out[3] = composite.checker_filtered(0.3, 0.7, 4.0)
+        out[1] = sky.checker_filtered(0.5, 0.5, 0.01)
+        out[2] = sky.checker_filtered(1.5, 0.5, 0.01)
+        out[3] = sky.checker_filtered(0.3, 0.7, 4.0)
 
 
 @wp.kernel
 def _box(half: wp.vec3, pose: wp.transform, origin: wp.vec3, direction: wp.vec3, out: wp.array(dtype=wp.vec3)):
-    span = composite.span_of_box(half, pose, origin, direction)
+    span = faces.span_of_box(half, pose, origin, direction)
     out[0] = wp.vec3(span[0], span[1], 0.0)
-    out[1] = composite.normal_of_box(half, pose, origin + direction * span[0])
-    out[2] = composite.normal_of_box(half, pose, origin + direction * span[1])
+    out[1] = faces.normal_of_box(half, pose, origin + direction * span[0])
+    out[2] = faces.normal_of_box(half, pose, origin + direction * span[1])
 
 
 def floats(*values: float) -> wp.array:

@@ -1,0 +1,132 @@
+"""A world in the making: the programs that are tried, the best of them, and what is tried next."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from wsim.agents.budget import BudgetError
+from wsim.agents.crew import Crew
+from wsim.judge.verdict import Verdict
+from wsim.loop.options import Options
+from wsim.plan.schema import Plan
+from wsim.program.compose import compose
+from wsim.runs.accept import accept
+from wsim.runs.attempt import Attempt, Reached, attempt, numerics
+from wsim.runs.folder import RunFolder
+from wsim.runs.iteration import Iteration
+from wsim.runs.records import Tried
+
+
+@dataclass
+class Making:
+    """A run between its plan and its verdict.
+
+    Attributes:
+        run: Its folder.
+        crew: Who works on it.
+        plan: What the world must be.
+        options: How it is made.
+        best: The best attempt so far.
+        undone: Patches of the best that are no better.
+    """
+
+    run: RunFolder
+    crew: Crew
+    plan: Plan
+    options: Options
+    best: Attempt | None = None
+    undone: list[Attempt] = field(default_factory=list)
+
+    @property
+    def tried(self) -> int:
+        """How many programs were."""
+        return len(self.run.iterations())
+
+    @property
+    def ends(self) -> bool:
+        """Whether the best is right, or nothing more may be tried."""
+        assert self.best is not None
+        alone = not self.crew.has("coder")
+        return self.best.verdict.status == "accepted" or alone or self.tried >= self.options.budget.iterations
+
+    @property
+    def verdict(self) -> Verdict:
+        """That of the best; blocked where more was to be tried."""
+        assert self.best is not None
+        if self.best.verdict.status == "accepted" or not self.crew.has("coder"):
+            return self.best.verdict
+        return self.blocked(f"iteration limit: {self.tried} programs were tried")
+
+    def blocked(self, cause: str) -> Verdict:
+        """The verdict on a run that could not go on: why, and the best so far."""
+        self.run.record(cause=cause)
+        if self.best is None:
+            return Verdict(status="blocked", summary=cause)
+        return Verdict(
+            status="blocked",
+            summary=f"{cause}. Best so far: iteration {self.best.number}: {self.best.verdict.summary}",
+            findings=self.best.verdict.findings,
+        )
+
+    def first_draft(self) -> str:
+        """The program that the plan composes: what every later one is a patch of."""
+        program = compose(self.plan)
+        self.crew.desk.transcript.builtin("coder", "plan.json", program)
+        return program
+
+    def attempt(self, program: str) -> Attempt:
+        """A program, as a new iteration, through all passes, the review, the judge, and acceptance."""
+        folder = self.run.add(program, self.best.program if self.best else None)
+        settings = self.options.settings
+        if self.best is not None and numerics(program) != numerics(Iteration(self.run.iteration(1)).text):
+            # A world that a finer computation made right must stand a still finer one.
+            settings = replace(settings, verify=True)
+        iteration = Iteration(folder, self.plan, settings, self.crew.workspace.progress)
+        tried = attempt(iteration, cheap_first=self.crew.has("coder"))
+        try:
+            self._assess(tried, replace(iteration, settings=self.options.settings))
+        except BudgetError as error:  # what was tried is kept, and what was found of it
+            self.run.record(cause=str(error))
+            if tried.verdict.status == "accepted":
+                summary = f"{error}, before it was confirmed. {tried.verdict.summary}"
+                tried.verdict = Verdict(status="blocked", summary=summary, findings=tried.verdict.findings)
+        if tried.verdict.status != "accepted" and tried.reached == Reached.ALL:
+            tried.reached = Reached.REVIEW
+        iteration.conclude(tried.verdict)
+        return tried
+
+    def _assess(self, tried: Attempt, iteration: Iteration) -> None:
+        """The review, the judge, and acceptance; a program that is no better is not asked about."""
+        if tried.verdict.status == "accepted":
+            self.crew.look(tried, self.plan)
+        if self.best is None or tried.rank > self.best.rank:
+            self.crew.judge(tried, self.plan)
+        if tried.verdict.status == "accepted" and self.options.confirm:
+            tried.verdict = accept(self.run, iteration, tried.earlier)
+        elif tried.verdict.status == "accepted":
+            self.run.stamp(tried.folder)
+
+    def keep(self, tried: Attempt) -> None:
+        """Go on from an attempt if it is the best; run.json has a row for it either way."""
+        if self.best is None or tried.rank > self.best.rank:
+            self.best, self.undone = tried, []
+        else:
+            self.undone.append(tried)
+        row = Tried(
+            number=tried.number,
+            reached=tried.reached.name.lower(),
+            status=tried.verdict.status,
+            summary=tried.verdict.summary,
+            failed=list(dict.fromkeys(finding.check for finding in tried.verdict.failures)),
+            kept=tried is self.best,
+            repair=tried.repair,
+        )
+        rows = self.run.facts().get("iterations", [])
+        self.run.record(iterations=[*rows, row.model_dump()], best=self.best.number)
+
+    def repairs(self, last: Attempt) -> list[str]:
+        """Programs to try next: patches of the best. One; where several are tried, the best of them goes on."""
+        assert self.best is not None
+        if last is not self.best:
+            self.crew.judge(self.best, self.plan, self.undone)  # what it asked for did not help
+        return [self.crew.repair(self.best, self.undone, self.plan)]
