@@ -6,18 +6,16 @@ import ast
 import re
 from difflib import get_close_matches
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pxr import Sdf
 
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index
 from wsim.program.validator.arguments import Arguments
+from wsim.program.validator.state import State
 from wsim.program.validator.types import class_of
 from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, Value
-
-if TYPE_CHECKING:
-    from wsim.program.validator.calls import Calls
 
 _NAMESPACES = ("physics:", "newton:", "wsim:", "drive:", "limit:", "primvars:display", "inputs:diffuse")
 _READS = ("GetAttribute", "HasAttribute", "CreateAttribute", "GetRelationship", "CreateRelationship", "GetProperty")
@@ -35,7 +33,7 @@ _FREEDOMS = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ", "distance", "
 _NUMBERS = ("float", "double", "int", "half", "uint")
 
 
-def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> None:
+def check(reader: State, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> None:
     """What USD itself would find out only when the program runs."""
     first = arguments.given[0] if arguments.given else next(iter(arguments.named.values()), (UNKNOWN, arguments.call))
     if entry.short in _READS and entry.parent.startswith("pxr.Usd.Prim"):
@@ -60,13 +58,13 @@ def check(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any
             _instance_name(reader, entry, *bound["name"])
 
 
-def _value_type(reader: Calls, value: Value, node: ast.AST) -> None:
+def _value_type(reader: State, value: Value, node: ast.AST) -> None:
     """The name of a type of attributes."""
     if isinstance(value, Const) and isinstance(value.value, str) and not Sdf.ValueTypeNames.Find(value.value):
         reader.problems.add(node, "value", f'USD has no type "{value.value}"')
 
 
-def _applied(reader: Calls, entry: Entry, prim: Value, node: ast.AST) -> None:
+def _applied(reader: State, entry: Entry, prim: Value, node: ast.AST) -> None:
     """A prim of USD's own that collides or moves is an object of the world."""
     if entry.parent.endswith(("RigidBodyAPI", "CollisionAPI")) and isinstance(prim, Instance) and reader.certain:
         name = prim.path.removeprefix("/World/")
@@ -74,7 +72,7 @@ def _applied(reader: Calls, entry: Entry, prim: Value, node: ast.AST) -> None:
             reader.world.raw.setdefault(name, node)
 
 
-def _attribute_name(reader: Calls, call: str, value: Value, node: ast.AST) -> None:
+def _attribute_name(reader: State, call: str, value: Value, node: ast.AST) -> None:
     if not isinstance(value, Const) or not isinstance(value.value, str):
         return
     name = value.value
@@ -103,7 +101,7 @@ def _attributes(index: Index) -> tuple[frozenset[str], tuple[re.Pattern[str], ..
     return frozenset(name for name in names if "*" not in name), patterns
 
 
-def _schema_name(reader: Calls, call: str, value: Value, node: ast.AST) -> None:
+def _schema_name(reader: State, call: str, value: Value, node: ast.AST) -> None:
     if not isinstance(value, Const) or not isinstance(value.value, str):
         return
     entry = reader.entry(value.value.partition(":")[0])
@@ -115,7 +113,7 @@ def _schema_name(reader: Calls, call: str, value: Value, node: ast.AST) -> None:
         reader.problems.add(node, "name", f'no schema "{value.value}" is installed', f'"{close[0]}"' if close else "")
 
 
-def _makes(reader: Calls, entry: Entry, bound: dict[str, Any], arguments: Arguments) -> None:
+def _makes(reader: State, entry: Entry, bound: dict[str, Any], arguments: Arguments) -> None:
     """A prim that is made without the scene's calls."""
     world = reader.world
     world.touched()
@@ -137,13 +135,13 @@ def _makes(reader: Calls, entry: Entry, bound: dict[str, Any], arguments: Argume
                 reader.problems.add(kind_node, "name", f'no schema "{kind.value}" is installed', f'"{close[0]}"')
 
 
-def _schema_attribute(reader: Calls, name: str) -> str:
+def _schema_attribute(reader: State, name: str) -> str:
     """The whole name of the schema attribute of this name, if there is one alone."""
     found = [each for each in reader.index.programs.ending(name) if each.rpartition(".")[2] == name]
     return found[0] if len(found) == 1 else ""
 
 
-def path_of(reader: Calls, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> str:
+def path_of(reader: State, entry: Entry, owner: Value | None, bound: dict[str, Any], arguments: Arguments) -> str:
     """Where the prim is that a call makes, finds or speaks of; of an attribute, its name in the index; or ""."""
     if entry.returns == "pxr.Usd.Attribute":
         if _ATTRIBUTE.match(entry.short):
@@ -175,7 +173,7 @@ def _path(value: Value) -> str:
     return ""
 
 
-def _finds(reader: Calls, value: Value, node: ast.AST) -> None:
+def _finds(reader: State, value: Value, node: ast.AST) -> None:
     """A prim that is looked for by its path: one that is spelt nearly like one that is there, and is not, is a slip."""
     world, text = reader.world, _path(value)
     if not text.startswith("/World/") or world.open or not reader.certain:
@@ -189,7 +187,7 @@ def _finds(reader: Calls, value: Value, node: ast.AST) -> None:
         reader.problems.add(node, "prim", f'no prim "{text}" has been made', f'"/World/{close[0]}"')
 
 
-def _value(reader: Calls, entry: Entry, attribute: Entry | None, value: Value, node: ast.AST) -> None:
+def _value(reader: State, entry: Entry, attribute: Entry | None, value: Value, node: ast.AST) -> None:
     """A value that an attribute is given."""
     if not isinstance(value, (Const, Items)) or (isinstance(value, Const) and value.value is None):
         return
@@ -224,7 +222,7 @@ def _is_wrong(kind: str, value: Const | Items) -> bool:
     return kind in ("token", "string") and not text
 
 
-def _instance_name(reader: Calls, entry: Entry, value: Value, node: ast.AST) -> None:
+def _instance_name(reader: State, entry: Entry, value: Value, node: ast.AST) -> None:
     """Which freedom of a joint a drive or a limit is for."""
     if entry.parent not in ("pxr.UsdPhysics.DriveAPI", "pxr.UsdPhysics.LimitAPI"):
         return
@@ -246,7 +244,7 @@ def _has_numbers(value: Items) -> bool:
     return any(isinstance(each, Const) and isinstance(each.value, (int, float)) for each in value.items)
 
 
-def _attribute_of(reader: Calls, entry: Entry) -> Entry | None:
+def _attribute_of(reader: State, entry: Entry) -> Entry | None:
     """The attribute that a schema class's call gets or creates, such as `CreateMassAttr`; None if it is not found."""
     short = re.sub(r"^(Create|Get)|Attr$", "", entry.short)
     attribute = short[:1].lower() + short[1:]
@@ -258,7 +256,7 @@ def _attribute_of(reader: Calls, entry: Entry) -> Entry | None:
     return None
 
 
-def _schema_of(reader: Calls, kind: str) -> str:
+def _schema_of(reader: State, kind: str) -> str:
     """The schema of a class of pxr: `pxr.UsdPhysics.MassAPI` is "PhysicsMassAPI"; "" if it has none."""
     module, _, short = kind.removeprefix("pxr.").partition(".")
     for name in (f"{module.removeprefix('Usd')}{short}", short):

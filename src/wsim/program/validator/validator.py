@@ -8,7 +8,9 @@ import warnings
 from typing import TYPE_CHECKING
 
 from wsim.program.api.lookup import index
+from wsim.program.validator import plan_names
 from wsim.program.validator.problem import Problem
+from wsim.program.validator.reader import Reader
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -40,12 +42,8 @@ def validate(text: str, plan: Plan | None = None) -> list[Problem]:
     except (ValueError, RecursionError, MemoryError) as error:
         return [Problem(1, 1, "syntax", f"this cannot be read as Python: {error}")]
 
-    from wsim.program.validator.reader import Reader
-
     reader = Reader(index(), tree)
     reader.read()
     if plan is not None:
-        from wsim.program.validator import plan_names
-
         plan_names.check(reader, plan)
     return [dataclasses.replace(each, code=each.code.partition(" ")[0]) for each in reader.problems.sorted()]
