@@ -50,6 +50,7 @@ ENDS: dict[str, tuple[str, str, int | None]] = {
     "connects": ("exception", "PermissionError", 5),
     "talks_in_the_kernel": ("exception", "nobody heard", 21),
     "hides_its_descriptors": ("exception", "refused", 17),
+    "leaves_its_group": ("exception", "still there", 11),
     "writes_to_the_kernel": ("exception", "0 opened", None),
     "reads_shadow": ("exception", "/etc/shadow", 2),
     "reads_a_secret": ("exception", "nothing to see", 18),

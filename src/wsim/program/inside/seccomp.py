@@ -34,6 +34,7 @@ _CALLS: dict[str, tuple[int | None, int | None]] = {
     "ioctl": (16, 29), "open": (2, None), "openat": (257, 56), "openat2": (437, 437), "close_range": (436, 436),
     "fallocate": (285, 47), "splice": (275, 76), "tee": (276, 77), "vmsplice": (278, 75),
     "io_setup": (206, 0), "io_submit": (209, 2),
+    "setpgid": (109, 154), "setsid": (112, 157),  # it is ended with its group
     "setpriority": (141, 140), "ioprio_set": (251, 30), "sched_setaffinity": (203, 122),
     "sched_setscheduler": (144, 119), "sched_setparam": (142, 118), "sched_setattr": (314, 274),
     "shmget": (29, 194), "shmat": (30, 196), "shmctl": (31, 195), "msgget": (68, 186), "msgsnd": (69, 189),
