@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import platform
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -13,6 +15,8 @@ from pathlib import Path
 import pytest
 
 from wsim.program.sandbox import BuildResult, Limits, build
+from wsim.program.sandbox.process import SandboxProcess
+from wsim.program.sandbox.result import REPORT_BYTES
 
 HOSTILE = Path(__file__).parent / "hostile"
 SECONDS = 2.0
@@ -44,6 +48,10 @@ ENDS: dict[str, tuple[str, str, int | None]] = {
     "daemon": ("exception", "PermissionError", 6),
     "starts_a_program": ("exception", "PermissionError", 5),
     "connects": ("exception", "PermissionError", 5),
+    "talks_in_the_kernel": ("exception", "nobody heard", 21),
+    "hides_its_descriptors": ("exception", "refused", 17),
+    "leaves_its_group": ("exception", "still there", 11),
+    "writes_to_the_kernel": ("exception", "0 opened", None),
     "reads_shadow": ("exception", "/etc/shadow", 2),
     "reads_a_secret": ("exception", "nothing to see", 18),
     "writes_outside": ("exception", "Error", None),
@@ -130,10 +138,51 @@ def test_is_stopped_when_its_cpu_time_is_up(run) -> None:
     assert "CPU" in result.message
 
 
-@pytest.mark.parametrize("name", ["fills_scratch_many_files", "fills_scratch_empty_files", "fills_scratch_unseen"])
+@pytest.mark.parametrize(
+    "name",
+    ["fills_scratch_many_files", "fills_scratch_empty_files", "fills_scratch_unseen", "fills_scratch_mapped"],
+)
 def test_many_files_do_not_fill_the_disk(run, name: str) -> None:
     result = run(name)
     assert result.kind == "output", result.message
+
+
+def test_inherited_files_do_not_fill_the_disk(isolation: str, tmp_path: Path) -> None:
+    stage = tmp_path / "stage.usda"
+    job = {"task": "build", "program": str(HOSTILE / "grows_its_files.py"), "params": {}, "seed": 0}
+    limits = LIMITS.model_copy(update={"scratch_bytes": 64 * MIB})
+    with stage.open("w+b") as target:
+        before = shutil.disk_usage(tmp_path).free
+        with SandboxProcess(
+            {**job, "stage_fd": target.fileno()},
+            limits=limits,
+            isolation=isolation,
+            readable=[HOSTILE],
+            descriptors=[target.fileno()],
+        ) as process:
+            process.wait(limits.wall_seconds)
+            assert "tried" in process.log
+            assert len(process.report()) <= REPORT_BYTES + 1
+            # The stage, the report and the scratch folder, and as much again for what others write meanwhile.
+            assert before - shutil.disk_usage(tmp_path).free < 2 * (2 * limits.file_bytes + limits.scratch_bytes)
+        assert stage.stat().st_size <= limits.file_bytes
+        assert stage.stat().st_blocks * 512 <= limits.file_bytes + MIB
+
+
+def test_sockets_by_path_are_out_of_reach(run, tmp_path: Path) -> None:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
+        listener.bind(str(tmp_path / "socket"))
+        listener.setblocking(False)
+        result = run("reaches_a_socket")
+        assert "nobody was reached" in result.message
+        with pytest.raises(BlockingIOError):
+            listener.recv(100)
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="32-bit calls are those of x86")
+def test_the_calls_of_32_bit_programs_end_the_process(run) -> None:
+    result = run("calls_the_old_way")
+    assert (result.kind, "SIGSYS" in result.message) == ("crash", True), result.message
 
 
 def test_dies_with_the_process_that_asked(isolation: str, tmp_path: Path) -> None:

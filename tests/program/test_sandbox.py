@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import time
 from pathlib import Path
 
@@ -8,8 +9,8 @@ import pytest
 from pxr import Usd
 
 from wsim.errors import UserError
-from wsim.program.sandbox import Limits, build
-from wsim.program.sandbox.isolation import choose
+from wsim.program.sandbox import Limits, available, build
+from wsim.program.sandbox.isolation import bubblewrap, choose
 from wsim.program.sandbox.result import read_report
 
 PROGRAM = '''"""A block on the ground."""
@@ -96,6 +97,34 @@ def test_folders_are_read_only_where_they_are_named(tmp_path: Path, isolation: s
     shown = build(program, tmp_path / "stage.usda", isolation=isolation, readable=[assets])
     assert (shown.kind, shown.line) == ("exception", "program.py:3")
     assert os.listdir(assets) == ["note"]  # noqa: PTH208
+
+
+def test_bubblewrap_takes_what_lies_behind_a_link(tmp_path: Path) -> None:
+    """As a virtual environment that is a link does: its python is named both ways."""
+    if problem := available()["bubblewrap"]:
+        pytest.skip(problem)
+    real, link = tmp_path / "real", tmp_path / "link"
+    real.mkdir()
+    (real / "note").write_text("0.25")
+    link.symlink_to(real)
+    command = [*bubblewrap([link, link / "note", real, real / "note"], scratch_bytes=1 << 20), "--"]
+    done = subprocess.run([*command, "/bin/cat", str(link / "note")], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0.25", "")
+
+
+def test_a_program_is_nobody_under_bubblewrap(tmp_path: Path) -> None:
+    if problem := available()["bubblewrap"]:
+        pytest.skip(problem)
+    program = tmp_path / "program.py"
+    program.write_text(
+        "import os\ndef build(scene):\n    scene.sphere('ball', radius=0.1)\n"
+        "    print(os.getresuid(), os.getresgid())\n"
+        "    print(sorted(os.listdir('/dev')), os.listdir('/proc'), os.path.exists('/sys'))\n"
+    )
+    log = build(program, tmp_path / "stage.usda", isolation="bubblewrap").log
+    nobody, seen = log.splitlines()
+    assert nobody == "(65534, 65534, 65534) (65534, 65534, 65534)"
+    assert seen == "['null', 'random', 'urandom', 'zero'] ['self'] False"
 
 
 def test_a_program_may_use_numpy_and_scratch(tmp_path: Path, isolation: str) -> None:

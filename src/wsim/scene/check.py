@@ -15,6 +15,8 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
+from wsim.scene.check_indices import check_indices
+from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.limits import (
     MAX_BYTES,
@@ -98,6 +100,8 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
     points = 0
     for prim in prims:
         yield from _numbers(prim)
+        yield from check_indices(prim)
+        yield from check_targets(prim)
         yield from _pose(prim)
         yield from _mass(prim)
         yield from _wsim(prim)
@@ -209,9 +213,12 @@ def _geometry(prim: Usd.Prim) -> Iterator[str]:
     if prim.IsA(UsdGeom.PointBased):
         points = np.asarray(UsdGeom.PointBased(prim).GetPointsAttr().Get() or [], dtype=np.float64)
         if len(points) and np.isfinite(points).all():
-            reach = float(np.ptp(points @ np.array(matrix)[:3, :3], axis=0).max())
+            placed = points @ np.array(matrix)[:3, :3] + np.array(matrix)[3, :3]
+            reach, furthest = float(np.ptp(placed, axis=0).max()), float(np.abs(placed).max())
             if not 0.0 < reach <= MAX_SIZE:
                 yield f"{prim.GetPath()}.points: {reach:g} m across must be > 0 and <= {MAX_SIZE:g} m"
+            if furthest > MAX_POSITION:
+                yield f"{prim.GetPath()}.points: {furthest:g} m must be within {MAX_POSITION:g} m of the origin"
 
 
 def _mass(prim: Usd.Prim) -> Iterator[str]:

@@ -16,3 +16,4 @@ MAX_FRAME_RATE = 1000.0  # [1/s]
 MAX_PRIMS = 20_000
 MAX_BYTES = 100_000_000
 MAX_POINTS = 5_000_000  # vertices of all meshes together
+MAX_CORNERS = 10_000  # of one face

@@ -159,8 +159,9 @@ def _mesh(prim: Usd.Prim) -> tuple[Array, NDArray[np.int64]] | None:
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
     fans = []
     for k in range(1, int(sizes.max()) - 1):  # the k-th triangle of each face that has one
-        first = starts[sizes > k + 1]
-        fans.append(np.stack([corners[first], corners[first + k], corners[first + k + 1]], axis=1))
+        reaches = sizes > k + 1
+        sizes, starts = sizes[reaches], starts[reaches]  # a face of many corners does not cost a look at all others
+        fans.append(np.stack([corners[starts], corners[starts + k], corners[starts + k + 1]], axis=1))
     triangles = np.concatenate(fans) if fans else np.zeros((0, 3), dtype=np.int64)
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
         triangles = triangles[:, ::-1]

@@ -18,6 +18,8 @@ from wsim.program.inside import landlock, seccomp
 
 Isolation = Literal["auto", "bubblewrap", "landlock", "none"]
 SCRATCH = "/wsim-scratch"  # in bubblewrap's name space
+_DEVICES = ("/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
+_NOBODY = "65534"
 _PROBE_SECONDS = 10.0
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix/store", "/gnu/store")
 _CONFIG = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives", "/etc/localtime")
@@ -89,15 +91,22 @@ def bubblewrap(readable: Sequence[Path], *, scratch_bytes: int) -> list[str]:
     command = [str(shutil.which("bwrap") or "bwrap")]
     # A user name space even for root, for whom --unshare-all leaves it out where it can.
     command += ["--unshare-user", "--unshare-all", "--die-with-parent", "--cap-drop", "ALL", "--hostname", "sandbox"]
+    # Nobody there. Outside it stays the user who asked, which a map of one user cannot change: where that is root, what
+    # only root may write is out of reach because nothing of it is there, not because of who the program is.
+    command += ["--uid", _NOBODY, "--gid", _NOBODY]
     for path in _tops([*runtime_paths(), *readable]):
         if path.is_symlink():
             command += ["--symlink", os.readlink(path), str(path)]  # noqa: PTH115
         else:
             command += ["--ro-bind", str(path), str(path)]
-    command += ["--proc", "/proc", "--dev", "/dev"]
+    # No /proc and no /sys: the kernel's settings are files there, and open to root even without capabilities. No --dev
+    # either: with it come terminals, and links into /proc.
+    for name in _DEVICES:
+        command += ["--dev-bind", name, name]
+    command += ["--symlink", os.path.realpath(sys.executable), "/proc/self/exe"]  # USD asks where Python is
     command += ["--size", str(scratch_bytes), "--tmpfs", SCRATCH]
-    # bubblewrap's own root and /dev are tmpfs too, as large as half the machine's memory.
-    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", SCRATCH]
+    # bubblewrap's own root is a tmpfs too, as large as half the machine's memory.
+    command += ["--remount-ro", "/", "--chdir", SCRATCH]
     return command
 
 
@@ -169,9 +178,12 @@ def environment(scratch: str) -> dict[str, str]:
 
 
 def _tops(paths: Sequence[Path]) -> list[Path]:
-    """The paths that do not lie in another of them, outermost first."""
+    """The paths that do not lie in another of them, outermost first. What lies behind a link is there under its name.
+
+    That its real place is among the paths too is up to who gives them.
+    """
     kept: list[Path] = []
     for path in sorted(dict.fromkeys(paths), key=lambda path: len(path.parts)):
-        if not any(path.is_relative_to(other) and not other.is_symlink() for other in kept):
+        if not any(path.is_relative_to(other) for other in kept):
             kept.append(path)
     return kept

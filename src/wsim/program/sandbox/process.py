@@ -152,7 +152,8 @@ class SandboxProcess:
         if self._watched is None:
             self._watched = self._inner()
         if self._scratch is not None:
-            used = watch.folder_bytes(self._scratch) + watch.deleted_bytes(self._watched)
+            used = watch.folder_bytes(self._scratch)
+            used += watch.deleted_bytes(self._watched, self._scratch, self._limits.file_bytes)
         else:  # its tmpfs has a size; only the number of its files has no bound
             used = watch.many_files(self._watched, ways.SCRATCH)
         if used > self._limits.scratch_bytes:

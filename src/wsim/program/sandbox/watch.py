@@ -34,16 +34,35 @@ def folder_bytes(folder: str) -> int:
     return total
 
 
-def deleted_bytes(pid: int | None) -> int:
-    """Bytes of the files that a process holds open after deleting their last name."""
+def deleted_bytes(pid: int | None, folder: str, most: int) -> int:
+    """Bytes of a folder's files that a process keeps after deleting their last name: open, or mapped and closed.
+
+    Args:
+        pid: The process.
+        folder: Where the files were made.
+        most: Bytes that a file can have, which a mapped one counts as where its size cannot be seen.
+    """
     sizes = {}
     with contextlib.suppress(OSError), os.scandir(f"/proc/{pid}/fd") as entries:
         for entry in entries:
             with contextlib.suppress(OSError):
                 found = entry.stat()
                 if stat.S_ISREG(found.st_mode) and found.st_nlink == 0:
-                    sizes[found.st_dev, found.st_ino] = found.st_size
+                    sizes[found.st_ino] = found.st_size
+    with contextlib.suppress(OSError), Path(f"/proc/{pid}/maps").open(errors="replace") as lines:
+        for line in lines:
+            if line.endswith(" (deleted)\n") and f" {folder}/" in line:
+                place, _, _, _, inode, _ = line.split(maxsplit=5)
+                if int(inode) not in sizes:
+                    sizes[int(inode)] = _mapped_bytes(pid, place, most)
     return sum(sizes.values())
+
+
+def _mapped_bytes(pid: int | None, place: str, most: int) -> int:
+    """Size of the file mapped at a range of addresses; only root may look at more than its name."""
+    with contextlib.suppress(OSError):
+        return Path(f"/proc/{pid}/map_files/{place}").stat().st_size
+    return most
 
 
 def many_files(pid: int | None, mount: str) -> int:

@@ -1,0 +1,65 @@
+"""Paths of a stage that name other prims for physics: each must be there, and of the kind that is read there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from pxr import Usd, UsdPhysics
+
+from wsim.scene import schema
+
+_SPACES = ("physics", "newton", "mjc", "wsim")
+
+
+def check_targets(prim: Usd.Prim) -> Iterator[str]:
+    """Problems of one prim."""
+    yield from _soft(prim)
+    for relation in prim.GetAuthoredRelationships():
+        parts = relation.GetName().split(":")
+        collection = parts[0] == "collection" and parts[-1] in ("includes", "excludes")
+        if parts[0] not in _SPACES and not collection:
+            continue
+        fits, kind = _KINDS.get(relation.GetName(), (None, ""))
+        for path in relation.GetTargets():
+            target = prim.GetStage().GetPrimAtPath(path.GetPrimPath())
+            if not target or (path.IsPropertyPath() and not target.GetPropertyAtPath(path)):
+                yield f"{relation.GetPath()}: <{path}> is not there"
+            elif fits is not None and not fits(target):
+                yield f"{relation.GetPath()}: <{path}> is a {target.GetTypeName() or 'prim'}; it must be {kind}"
+    if prim.IsA(UsdPhysics.Joint):
+        yield from _joint(UsdPhysics.Joint(prim))
+
+
+def _joint(joint: UsdPhysics.Joint) -> Iterator[str]:
+    """A joint whose ends are one body: nothing can move, and Newton does not take it."""
+    prim = joint.GetPrim()
+    bodies = []
+    for relation in (joint.GetBody0Rel(), joint.GetBody1Rel()):
+        body = prim.GetStage().GetPrimAtPath((relation.GetTargets() or ["/"])[0])
+        while body and not body.IsPseudoRoot() and not body.HasAPI(UsdPhysics.RigidBodyAPI):
+            body = body.GetParent()
+        bodies.append(body)
+    if bodies[0] and not bodies[0].IsPseudoRoot() and bodies[0] == bodies[1]:
+        yield f"{prim.GetPath()}.physics:body1: <{bodies[1].GetPath()}> is at the joint's other end, too"
+
+
+def _soft(prim: Usd.Prim) -> Iterator[str]:
+    """What bends and tears is not simulated, and its many indices are not checked."""
+    names = [*prim.GetPrimTypeInfo().GetAppliedAPISchemas(), *prim.GetAppliedSchemas(), str(prim.GetTypeName())]
+    for name in names:
+        if "Deformable" in name or name in ("PhysicsAttachment", "PhysicsElementCollisionFilter"):
+            yield f"{prim.GetPath()}: {name} is not supported; bodies are rigid, and fluids are made with scene.fluid"
+            return
+
+
+def _collides(prim: Usd.Prim) -> bool:
+    return any(prim.HasAPI(api) for api in _FILTERED)
+
+
+_FILTERED = (UsdPhysics.RigidBodyAPI, UsdPhysics.CollisionAPI, UsdPhysics.ArticulationRootAPI)
+_KINDS: dict[str, tuple[Callable[[Usd.Prim], bool], str]] = {
+    "physics:filteredPairs": (_collides, "a rigid body, a collider or an articulation"),
+    "physics:filteredGroups": (lambda prim: prim.IsA(UsdPhysics.CollisionGroup), "a PhysicsCollisionGroup"),
+    "physics:simulationOwner": (lambda prim: prim.IsA(UsdPhysics.Scene), "a PhysicsScene"),
+    "wsim:container": (lambda prim: schema.has(prim, schema.CONTAINER), "a container"),
+}
