@@ -8,7 +8,14 @@ for problem in validate(text):
 
 from __future__ import annotations
 
-from wsim.program.validator.problem import Problem
-from wsim.program.validator.validator import validate
+from typing import TYPE_CHECKING
+
+from wsim.door import door
+
+if TYPE_CHECKING:
+    from wsim.program.validator.problem import Problem
+    from wsim.program.validator.validator import validate
 
 __all__ = ["Problem", "validate"]
+
+__getattr__ = door(__name__, {"Problem": "problem", "validate": "validator"})
