@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
-from typer.main import get_command
 
-from wsim.cli import app
+from wsim.cli.verbs import VERBS as NAMES
+from wsim.cli.verbs import load
 from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
 from wsim.judge.verdict import RepairKind
 from wsim.rules.lexicon import lexicon
@@ -16,7 +16,7 @@ from wsim.scene.check import check_stage
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
-VERBS = get_command(app).commands
+VERBS = {name: load(name) for name in NAMES}
 
 
 def section(title: str, document: str = "README.md") -> str:
