@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from tests.patience import STUCK
 from wsim.errors import UserError
 from wsim.importers import read_npz
 from wsim.importers.mujoco_model import world_of
@@ -221,7 +222,7 @@ def test_a_file_that_is_none_and_a_model_that_is_missing_are_said(tmp_path: Path
 def test_the_command_judges_a_trajectory_and_keeps_it_as_a_recording(tmp_path: Path, model: Path, run) -> None:
     np.savez(tmp_path / "run.npz", **states(run))
     command = [sys.executable, "-m", "wsim.cli", "judge", "run.npz", "--model", str(model), "--json", "--save", "r.rrd"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=STUCK, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert json.loads(done.stdout)["status"] == "accepted"
     written, imported = read(tmp_path / "r.rrd"), read_npz(tmp_path / "run.npz", model)
