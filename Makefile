@@ -3,7 +3,6 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
-TORCH_VERSION := 2.13.0
 TEST_JOBS ?= 2
 
 .PHONY: install demo test lint format bench bench-sph-validation lock clean help

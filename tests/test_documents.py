@@ -1,21 +1,23 @@
 """What README and the other documents say of the code is so."""
 
 import re
+import tomllib
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
+from tests.documents import DOCUMENTS, ROOT, blocks, inline
 from wsim.cli.verbs import VERBS as NAMES
 from wsim.cli.verbs import load
 from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
 from wsim.judge.verdict import RepairKind
+from wsim.plan.schema import Plan
 from wsim.rules.lexicon import lexicon
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
+from wsim.skills import skills
 
-ROOT = Path(__file__).parents[1]
-DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
 VERBS = {name: load(name) for name in NAMES}
 
 
@@ -37,12 +39,11 @@ def test_links_lead_somewhere(path: Path) -> None:
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
 def test_commands_exist(path: Path) -> None:
-    """Each `wsim VERB` and each `make TARGET` in code."""
-    text = path.read_text(encoding="utf-8")
-    code = "\n".join(re.findall(r"`([^`\n]+)`", text) + re.findall(r"^ {4}(.+)$", text, re.MULTILINE))
+    """Each `wsim VERB` and each `make TARGET` within sentences."""
+    code = "\n".join(inline(path))
     assert set(re.findall(r"(?:^|/)wsim ([a-z]+)", code, re.MULTILINE)) <= set(VERBS)
-    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
-    assert set(re.findall(r"^make ([a-z]+)", code, re.MULTILINE)) <= targets
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    assert set(re.findall(r"^make ([a-z-]+)", code, re.MULTILINE)) <= targets
 
 
 def test_readme_has_every_verb_and_no_option_that_is_not_there() -> None:
@@ -56,11 +57,36 @@ def test_readme_has_every_verb_and_no_option_that_is_not_there() -> None:
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
 def test_commands_take_the_options_that_they_are_given(path: Path) -> None:
-    text = path.read_text(encoding="utf-8")
-    code = "\n".join(re.findall(r"`([^`\n]+)`", text) + re.findall(r"^ {4}(.+)$", text, re.MULTILINE))
-    for verb, rest in re.findall(r"^(?:\S*/)?wsim ([a-z]+)(.*)$", code, re.MULTILINE):
+    for verb, rest in re.findall(r"^(?:\S*/)?wsim ([a-z]+)(.*)$", "\n".join(inline(path)), re.MULTILINE):
         options = {name for option in VERBS[verb].params for name in option.opts + option.secondary_opts}
         assert set(re.findall(r"(?<=\s)--[a-z][a-z-]+", rest)) <= options, f"wsim {verb}{rest}"
+
+
+def test_every_package_has_its_row() -> None:
+    said = set(re.findall(r"`src/wsim/(\w+)/`", section("Where things are", "AGENTS.md")))
+    assert said == {path.parent.name for path in (ROOT / "src" / "wsim").glob("*/__init__.py")}
+
+
+def test_the_layers_are_those_that_the_linter_holds() -> None:
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
+    (layers,) = (contract["layers"] for contract in settings["contracts"] if contract["type"] == "layers")
+    said = re.findall(r"^ {4}(.+)$", section("Layers", "CONTRIBUTING.md"), re.MULTILINE)
+    assert said == [layer.replace("wsim.", "") for layer in layers]
+
+
+def test_the_plans_version_is_the_schemas() -> None:
+    said = re.findall(
+        r"`wsim\.plan\.schema\.Plan`, `version` (\d+)", (ROOT / "docs/architecture.md").read_text("utf-8")
+    )
+    assert [int(version) for version in said] in ([], [Plan.model_fields["version"].default])
+
+
+def test_the_skills_are_as_many_as_the_readme_says() -> None:
+    numbers = ("twelve", "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen", "twenty")
+    (said,) = re.findall(r"\[skills/\]\(skills\),\s+(\w+)\s+of\s+them", (ROOT / "README.md").read_text("utf-8"))
+    assert numbers.index(said) + 12 == len(skills())
+    rows = re.findall(r"^\| \[([a-z-]+)\]", (ROOT / "docs/skills.md").read_text("utf-8"), re.MULTILINE)
+    assert sorted(rows) == [skill.name for skill in skills()]
 
 
 def test_the_judges_page_has_every_check_and_objective() -> None:
@@ -92,9 +118,9 @@ def test_readme_has_the_planners_vocabulary() -> None:
 
 
 def test_program_of_the_readme_builds_a_sound_stage(tmp_path: Path) -> None:
-    (source,) = re.findall(r"```python\n(.*?)```", section("A program"), re.DOTALL)
+    (block,) = blocks(ROOT / "README.md")
     namespace: dict = {"__name__": "program"}
-    exec(compile(source, "readme.py", "exec"), namespace)
+    exec(compile(block.text, "readme.py", "exec"), namespace)
     scene = Scene()
     namespace["build"](scene)
     assert check_stage(scene.save(tmp_path / "stage.usda"), [tmp_path]) == []

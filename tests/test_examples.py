@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 from pxr import Usd
 
+from tests.patience import STUCK
 from wsim.recording import Recording, read
 from wsim.scene import Scene
 from wsim.sim import Simulation
@@ -42,9 +44,13 @@ def simulate(tmp_path: Path) -> Callable[..., Recording]:
     return one
 
 
+# A program that runs by itself takes the first device that there is: here the CPU, whose kernels need no compiler.
+ON_CPU = {**os.environ, "CUDA_VISIBLE_DEVICES": ""}
+
+
 def run(command: list[str], folder: Path) -> tuple[str, Path]:
-    """Run a command in an empty folder; its output, and the folder of the one run that it made."""
-    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+    """Run a command in an empty folder, on the CPU; its output, and the folder of the one run that it made."""
+    ended = subprocess.run(command, cwd=folder, env=ON_CPU, capture_output=True, text=True, timeout=STUCK)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     assert ended.stderr == ""
     (made,) = (folder / "runs").iterdir()
@@ -124,7 +130,7 @@ def test_a_bad_call_of_a_program_is_one_line(tmp_path: Path) -> None:
         "    from wsim import run\n"
         "    run(build)\n"
     )
-    ended = subprocess.run([sys.executable, "bad.py"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    ended = subprocess.run([sys.executable, "bad.py"], cwd=tmp_path, capture_output=True, text=True, timeout=STUCK)
     assert ended.returncode == 2
     assert ended.stderr.startswith('bad.py:2: box("b"): size[1] = -1 ')
     assert ended.stderr.count("\n") == 1

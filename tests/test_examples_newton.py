@@ -9,13 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import STUCK
+
 EXAMPLES = Path(__file__).parent.parent / "examples" / "newton"
 
 
 def run(name: str, folder: Path) -> str:
     """Run an example in an empty folder; what it printed."""
     command = [sys.executable, str(EXAMPLES / name), "cpu"]
-    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=240)
+    ended = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=STUCK)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     return ended.stdout
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.agents.scripted import Server
+from tests.patience import STUCK
 from wsim.agents import relay
 from wsim.agents.ask import Desk
 from wsim.agents.budget import Budget, Ledger
@@ -28,7 +29,7 @@ def desk(server: Server, tmp_path: Path) -> Desk:
 
 def make_desk(server: Server, folder: Path, **budget: float) -> Desk:
     folder.mkdir(exist_ok=True)
-    limits = {"request_seconds": 20.0, **budget}
+    limits = {"request_seconds": STUCK, **budget}
     models = Models(**{role: server.model(role) for role in ROLES})
     return Desk(models, Transcript(folder), Ledger(Budget(**limits)))  # type: ignore[arg-type]
 

@@ -97,11 +97,12 @@ def test_what_does_not_pass_is_a_model_error(server: Server, desk: Desk, what: s
 
 def test_silence_is_a_time_out(server: Server, tmp_path: Path) -> None:
     desk = make_desk(server, tmp_path / "run", request_seconds=0.1, attempts=2)
-    server.script["coder"] = [hang, hang, text("late")]
+    server.forever["coder"] = hang
     error = failing(desk)
     assert error.kind == "timeout"
     assert "--model-timeout" in str(error)
-    assert len(server.requests) == len(written(desk)) == 2
+    assert [exchange.error["kind"] for exchange in written(desk)] == ["timeout"] * 2
+    assert len(server.requests) <= 2  # one that had not left when its time was up is not there
     assert desk.ledger.account("coder").seconds >= 0.2
 
 
@@ -266,11 +267,11 @@ def test_a_server_that_counts_no_tokens_is_counted(server: Server, tmp_path: Pat
 
 
 def test_time_that_is_over_ends_it(server: Server, tmp_path: Path) -> None:
-    desk = make_desk(server, tmp_path / "run", seconds=0.3)
+    desk = make_desk(server, tmp_path / "run", seconds=0.3, request_seconds=3600.0)
     server.forever["coder"] = hang
     with pytest.raises(BudgetError, match=r"time limit: 0\.3 s are over"):
         desk.ask("coder", "Say a word.", word)
-    assert len(server.requests) == 1  # however long one request may take
+    assert len(server.requests) <= 1  # however long one request may take
 
 
 # --- the cache

@@ -10,7 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner
 
+from tests.patience import STUCK
+from wsim.cli import app
+from wsim.errors import UserError
 from wsim.program.sandbox import available
 from wsim.rules.planner import plan
 
@@ -55,7 +59,7 @@ def start(command: list[str], folder: Path) -> subprocess.Popen[str]:
 
 def end(process: subprocess.Popen[str], folder: Path) -> Ended:
     """Wait for a command, and see what no command may ever do: trace back."""
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=STUCK)
     assert "Traceback" not in out + err, err
     return Ended(process.returncode, out, err, folder / "runs")
 
@@ -68,6 +72,22 @@ def wsim_command(*arguments: object) -> list[str]:
 def wsim(tmp_path: Path) -> Callable[..., Ended]:
     """Run `wsim` in an empty folder."""
     return lambda *arguments: end(start(wsim_command(*arguments), tmp_path), tmp_path)
+
+
+@pytest.fixture
+def told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Ended]:
+    """Call `wsim` in an empty folder, in this process: for what does not hang on a process of its own."""
+
+    def one(*arguments: object) -> Ended:
+        monkeypatch.chdir(tmp_path)
+        done = CliRunner().invoke(app, [str(word) for word in arguments], prog_name="wsim")
+        if isinstance(done.exception, UserError):  # as `main` says it
+            return Ended(2, done.stdout, f"{done.stderr}wsim: {done.exception}\n", tmp_path / "runs")
+        if done.exception is not None and not isinstance(done.exception, SystemExit):
+            raise done.exception
+        return Ended(done.exit_code, done.stdout, done.stderr, tmp_path / "runs")
+
+    return one
 
 
 @pytest.fixture(scope="session")

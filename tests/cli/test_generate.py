@@ -42,7 +42,7 @@ def test_a_block_floats_and_its_run_is_whole(floating) -> None:
         assert hashlib.sha256((floating.run / "accepted" / name).read_bytes()).hexdigest() == digest
     facts = json.loads((floating.run / "run.json").read_text())
     assert facts["status"] == "accepted"
-    assert 0.0 < facts["seconds"] < 120.0
+    assert facts["seconds"] > 0.0
     assert Plan.model_validate_json((floating.run / "plan.json").read_text()).prompt == facts["prompt"]
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from tests.patience import STUCK
 from wsim.plan.schema import Plan
 
 from .conftest import ENVIRONMENT, wsim_command
@@ -35,7 +36,7 @@ def talk(tmp_path: Path) -> Talk:
             input=typed,
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=STUCK,
         )
 
     return run
@@ -161,7 +162,7 @@ MISTAKES: dict[tuple[str, ...], str] = {
 
 
 @pytest.mark.parametrize("arguments", MISTAKES, ids=" ".join)
-def test_a_mistake_is_one_line_and_leaves_nothing(wsim, tmp_path: Path, arguments: tuple[str, ...]) -> None:
+def test_a_mistake_is_one_line_and_leaves_nothing(told, tmp_path: Path, arguments: tuple[str, ...]) -> None:
     (tmp_path / "plan.json").write_text((EXAMPLES / "offroad_vehicle.json").read_text())
     (tmp_path / "broken.toml").write_text("material_ball = ")
     (tmp_path / "unknown.toml").write_text('material_whale = "steel"')
@@ -169,7 +170,7 @@ def test_a_mistake_is_one_line_and_leaves_nothing(wsim, tmp_path: Path, argument
     (tmp_path / "cheese.toml").write_text('material_ball = "cheese"')
     Image.new("RGB", (4, 4)).save(tmp_path / "photo.png")
     before = set(tmp_path.iterdir())
-    ended = wsim(*arguments)
+    ended = told(*arguments)
     assert ended.code == 2, ended.out
     assert ended.err.startswith("wsim: ")
     assert ended.err.count("\n") == 1
@@ -237,7 +238,7 @@ def test_the_drawing_keeps_to_the_terminal(tmp_path: Path, width: str) -> None:
         env={**os.environ, "COLUMNS": width, "TERM": "dumb"},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=STUCK,
     )
     assert ended.returncode == 0, ended.stderr
     drawing = ended.stdout[ended.stdout.index("from above") :].splitlines()

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import STUCK
 from wsim import __version__
 from wsim.judge.verdict import Verdict
 
@@ -88,14 +89,14 @@ def test_view_serves_a_finding_to_a_browser_until_interrupted(launch, reruns) ->
     url = process.stdout.readline().strip()
     assert url.startswith("http://127.0.0.1:")
     local = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-    with local.open(url, timeout=5.0) as page:
+    with local.open(url, timeout=STUCK) as page:
         assert page.status == 200
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=10)
+    out, err = process.communicate(timeout=STUCK)
     assert process.returncode == 0, err
     assert out + err == ""
     with pytest.raises(urllib.error.URLError):
-        local.open(url, timeout=5.0)
+        local.open(url, timeout=STUCK)
 
 
 def test_doctor_and_version(wsim) -> None:
@@ -146,8 +147,8 @@ def place(tmp_path: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("arguments", MISTAKES, ids=" ".join)
-def test_a_mistake_is_one_line_and_leaves_nothing(wsim, place, tmp_path: Path, arguments: tuple[str, ...]) -> None:
-    ended = wsim(*arguments)
+def test_a_mistake_is_one_line_and_leaves_nothing(told, place, tmp_path: Path, arguments: tuple[str, ...]) -> None:
+    ended = told(*arguments)
     assert ended.code == 2, ended.out
     assert ended.err.startswith("wsim: ")
     assert ended.err.count("\n") == 1
@@ -156,8 +157,8 @@ def test_a_mistake_is_one_line_and_leaves_nothing(wsim, place, tmp_path: Path, a
 
 
 @pytest.mark.parametrize("arguments", WRONG_OPTIONS, ids=" ".join)
-def test_a_wrong_option_ends_with_2(wsim, place, tmp_path: Path, arguments: tuple[str, ...]) -> None:
-    ended = wsim(*arguments)
+def test_a_wrong_option_ends_with_2(told, place, tmp_path: Path, arguments: tuple[str, ...]) -> None:
+    ended = told(*arguments)
     assert ended.code == 2
     assert "Usage: wsim" in ended.err
     assert {path.name for path in tmp_path.iterdir()} == place
@@ -171,7 +172,7 @@ def test_ctrl_c_while_it_simulates_leaves_nothing_that_looks_finished(launch, tm
             break
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=STUCK)
     assert process.returncode == 130, err
     assert err == "wsim: stopped\n"
     (run,) = (tmp_path / "runs").iterdir()
@@ -182,7 +183,7 @@ def test_ctrl_c_while_it_simulates_leaves_nothing_that_looks_finished(launch, tm
     assert not any(".partial" in name or ".part." in name for name in found)
     recording = run / "iterations" / "01" / "recording.rrd"
     judged = launch("judge", recording)  # what happened so far is kept, and says that it is not all
-    out, _ = judged.communicate(timeout=60)
+    out, _ = judged.communicate(timeout=STUCK)
     assert judged.returncode == 1, out
     assert "CheckComplete" in out
 
@@ -201,7 +202,5 @@ def test_a_ctrl_c_that_comes_while_an_object_is_deleted_is_not_lost(tmp_path: Pa
         "wsim.cli.app.command('work')(work)\n"
         "wsim.cli.main()\n"
     )
-    began = time.monotonic()
-    ended = subprocess.run([sys.executable, "-c", code, "work"], capture_output=True, text=True, timeout=30)
-    assert time.monotonic() - began < 10.0
+    ended = subprocess.run([sys.executable, "-c", code, "work"], capture_output=True, text=True, timeout=STUCK)
     assert (ended.returncode, ended.stderr) == (130, "wsim: stopped\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,7 +13,11 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from tests.documents import ROOT, commands
+from tests.patience import STUCK
+from wsim.cli import app
 from wsim.errors import UserError
 from wsim.importers import read_npz
 from wsim.importers.mujoco_model import world_of
@@ -221,12 +226,25 @@ def test_a_file_that_is_none_and_a_model_that_is_missing_are_said(tmp_path: Path
 def test_the_command_judges_a_trajectory_and_keeps_it_as_a_recording(tmp_path: Path, model: Path, run) -> None:
     np.savez(tmp_path / "run.npz", **states(run))
     command = [sys.executable, "-m", "wsim.cli", "judge", "run.npz", "--model", str(model), "--json", "--save", "r.rrd"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=STUCK, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert json.loads(done.stdout)["status"] == "accepted"
     written, imported = read(tmp_path / "r.rrd"), read_npz(tmp_path / "run.npz", model)
     assert np.array_equal(written.body_q, imported.body_q)
     assert written.world == imported.world
+
+
+def test_the_readmes_trajectory_shows_the_gravity_that_it_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its command, of a run under 7.85 m/s^2 of a model with 9.81, and the two lines that it says of it."""
+    (tmp_path / "scene.xml").write_text(SCENE)
+    np.savez(tmp_path / "run.npz", **states(simulate(gravity=7.85)))
+    (command,) = (one for one in commands(ROOT / "README.md") if one.words[0] == "judge")
+    said = (ROOT / "README.md").read_text(encoding="utf-8")
+    lines = re.search(r"^    (✗ CheckFreeFlight: .*)\n    +(→ .*)$", said, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, command.words)
+    assert done.exit_code == 1, done.output
+    assert all(line in done.output for line in lines.groups()), done.output
 
 
 def test_an_imported_recording_is_written_and_read_back_the_same(tmp_path: Path, recording, run) -> None:

@@ -1,7 +1,6 @@
 """Whole verdicts: what theory gives is accepted; each planted fault is rejected by the check that is there for it."""
 
 import math
-import time
 
 import numpy as np
 import pytest
@@ -384,13 +383,6 @@ def test_topples_wants_the_stack_to_fall(stack):
 def test_a_box_that_slides_at_the_end_has_not_settled(stack):
     case = stack().edit("body_qd", (slice(70, None), 0, 0), 0.2)
     assert failed(judge(case.recording, case.plan)) == {"CheckSettled"}
-
-
-def test_judging_takes_less_than_two_seconds(pool):
-    case = pool()
-    start = time.perf_counter()
-    judge(case.recording, case.plan)
-    assert time.perf_counter() - start < 2.0
 
 
 def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):

@@ -17,6 +17,7 @@ import pytest
 from tests.agents.flies import PROMPT, edit, flies, lasts, opinion
 from tests.agents.kept import Kept, models
 from tests.agents.scripted import Server, call, hang, status, text
+from tests.patience import STUCK, until
 from wsim.agents import relay
 from wsim.agents.budget import Budget
 from wsim.agents.models import ROLES, Models
@@ -47,7 +48,7 @@ def loop(server: Server, tmp_path: Path) -> Callable[..., Generated]:
         plan: Plan | None = None,
         **budget: Any,
     ) -> Generated:
-        limits = Budget(**{"request_seconds": 20.0, **budget})
+        limits = Budget(**{"request_seconds": STUCK, **budget})
         options = Options(settings=settings, models=models(server, *roles), budget=limits)
         given = None if "planner" in roles else plan or flies()
         return generate(PROMPT, tmp_path / "runs", options, plan=given, progress=progress)
@@ -99,7 +100,6 @@ class Clock:
     ahead: float = 0.0
 
     def monotonic(self) -> float:
-        import time
 
         return time.monotonic() + self.ahead
 
@@ -242,11 +242,9 @@ def test_ctrl_c_while_a_model_thinks(server: Server, tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "wsim.cli", *command], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
     )
-    deadline = time.monotonic() + 60.0
-    while not server.asked("coder") and time.monotonic() < deadline:
-        time.sleep(0.05)
+    until(lambda: server.asked("coder") or process.poll() is not None)
     process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=30)
+    _, err = process.communicate(timeout=STUCK)
     assert process.returncode == 130, err
     (folder,) = (tmp_path / "runs").iterdir()
     kept = Kept(folder)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import base64
 import io
 import json
+from functools import partial
 
 import anyio
 import pytest
 from mcp.shared.exceptions import MCPError
 from PIL import Image
 
+from tests.patience import STUCK, until
 from wsim.plan.schema import Plan
 from wsim.skills import skills
 from wsim.tools import TOOLS
@@ -135,7 +137,9 @@ async def test_tools_run_one_at_a_time_and_tell_how_far(talk) -> None:
         await wait("c.wait")
         numbers = [number for number, _ in world.told]
         assert numbers == sorted(set(numbers)), "the protocol wants numbers that grow"
-        assert [message.split(":")[0] for _, message in world.told] == ["waiting", "waiting", "resting"]
+        messages = [message.split(":")[0] for _, message in world.told]
+        assert (messages[0], messages[-1]) == ("waiting", "resting")
+        assert len(messages) <= 3  # it waits 35 times, and tells of it twice a second at most
 
 
 @pytest.mark.parametrize("mode", ["auto", "legacy"])
@@ -143,9 +147,10 @@ async def test_a_tool_that_is_called_off_stops_before_the_next_begins(talk, mode
     async with talk(loud=True, mode=mode) as world:
         await world.good("new_run", title="waiting")
         (run,) = world.runs
-        with anyio.move_on_after(1.0) as scope:
-            await world.ask("wait", seconds=100.0, name="a.wait")
-        assert scope.cancelled_caught
+        async with anyio.create_task_group() as group:
+            group.start_soon(partial(world.ask, "wait", seconds=2 * STUCK, name="a.wait"))
+            await anyio.to_thread.run_sync(until, (run / "a.wait").is_file)
+            group.cancel_scope.cancel()
         assert await world.good("wait", seconds=0.1, name="b.wait") == "beside []"
         assert (run / "a.wait").read_text() == "stopped by CancelledError"
 

@@ -8,7 +8,6 @@ import re
 import signal
 import socket
 import subprocess
-import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -20,6 +19,7 @@ import pytest
 from mcp import Client
 
 from tests.mcp.conftest import server_command
+from tests.patience import STUCK, until
 
 HELLO = {
     "method": "initialize",
@@ -45,7 +45,7 @@ def converse(folder: Path, *requests: dict[str, Any]) -> tuple[list[str], str]:
             lines.append(server.stdout.readline())
             if number == 0:
                 print('{"jsonrpc":"2.0","method":"notifications/initialized"}', file=server.stdin, flush=True)
-        rest, errors = server.communicate(timeout=60)
+        rest, errors = server.communicate(timeout=STUCK)
     assert server.returncode == 0, errors
     return [*lines, *rest.splitlines()], errors
 
@@ -74,11 +74,11 @@ def test_a_client_that_leaves_ends_the_server(tmp_path: Path) -> None:
             server.stdout.readline()
         slow = {"jsonrpc": "2.0", "id": 2, **call("wait", seconds=100.0, name="a.wait")}
         print(json.dumps(slow), file=server.stdin, flush=True)
-        while not (notes := list(tmp_path.glob("runs/*/a.wait"))):
-            time.sleep(0.02)
-        _, errors = server.communicate(timeout=30)
+        until(lambda: list(tmp_path.glob("runs/*/a.wait")))
+        _, errors = server.communicate(timeout=STUCK)
     assert server.returncode == 0, errors
-    assert notes[0].read_text() == "stopped by CancelledError"
+    (note,) = tmp_path.glob("runs/*/a.wait")
+    assert note.read_text() == "stopped by CancelledError"
 
 
 @contextmanager
@@ -93,7 +93,7 @@ def http_server(folder: Path) -> Iterator[str]:
             yield address[0]
         finally:
             server.send_signal(signal.SIGINT)
-            _, errors = server.communicate(timeout=30)
+            _, errors = server.communicate(timeout=STUCK)
     assert server.returncode == 130, errors
     assert "Traceback" not in errors
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
+from tests.patience import STUCK
 from wsim.errors import UserError
 from wsim.recording import RecordingWriter, read
 from wsim.recording.view import has_display, open_native, rerun_binary, serve_web, view_command
@@ -47,7 +48,7 @@ def listeners(pid: int) -> set[tuple[str, int]]:
 @linux_only
 def test_the_web_viewer_listens_on_this_machine_only(path):
     with serve_web(path) as server:
-        with urllib.request.urlopen(f"http://127.0.0.1:{server.port}/", timeout=5) as response:
+        with urllib.request.urlopen(f"http://127.0.0.1:{server.port}/", timeout=STUCK) as response:
             assert response.status == 200
             assert b"<html>" in response.read()
         assert listeners(server.process.pid) == {("0100007F", server.port), ("0100007F", server.data_port)}
@@ -57,7 +58,7 @@ def test_the_web_viewer_listens_on_this_machine_only(path):
         )
     assert server.process.poll() is not None
     with pytest.raises(urllib.error.URLError):
-        urllib.request.urlopen(f"http://127.0.0.1:{server.port}/", timeout=5)
+        urllib.request.urlopen(f"http://127.0.0.1:{server.port}/", timeout=STUCK)
 
 
 def test_a_taken_port_is_said(path):

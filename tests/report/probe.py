@@ -11,6 +11,9 @@ from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
+from tests.patience import STUCK
+
+MISSING = "no Chromium to open the page with: apt-get install chromium"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = [
     "--headless",
@@ -101,8 +104,8 @@ def probe(page: Path, profile: Path, width: int = 1280, policy: bool = True) -> 
     script = SCRIPT.replace("<script>", '<script nonce="probe">')
     copy.write_text(changed.replace("</body>", script + "</body>"), encoding="utf-8")
     command = [str(CHROMIUM), *FLAGS, f"--user-data-dir={profile}", f"--window-size={width},2000"]
-    command += ["--timeout=20000", "--dump-dom", copy.resolve().as_uri()]
-    dom = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+    command += [f"--timeout={1000 * STUCK:.0f}", "--dump-dom", copy.resolve().as_uri()]
+    dom = subprocess.run(command, capture_output=True, text=True, timeout=STUCK, check=True).stdout
     found = re.search(r'<pre id="probe">(.*?)</pre>', dom, re.DOTALL)
     assert found, dom[-2000:]
     return dict(json.loads(unescape(found[1])))

@@ -320,7 +320,7 @@ def test_a_long_diff_is_cut() -> None:
     assert str(diff.lines[-1].html) == f"… {2001 - MOST_LINES} more lines"
 
 
-@pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium to open the page with")
+@pytest.mark.skipif(browser.CHROMIUM is None, reason=browser.MISSING)
 @pytest.mark.parametrize("width", [1280, 500])
 def test_a_browser_shows_it(blocked: Callable[..., Path], tmp_path: Path, width: int) -> None:
     page = write(blocked())
@@ -332,7 +332,7 @@ def test_a_browser_shows_it(blocked: Callable[..., Path], tmp_path: Path, width:
     assert len(set(shown["shades"])) == 3  # added, removed, neither
 
 
-@pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium to open the page with")
+@pytest.mark.skipif(browser.CHROMIUM is None, reason=browser.MISSING)
 def test_what_models_say_does_not_run(blocked: Callable[..., Path], tmp_path: Path) -> None:
     shown = browser.probe(hostile(blocked()), tmp_path / "profile")
     assert shown["title"].startswith("Blocked: </p>") and shown["broken"] == 0

@@ -20,7 +20,7 @@ browser = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(browser)
 
 Elements = browser.Elements
-needs_chromium = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium to open the page with")
+needs_chromium = pytest.mark.skipif(browser.CHROMIUM is None, reason=browser.MISSING)
 BLOCK_LINE, BALL_LINE = 11, 12
 HOSTILE = "</blockquote><script>document.title = 'owned'</script><img src=x onerror=alert(1)>"
 

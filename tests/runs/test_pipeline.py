@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import time
 from pathlib import Path
 
 import numpy as np
@@ -102,9 +101,7 @@ FAILS = {
 @pytest.mark.parametrize("body", FAILS)
 def test_a_control_that_fails_is_a_finding(run, body: str) -> None:
     kind, message, line = FAILS[body]
-    began = time.monotonic()
     verdict, folder = run(body)
-    assert time.monotonic() - began < 15.0
     assert verdict.status == "rejected"
     assert f"({kind})" in verdict.summary
     (finding,) = verdict.findings

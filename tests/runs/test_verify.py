@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.patience import STUCK
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
 from wsim.recording import read
@@ -64,7 +65,7 @@ def test_a_sound_world_is_accepted_and_its_variants_are_kept(tmp_path: Path) -> 
     (tmp_path / "plan.json").write_text(slide_plan(STOP + 0.3).model_dump_json())
     command = [sys.executable, "-m", "wsim.cli", "run", "slide.py", "--plan", "plan.json", "--verify"]
     command += ["--no-pictures", "--device", "cpu"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=STUCK, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     for stage in ("verifying 1 of 2, half the time step", "verifying 2 of 2, another seed"):
         assert stage in done.stdout

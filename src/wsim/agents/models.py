@@ -18,7 +18,7 @@ BUILTIN = "builtin"
 ROLES = ("planner", "coder", "reviewer", "judge")
 CONFIG = "wsim.toml"
 _HELP = (
-    'give "builtin", a provider and a model such as "anthropic:MODEL", or a model of an OpenAI-compatible server as '
+    'give "builtin", a provider and a model such as "openai:MODEL", or a model of an OpenAI-compatible server as '
     '"MODEL@http://127.0.0.1:8000/v1"'
 )
 
@@ -134,5 +134,5 @@ def connect(name: str, role: str) -> Model:
             return OpenAIChatModel(model, provider=OpenAIProvider(base_url=url, api_key=key))
         return infer_model(name)
     except (ModelUserError, ImportError, ValueError) as error:
-        first = str(error).strip().splitlines()[0]
+        first = str(error).strip().splitlines()[0].split(". ")[0]
         raise UserError(f"model of the {role}: {name}: {first}; {_HELP}") from error

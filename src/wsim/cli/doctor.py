@@ -17,7 +17,7 @@ from wsim.errors import UserError
 from wsim.program.sandbox import available
 from wsim.recording.view import has_display
 
-PACKAGES = ("newton", "warp-lang", "mujoco", "mujoco-warp", "usd-core", "rerun-sdk", "numpy", "av", "torch")
+PACKAGES = ("newton", "warp-lang", "mujoco", "mujoco-warp", "usd-core", "rerun-sdk", "numpy", "av")
 
 
 def doctor() -> None:
@@ -28,7 +28,7 @@ def doctor() -> None:
     for name, text in (*_versions(), *_devices(), *_isolation(), *_rest()):
         table.add_row(name, Text(text))
     console.print(table)
-    if any("missing" in text and name != "torch" for name, text in _versions()):
+    if any(text == "missing" for _, text in _versions()):
         raise typer.Exit(1)
 
 
@@ -38,8 +38,7 @@ def _versions() -> list[tuple[str, str]]:
         try:
             rows.append((package, version(package)))
         except PackageNotFoundError:
-            optional = "not installed (only policies need it: pip install wsim[policy])"
-            rows.append((package, optional if package == "torch" else "missing"))
+            rows.append((package, "missing"))
     return rows
 
 

@@ -33,8 +33,8 @@ class NotUnderstood(UserError):  # noqa: N818 - it reads as the sentence it carr
         super().__init__(
             f"the builtin planner {reason.rstrip(':')}: {quoted}. It plans things in a tank of water, on the ground, "
             f"on tables and ramps, and pendulums, and knows only these words — {known_words()}. Reword the prompt, or "
-            "write the plan yourself and pass it: wsim generate --plan plan.json. A planner that uses a language model "
-            "is not part of this version"
+            "write the plan yourself and pass it: wsim generate --plan plan.json, or let a language model plan: "
+            "wsim generate --planner-model MODEL"
         )
 
 

@@ -130,9 +130,7 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
     proxy = Proxy(primitive=noun.primitive, size=size)
     static = noun.family in ("furniture", "ramp", "vessel")
     if noun.asset is not None:
-        cast.assume(
-            thing.words, f"a {noun.primitive} stands for it", "a program cannot load the catalogue's assets yet"
-        )
+        cast.assume(thing.words, f"a {noun.primitive} stands for it", "the builtin planner builds with plain shapes")
     made = PlanObject(
         name="thing",
         role={"furniture": "background", "vessel": "container", "ramp": "terrain"}.get(noun.family, "rigid_body"),
