@@ -1,21 +1,25 @@
-"""A program's source as lines of HTML, coloured by token."""
+"""A program's source as lines of HTML, coloured by token; style.css has the colours of Pygments' short names."""
 
 from __future__ import annotations
 
 import ast
 import io
-import keyword
 import re
 import textwrap
-import token
-import tokenize
-from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from markupsafe import Markup, escape
+from pygments import token
+from pygments.formatters.html import HtmlFormatter
+from pygments.lexers.python import PythonLexer
 
 MOST_LINES = 5000
 MOST_STATEMENT_LINES = 10
+COLORED = (
+    token.Keyword, token.Operator.Word, token.Comment, token.String, token.Number, token.Name.Function,
+    token.Name.Class, token.Name.Decorator,
+)  # fmt: skip
 # Characters that change the order in which text is shown, so that code would not read as it runs.
 BIDI = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
@@ -34,10 +38,12 @@ def source_lines(program: str, failed: dict[int, list[int]]) -> list[SourceLine]
     lines = program.expandtabs(4).split("\n")[:MOST_LINES]
     if lines and not lines[-1]:
         lines.pop()
-    spans: dict[int, list[tuple[int, int, str]]] = {}
-    for row, start, end, kind in _tokens("\n".join(lines) + "\n"):
-        spans.setdefault(row, []).append((start, end, kind))
-    return [SourceLine(i, _colored(line, spans.get(i, [])), failed.get(i, [])) for i, line in enumerate(lines, start=1)]
+    # Unprocessed: the lexer's own preparation would take other characters for line ends.
+    tokens = PythonLexer().get_tokens_unprocessed("\n".join(lines) + "\n")
+    html = io.StringIO()
+    HtmlFormatter(nowrap=True).format(((_shown(kind), text) for _, kind, text in tokens), html)
+    colored = html.getvalue().split("\n")[: len(lines)]
+    return [SourceLine(i, _named(line), failed.get(i, [])) for i, line in enumerate(colored, start=1)]
 
 
 def statement(program: str, line: int) -> str:
@@ -60,39 +66,15 @@ def statement(program: str, line: int) -> str:
     return textwrap.dedent("\n".join(shown))
 
 
-def _tokens(text: str) -> Iterator[tuple[int, int, int, str]]:
-    """(line, first column, end column, class) of every token that has a colour; what does not parse has none."""
-    try:
-        for item in tokenize.generate_tokens(io.StringIO(text).readline):
-            kind = _kind(item)
-            if not kind:
-                continue
-            (first, start), (last, end) = item.start, item.end
-            for row in range(first, last + 1):
-                yield row, start if row == first else 0, end if row == last else 1_000_000, kind
-    except (tokenize.TokenError, SyntaxError):
-        return
-
-
-def _kind(item: tokenize.TokenInfo) -> str:
-    name = token.tok_name[item.type]
-    if item.type == token.NAME and keyword.iskeyword(item.string):
-        return "k"
-    if name == "COMMENT":
-        return "c"
-    if name == "STRING" or name.startswith("FSTRING"):
-        return "s"
-    return "n" if name == "NUMBER" else ""
-
-
-def _colored(line: str, spans: list[tuple[int, int, str]]) -> Markup:
-    parts, at = [], 0
-    for start, end, kind in spans:
-        parts += [visible(line[at:start]), Markup('<span class="{}">{}</span>').format(kind, visible(line[start:end]))]
-        at = end
-    return Markup("").join([*parts, visible(line[at:])])
+def _shown(kind: Any) -> Any:
+    """A token's kind if the page has a colour for it, else the kind that makes no span."""
+    return kind if any(kind in one for one in COLORED) else token.Text
 
 
 def visible(text: str) -> Markup:
     """Text as HTML, with the characters that would change its order named."""
-    return Markup(BIDI.sub(lambda match: f"<mark>U+{ord(match[0]):04X}</mark>", str(escape(text))))
+    return _named(str(escape(text)))
+
+
+def _named(html: str) -> Markup:
+    return Markup(BIDI.sub(lambda match: f"<mark>U+{ord(match[0]):04X}</mark>", html))
