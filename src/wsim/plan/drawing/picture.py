@@ -1,8 +1,7 @@
-"""The two drawings as a picture: PNG by Pillow, which loads in a thirtieth of the time that matplotlib takes."""
+"""The two drawings as a picture: PNG by Pillow."""
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from dataclasses import dataclass
 from functools import cache
@@ -16,6 +15,7 @@ from wsim.plan.drawing.silhouettes import Point, Scene, Silhouette, View, scene_
 from wsim.plan.drawing.text import nice
 from wsim.plan.schema import Plan, Vec3
 
+FONT = Path(__file__).parent / "fonts" / "DejaVuSans.ttf"
 WIDTH = 1100  # [pixels] of the picture
 FINE = 2  # drawn this many times as large, then reduced: smooth edges
 TALLEST: dict[View, int] = {"above": 620, "side": 420}  # [pixels] of a view
@@ -236,10 +236,5 @@ def _shown(color: Vec3) -> tuple[int, int, int]:
 
 @cache
 def _font(size: int) -> Any:
-    """DejaVu Sans, found in matplotlib's folder without importing it; Pillow's own font knows Latin letters only."""
-    package = importlib.util.find_spec("matplotlib")
-    for folder in (package.submodule_search_locations if package else None) or []:
-        path = Path(folder) / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"
-        if path.is_file():
-            return ImageFont.truetype(str(path), size * FINE)
-    return ImageFont.load_default(size * FINE)
+    """DejaVu Sans, which has the letters and signs of most titles; Pillow's own font has English ones only."""
+    return ImageFont.truetype(FONT, size * FINE)
