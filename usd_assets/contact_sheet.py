@@ -10,8 +10,8 @@ import json
 import tempfile
 from pathlib import Path
 
-import cv2
 import numpy as np
+from PIL import Image, ImageDraw, ImageFont
 from pxr import UsdGeom
 
 from wsim.scene import Scene
@@ -23,6 +23,7 @@ ASSETS = Path(__file__).parent
 COLUMNS = 5
 TILE = (256, 216)  # width and height of a picture [px]
 LABEL = 26  # height of the line below it [px]
+LETTERS = 16  # height of its letters [px]
 FILLED = 0.84  # share of a tile that its asset fills
 YAW = -28.0  # [deg]: the default camera looks from the front right; this turns an asset's front to it
 STYLE = Style(zenith=(0.55, 0.62, 0.70), horizon=(0.74, 0.77, 0.80), checker_contrast=0.0)
@@ -44,7 +45,7 @@ def picture(folder: Path, work: Path) -> np.ndarray:
     (image,) = renderer.render(model.state()).values()
     is_ground = np.array([prim.startswith("/World/ground") for prim in renderer.shape_prims])
     seen = (image.shape_index >= 0) & ~is_ground[image.shape_index]
-    return cv2.resize(cut_out(image.rgb, seen), TILE, interpolation=cv2.INTER_AREA)
+    return np.asarray(Image.fromarray(cut_out(image.rgb, seen)).resize(TILE, Image.Resampling.BOX))
 
 
 def cut_out(image: np.ndarray, seen: np.ndarray) -> np.ndarray:
@@ -59,12 +60,10 @@ def cut_out(image: np.ndarray, seen: np.ndarray) -> np.ndarray:
 
 def labelled(image: np.ndarray, text: str) -> np.ndarray:
     """The picture with a line of text below it."""
-    strip = np.full((LABEL, image.shape[1], 3), 255, dtype=np.uint8)
-    face, scale, thick = cv2.FONT_HERSHEY_SIMPLEX, 0.55, 1
-    (wide, tall), _ = cv2.getTextSize(text, face, scale, thick)
-    at = ((image.shape[1] - wide) // 2, (LABEL + tall) // 2)
-    cv2.putText(strip, text, at, face, scale, (40, 40, 40), thick, cv2.LINE_AA)
-    return np.concatenate([image, strip])
+    strip = Image.new("RGB", (image.shape[1], LABEL), (255, 255, 255))
+    middle = (image.shape[1] / 2, LABEL / 2)
+    ImageDraw.Draw(strip).text(middle, text, (40, 40, 40), ImageFont.load_default(LETTERS), anchor="mm")
+    return np.concatenate([image, np.asarray(strip)])
 
 
 def sheet(folders: list[Path]) -> np.ndarray:
@@ -86,8 +85,7 @@ def main() -> None:
     folders = sorted(path.parent for path in ASSETS.glob("*/asset.json"))
     image = sheet([folder for folder in folders if not given.ids or folder.name in given.ids])
     given.to.parent.mkdir(parents=True, exist_ok=True)
-    encoded = cv2.imencode(".png", image[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])[1]
-    given.to.write_bytes(encoded.tobytes())
+    Image.fromarray(image).save(given.to, "PNG", compress_level=9)
 
 
 if __name__ == "__main__":

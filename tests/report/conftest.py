@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.recording import FluidFrame, Frame, RecordingWriter
@@ -126,8 +127,6 @@ def picture(t: float, width: int = 320, height: int = 180) -> np.ndarray:
 
 def record(folder: Path) -> None:
     """A recording, a video and stills of the hand-made world."""
-    import cv2
-
     times = [k / RATE for k in range(FRAMES)]
     versions = {"newton": "1.8.0", "warp-lang": "1.19.0", "mujoco": "3.17.0", "usd-core": "26.8"}
     facts = {"device": "cpu", "time_step": 4.17e-4, "time_step_reason": "the fluid's sound", "versions": versions}
@@ -140,7 +139,7 @@ def record(folder: Path) -> None:
     write_video(folder / "video.mp4", (picture(t) for t in times), fps=RATE)
     (folder / "frames").mkdir()
     for t in np.linspace(0.0, DURATION, 6):
-        cv2.imwrite(str(folder / "frames" / f"side_{t:06.3f}s.png"), picture(t, 640, 360)[:, :, ::-1])
+        Image.fromarray(picture(t, 640, 360)).save(folder / "frames" / f"side_{t:06.3f}s.png")
 
 
 FLOATS = Finding(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from PIL import Image
 
 from wsim.recording.frames import FluidFrame, Frame, LogLine
 from wsim.scene.world import World
@@ -43,10 +45,8 @@ class ImageTrack(Sequence["NDArray[np.uint8]"]):
         """The picture (H, W, 3) uint8 RGB at an index; a list of them for a slice."""
         if isinstance(index, slice):
             return [self[i] for i in range(*index.indices(len(self)))]
-        import cv2
-
-        bgr: Any = cv2.imdecode(np.frombuffer(self.jpeg(index), np.uint8), cv2.IMREAD_COLOR)
-        return np.ascontiguousarray(bgr[:, :, ::-1])
+        with Image.open(io.BytesIO(self.jpeg(index))) as picture:
+            return np.array(picture.convert("RGB"))
 
     def __iter__(self) -> Iterator[NDArray[np.uint8]]:
         return (self[i] for i in range(len(self)))

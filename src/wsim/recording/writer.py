@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import math
 import re
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import rerun as rr
+from PIL import Image
 from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
@@ -123,8 +125,6 @@ class RecordingWriter:
             camera_prim: One of `world.cameras`.
             rgb: (H, W, 3) uint8.
         """
-        import cv2
-
         self._check_open()
         camera = next((c for c in self.world.cameras if c.prim == camera_prim), None)
         if camera is None:
@@ -135,8 +135,10 @@ class RecordingWriter:
         if self._image_sizes[camera_prim] != (width, height):  # the frustum must fit the pictures
             log_camera(self._stream, camera, width, height, nested=is_nested(camera_prim, self.world))
             self._image_sizes[camera_prim] = (width, height)
-        _, jpeg = cv2.imencode(".jpg", rgb[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-        self._rows.add(names.entity_path(camera_prim), _time_ns(t), {names.IMAGE: np.asarray(jpeg).reshape(-1)})
+        jpeg = io.BytesIO()
+        Image.fromarray(rgb).save(jpeg, "JPEG", quality=JPEG_QUALITY)
+        blob = np.frombuffer(jpeg.getvalue(), np.uint8)
+        self._rows.add(names.entity_path(camera_prim), _time_ns(t), {names.IMAGE: blob})
 
     def seen(self, t: float, camera_prim: str, shares: Mapping[str, float]) -> None:
         """Record the share of a camera's picture that each object takes up.

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import base64
+import io
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
+from PIL import Image, ImageDraw
 
 from wsim.report.locate import ring_of, where_is
 from wsim.report.numbers import quantity
@@ -22,7 +23,8 @@ MOST_STILLS = 36
 STILL_WIDTH = 480  # [px]
 STILL_QUALITY = 80
 LEAST_RING = 12  # [px]
-RING = (38, 38, 220)  # red, as OpenCV has it: BGR
+RING = (220, 38, 38)  # red
+FINE = 4  # the ring is drawn this many times as large, then reduced: smooth edges
 STILL_NAME = re.compile(r"(?P<camera>.+)_(?P<time>[0-9]+\.?[0-9]*)s")
 
 
@@ -97,20 +99,27 @@ def _still_caption(path: Path) -> str:
 
 def _thumbnail(data: bytes, caption: str, ring: tuple[float, float, float] | None = None) -> Picture | None:
     """A picture made small, with a ring (x, y, radius) in widths of the picture; None if it cannot be decoded."""
-    import cv2
-
-    image: Any = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
-    if image is None:
+    try:
+        with Image.open(io.BytesIO(data)) as picture:
+            image = picture.convert("RGB")
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return None
-    height, width = image.shape[:2]
-    if width > STILL_WIDTH:
-        width, height = STILL_WIDTH, max(1, round(height * STILL_WIDTH / width))
-        image = cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA)
+    if image.width > STILL_WIDTH:
+        size = STILL_WIDTH, max(1, round(image.height * STILL_WIDTH / image.width))
+        image = image.resize(size, Image.Resampling.BOX)
     if ring is not None:
-        center, radius = (round(ring[0] * width), round(ring[1] * width)), max(LEAST_RING, round(ring[2] * width))
-        cv2.circle(image, center, radius, RING, 2, cv2.LINE_AA)
-    _, jpeg = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, STILL_QUALITY])
-    return Picture(_data("image/jpeg", jpeg.tobytes()), caption, width, height)
+        x, y, radius = (round(part * image.width) for part in ring)
+        _draw_ring(image, (x, y), max(LEAST_RING, radius))
+    jpeg = io.BytesIO()
+    image.save(jpeg, "JPEG", quality=STILL_QUALITY)
+    return Picture(_data("image/jpeg", jpeg.getvalue()), caption, image.width, image.height)
+
+
+def _draw_ring(image: Image.Image, center: tuple[int, int], radius: int) -> None:
+    mask = Image.new("L", (image.width * FINE, image.height * FINE))
+    middle = ((center[0] + 0.5) * FINE, (center[1] + 0.5) * FINE)
+    ImageDraw.Draw(mask).circle(middle, (radius + 1) * FINE, outline=255, width=3 * FINE)
+    image.paste(RING, mask=mask.reduce(FINE))
 
 
 def _data(kind: str, data: bytes) -> str:
