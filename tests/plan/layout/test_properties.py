@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from tests.plan.layout.scenes import GROUND, box, make, rel, solve, tank, water
 from wsim.plan.layout import LayoutError, layout, unsatisfied
 from wsim.plan.layout.boxes import Box, Solid, depth, rotation
-from wsim.plan.layout.free import disjoint
 from wsim.plan.schema import PlanObject, Pose, Relation, Topology
 
 QUICK = settings(derandomize=True, max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
@@ -175,17 +174,6 @@ def holds(solid: Solid, x: float, y: float) -> bool:
     if solid.kind != "box":
         return math.hypot(dx, dy) < solid.half[0]
     return all(abs(dx * solid.axes[0][k] + dy * solid.axes[1][k]) < solid.half[k] for k in (0, 1))
-
-
-@QUICK
-@given(st.lists(st.tuples(*[st.integers(0, 12)] * 4), max_size=8))
-def test_disjoint_rectangles_cover_the_same(found):
-    rects = [(min(a, c), min(b, d), max(a, c) + 1, max(b, d) + 1) for a, b, c, d in found]
-    pieces = disjoint(rects)
-    for x in range(14):
-        for y in range(14):
-            of = [sum(r[0] <= x < r[2] and r[1] <= y < r[3] for r in some) for some in (rects, pieces)]
-            assert of[1] == (1 if of[0] else 0)
 
 
 def test_an_axis_aligned_overlap_is_the_shallowest():

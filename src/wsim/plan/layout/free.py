@@ -1,16 +1,20 @@
-"""Places that hinder nothing, found by constraint programming (OR-tools CP-SAT) on a grid of millimetres.
+"""Places that hinder nothing, as a mixed-integer linear program, which SciPy's HiGHS solves.
 
-Unknown are the coordinates that the rows leave free. Bodies that share a height must not overlap in the plane; each
-stays in its areas; together they stay as near as possible to where they would best be. One worker, a fixed seed and a
-limit in deterministic time: the same plan gives the same places.
+Unknown are the coordinates that the rows leave free. Of two bodies that share a height one is left of the other, right
+of it, before or behind it: a choice of four linear rows, of which the ones that are not chosen are lifted by more than
+they can ask for ("big M"). Each body stays in its areas; together they stay as near as possible to where they would
+best be, in the sum of the distances along X and Y. The search ends after a number of nodes: the same plan gives the
+same places.
 """
 
 from __future__ import annotations
 
 import math
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from wsim.plan.layout.areas import Area, room_in
 from wsim.plan.layout.boxes import TOUCH, Box, turned
@@ -20,23 +24,19 @@ if TYPE_CHECKING:
     from wsim.plan.layout.equations import System, Var
     from wsim.plan.layout.space import Places, Space
 
-MM = 1000.0
-SLACK = 0.4  # by which a box, or an area's edge, may be rounded in favour of a fit [mm]
-PATIENCE = 0.1  # deterministic time; from once to ten times as long in seconds
-LAST_RESORT = 0.6  # [s]: with coordinates of many digits deterministic time may stand almost still
-NEARER = 0.05  # the same, to come nearer to the best places
+SLACK = 1e-5  # by which what fits but for rounding may overlap [m]
+ZERO = 1e-9
+NEAR_NODES = 100  # of the search tree while it looks for the nearest places: a second for eight bodies on one tray
+ANY_NODES = 250  # and for any places, if none were found on the way
+LAST_RESORT = 2.0  # [s] for each, for hundreds of bodies, where a node takes long
+NEAR_ENOUGH = 0.02  # the share by which the sum of distances may be above the least
+MOST_CHOICES = 1000  # more are not tried: dozens of bodies in one place are beyond the search
 FEW = 40  # unknowns up to which the nearest places are looked for, and not just any
-FINE = 1000  # factors that are no whole numbers are rounded to a thousandth
+DIGITS = 6  # of the places [m]
+INFEASIBLE = 2  # of the states that SciPy's solver ends in
 
-Rect = tuple[int, int, int, int]  # x low, y low, x high, y high [mm]
-
-
-@dataclass(frozen=True)
-class _Group:
-    """Bodies whose places differ by constants: the sums of free coordinates that they share."""
-
-    x: tuple[tuple[Var, float], ...]
-    y: tuple[tuple[Var, float], ...]
+Terms = dict[int, float]  # factors by the number of an unknown
+Row = tuple[Terms, float, float]  # the sum of the terms is from one number to the other
 
 
 class Search:
@@ -51,75 +51,80 @@ class Search:
     """
 
     def __init__(self, space: Space, system: System, best: Places, loose: list[str], among: list[str]) -> None:
-        from ortools.sat.python import cp_model  # takes 0.6 s to import
-
-        self.cp: Any = cp_model
         self.space, self.system, self.best, self.among = space, system, best, among
-        self.free = {var for name in loose for k in (0, 1) for var in system.value((k, name)).terms}
-        self.moving = [name for name in among if self._moves(name)]
-        self.model: Any = cp_model.CpModel()
-        self.reach = self._reach()
-        self.unknowns: dict[Var, Any] = {}
-        for var in sorted(self.free):
-            self.unknowns[var] = self.model.new_int_var(-self.reach, self.reach, f"{var}")
-            self.model.add_hint(self.unknowns[var], round(best[var[1]][var[0]] * MM))
-        self._sums: dict[tuple[tuple[Var, float], ...], Any] = {}
+        self.free = sorted({var for name in loose for k in (0, 1) for var in system.value((k, name)).terms})
+        self.number = {var: k for k, var in enumerate(self.free)}
+        self.moving = [name for name in among if any(self._coordinate(k, name)[0] for k in (0, 1))]
+        reach = self._reach()
+        self.low, self.high = [-reach] * len(self.free), [reach] * len(self.free)
+        self.whole = [0] * len(self.free)  # 1 for the unknowns that are 0 or 1
+        self.cost = [0.0] * len(self.free)
+        self.rows: list[Row] = []
+        self.choices = 0
+        self.impossible = False  # proven, so that to look further is of no use
 
-    def run(self, patience: float = PATIENCE) -> dict[Var, float] | None:
+    def run(self) -> dict[Var, float] | None:
         """The free coordinates [m]; none if there are no such places, or none were found in time."""
         self._stay_in_areas()
-        self._stay_apart()
-        found = self._solve(patience)
-        if found is None or len(self.unknowns) > FEW:
-            return found
-        # Any places first, then the nearest: looking for both at once may spend all its time and have neither.
-        self.model.clear_hints()
-        for var, value in found.items():
-            self.model.add_hint(self.unknowns[var], round(value * MM))
-        self._stay_near()
-        return self._solve(NEARER) or found
-
-    def _solve(self, patience: float) -> dict[Var, float] | None:
-        solver = self.cp.CpSolver()
-        solver.parameters.num_workers = 1
-        solver.parameters.random_seed = self.space.world.plan.simulation.seed % 2**31
-        solver.parameters.max_deterministic_time = patience
-        solver.parameters.max_time_in_seconds = LAST_RESORT
-        status = solver.solve(self.model)
-        if status not in (self.cp.OPTIMAL, self.cp.FEASIBLE):
+        if any(low > high for low, high in zip(self.low, self.high, strict=True)) or not self._stay_apart():
             return None
-        return {var: solver.value(unknown) / MM for var, unknown in self.unknowns.items()}
+        if len(self.free) > FEW:
+            return self._solve(ANY_NODES)
+        self._stay_near()
+        near = self._solve(NEAR_NODES)
+        return near if near is not None or self.impossible else self._solve(ANY_NODES, anywhere=True)
 
-    def _moves(self, name: str) -> bool:
-        return any(var in self.free for k in (0, 1) for var in self.system.value((k, name)).terms)
+    def _solve(self, nodes: int, anywhere: bool = False) -> dict[Var, float] | None:
+        from scipy.optimize import Bounds, LinearConstraint, milp  # half a second, and few plans are so tight
+        from scipy.sparse import csr_array  # likewise
 
-    def _reach(self) -> int:
-        """How far from the origin anything may go [mm]: beyond all there is, one after the other."""
+        places = [(k, number) for k, (terms, _, _) in enumerate(self.rows) for number in terms]
+        factors = [factor for terms, _, _ in self.rows for factor in terms.values()]
+        shape = (len(self.rows), len(self.low))
+        matrix = csr_array((factors, tuple(np.array(places, dtype=int).reshape(-1, 2).T)), shape=shape)
+        found = milp(
+            np.zeros(len(self.cost)) if anywhere else self.cost,
+            integrality=self.whole,
+            bounds=Bounds(self.low, self.high),
+            constraints=LinearConstraint(matrix, [low for _, low, _ in self.rows], [high for _, _, high in self.rows]),
+            options={"node_limit": nodes, "time_limit": LAST_RESORT, "mip_rel_gap": NEAR_ENOUGH},
+        )
+        self.impossible = found.status == INFEASIBLE
+        if found.x is None:
+            return None
+        return {var: round(float(found.x[number]), DIGITS) for var, number in self.number.items()}
+
+    def _reach(self) -> float:
+        """How far from the origin anything may go [m]: beyond all there is, one after the other."""
         far = max((abs(value) for place in self.best.values() for value in place), default=0.0)
-        edges = sum(sum(self.space.world.extents(name)[:2]) for name in self.moving)
-        return math.ceil((2 * far + 2 * edges + 2.0) * MM)
+        return 2 * far + 2 * sum(sum(self.space.world.extents(name)[:2]) for name in self.moving) + 2.0
 
-    def _key(self, axis: int, name: str) -> tuple[tuple[Var, float], ...]:
-        terms = self.system.value((axis, name)).terms
-        return tuple(sorted((var, factor) for var, factor in terms.items() if var in self.free))
-
-    def _const(self, axis: int, name: str) -> float:
-        """What a coordinate has beside the unknowns [mm]: its constant, and free coordinates that stay."""
+    def _coordinate(self, axis: int, name: str) -> tuple[Terms, float]:
+        """A body's place along an axis: factors of the unknowns, and what it has beside them [m]."""
         total = self.system.value((axis, name))
-        stays = sum(f * self.best[var[1]][var[0]] for var, f in total.terms.items() if var not in self.free)
-        return (total.const + stays) * MM
-
-    def _sum(self, key: tuple[tuple[Var, float], ...]) -> Any:
-        """The unknown part of a coordinate as one whole number [mm]."""
-        if key not in self._sums:
-            if all(abs(factor - round(factor)) < 1e-9 for _, factor in key):
-                self._sums[key] = sum(round(factor) * self.unknowns[var] for var, factor in key)
+        terms: Terms = {}
+        const = total.const
+        for var, factor in total.terms.items():
+            if var in self.number:
+                terms[self.number[var]] = factor
             else:
-                whole = self.model.new_int_var(-4 * self.reach, 4 * self.reach, "sum")
-                fine = sum(round(FINE * factor) * self.unknowns[var] for var, factor in key)
-                self.model.add_linear_constraint(FINE * whole - fine, -FINE // 2, FINE // 2)
-                self._sums[key] = whole
-        return self._sums[key]
+                const += factor * self.best[var[1]][var[0]]
+        return terms, const
+
+    def _apart(self, axis: int, name: str, other: str) -> tuple[Terms, float]:
+        """How far a body is from another along an axis, likewise."""
+        (terms, const), (others, other_const) = self._coordinate(axis, name), self._coordinate(axis, other)
+        total = defaultdict(float, terms)
+        for number, factor in others.items():
+            total[number] -= factor
+        return {number: factor for number, factor in total.items() if abs(factor) > ZERO}, const - other_const
+
+    def _unknown(self, low: float, high: float, *, whole: bool = False, cost: float = 0.0) -> int:
+        self.low.append(low)
+        self.high.append(high)
+        self.whole.append(int(whole))
+        self.cost.append(cost)
+        return len(self.low) - 1
 
     # Areas ---------------------------------------------------------------------------------------------------------
 
@@ -130,133 +135,97 @@ class Search:
                 if area.kind != "base":
                     self._stay_in(name, area)
                 elif room is not None and self.space.world.items[name].role != "background":
-                    half = [edge / 2 for edge in self.space.world.extents(name)[:2]]
                     for axis in (0, 1):
-                        low = (room.low[axis] + half[axis]) * MM - self._const(axis, name)
-                        high = (room.high[axis] - half[axis]) * MM - self._const(axis, name)
-                        key = self._key(axis, name)
-                        if key and low <= high:
-                            self._between(self._sum(key), low, high)
+                        terms, const = self._coordinate(axis, name)
+                        half = self.space.world.extents(name)[axis] / 2
+                        low, high = room.low[axis] + half - const, room.high[axis] - half - const
+                        if low <= high:
+                            self._between(terms, low, high)
 
     def _stay_in(self, name: str, area: Area) -> None:
         """Two bounds along the area's own axes, which are the world's unless the carrier is askew."""
         limits = room_in(self.space.world, name, area)
-        offset = [self._relative(axis, name, area) for axis in (0, 1)]
-        if not any(terms for terms, _ in offset):
-            return
+        offset = [self._apart(k, name, area.carrier) if area.carrier else self._coordinate(k, name) for k in (0, 1)]
         for axis, limit in enumerate(limits):
             u = turned((1.0, 0.0) if axis == 0 else (0.0, 1.0), area.yaw)
-            terms: dict[Var, float] = defaultdict(float)
+            terms: Terms = defaultdict(float)
             const = 0.0
             for k in (0, 1):
-                for var, factor in offset[k][0].items():
-                    terms[var] += u[k] * factor
-                const += u[k] * offset[k][1]
-            whole = all(abs(f - round(f)) < 1e-9 for f in terms.values())
-            scale = 1 if whole else FINE
-            total = sum(round(scale * f) * self.unknowns[var] for var, f in terms.items())
-            if any(round(scale * f) for f in terms.values()):
-                self._between(total, scale * (-limit * MM - const), scale * (limit * MM - const), scale)
+                for number, factor in offset[k][0].items():
+                    terms[number] += u[k] * factor
+                const += u[k] * (offset[k][1] - area.middle[k])
+            self._between(terms, -limit - const, limit - const)
 
-    def _relative(self, axis: int, name: str, area: Area) -> tuple[dict[Var, float], float]:
-        """A body's place from an area's middle: factors of the unknowns, and the rest [mm]."""
-        terms = dict(self._key(axis, name))
-        const = self._const(axis, name) - area.middle[axis] * MM
-        if area.carrier is not None:
-            for var, factor in self._key(axis, area.carrier):
-                terms[var] = terms.get(var, 0.0) - factor
-            const -= self._const(axis, area.carrier)
-        return {var: f for var, f in terms.items() if abs(f) > 1e-9}, const
-
-    def _between(self, total: Any, low: float, high: float, scale: int = 1) -> None:
-        slack = SLACK * scale
-        self.model.add_linear_constraint(total, math.ceil(low - slack), math.floor(high + slack))
+    def _between(self, terms: Terms, low: float, high: float) -> None:
+        """A row, or the bounds of an unknown that is alone; what has no unknowns is as it is."""
+        terms = {number: factor for number, factor in terms.items() if abs(factor) > ZERO}
+        if len(terms) == 1:
+            ((number, factor),) = terms.items()
+            ends = sorted(((low - SLACK) / factor, (high + SLACK) / factor))
+            self.low[number] = max(self.low[number], ends[0])
+            self.high[number] = min(self.high[number], ends[1])
+        elif terms:
+            self.rows.append((terms, low - SLACK, high + SLACK))
 
     # No overlap ----------------------------------------------------------------------------------------------------
 
-    def _stay_apart(self) -> None:
-        parts = [(name, box) for name in self.among for box in self.space.parts.get(name, [])]
+    def _stay_apart(self) -> bool:
+        """A choice for each two boxes that must be apart; false if two have none, or if there are too many."""
         moving = set(self.moving)
-        seen: set[frozenset[int]] = set()
-        for height in sorted({box.low[2] for _, box in parts}):
-            level = height + TOUCH
-            here = frozenset(i for i, (_, box) in enumerate(parts) if box.low[2] < level < box.high[2] - TOUCH / 2)
-            if any(here <= other for other in seen) or not any(parts[i][0] in moving for i in here):
+        parts = [(name, box) for name in self.among for box in self.space.parts.get(name, [])]
+        for (name, box), (other, wall) in combinations(parts, 2):
+            if name == other or not {name, other} & moving or frozenset((name, other)) in self.space.exempt:
                 continue
-            seen.add(here)
-            for group in self._separable([parts[i] for i in sorted(here)]):
-                self._no_overlap(group)
+            if min(box.high[2], wall.high[2]) - max(box.low[2], wall.low[2]) <= TOUCH:
+                continue
+            if not self._choose(name, box, other, wall) or self.choices > MOST_CHOICES:
+                return False
+        return True
 
-    def _separable(self, parts: list[tuple[str, Box]]) -> list[list[tuple[str, Box]]]:
-        """Sets that cover every pair of bodies that must be apart, and no pair that may overlap."""
-        names = {name for name, _ in parts}
-        pairs = [pair for pair in self.space.exempt if pair <= names]
-        if not pairs:
-            return [parts]
-        often: dict[str, int] = defaultdict(int)
-        for pair in pairs:
-            for name in pair:
-                often[name] += 1
-        odd: list[str] = []  # each exempt pair has one of them: what carries many first
-        for pair in sorted(pairs, key=lambda p: (-max(often[n] for n in p), sorted(p))):
-            if not pair & set(odd):
-                odd.append(max(sorted(pair), key=lambda n: often[n]))
-        plain = [part for part in parts if part[0] not in odd]
-        sets = [plain]
-        for k, name in enumerate(odd):
-            own = [part for part in parts if part[0] == name]
-            sets.append(own + [part for part in plain if frozenset((name, part[0])) not in self.space.exempt])
-            for other in odd[:k]:
-                if frozenset((name, other)) not in self.space.exempt:
-                    sets.append(own + [part for part in parts if part[0] == other])
-        return sets
+    def _choose(self, name: str, box: Box, other: str, wall: Box) -> bool:
+        offsets = [self._apart(k, name, other) for k in (0, 1)]
+        if not any(terms for terms, _ in offsets):
+            return True  # the rows say how they are to each other
+        sides: list[tuple[Terms, float, float]] = []  # terms + const <= 0 is the side; at most so much else
+        for k, (terms, const) in enumerate(offsets):
+            for sign, reaches in ((1.0, box.high[k] - wall.low[k]), (-1.0, wall.high[k] - box.low[k])):
+                signed = {number: sign * factor for number, factor in terms.items()}
+                over = sign * const + reaches - SLACK
+                least, most = self._span(signed)
+                if most + over <= ZERO:
+                    return True  # wherever they go
+                if least + over <= ZERO:
+                    sides.append((signed, over, most + over))
+        chosen: Terms = {}
+        for terms, over, most in sides:
+            number = self._unknown(0.0, 1.0, whole=True)
+            chosen[number] = 1.0
+            self.rows.append(({**terms, number: most}, -math.inf, most - over))
+        self.rows.append((chosen, 1.0, 1.0))
+        self.choices += 1
+        return bool(sides)
 
-    def _no_overlap(self, parts: list[tuple[str, Box]]) -> None:
-        rects: dict[_Group, list[Rect]] = defaultdict(list)
-        for name, box in parts:
-            x, y = self._const(0, name), self._const(1, name)
-            rect = (
-                math.floor(box.low[0] * MM + x + SLACK),
-                math.floor(box.low[1] * MM + y + SLACK),
-                math.ceil(box.high[0] * MM + x - SLACK),
-                math.ceil(box.high[1] * MM + y - SLACK),
-            )
-            rects[_Group(self._key(0, name), self._key(1, name))] += [rect]
-        if len(rects) < 2:
-            return
-        x_intervals, y_intervals = [], []
-        for group, found in rects.items():
-            for x0, y0, x1, y1 in disjoint(found):
-                x_intervals.append(self._interval(group.x, x0, x1))
-                y_intervals.append(self._interval(group.y, y0, y1))
-        self.model.add_no_overlap_2d(x_intervals, y_intervals)
-
-    def _interval(self, key: tuple[tuple[Var, float], ...], low: int, high: int) -> Any:
-        start = self._sum(key) + low if key else low
-        single = not key or (len(key) == 1 and abs(abs(key[0][1]) - 1.0) < 1e-9)
-        if not single:  # an interval starts at one unknown and a constant
-            begin = self.model.new_int_var(-8 * self.reach, 8 * self.reach, "begin")
-            self.model.add(begin == start)
-            start = begin
-        return self.model.new_fixed_size_interval_var(start, high - low, "")
+    def _span(self, terms: Terms) -> tuple[float, float]:
+        """The least and the most that terms can add up to."""
+        ends = [sorted((factor * self.low[n], factor * self.high[n])) for n, factor in terms.items()]
+        return sum(low for low, _ in ends), sum(high for _, high in ends)
 
     # Nearness ------------------------------------------------------------------------------------------------------
 
     def _stay_near(self) -> None:
-        """Least sum of the distances along X and Y from the best places, one for each coordinate that moves alone."""
-        off = []
+        """A distance along X and Y from the best places, one for each coordinate that moves alone."""
         seen = set()
         for name in self.moving:
             for axis in (0, 1):
-                key = self._key(axis, name)
-                if not key or key in seen:
+                terms, const = self._coordinate(axis, name)
+                key = frozenset(terms.items())
+                if not terms or key in seen:
                     continue
                 seen.add(key)
-                target = round(self.best[name][axis] * MM - self._const(axis, name))
-                distance = self.model.new_int_var(0, 8 * self.reach, "off")
-                self.model.add_abs_equality(distance, self._sum(key) - target)
-                off.append(distance)
-        self.model.minimize(sum(off))
+                target = self.best[name][axis] - const
+                distance = self._unknown(0.0, math.inf, cost=1.0)
+                self.rows.append(({**terms, distance: -1.0}, -math.inf, target))
+                self.rows.append(({**terms, distance: 1.0}, target, math.inf))
 
 
 def room_of(space: Space, best: Places, among: list[str]) -> Box | None:
@@ -270,25 +239,3 @@ def room_of(space: Space, best: Places, among: list[str]) -> Box | None:
                 low, high = (box.low[0] + x, box.low[1] + y), (box.high[0] + x, box.high[1] + y)
                 walls.append(Box((*low, box.low[2]), (*high, box.high[2])))
     return between_walls(walls)
-
-
-def disjoint(rects: list[Rect]) -> list[Rect]:
-    """Rectangles that cover the same, and do not overlap each other."""
-    found: list[Rect] = []
-    for rect in rects:
-        pieces = [rect]
-        for other in found:
-            pieces = [rest for piece in pieces for rest in _without(piece, other)]
-        found += pieces
-    return found
-
-
-def _without(a: Rect, b: Rect) -> list[Rect]:
-    """What of one rectangle is not in the other."""
-    ax0, ay0, ax1, ay1 = a
-    bx0, by0, bx1, by1 = b
-    if ax1 <= bx0 or bx1 <= ax0 or ay1 <= by0 or by1 <= ay0:
-        return [a]
-    low, high = max(ay0, by0), min(ay1, by1)
-    rests = [(ax0, ay0, ax1, by0), (ax0, by1, ax1, ay1), (ax0, low, bx0, high), (bx1, low, ax1, high)]
-    return [(x0, y0, x1, y1) for x0, y0, x1, y1 in rests if x1 > x0 and y1 > y0]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from wsim.plan.layout.equations import Conflict, System, Var
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.layout.free import PATIENCE, Search, room_of
+from wsim.plan.layout.free import Search, room_of
 from wsim.plan.layout.nearest import place_nearby
 from wsim.plan.layout.space import Places, Space
 
@@ -91,7 +91,7 @@ def _at_once(space: Space, best: Places) -> Places:
     """
     trouble = space.troubled(best, space.names)
     pinned = space.system.copy()
-    values = Search(space, pinned, best, space.names, space.names).run(patience=2 * PATIENCE)
+    values = Search(space, pinned, best, space.names, space.names).run()
     if values is None:
         held: dict[str, list[str]] = {}
         for name in space.names:
