@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import importlib.util
 import itertools
 import json
 import math
@@ -178,7 +179,7 @@ def plain(value: Any) -> Any:
 
 def write_plots(runs: list[Run], folder: Path) -> None:
     """One picture a case: the reference in black, a line for each spacing."""
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure  # of an extra, and --plots alone needs it
 
     folder.mkdir(parents=True, exist_ok=True)
     for name in dict.fromkeys(run.case.name for run in runs):
@@ -224,6 +225,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--plots", type=Path, metavar="FOLDER")
     parser.add_argument("--markdown", type=Path, metavar="FILE")
     args = parser.parse_args(arguments)
+    if args.plots and not importlib.util.find_spec("matplotlib"):
+        parser.error("--plots needs matplotlib: pip install 'wsim[plots]'")
     wp.config.log_level = wp.LOG_WARNING
     wp.init()
     device = args.device if args.device != "auto" else "cuda:0" if wp.is_cuda_available() else "cpu"

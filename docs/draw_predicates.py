@@ -1,5 +1,6 @@
 """Draw the pictures of predicates.md: every row as the layout solves it.
 
+    pip install 'wsim[plots]'
     python docs/draw_predicates.py
 
 One sheet a group, into docs/images/predicates. The reference is grey, the object that has the row is orange; an arrow

@@ -16,6 +16,8 @@ WANTED = (
     "wsim/rules/language/nouns.toml",
     "wsim/report/template.html",
     "wsim/report/style.css",
+    "wsim/plan/drawing/fonts/DejaVuSans.ttf",
+    "wsim/plan/drawing/fonts/LICENSE",
     "wsim/_skills/floating-bodies/SKILL.md",
     "wsim/_usd_assets/crate/asset.usda",
     "wsim/_usd_assets/crate/asset.json",

@@ -14,8 +14,8 @@ from wsim.program.api.sources import pxr_bindings, python_package, usd_schemas
 
 Part = str  # "programs" or "lower"
 PACKAGES = {
-    "programs": ("numpy", "usd-core", "newton-usd-schemas", "griffe"),
-    "lower": ("newton", "warp-lang", "griffe"),
+    "programs": ("numpy", "usd-core", "newton-usd-schemas", "griffelib"),
+    "lower": ("newton", "warp-lang", "griffelib"),
 }
 _FORMAT = "1"
 
