@@ -39,7 +39,6 @@ bench: install  ## Measure what the README claims
 	$(BIN)/python benchmarks/sph_scenes.py
 
 bench-sph-validation: install  ## Hold the fluid against flows whose answer is known
-	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --editable '.[plots]'
 	$(BIN)/python benchmarks/sph_validation.py --device auto --json build/sph_validation/results.json \
 		--markdown build/sph_validation/table.md --plots build/sph_validation/plots
 

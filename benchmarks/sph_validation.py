@@ -179,7 +179,7 @@ def plain(value: Any) -> Any:
 
 def write_plots(runs: list[Run], folder: Path) -> None:
     """One picture a case: the reference in black, a line for each spacing."""
-    from matplotlib.figure import Figure  # of an extra, and --plots alone needs it
+    from matplotlib.figure import Figure  # of the extra dev, and --plots alone needs it
 
     folder.mkdir(parents=True, exist_ok=True)
     for name in dict.fromkeys(run.case.name for run in runs):
@@ -226,7 +226,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--markdown", type=Path, metavar="FILE")
     args = parser.parse_args(arguments)
     if args.plots and not importlib.util.find_spec("matplotlib"):
-        parser.error("--plots needs matplotlib: pip install 'wsim[plots]'")
+        parser.error("--plots needs matplotlib: pip install 'wsim[dev]'")
     wp.config.log_level = wp.LOG_WARNING
     wp.init()
     device = args.device if args.device != "auto" else "cuda:0" if wp.is_cuda_available() else "cpu"

@@ -51,7 +51,7 @@ def simulate(stage: Path, recording: Path, tamper: Tamper | None = None, picture
 
 @contextmanager
 def _tampered(simulation: Any, tamper: Tamper) -> Iterator[None]:
-    from wsim.sim import measure as module
+    from wsim.sim import simulation as module
 
     step, measure = simulation.step, module.measure
 
