@@ -22,7 +22,8 @@ from tests.judge.theory import (
 )
 from wsim.judge.checks.camera import CheckInFrame, CheckSeen
 from wsim.judge.checks.mass import CheckMass
-from wsim.judge.checks.plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
+from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
+from wsim.judge.checks.plan_joints import CheckPlanJoints
 from wsim.plan.schema import Actuation, Plan
 from wsim.recording.recording import SeenTrack
 from wsim.scene.world import Motor, Parameter

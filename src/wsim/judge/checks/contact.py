@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.geometry import conjugate, rotate, smallest_extent
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
@@ -16,8 +16,8 @@ from wsim.judge.verdict import RepairTarget
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.contact import Placed
     from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.placed import Placed
     from wsim.judge.verdict import Finding
     from wsim.scene.world import Shape
 
@@ -87,7 +87,6 @@ class CheckTunnelling(Check):
             prim=body.prim,
             time=end,
             span=(start, end),
-            line=body.line,
             value=float(np.linalg.norm(evidence.motion.com[k + 1, i] - evidence.motion.com[k, i])),
             expected=0.0,
             unit="m",
@@ -151,19 +150,17 @@ class CheckSupport(Check):
         body = evidence.world.bodies[i]
         target = RepairTarget(kind="program", prim=body.prim, why="it is carried by nothing that is there")
         return self.measured(
-            f"{body.prim} is pressed on, and the nearest surface is {gap * 1e3:.3g} mm away or more"
-            if len(wrong)
-            else "Where the solver presses, there is something to press",
+            f"{body.prim} is pressed on, and the nearest surface is {gap * 1e3:.3g} mm away or more",
             max(gap, 0.0),
             limit,
             "m",
+            fine="Where the solver presses, there is something to press",
             expected=0.0,
             prim=body.prim,
             time=float(evidence.time[wrong[0]]) if len(wrong) else None,
             span=(float(evidence.time[wrong[0]]), float(evidence.time[wrong[-1]])) if len(wrong) else None,
-            line=body.line,
             limit_from=f"{self.share:g} of its smallest extent, and the way of both in {self.steps:g} time steps",
-            target=target if len(wrong) else None,
+            target=target,
         )
 
 
@@ -263,28 +260,22 @@ class CheckFriction(Check):
 
     def _finding(self, evidence: Evidence, i: int, k: Indices, mu: float, slowed: float) -> Finding:
         body, full = evidence.world.bodies[i], mu * evidence.gravity
-        above = slowed > full
-        limit = full * (self.most if above else self.least)
-        wrong = slowed > limit if above else slowed < limit
         target = RepairTarget(
-            kind="physical parameter",
-            prim=body.prim,
-            parameter="friction",
-            direction="lower" if above else "raise",
-            suggested=mu,
+            kind="physical parameter", prim=body.prim, parameter="friction", suggested=mu,
             why="it is not slowed as its friction has it",
-        )
-        return self.measured(
+        )  # fmt: skip
+        return self.between(
             f"{body.prim} slides, and is slowed by {slowed:.3g} m/s^2; its friction of {mu:g} gives {full:.3g}",
             slowed,
-            limit,
+            (full * self.least, full * self.most),
             "m/s^2",
-            at_most=above,
             expected=full,
             prim=body.prim,
             time=float(evidence.time[k[0]]),
             span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
-            line=body.line,
-            limit_from=f"{self.most if above else self.least:g} mu g, mu the greater of the two surfaces'",
-            target=target if wrong else None,
+            limit_from=f"{self.most if slowed > full else self.least:g} mu g, mu the greater of the two surfaces'",
+            target=target,
         )
+
+
+CHECKS: Checks = (CheckTunnelling, CheckSupport, CheckFriction)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks, share_about
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -43,23 +43,18 @@ class CheckMass(Check):
             return self._density(body)
         changed = any(p.value != p.default for p in evidence.world.parameters)
         share = self.varied if changed else self.share
-        above = body.mass > expected
-        limit = expected * (1.0 + share) if above else expected * (1.0 - share)
-        wrong = body.mass > limit if above else body.mass < limit
         return [
-            self.measured(
+            self.between(
                 f"{body.prim} weighs {body.mass:.4g} kg; the plan's material and size give {expected:.4g} kg",
                 body.mass,
-                limit,
+                share_about(expected, share),
                 "kg",
-                at_most=above,
                 expected=expected,
                 prim=body.prim,
                 time=0.0,
-                line=body.line,
                 limit_from=f"{share:g} of density times volume, as the plan has them"
                 + ("; a parameter was changed" if changed else ""),
-                target=_mass_target(body, expected) if wrong else None,
+                target=_mass_target(body, expected),
             )
         ]
 
@@ -68,7 +63,6 @@ class CheckMass(Check):
             return []
         density = body.mass / body.volume
         above = density > 1000.0
-        wrong = not LIGHTEST <= density <= DENSEST
         return [
             self.measured(
                 f"{body.prim} has a density of {density:.4g} kg/m^3",
@@ -78,9 +72,8 @@ class CheckMass(Check):
                 at_most=above,
                 prim=body.prim,
                 time=0.0,
-                line=body.line,
                 limit_from="matter: an aerogel has 1 kg/m^3, osmium 22 600",
-                target=_mass_target(body, None) if wrong else None,
+                target=_mass_target(body, None),
             )
         ]
 
@@ -105,7 +98,6 @@ class CheckMass(Check):
                 at_most=above,
                 prim=body.prim,
                 time=0.0,
-                line=body.line,
                 limit_from=f"m R^2 at most, R = {evidence.motion.radius[i]:.3g} m, {self.thin:g} of it at least, "
                 "and the greatest no more than the sum of the others",
                 target=RepairTarget(
@@ -119,18 +111,12 @@ class CheckMass(Check):
 
 
 def _mass_target(body: Body, expected: float | None) -> RepairTarget:
-    direction = "change" if expected is None else "lower" if body.mass > expected else "raise"
-    return RepairTarget.model_validate(
-        {
-            "kind": "physical parameter",
-            "prim": body.prim,
-            "parameter": "density",
-            "direction": direction,
-            "suggested": expected / body.volume if expected is not None and body.volume > 0.0 else None,
-            "unit": "kg/m^3",
-            "why": "its mass is not that of its material and size",
-        }
-    )
+    """Another density; which way follows from the mass that is expected, where one is."""
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="density", direction="change" if expected is None else "",
+        suggested=expected / body.volume if expected is not None and body.volume > 0.0 else None, unit="kg/m^3",
+        why="its mass is not that of its material and size",
+    )  # fmt: skip
 
 
 def _planned(evidence: Evidence, prim: str) -> PlanObject | None:
@@ -162,3 +148,6 @@ def volume_of(item: PlanObject) -> float | None:
     if item.primitive == "capsule":
         return float(np.pi * size[0] ** 2 * (size[1] + 4.0 / 3.0 * size[0]))
     return None
+
+
+CHECKS: Checks = (CheckMass,)

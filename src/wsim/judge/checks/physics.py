@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.contact import overlaps
-from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.evidence.geometry import reach, smallest_extent
+from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -75,7 +75,6 @@ class CheckExplosion(Check):
             "m/s",
             prim=body.prim,
             time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
-            line=body.line,
             limit_from=f"{self.body_factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
             "by a far heavier body, and the work of drives and control",
         )
@@ -108,7 +107,6 @@ class CheckExplosion(Check):
             "m/s",
             prim=fluid.prim,
             time=self._first(track.time, fastest > limit, time),
-            line=fluid.line,
             limit_from=f"{self.fluid_factor:g} sqrt(v0^2 + 2 g dz), or the speed of sound, beyond which a weakly "
             "compressible fluid is none",
         )
@@ -178,7 +176,6 @@ class CheckPenetration(Check):
             "m",
             prim=prim,
             time=time,
-            line=evidence.line(prim),
             limit_from=source,
         )
 
@@ -214,7 +211,6 @@ def contained(check: Check, evidence: Evidence, fluid: Fluid, share: float) -> F
         prim=fluid.prim,
         time=time,
         expected=0.0,
-        line=fluid.line,
         limit_from=f"{share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m",
     )
 
@@ -245,7 +241,8 @@ class CheckDensity(Check):
     def _from_scalars(self, evidence: Evidence, fluid: Fluid) -> list[Finding]:
         values = evidence.recording.scalars.get("fluid/density_error_mean")
         if values is None:
-            return [self.failed(f"{fluid.prim}: its density is not in the recording", prim=fluid.prim)]
+            message = f"{fluid.prim}: its density is not in the recording"
+            return [self.failed(message, prim=fluid.prim, line=None)]  # no line of the program is to blame
         return [self._held(fluid, np.abs(values), evidence.time, self.mean, "mean density error")]
 
     def _held(self, fluid: Fluid, error: Floats, time: Floats, limit: float, what: str) -> Finding:
@@ -259,7 +256,6 @@ class CheckDensity(Check):
             prim=fluid.prim,
             time=float(time[np.argmax(error > limit)] if value > limit else time[np.nanargmax(error)]),
             expected=0.0,
-            line=fluid.line,
             limit_from="a weakly compressible liquid stays within about 1 %; as much again for splashes",
         )
 
@@ -291,7 +287,6 @@ class CheckWaterLevel(Check):
                     prim=fluid.prim,
                     time=evidence.window_start,
                     expected=0.0,
-                    line=fluid.line,
                     limit_from=f"{self.spacings:g} particle spacing, which they resolve, and v sqrt(H / g): as high as "
                     "it still sloshes",
                 )
@@ -304,3 +299,6 @@ class CheckWaterLevel(Check):
         track = evidence.track(fluid)
         v = track.velocity[track.time >= evidence.window_start - 1e-9]
         return math.sqrt(float(np.mean(np.einsum("tni,tni->tn", v, v)))) if v.size else 0.0
+
+
+CHECKS: Checks = (CheckExplosion, CheckPenetration, CheckFluidContained, CheckDensity, CheckWaterLevel)

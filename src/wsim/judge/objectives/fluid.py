@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.physics import contained
-from wsim.judge.evidence.evidence import MissingError
-from wsim.judge.objectives.objective import ObjectiveCheck
+from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -283,3 +283,11 @@ def _still_draft(evidence: Evidence, a: _Afloat) -> float:
         under = sum(evidence.solid(j).volume_below(q, float(at[2]), middle) for j, (at, q) in poses.items())
         low, high = (middle, high) if under < a.needed else (low, middle)
     return (low + high) / 2 - float(evidence.ends(a.i)[0][evidence.window].mean())
+
+
+OBJECTIVES: Objectives = {
+    "floats": ObjectiveFloats,
+    "submerged": ObjectiveSubmerged,
+    "stays_inside": ObjectiveStaysInside,
+    "fills": ObjectiveFills,
+}

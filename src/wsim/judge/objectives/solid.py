@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
 from wsim.judge.evidence.geometry import conjugate, rotate
-from wsim.judge.objectives.objective import ObjectiveCheck, Support, support_of
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives, Support, support_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,48 +18,6 @@ if TYPE_CHECKING:
     from wsim.judge.verdict import Finding
 
     Floats = NDArray[np.float64]
-
-ROUND = ("sphere", "cylinder", "capsule")
-
-
-@dataclass
-class CheckSettled(Check):
-    """What is to float or rest has come to rest, so that a mean over the last second means something.
-
-    Floating or round bodies may drift or roll: only their vertical speed counts.
-    """
-
-    factor: float = 0.05  # of sqrt(g L), L the body's smallest extent
-    seconds: float = 0.5
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding for each body that an objective wants floating, under water or at rest."""
-        if evidence.plan is None:
-            return []
-        found = []
-        wanted = [o for o in evidence.plan.objectives if o.kind in ("floats", "submerged", "rests_on")]
-        for name in dict.fromkeys(objective.object for objective in wanted):
-            prim = evidence.prim(name)
-            if any(body.prim == prim for body in evidence.world.bodies):
-                found.append(self._speed(evidence, evidence.index(prim)))
-        return found
-
-    def _speed(self, evidence: Evidence, i: int) -> Finding:
-        body, solid = evidence.world.bodies[i], evidence.solid(i)
-        vertical = bool(evidence.world.fluids) or any(shape.kind in ROUND for shape in solid.shapes)
-        v = evidence.body_qd[evidence.last(self.seconds), i, :3]
-        speed = math.sqrt(float(np.mean(v[:, 2] ** 2 if vertical else np.sum(v**2, axis=1))))
-        limit = self.factor * evidence.velocity_scale(solid.smallest)
-        return self.measured(
-            f"{body.prim} has {'a vertical speed' if vertical else 'a speed'} of {speed:.3g} m/s (rms) at the end",
-            speed,
-            limit,
-            "m/s",
-            prim=body.prim,
-            time=float(evidence.time[-1]) - self.seconds,
-            line=body.line,
-            limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L",
-        )
 
 
 @dataclass
@@ -252,3 +209,11 @@ class ObjectiveSettles(ObjectiveCheck):
                 limit_from=f"{self.factor:g} sqrt(g L), L = {size:.3g} m: a head of {self.factor**2 / 2:.2g} L",
             )
         ]
+
+
+OBJECTIVES: Objectives = {
+    "rests_on": ObjectiveRestsOn,
+    "stays_on": ObjectiveStaysOn,
+    "topples": ObjectiveTopples,
+    "settles": ObjectiveSettles,
+}

@@ -1,0 +1,103 @@
+"""The check of a world's joints against the plan's: between whom, how far they go, and what drives them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from wsim.judge.checks.check import Check, Checks, listed
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.plan.schema import Joint as PlanJoint
+    from wsim.scene.world import Joint
+
+JOINTS = {"fixed": "fixed", "hinge": "revolute", "slider": "prismatic", "ball": "spherical"}
+
+
+@dataclass
+class CheckPlanJoints(Check):
+    """The world has the plan's joints, between the plan's bodies, with the plan's limits and drives."""
+
+    share: float = 0.05  # of the range, of what a drive is set to, or of its strength
+    least: float = 0.01  # [rad], [m], or that a second: what a drive may be off of nothing
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each joint that is missing, or holds, ends or is driven otherwise; or one for none."""
+        if evidence.plan is None or not evidence.plan.joints:
+            return []
+        varied = any(p.value != p.default for p in evidence.world.parameters)
+        found = []
+        for planned in evidence.plan.joints:
+            made = self._made(evidence, planned)
+            if made is None:
+                child = evidence.prim(planned.child)
+                message = f"The plan's {planned.kind} {planned.name} is not in the world: nothing holds {child} so"
+                target = RepairTarget(kind="joint", prim=child, parameter=planned.name, direction="add")
+                found.append(self.failed(message, prim=child, time=0.0, target=target))
+            elif not varied:
+                found += [*self._limits(made, planned), *self._drive(evidence, made, planned)]
+        return found or [self.passed("The world has the plan's joints")]
+
+    @staticmethod
+    def _made(evidence: Evidence, planned: PlanJoint) -> Joint | None:
+        """The world's joint between the same two, either way round."""
+        still = {static.prim for static in evidence.world.statics}
+        parent = evidence.prim(planned.parent) if planned.parent is not None else None
+        ends = {None if parent in still else parent, evidence.prim(planned.child)}
+        fitting = (j for j in evidence.world.joints if j.kind == JOINTS[planned.kind] and {j.parent, j.child} == ends)
+        return next(fitting, None)
+
+    def _limits(self, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
+        if planned.limits is None:
+            return
+        scale, unit = (math.radians(1.0), "rad") if planned.kind == "hinge" else (1.0, "m")
+        low, high = (scale * end for end in planned.limits)
+        has = (-math.inf if made.low is None else made.low, math.inf if made.high is None else made.high)
+        # Seen from the other end, or about the opposite axis, a joint turns the other way.
+        off = min(max(abs(has[0] - a), abs(has[1] - b)) for a, b in ((low, high), (-high, -low)))
+        limit = self.share * (high - low)
+        if off > limit:
+            yield self.measured(
+                f"{made.prim} moves within {listed(has)} {unit}; the plan's {planned.name} within "
+                f"{listed((low, high))} {unit}",
+                off, limit, unit, expected=0.0, prim=made.prim, time=0.0,
+                limit_from=f"{self.share:g} of the plan's range",
+                target=RepairTarget(kind="joint", prim=made.prim, parameter="limits", direction="change"),
+            )  # fmt: skip
+
+    def _drive(self, evidence: Evidence, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
+        wanted = [
+            actuation
+            for item in (evidence.plan.objects if evidence.plan is not None else [])
+            for actuation in item.registration.actuation
+            if actuation.joint == planned.name
+        ]
+        # What a controller sets, or several drives in turn, is not to be read off the stage.
+        if made.drive is None or len(wanted) != 1 or evidence.recording.metadata.get("controlled"):
+            return
+        kind, targets = wanted[0].kind, wanted[0].target
+        if kind not in ("position", "velocity") or len(targets) != 1:
+            return
+        value = made.drive.position if kind == "position" else made.drive.velocity
+        unit = ("rad" if planned.kind == "hinge" else "m") + ("" if kind == "position" else "/s")
+        off = min(abs(value - targets[0]), abs(value + targets[0]))  # about the opposite axis it is the other way
+        limit = max(self.share * abs(targets[0]), self.least)
+        if off > limit:
+            target = RepairTarget(
+                kind="drive", prim=made.prim, parameter=f"drive.{kind}", direction="change", current=value,
+                suggested=targets[0], unit=unit,
+            )  # fmt: skip
+            yield self.measured(
+                f"{made.prim} is driven to {value:.3g} {unit}; the plan has {targets[0]:.3g} {unit}",
+                off, limit, unit, expected=0.0, prim=made.prim, time=0.0,
+                limit_from=f"{self.share:g} of the plan's, or {self.least:g} {unit}", target=target,
+            )  # fmt: skip
+
+
+CHECKS: Checks = (CheckPlanJoints,)
