@@ -72,32 +72,62 @@ class CheckPlanJoints(Check):
             )  # fmt: skip
 
     def _drive(self, evidence: Evidence, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
-        wanted = [
-            actuation
-            for item in (evidence.plan.objects if evidence.plan is not None else [])
-            for actuation in item.registration.actuation
-            if actuation.joint == planned.name
-        ]
-        # What a controller sets, or several drives in turn, is not to be read off the stage.
-        if made.drive is None or len(wanted) != 1 or evidence.recording.metadata.get("controlled"):
+        """What the joint's drive is set to, and how strongly it acts, against the plan's."""
+        wanted = planned.drive
+        # What a controller sets or does itself is not to be read off the stage.
+        if wanted is None or evidence.recording.metadata.get("controlled"):
             return
-        kind, targets = wanted[0].kind, wanted[0].target
-        if kind not in ("position", "velocity") or len(targets) != 1:
+        if made.drive is None:
+            message = f"Nothing drives {made.prim}; the plan's {planned.name} has a drive"
+            target = RepairTarget(kind="drive", prim=made.prim, parameter="drive", direction="add")
+            yield self.failed(message, prim=made.prim, time=0.0, target=target)
             return
-        value = made.drive.position if kind == "position" else made.drive.velocity
-        unit = ("rad" if planned.kind == "hinge" else "m") + ("" if kind == "position" else "/s")
-        off = min(abs(value - targets[0]), abs(value + targets[0]))  # about the opposite axis it is the other way
-        limit = max(self.share * abs(targets[0]), self.least)
+        turns = planned.kind == "hinge"
+        scale, unit = (math.radians(1.0), "rad") if turns else (1.0, "m")
+        effort = "N m" if turns else "N"
+        # What has no stiffness holds no position, and what has no damping no speed.
+        position = (made.drive.position, scale * wanted.position) if wanted.stiffness else (0.0, 0.0)
+        velocity = (made.drive.velocity, scale * wanted.velocity) if wanted.damping else (0.0, 0.0)
+        # Seen from the other end, or about the opposite axis, both are of the other sign.
+        way = min((1.0, -1.0), key=lambda sign: sum(abs(sign * has - to) for has, to in (position, velocity)))
+        for what, (has, to), of in (("position", position, unit), ("velocity", velocity, unit + "/s")):
+            yield from self._target(made, what, has, to, abs(way * has - to), of)
+        most = (made.drive.max_effort, wanted.max_force)
+        for what, has, to, of in (
+            ("stiffness", made.drive.stiffness, wanted.stiffness, f"{effort}/{unit}"),
+            ("damping", made.drive.damping, wanted.damping, f"{effort} s/{unit}"),
+            ("max_force", *(math.inf if end is None else end for end in most), effort),
+        ):
+            yield from self._strength(made, what, has, to, of)
+
+    def _target(self, made: Joint, what: str, has: float, to: float, off: float, unit: str) -> Iterator[Finding]:
+        limit = max(self.share * abs(to), self.least)
         if off > limit:
             target = RepairTarget(
-                kind="drive", prim=made.prim, parameter=f"drive.{kind}", direction="change", current=value,
-                suggested=targets[0], unit=unit,
+                kind="drive", prim=made.prim, parameter=f"drive.{what}", direction="change", current=has, suggested=to,
+                unit=unit,
             )  # fmt: skip
             yield self.measured(
-                f"{made.prim} is driven to {value:.3g} {unit}; the plan has {targets[0]:.3g} {unit}",
+                f"{made.prim} is driven to {has:.3g} {unit}; the plan has {to:.3g} {unit}",
                 off, limit, unit, expected=0.0, prim=made.prim, time=0.0,
                 limit_from=f"{self.share:g} of the plan's, or {self.least:g} {unit}", target=target,
             )  # fmt: skip
+
+    def _strength(self, made: Joint, what: str, has: float, to: float, unit: str) -> Iterator[Finding]:
+        if has == to or abs(has - to) <= self.share * to < math.inf:
+            return
+        known, wanted = ((x if math.isfinite(x) else None) for x in (has, to))
+        said = [f"{x:.4g} {unit}" if math.isfinite(x) else "none" for x in (has, to)]
+        direction = "lower" if has > to else "raise"
+        yield self.failed(
+            f"The drive of {made.prim} has a {what.replace('_', ' ')} of {said[0]}; the plan has {said[1]}",
+            prim=made.prim, time=0.0, value=known, expected=wanted, unit=unit,
+            limit_from=f"the plan's, to {self.share:.0%}",
+            target=RepairTarget(
+                kind="drive", prim=made.prim, parameter=f"drive.{what}", direction=direction, current=known,
+                suggested=wanted, unit=unit,
+            ),
+        )  # fmt: skip
 
 
 CHECKS: Checks = (CheckPlanJoints,)
