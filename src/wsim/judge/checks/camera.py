@@ -73,16 +73,10 @@ class CheckInFrame(Check):
         return [
             self.measured(
                 f"{prim} {what} at any time",
-                0.0,
-                1.0 / len(frames),
-                "share of time",
-                at_most=False,
-                prim=prim,
-                time=time,
-                limit_from=ONCE,
+                0.0, 1.0 / len(frames), "share of time", at_most=False, prim=prim, time=time, limit_from=ONCE,
                 target=target,
             )
-        ]
+        ]  # fmt: skip
 
 
 @dataclass
@@ -110,16 +104,10 @@ class CheckSeen(Check):
                 found.append(
                     self.measured(
                         f"{body.prim} is hidden or a speck in all pictures",
-                        0.0,
-                        1.0 / len(times),
-                        "share of pictures",
-                        at_most=False,
-                        prim=body.prim,
-                        time=float(times[0]),
-                        limit_from=f"{self.pixels:g} pixels of some camera's picture, once",
-                        target=target,
+                        0.0, 1.0 / len(times), "share of pictures", at_most=False, prim=body.prim, time=float(times[0]),
+                        limit_from=f"{self.pixels:g} pixels of some camera's picture, once", target=target,
                     )
-                )
+                )  # fmt: skip
         hidden = f": {least_prim} is hidden longest, in {1.0 - least:.0%} of the pictures" if least_prim else ""
         return found or [
             self.passed(f"Everything that moves is to be seen{hidden}", prim=least_prim or None, line=None)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from wsim.judge.verdict import Finding
 
@@ -100,8 +100,8 @@ class Check:
         above = value > expected
         if target is not None and not target.direction:
             target = target.model_copy(update={"direction": "lower" if above else "raise"})
-        fields: dict[str, object] = {"expected": expected, "target": target, **details}
-        return self.measured(message, value, bounds[above], unit, at_most=above, **fields)  # type: ignore[arg-type]
+        fields: dict[str, Any] = {"expected": expected, "target": target, **details}
+        return self.measured(message, value, bounds[above], unit, at_most=above, **fields)
 
 
 Checks = tuple[type[Check], ...]

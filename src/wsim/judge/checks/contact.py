@@ -84,23 +84,15 @@ class CheckTunnelling(Check):
         thick = smallest_extent(shape.shape)
         return self.failed(
             f"{body.prim} passes through {shape.owner}, {thick * 1e3:.3g} mm thick, from {start:.3f} to {end:.3f} s",
-            prim=body.prim,
-            time=end,
-            span=(start, end),
-            value=float(np.linalg.norm(evidence.motion.com[k + 1, i] - evidence.motion.com[k, i])),
-            expected=0.0,
-            unit="m",
-            limit_from="its centre goes in by one face and out by the opposite one",
+            prim=body.prim, time=end, span=(start, end),
+            value=float(np.linalg.norm(evidence.motion.com[k + 1, i] - evidence.motion.com[k, i])), expected=0.0,
+            unit="m", limit_from="its centre goes in by one face and out by the opposite one",
             target=RepairTarget(
-                kind="time step",
-                prim=body.prim,
-                parameter="time_step",
-                direction="lower",
-                suggested=0.25 * thick / max(float(evidence.motion.speed[k, i]), 1e-9),
-                unit="s",
+                kind="time step", prim=body.prim, parameter="time_step", direction="lower",
+                suggested=0.25 * thick / max(float(evidence.motion.speed[k, i]), 1e-9), unit="s",
                 why="a step must not cross more than a quarter of what it is to stop at",
             ),
-        )
+        )  # fmt: skip
 
 
 def _inner_half(shape: Shape) -> Floats:
@@ -151,17 +143,12 @@ class CheckSupport(Check):
         target = RepairTarget(kind="program", prim=body.prim, why="it is carried by nothing that is there")
         return self.measured(
             f"{body.prim} is pressed on, and the nearest surface is {gap * 1e3:.3g} mm away or more",
-            max(gap, 0.0),
-            limit,
-            "m",
-            fine="Where the solver presses, there is something to press",
-            expected=0.0,
-            prim=body.prim,
-            time=float(evidence.time[wrong[0]]) if len(wrong) else None,
+            max(gap, 0.0), limit, "m", fine="Where the solver presses, there is something to press", expected=0.0,
+            prim=body.prim, time=float(evidence.time[wrong[0]]) if len(wrong) else None,
             span=(float(evidence.time[wrong[0]]), float(evidence.time[wrong[-1]])) if len(wrong) else None,
             limit_from=f"{self.share:g} of its smallest extent, and the way of both in {self.steps:g} time steps",
             target=target,
-        )
+        )  # fmt: skip
 
 
 def _nearest(evidence: Evidence, i: int, frames: Indices, limit: Floats) -> Floats:
@@ -266,16 +253,11 @@ class CheckFriction(Check):
         )  # fmt: skip
         return self.between(
             f"{body.prim} slides, and is slowed by {slowed:.3g} m/s^2; its friction of {mu:g} gives {full:.3g}",
-            slowed,
-            (full * self.least, full * self.most),
-            "m/s^2",
-            expected=full,
-            prim=body.prim,
-            time=float(evidence.time[k[0]]),
-            span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
+            slowed, (full * self.least, full * self.most), "m/s^2", expected=full, prim=body.prim,
+            time=float(evidence.time[k[0]]), span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
             limit_from=f"{self.most if slowed > full else self.least:g} mu g, mu the greater of the two surfaces'",
             target=target,
-        )
+        )  # fmt: skip
 
 
 CHECKS: Checks = (CheckTunnelling, CheckSupport, CheckFriction)

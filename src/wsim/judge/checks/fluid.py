@@ -75,7 +75,7 @@ class CheckPlanFluid(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each fluid that differs, or one for none; nothing where a parameter was changed."""
-        if evidence.plan is None or any(p.value != p.default for p in evidence.world.parameters):
+        if evidence.plan is None or evidence.varied:
             return []
         fluids = {fluid.prim: fluid for fluid in evidence.world.fluids}
         pairs = [(item, fluids.get(evidence.prim(item.name))) for item in evidence.plan.objects]

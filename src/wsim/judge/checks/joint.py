@@ -46,19 +46,14 @@ class CheckJoints(Check):
         what = f"turns by {value:.3g} rad against what it allows" if leans else f"is {value * 1e3:.3g} mm apart"
         return self.measured(
             f"{joint.prim} {what}",
-            value,
-            limit,
-            "rad" if leans else "m",
-            fine=f"{joint.prim} holds",
-            prim=joint.prim,
-            time=since,
+            value, limit, "rad" if leans else "m", fine=f"{joint.prim} holds", prim=joint.prim, time=since,
             span=(since, float(evidence.time[len(wrong) - 1 - np.argmax(wrong[::-1])])) if wrong.any() else None,
             expected=0.0,
             limit_from=f"{self.lean:g} rad"
             if leans
             else f"{self.share:g} of {joint.child}'s smallest extent, {size:.3g} m",
             target=RepairTarget(kind="joint", prim=joint.prim, why="its ends come apart"),
-        )
+        )  # fmt: skip
 
 
 @dataclass
@@ -85,16 +80,11 @@ class CheckJointLimits(Check):
             found.append(
                 self.measured(
                     f"{joint.prim} goes {float(over.max()):.3g} {unit} beyond its limits",
-                    float(max(over.max(), 0.0)),
-                    limit,
-                    unit,
-                    fine=f"{joint.prim} keeps to its limits",
-                    prim=joint.prim,
-                    time=float(evidence.time[at]),
-                    limit_from=f"{self.share:g} of its range, for the give of its stops",
+                    float(max(over.max(), 0.0)), limit, unit, fine=f"{joint.prim} keeps to its limits", prim=joint.prim,
+                    time=float(evidence.time[at]), limit_from=f"{self.share:g} of its range, for the give of its stops",
                     target=RepairTarget(kind="joint", prim=joint.prim, parameter="limits", direction="change"),
                 )
-            )
+            )  # fmt: skip
         return found
 
 
@@ -129,15 +119,11 @@ class CheckDrives(Check):
             found.append(
                 self.measured(
                     f"{joint.prim}: its drive is at its full {joint.drive.max_effort:g} at {value:.0%} of the end",
-                    value,
-                    0.5,
-                    "share of frames",
-                    prim=joint.prim,
-                    time=evidence.window_start,
+                    value, 0.5, "share of frames", prim=joint.prim, time=evidence.window_start,
                     limit_from="half of the final window: a drive that gets where it is to go no longer strains",
                     target=target,
                 )
-            )
+            )  # fmt: skip
         return found
 
 

@@ -37,26 +37,20 @@ class CheckMass(Check):
         return wrong or ([self.passed("Bodies weigh what their sizes and materials give")] if found else [])
 
     def _mass(self, evidence: Evidence, body: Body) -> list[Finding]:
-        item = _planned(evidence, body.prim)
+        item = evidence.planned(body.prim)
         expected = _mass_of(item, body) if item is not None else None
         if expected is None:
             return self._density(body)
-        changed = any(p.value != p.default for p in evidence.world.parameters)
-        share = self.varied if changed else self.share
+        share = self.varied if evidence.varied else self.share
         return [
             self.between(
                 f"{body.prim} weighs {body.mass:.4g} kg; the plan's material and size give {expected:.4g} kg",
-                body.mass,
-                share_about(expected, share),
-                "kg",
-                expected=expected,
-                prim=body.prim,
-                time=0.0,
+                body.mass, share_about(expected, share), "kg", expected=expected, prim=body.prim, time=0.0,
                 limit_from=f"{share:g} of density times volume, as the plan has them"
-                + ("; a parameter was changed" if changed else ""),
+                + ("; a parameter was changed" if evidence.varied else ""),
                 target=_mass_target(body, expected),
             )
-        ]
+        ]  # fmt: skip
 
     def _density(self, body: Body) -> list[Finding]:
         if body.volume <= 0.0:
@@ -66,16 +60,10 @@ class CheckMass(Check):
         return [
             self.measured(
                 f"{body.prim} has a density of {density:.4g} kg/m^3",
-                density,
-                DENSEST if above else LIGHTEST,
-                "kg/m^3",
-                at_most=above,
-                prim=body.prim,
-                time=0.0,
-                limit_from="matter: an aerogel has 1 kg/m^3, osmium 22 600",
-                target=_mass_target(body, None),
+                density, DENSEST if above else LIGHTEST, "kg/m^3", at_most=above, prim=body.prim, time=0.0,
+                limit_from="matter: an aerogel has 1 kg/m^3, osmium 22 600", target=_mass_target(body, None),
             )
-        ]
+        ]  # fmt: skip
 
     def _inertia(self, evidence: Evidence, i: int, body: Body) -> list[Finding]:
         moments = np.linalg.eigvalsh(np.array(body.inertia).reshape(3, 3))
@@ -93,21 +81,16 @@ class CheckMass(Check):
                 f"{body.prim} has moments of inertia of {', '.join(f'{m:.3g}' for m in moments)} kg m^2, which no "
                 f"{body.mass:.3g} kg of its size can have",
                 greatest if greatest > bound or spread >= 0.0 else float(moments[2] - moments[0] - moments[1]),
-                (bound if greatest > bound else 0.0) if above else self.thin * bound,
-                "kg m^2",
-                at_most=above,
-                prim=body.prim,
-                time=0.0,
+                (bound if greatest > bound else 0.0) if above else self.thin * bound, "kg m^2", at_most=above,
+                prim=body.prim, time=0.0,
                 limit_from=f"m R^2 at most, R = {evidence.motion.radius[i]:.3g} m, {self.thin:g} of it at least, "
                 "and the greatest no more than the sum of the others",
                 target=RepairTarget(
-                    kind="physical parameter",
-                    prim=body.prim,
-                    parameter="inertia",
+                    kind="physical parameter", prim=body.prim, parameter="inertia",
                     direction="lower" if above else "raise",
                 ),
             )
-        ]
+        ]  # fmt: skip
 
 
 def _mass_target(body: Body, expected: float | None) -> RepairTarget:
@@ -117,12 +100,6 @@ def _mass_target(body: Body, expected: float | None) -> RepairTarget:
         suggested=expected / body.volume if expected is not None and body.volume > 0.0 else None, unit="kg/m^3",
         why="its mass is not that of its material and size",
     )  # fmt: skip
-
-
-def _planned(evidence: Evidence, prim: str) -> PlanObject | None:
-    if evidence.plan is None:
-        return None
-    return next((item for item in evidence.plan.objects if evidence.prim(item.name) == prim), None)
 
 
 def _mass_of(item: PlanObject, body: Body) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -180,9 +180,9 @@ def _strangest(
     k, i = np.unravel_index(int(np.argmax(share)), share.shape)
     prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + 1])
     target = RepairTarget(kind="program", prim=prim, why=why) if why else None
-    fields = {"prim": prim, "time": end, "span": (start, end), "expected": 0.0, **details}
+    fields: dict[str, Any] = {"prim": prim, "time": end, "span": (start, end), "expected": 0.0, **details}
     message = story.format(prim=prim, time=end, value=value[k, i])
-    return check.measured(message, value[k, i], limit[k, i], unit, fine=fine, target=target, **fields)  # type: ignore[arg-type]
+    return check.measured(message, value[k, i], limit[k, i], unit, fine=fine, target=target, **fields)
 
 
 def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: NDArray[np.bool_], dry: bool) -> None:

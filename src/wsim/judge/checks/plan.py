@@ -127,7 +127,7 @@ class CheckPlanPlaces(Check):
         planned = np.array(item.velocity)
         off = float(np.linalg.norm(np.array(body.velocity) - planned))
         limit = self.speed * max(float(np.linalg.norm(planned)), evidence.velocity_scale(evidence.solid(i).smallest))
-        if off > limit and not any(p.value != p.default for p in evidence.world.parameters):
+        if off > limit and not evidence.varied:
             target = RepairTarget(
                 kind="physical parameter", prim=body.prim, parameter="velocity", direction="change",
                 suggested=float(np.linalg.norm(planned)), unit="m/s",

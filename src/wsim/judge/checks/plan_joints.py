@@ -31,7 +31,6 @@ class CheckPlanJoints(Check):
         """One finding for each joint that is missing, or holds, ends or is driven otherwise; or one for none."""
         if evidence.plan is None or not evidence.plan.joints:
             return []
-        varied = any(p.value != p.default for p in evidence.world.parameters)
         found = []
         for planned in evidence.plan.joints:
             made = self._made(evidence, planned)
@@ -40,7 +39,7 @@ class CheckPlanJoints(Check):
                 message = f"The plan's {planned.kind} {planned.name} is not in the world: nothing holds {child} so"
                 target = RepairTarget(kind="joint", prim=child, parameter=planned.name, direction="add")
                 found.append(self.failed(message, prim=child, time=0.0, target=target))
-            elif not varied:
+            elif not evidence.varied:
                 found += [*self._limits(made, planned), *self._drive(evidence, made, planned)]
         return found or [self.passed("The world has the plan's joints")]
 
@@ -92,11 +91,11 @@ class CheckPlanJoints(Check):
         way = min((1.0, -1.0), key=lambda sign: sum(abs(sign * has - to) for has, to in (position, velocity)))
         for what, (has, to), of in (("position", position, unit), ("velocity", velocity, unit + "/s")):
             yield from self._target(made, what, has, to, abs(way * has - to), of)
-        most = (made.drive.max_effort, wanted.max_force)
+        most, bound = (math.inf if end is None else end for end in (made.drive.max_effort, wanted.max_force))
         for what, has, to, of in (
             ("stiffness", made.drive.stiffness, wanted.stiffness, f"{effort}/{unit}"),
             ("damping", made.drive.damping, wanted.damping, f"{effort} s/{unit}"),
-            ("max_force", *(math.inf if end is None else end for end in most), effort),
+            ("max_force", most, bound, effort),
         ):
             yield from self._strength(made, what, has, to, of)
 

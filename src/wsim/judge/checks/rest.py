@@ -71,16 +71,11 @@ class CheckRestForce(Check):
         )  # fmt: skip
         return self.measured(
             f"{body.prim} rests, and {value:.3g} N are missing from the {weight:.4g} N that carry it",
-            value,
-            self.share * weight + hidden,
-            "N",
-            fine="Contacts carry the weight of what rests",
-            prim=body.prim,
-            time=evidence.window_start,
-            expected=0.0,
+            value, self.share * weight + hidden, "N", fine="Contacts carry the weight of what rests", prim=body.prim,
+            time=evidence.window_start, expected=0.0,
             limit_from=f"{self.share:g} of its weight, a mean over the final window, and what flips from step to step",
             target=target,
-        )
+        )  # fmt: skip
 
 
 @dataclass
@@ -122,18 +117,12 @@ class CheckJitter(Check):
         return [
             self.measured(
                 f"{body.prim} trembles by {tremble[n]:.3g} m/s from frame to frame at the end",
-                float(tremble[n]),
-                float(limit[n]),
-                "m/s",
-                fine="Nothing trembles at the end",
-                prim=body.prim,
-                time=evidence.window_start,
-                span=(evidence.window_start, float(evidence.time[-1])),
-                expected=0.0,
+                float(tremble[n]), float(limit[n]), "m/s", fine="Nothing trembles at the end", prim=body.prim,
+                time=evidence.window_start, span=(evidence.window_start, float(evidence.time[-1])), expected=0.0,
                 limit_from=f"{self.steps:g} g dt, dt = {motion.dt * 1e3:.3g} ms: a contact is late by a step at most",
                 target=target,
             )
-        ]
+        ]  # fmt: skip
 
 
 def _flips(rate: Floats) -> Floats:
@@ -201,23 +190,14 @@ class CheckCreep(Check):
         body = evidence.world.bodies[i]
         return self.measured(
             f"{body.prim} creeps by {speed * 1e3:.3g} mm/s at the end, and nothing slows it",
-            speed,
-            limit,
-            "m/s",
-            fine="What stands by friction does not creep",
-            prim=body.prim,
-            time=evidence.window_start,
-            span=(evidence.window_start, float(evidence.time[-1])),
-            expected=0.0,
+            speed, limit, "m/s", fine="What stands by friction does not creep", prim=body.prim,
+            time=evidence.window_start, span=(evidence.window_start, float(evidence.time[-1])), expected=0.0,
             limit_from=f"{self.share:g} of its smallest extent a second",
             target=RepairTarget(
-                kind="settlement",
-                prim=body.prim,
-                parameter="friction",
-                direction="raise",
+                kind="settlement", prim=body.prim, parameter="friction", direction="raise",
                 why="friction does not hold it",
             ),
-        )
+        )  # fmt: skip
 
 
 CHECKS: Checks = (CheckRestForce, CheckJitter, CheckCreep)

@@ -58,14 +58,9 @@ class CheckFinite(Check):
         if value > self.rotation_error:
             message = f"{prim}: its rotation is no unit quaternion at {evidence.time[frame]:.3f} s"
         return self.measured(
-            message,
-            value,
-            self.rotation_error,
-            "1",
-            prim=prim,
-            time=float(evidence.time[frame]),
+            message, value, self.rotation_error, "1", prim=prim, time=float(evidence.time[frame]),
             limit_from="a quaternion's length is 1, to single precision and the integrator's drift",
-        )
+        )  # fmt: skip
 
 
 def _earlier(a: tuple[float, str, str] | None, b: tuple[float, str, str]) -> tuple[float, str, str]:
@@ -89,15 +84,10 @@ class CheckComplete(Check):
         found.append(
             self.measured(
                 f"{message}: {error}" if error and reached < limit else message,
-                reached,
-                limit,
-                "s",
-                at_most=False,
-                time=reached,
-                expected=planned,
+                reached, limit, "s", at_most=False, time=reached, expected=planned,
                 limit_from=f"the planned duration less {self.frames_missing:g} frames",
             )
-        )
+        )  # fmt: skip
         back = np.flatnonzero(np.diff(evidence.time) <= 0)
         if len(back):
             found.append(self.failed("Recorded times do not increase", time=float(evidence.time[back[0]])))

@@ -47,13 +47,9 @@ class CheckSettled(Check):
         limit = self.factor * evidence.velocity_scale(solid.smallest)
         return self.measured(
             f"{body.prim} has {'a vertical speed' if vertical else 'a speed'} of {speed:.3g} m/s (rms) at the end",
-            speed,
-            limit,
-            "m/s",
-            prim=body.prim,
-            time=float(evidence.time[-1]) - self.seconds,
+            speed, limit, "m/s", prim=body.prim, time=float(evidence.time[-1]) - self.seconds,
             limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L",
-        )
+        )  # fmt: skip
 
 
 CHECKS: Checks = (CheckSettled,)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.placed import Placed
-    from wsim.plan.schema import Plan
+    from wsim.plan.schema import Plan, PlanObject
     from wsim.recording.recording import FluidTrack, Recording
     from wsim.scene.world import Body, Container, Fluid, Static
 
@@ -76,6 +76,16 @@ class Recorded:
     def gravity(self) -> float:
         """The strength of gravity [m/s^2]."""
         return float(np.linalg.norm(self.world.gravity))
+
+    @property
+    def varied(self) -> bool:
+        """Whether a parameter of the program was set to another value than its own."""
+        return any(parameter.value != parameter.default for parameter in self.world.parameters)
+
+    def planned(self, prim: str) -> PlanObject | None:
+        """The plan's object that a prim is made of."""
+        items = self.plan.objects if self.plan is not None else []
+        return next((item for item in items if self.prim(item.name) == prim), None)
 
     @staticmethod
     def prim(name: str) -> str:

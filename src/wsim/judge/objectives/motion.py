@@ -55,13 +55,9 @@ class ObjectiveMoves(ObjectiveCheck):
         time = float(evidence.time[np.argmax(reached)] if reached.any() else evidence.time[-1])
         return self.measured(
             f"{evidence.world.bodies[i].prim} moves {value:.4g} m {where}",
-            value,
-            limit,
-            "m",
-            at_most=False,
-            time=time,
+            value, limit, "m", at_most=False, time=time,
             limit_from="the plan's distance" if wanted is not None else f"{self.share:g} of its smallest extent",
-        )
+        )  # fmt: skip
 
 
 @dataclass
@@ -85,13 +81,9 @@ class ObjectiveSlides(ObjectiveMoves):
         word = "rolls" if value > self.turning else "slides"
         return self.measured(
             f"{evidence.world.bodies[i].prim} {word}: its turning makes up {value:.2f} of its way",
-            value,
-            self.turning,
-            "1",
-            at_most=not rolls,
-            expected=1.0 if rolls else 0.0,
+            value, self.turning, "1", at_most=not rolls, expected=1.0 if rolls else 0.0,
             limit_from="1 is rolling without slipping, 0 sliding without turning",
-        )
+        )  # fmt: skip
 
     def _frames(self, evidence: Evidence, i: int) -> NDArray[np.bool_]:
         """From the start until the planned way is made; all, where it never is."""
@@ -132,15 +124,11 @@ class ObjectiveRollsDown(ObjectiveSlides):
         found.append(
             self.measured(
                 f"{body.prim} gathers speed at {value:.4g} m/s^2; a rolling ball of its inertia does at {expected:.4g}",
-                value,
-                expected * (1 - self.accuracy if low else 1 + self.accuracy),
-                "m/s^2",
-                at_most=not low,
-                expected=expected,
-                time=float(evidence.time[here][-1]),
+                value, expected * (1 - self.accuracy if low else 1 + self.accuracy), "m/s^2", at_most=not low,
+                expected=expected, time=float(evidence.time[here][-1]),
                 limit_from=f"g sin(slope) / (1 + I / m r^2), to {self.accuracy:.0%}",
             )
-        )
+        )  # fmt: skip
         return found
 
     def _on_ramp(self, evidence: Evidence, body: Body) -> NDArray[np.bool_]:

@@ -55,17 +55,13 @@ class ObjectiveRestsOn(ObjectiveCheck):
         word = "does not rest on" if failing else "rests on"
         return self.measured(
             f"{prim} {word} {support.name}: its lowest point is {value * 1e3:.3g} mm above it",
-            value,
-            tolerance if value >= 0 else -tolerance,
-            "m",
-            at_most=value >= 0,
-            expected=0.0,
+            value, tolerance if value >= 0 else -tolerance, "m", at_most=value >= 0, expected=0.0,
             time=evidence.earliest(since if failing else None),
             limit_from="the plan's tolerance"
             if self.objective.tolerance
             else f"{self.share:g} of the body's height"
             + (f", or {self.spacings:g} particle spacings if more" if support.fluid else ""),
-        )
+        )  # fmt: skip
 
     def _force(self, evidence: Evidence, i: int, support: Support) -> Finding | None:
         """The mean contact force against weight less buoyancy; None where no force was recorded."""
@@ -84,14 +80,8 @@ class ObjectiveRestsOn(ObjectiveCheck):
         return self.measured(
             f"{body.prim} is carried with {value:.4g} N; its weight {'less buoyancy' if buoyancy else 'alone'} is "
             f"{expected:.4g} N",
-            value,
-            limit,
-            "N",
-            at_most=above,
-            expected=expected,
-            time=evidence.window_start,
-            limit_from=source,
-        )
+            value, limit, "N", at_most=above, expected=expected, time=evidence.window_start, limit_from=source,
+        )  # fmt: skip
 
     @staticmethod
     def _by_fluid(evidence: Evidence, i: int, support: Support) -> tuple[float, float]:
@@ -137,12 +127,9 @@ class ObjectiveStaysOn(ObjectiveCheck):
             return [
                 self.failed(
                     f"{prim} leaves {support.name} at {time:.3f} s: it is no longer over it",
-                    time=time,
-                    limit=tolerance,
-                    unit="m",
-                    limit_from=source,
+                    time=time, limit=tolerance, unit="m", limit_from=source,
                 )
-            ]
+            ]  # fmt: skip
         word = "leaves" if off.any() else "stays on"
         message = f"{prim} {word} {support.name}: the gap reaches {value * 1e3:.3g} mm"
         return [self.measured(message, value, tolerance, "m", expected=0.0, time=time, limit_from=source)]
@@ -201,14 +188,11 @@ class ObjectiveSettles(ObjectiveCheck):
         return [
             self.measured(
                 f"{prim} {word}: {value:.3g} m/s (rms) at the end",
-                value,
-                limit,
-                "m/s",
-                expected=0.0,
+                value, limit, "m/s", expected=0.0,
                 time=evidence.earliest(evidence.since(speed > limit), float(evidence.time[-1]) - self.seconds),
                 limit_from=f"{self.factor:g} sqrt(g L), L = {size:.3g} m: a head of {self.factor**2 / 2:.2g} L",
             )
-        ]
+        ]  # fmt: skip
 
 
 OBJECTIVES: Objectives = {

@@ -172,14 +172,9 @@ def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, w
     if to is not None and now is not None and (to > now) != (way == "raise"):
         to = None  # friction is on the right side of it already: it is not what is wrong, or not alone
     return RepairTarget(
-        kind="physical parameter",
-        prim=body.prim,
-        parameter="friction",
-        direction=way,
-        current=now,
-        suggested=to,
+        kind="physical parameter", prim=body.prim, parameter="friction", direction=way, current=now, suggested=to,
         why=why,
-    )
+    )  # fmt: skip
 
 
 def stays_inside(finding: Finding, evidence: Evidence) -> RepairTarget:

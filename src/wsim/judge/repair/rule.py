@@ -47,8 +47,7 @@ def density(evidence: Evidence, prim: str) -> float:
 
 def planned_density(evidence: Evidence, prim: str) -> float | None:
     """The density of the material that the plan has for a prim [kg/m^3]."""
-    items = evidence.plan.objects if evidence.plan is not None else []
-    item = next((item for item in items if evidence.prim(item.name) == prim), None)
+    item = evidence.planned(prim)
     return item.material.density if item is not None and item.material is not None else None
 
 
