@@ -3,9 +3,10 @@
     .venv/bin/python benchmarks/judge_mutants.py --count 40 --seed 1 --jobs 2 --json build/judge_mutants.json
 
 Each mutant is a copy of the package with one change: a comparison of `src/wsim/judge` turned round (`<` to `>=`, `<=`
-to `>`, `==` to `!=` and back), `at_most=False` left out, or a check taken from the lists of `decide.py`. A mutant is
-noticed if a test fails. Mutants are drawn by a seed from all there are; every dropped check is among them with
-`--drops`. What survives is printed with its place: a missing test, or a comparison where both sides do.
+to `>`, `==` to `!=` and back), `at_most=False` left out, or a check taken from
+its module's `CHECKS`. A mutant is noticed if a test fails. Mutants are drawn by a seed from all there are; every
+dropped check is among them with `--drops`. What survives is printed with its place: a missing test, or a comparison
+where both sides do.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 JUDGE = Path("src/wsim/judge")
-LISTS = ("run_checks", "physics_checks")
+LIST = "CHECKS"  # of a module of checks
 TURNED: dict[type[ast.cmpop], type[ast.cmpop]] = {
     ast.Lt: ast.GtE, ast.GtE: ast.Lt, ast.Gt: ast.LtE, ast.LtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
 }  # fmt: skip
@@ -61,9 +62,8 @@ def _changes(node: ast.AST) -> list[str]:
         return [f"turned {ast.unparse(node)}"]
     if isinstance(node, ast.keyword) and node.arg == "at_most" and ast.unparse(node.value) == "False":
         return ["at_most=False left out"]
-    if isinstance(node, ast.FunctionDef) and node.name in LISTS:
-        made = next(child.value for child in ast.walk(node) if isinstance(child, ast.Return))
-        return [f"dropped {ast.unparse(item)}" for item in made.elts] if isinstance(made, ast.List) else []
+    if isinstance(node, ast.AnnAssign) and ast.unparse(node.target) == LIST and isinstance(node.value, ast.Tuple):
+        return [f"dropped {ast.unparse(item)}" for item in node.value.elts]
     return []
 
 
@@ -72,10 +72,9 @@ def _apply(node: ast.AST, what: str) -> None:
         node.ops = [TURNED[type(node.ops[0])]()]
     elif isinstance(node, ast.keyword):
         node.value = ast.Constant(value=True)
-    elif isinstance(node, ast.FunctionDef):
-        made = next(child.value for child in ast.walk(node) if isinstance(child, ast.Return))
-        assert isinstance(made, ast.List)
-        made.elts = [item for item in made.elts if f"dropped {ast.unparse(item)}" != what]
+    elif isinstance(node, ast.AnnAssign):
+        assert isinstance(node.value, ast.Tuple)
+        node.value.elts = [item for item in node.value.elts if f"dropped {ast.unparse(item)}" != what]
 
 
 def suite_passes(path: str = "", text: str = "") -> bool:

@@ -10,7 +10,8 @@ import pytest
 from tests.documents import DOCUMENTS, ROOT, blocks, inline
 from wsim.cli.verbs import VERBS as NAMES
 from wsim.cli.verbs import load
-from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
+from wsim.judge.checks.registry import physics_checks, run_checks
+from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.verdict import RepairKind
 from wsim.plan.schema import Plan
 from wsim.rules.lexicon import lexicon

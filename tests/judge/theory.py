@@ -83,8 +83,8 @@ def with_world(recording, **fields):
 
 
 def ask(check, recording, plan=None):
-    """A check's findings on a recording."""
-    return check.evaluate(Evidence(recording, plan))
+    """A check's findings on a recording, as the judge asks for them."""
+    return check.run(Evidence(recording, plan))
 
 
 def only(findings):

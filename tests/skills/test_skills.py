@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 from tests.skills.blocks import PYTHON, WHOLE, Block, blocks
-from wsim.judge.decide import OBJECTIVES, physics_checks, run_checks
+from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import parse
 from wsim.judge.language.objective import ObjectiveFormula
+from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.verdict import Finding, Verdict
 from wsim.plan.schema import Objective
 from wsim.recording import read

@@ -1,111 +1,19 @@
-"""All checks and objectives, and the verdict that follows from their findings."""
+"""The verdict that follows from the findings of all checks and objectives."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wsim.judge.checks.camera import CheckInFrame, CheckSeen
-from wsim.judge.checks.contact import CheckFriction, CheckSupport, CheckTunnelling
-from wsim.judge.checks.energy import CheckEnergy
-from wsim.judge.checks.fluid import CheckFluidMass, CheckHydrostatic, CheckPlanFluid
-from wsim.judge.checks.joint import CheckDrives, CheckJointLimits, CheckJoints
-from wsim.judge.checks.mass import CheckMass
-from wsim.judge.checks.motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
-from wsim.judge.checks.physics import (
-    CheckDensity,
-    CheckExplosion,
-    CheckFluidContained,
-    CheckPenetration,
-    CheckWaterLevel,
-)
-from wsim.judge.checks.plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
-from wsim.judge.checks.rest import CheckCreep, CheckJitter, CheckRestForce
-from wsim.judge.checks.run import CheckComplete, CheckFinite, CheckLog, CheckPlanControl, CheckPlanObjects
+from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives.fluid import ObjectiveFills, ObjectiveFloats, ObjectiveStaysInside, ObjectiveSubmerged
-from wsim.judge.objectives.hinge import ObjectiveSwings, ObjectiveTilts
-from wsim.judge.objectives.motion import (
-    ObjectiveCollidesWith,
-    ObjectiveFlies,
-    ObjectiveMoves,
-    ObjectiveRollsDown,
-    ObjectiveSlides,
-)
-from wsim.judge.objectives.solid import (
-    CheckSettled,
-    ObjectiveRestsOn,
-    ObjectiveSettles,
-    ObjectiveStaysOn,
-    ObjectiveTopples,
-)
+from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
 
 if TYPE_CHECKING:
-    from wsim.judge.checks.check import Check
-    from wsim.judge.objectives.objective import ObjectiveCheck
     from wsim.plan.schema import Plan
     from wsim.recording.recording import Recording
-
-OBJECTIVES: dict[str, type[ObjectiveCheck]] = {
-    "floats": ObjectiveFloats,
-    "rests_on": ObjectiveRestsOn,
-    "submerged": ObjectiveSubmerged,
-    "stays_on": ObjectiveStaysOn,
-    "topples": ObjectiveTopples,
-    "stays_inside": ObjectiveStaysInside,
-    "settles": ObjectiveSettles,
-    "swings": ObjectiveSwings,
-    "slides": ObjectiveSlides,
-    "rolls_down": ObjectiveRollsDown,
-    "moves": ObjectiveMoves,
-    "flies": ObjectiveFlies,
-    "collides_with": ObjectiveCollidesWith,
-    "tilts": ObjectiveTilts,
-    "fills": ObjectiveFills,
-}
-
-
-def run_checks() -> list[Check]:
-    """The checks that need no finite numbers."""
-    return [CheckFinite(), CheckComplete(), CheckLog(), CheckPlanObjects(), CheckPlanControl()]
-
-
-def physics_checks() -> list[Check]:
-    """The checks of what the numbers say."""
-    return [
-        CheckExplosion(),
-        CheckPenetration(),
-        CheckFluidContained(),
-        CheckDensity(),
-        CheckWaterLevel(),
-        CheckSettled(),
-        CheckContinuity(),
-        CheckFreeFlight(),
-        CheckFreeTurning(),
-        CheckGravity(),
-        CheckEnergy(),
-        CheckTunnelling(),
-        CheckSupport(),
-        CheckFriction(),
-        CheckRestForce(),
-        CheckJitter(),
-        CheckCreep(),
-        CheckJoints(),
-        CheckJointLimits(),
-        CheckDrives(),
-        CheckMass(),
-        CheckPlanSizes(),
-        CheckPlanPlaces(),
-        CheckPlanLooks(),
-        CheckPlanJoints(),
-        CheckPlanFluid(),
-        CheckFluidMass(),
-        CheckHydrostatic(),
-        CheckInFrame(),
-        CheckSeen(),
-    ]
 
 
 def judge(recording: Recording, plan: Plan | None = None) -> Verdict:

@@ -18,7 +18,7 @@ from wsim.judge.evidence.contact import distance, overlaps
 from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.objectives.motion import downhill
 from wsim.judge.objectives.objective import support_of
-from wsim.judge.repair.language import decider
+from wsim.judge.repair.asked import decider
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

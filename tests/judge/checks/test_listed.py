@@ -6,7 +6,7 @@ import pkgutil
 
 import wsim.judge.checks
 from wsim.judge.checks.check import Check
-from wsim.judge.decide import physics_checks, run_checks
+from wsim.judge.checks.registry import physics_checks, run_checks
 
 
 def test_every_check_is_asked_once():

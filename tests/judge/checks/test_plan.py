@@ -22,8 +22,9 @@ from tests.judge.theory import (
 )
 from wsim.judge.checks.camera import CheckInFrame, CheckSeen
 from wsim.judge.checks.mass import CheckMass
-from wsim.judge.checks.plan import CheckPlanJoints, CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
-from wsim.plan.schema import Actuation, Plan
+from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
+from wsim.judge.checks.plan_joints import CheckPlanJoints
+from wsim.plan.schema import Plan
 from wsim.recording.recording import SeenTrack
 from wsim.scene.world import Motor, Parameter
 
@@ -220,16 +221,64 @@ def test_a_joint_ends_where_the_plan_has_it_seen_from_either_end(low, high, pass
     assert high is None or passes or finding.value == pytest.approx(math.radians(high - 90.0), rel=1e-6)
 
 
+DRIVE = {"position": math.degrees(1.0), "stiffness": 10.0, "damping": 2.0, "max_force": 40.0}
+MOTOR = {"position": 1.0, "stiffness": 10.0, "damping": 2.0, "max_effort": 40.0}
+
+
+def driven(kind="hinge", plan=DRIVE, **motor):
+    """A world whose box is driven by a motor, and a plan with a drive."""
+    world = hinged(**motor) if kind == "hinge" else hinged(None, None, **motor)
+    if kind == "slider":
+        world = with_world(world, joints=[world.world.joints[0].model_copy(update={"kind": "prismatic"})])
+    return world, a_plan(name="joint", kind=kind, child="box", drive=plan)
+
+
 @pytest.mark.parametrize(("position", "passes"), [(1.0, True), (-1.04, True), (1.06, False), (2.0, False)])
 def test_a_drive_is_set_to_what_the_plan_has(position, passes):
-    plan = a_plan(name="hinge", kind="hinge", child="box")
-    plan.objects[1].registration.actuation.append(Actuation(kind="position", joint="hinge", target=(1.0,)))
-    driven = hinged(stiffness=10.0, position=position)
-    finding = only(ask(CheckPlanJoints(), driven, plan))
-    assert finding.passed == passes and (passes or finding.target.suggested == 1.0)
-    assert only(ask(CheckPlanJoints(), replace(driven, metadata={"controlled": True}), plan)).passed
-    changed = with_world(driven, parameters=[Parameter(name="angle", value=2.0, default=1.0)])
+    world, plan = driven(**{**MOTOR, "position": position})
+    finding = only(ask(CheckPlanJoints(), world, plan))
+    assert finding.passed == passes
+    assert passes or (finding.target.suggested == pytest.approx(1.0) and finding.target.parameter == "drive.position")
+    assert only(ask(CheckPlanJoints(), replace(world, metadata={"controlled": True}), plan)).passed
+    changed = with_world(world, parameters=[Parameter(name="angle", value=2.0, default=1.0)])
     assert only(ask(CheckPlanJoints(), changed, plan)).passed
+
+
+@pytest.mark.parametrize(("velocity", "passes"), [(2.0, True), (-2.0, True), (2.09, True), (2.2, False), (0.0, False)])
+@pytest.mark.parametrize("kind", ["hinge", "slider"])
+def test_a_motor_turns_as_fast_as_the_plans(kind, velocity, passes):
+    planned = {"velocity": math.degrees(2.0) if kind == "hinge" else 2.0, "damping": 5.0}
+    world, plan = driven(kind, planned, velocity=velocity, damping=5.0)
+    finding = only(ask(CheckPlanJoints(), world, plan))
+    assert finding.passed == passes
+    assert passes or finding.unit == ("rad/s" if kind == "hinge" else "m/s")
+
+
+@pytest.mark.parametrize(
+    ("change", "parameter", "direction"),
+    [
+        ({"stiffness": 1.0}, "drive.stiffness", "raise"),
+        ({"damping": 20.0}, "drive.damping", "lower"),
+        ({"max_effort": 4.0}, "drive.max_force", "raise"),
+        ({"max_effort": None}, "drive.max_force", "lower"),
+    ],
+)
+def test_a_drive_is_as_strong_as_the_plans(change, parameter, direction):
+    near = {"position": 1.0, "stiffness": 10.4, "damping": 1.92, "max_effort": 41.0}
+    assert only(ask(CheckPlanJoints(), *driven(**near))).passed
+    finding = only(ask(CheckPlanJoints(), *driven(**{**MOTOR, **change})))
+    assert not finding.passed and (finding.target.parameter, finding.target.direction) == (parameter, direction)
+
+
+def test_a_spring_where_the_plan_has_a_motor_is_found():
+    motor = {"velocity": math.degrees(2.0), "damping": 5.0}
+    found = ask(CheckPlanJoints(), *driven(plan=motor, position=1.0, stiffness=10.0))
+    assert {f.target.parameter for f in found} == {"drive.velocity", "drive.stiffness", "drive.damping"}
+
+
+def test_a_drive_that_the_world_lacks_is_found():
+    finding = only(ask(CheckPlanJoints(), *driven()))
+    assert not finding.passed and (finding.target.kind, finding.target.direction) == ("drive", "add")
 
 
 # ---- cameras

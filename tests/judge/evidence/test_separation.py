@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wsim.judge.evidence.contact import Placed, probe_points
+from wsim.judge.evidence.contact import probe_points
 from wsim.judge.evidence.geometry import depth_inside, radius_about, rotate
+from wsim.judge.evidence.placed import Placed
 from wsim.judge.evidence.separation import separation
 from wsim.scene.world import Shape
 

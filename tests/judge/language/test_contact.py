@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
-from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
 from wsim.scene.world import Shape, World
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import Signals, evaluate, parse
 from wsim.recording.recording import FluidTrack
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.judge.language.conftest import moving, shape, solid
-from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
 from wsim.judge.language.python import always, eventually, finally_, ordered, stays_within
 from wsim.plan.schema.formula import Always, And, Eventually, Formula, Not, Or, StaysWithin, Then, Until

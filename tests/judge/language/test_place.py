@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.judge.language.conftest import about_axis, moving, shape, solid, times
-from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
 from wsim.judge.language.measure import MEASURERS
 from wsim.plan.schema.formula import VOCABULARY, Ordered

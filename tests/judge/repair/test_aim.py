@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from wsim.judge import judge
-from wsim.judge.decide import OBJECTIVES
 from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.repair.aim import STAGES, aim, rules
 from wsim.judge.repair.language import RULES
 from wsim.judge.verdict import Finding, RepairTarget, Verdict

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ class CheckInFrame(Check):
                 "share of time",
                 at_most=False,
                 prim=things[least],
+                line=None,  # where nothing is wrong, none is to be looked at
                 limit_from=ONCE,
             )
         ]
@@ -72,17 +73,10 @@ class CheckInFrame(Check):
         return [
             self.measured(
                 f"{prim} {what} at any time",
-                0.0,
-                1.0 / len(frames),
-                "share of time",
-                at_most=False,
-                prim=prim,
-                time=time,
-                line=evidence.line(prim),
-                limit_from=ONCE,
+                0.0, 1.0 / len(frames), "share of time", at_most=False, prim=prim, time=time, limit_from=ONCE,
                 target=target,
             )
-        ]
+        ]  # fmt: skip
 
 
 @dataclass
@@ -110,19 +104,14 @@ class CheckSeen(Check):
                 found.append(
                     self.measured(
                         f"{body.prim} is hidden or a speck in all pictures",
-                        0.0,
-                        1.0 / len(times),
-                        "share of pictures",
-                        at_most=False,
-                        prim=body.prim,
-                        time=float(times[0]),
-                        line=body.line,
-                        limit_from=f"{self.pixels:g} pixels of some camera's picture, once",
-                        target=target,
+                        0.0, 1.0 / len(times), "share of pictures", at_most=False, prim=body.prim, time=float(times[0]),
+                        limit_from=f"{self.pixels:g} pixels of some camera's picture, once", target=target,
                     )
-                )
+                )  # fmt: skip
         hidden = f": {least_prim} is hidden longest, in {1.0 - least:.0%} of the pictures" if least_prim else ""
-        return found or [self.passed(f"Everything that moves is to be seen{hidden}", prim=least_prim or None)]
+        return found or [
+            self.passed(f"Everything that moves is to be seen{hidden}", prim=least_prim or None, line=None)
+        ]
 
     def _visible(self, evidence: Evidence, prim: str, sizes: dict[str, int]) -> tuple[Floats, Bools]:
         """Times of pictures, and whether any camera then shows the object: at the times that the most cameras share."""
@@ -177,3 +166,6 @@ def _in_frame(camera: Camera, points: Floats) -> Bools:
     inside: Bools = (depth > 0.0) & (np.abs(local @ right) <= half * depth)
     inside &= np.abs(local @ np.cross(right, ahead)) <= tall * depth
     return inside
+
+
+CHECKS: Checks = (CheckInFrame, CheckSeen)

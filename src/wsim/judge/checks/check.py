@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from wsim.judge.verdict import Finding
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import RepairTarget
+
+Bounds = tuple[float, float]
 
 
 class Check:
@@ -24,11 +28,15 @@ class Check:
         return type(self).__name__
 
     def run(self, evidence: Evidence) -> list[Finding]:
-        """The answers, or a failed finding if asking went wrong."""
+        """The answers, each with the line that made its prim unless it says its own; a crash is a failed finding."""
         try:
-            return self.evaluate(evidence)
+            found = self.evaluate(evidence)
         except Exception as error:  # noqa: BLE001 - whatever the evidence did to a check, the verdict must say it
             return [self.failed(f"{self.name} could not be evaluated: {type(error).__name__}: {error}")]
+        for finding in found:
+            if "line" not in finding.model_fields_set:
+                finding.line = evidence.line(finding.prim)
+        return found
 
     def failed(self, message: str, **details: object) -> Finding:
         """A finding that did not pass."""
@@ -39,11 +47,77 @@ class Check:
         return Finding.model_validate({"check": self.name, "passed": True, "message": message, **details})
 
     def measured(
-        self, message: str, value: float, limit: float, unit: str, at_most: bool = True, **details: object
+        self,
+        message: str,
+        value: float,
+        limit: float,
+        unit: str,
+        at_most: bool = True,
+        fine: str = "",
+        target: RepairTarget | None = None,
+        **details: object,
     ) -> Finding:
-        """A finding that passes when `value` keeps to `limit`; NaN does not."""
+        """A finding that passes when `value` keeps to `limit`; NaN does not.
+
+        Args:
+            message: What it says.
+            value: What was found.
+            limit: What it may be,
+            unit: of both.
+            at_most: False where it must not be less.
+            fine: What it says instead where it passes.
+            target: What to change where it does not pass.
+            details: Other fields of the finding.
+        """
         margin = limit - value if at_most else value - limit
+        passed = bool(margin >= 0.0)
         numbers = {"value": value, "limit": limit, "margin": margin}
         finite = {key: number for key, number in numbers.items() if math.isfinite(number)}
-        fields = {"check": self.name, "passed": bool(margin >= 0.0), "message": message, "unit": unit, **finite}
-        return Finding.model_validate({**fields, **details})
+        fields = {"check": self.name, "passed": passed, "message": fine if passed and fine else message, "unit": unit}
+        return Finding.model_validate({**fields, **finite, "target": None if passed else target, **details})
+
+    def between(
+        self,
+        message: str,
+        value: float,
+        bounds: Bounds,
+        unit: str,
+        expected: float,
+        target: RepairTarget | None = None,
+        **details: object,
+    ) -> Finding:
+        """A finding that passes when `value` is between two limits: it is held against the one on its side.
+
+        Args:
+            message: What it says.
+            value: What was found.
+            bounds: The lower and the upper limit.
+            unit: Of all.
+            expected: What theory gives, which divides the sides.
+            target: What to change where it does not pass; one that says not which way is told to bring it back.
+            details: Other fields of the finding.
+        """
+        above = value > expected
+        if target is not None and not target.direction:
+            target = target.model_copy(update={"direction": "lower" if above else "raise"})
+        fields: dict[str, Any] = {"expected": expected, "target": target, **details}
+        return self.measured(message, value, bounds[above], unit, at_most=above, **fields)
+
+
+Checks = tuple[type[Check], ...]
+
+
+def share_about(expected: float, share: float) -> Bounds:
+    """The limits a share below and above what is expected."""
+    return expected * (1.0 - share), expected * (1.0 + share)
+
+
+def worst(found: Sequence[Finding]) -> list[Finding]:
+    """All that failed; where none did, the one nearest to its limit."""
+    failed = sum(not finding.passed for finding in found)
+    return sorted(found, key=lambda finding: finding.margin or 0.0)[: max(1, failed)]
+
+
+def listed(values: tuple[float, ...]) -> str:
+    """Numbers as a person reads them: (0.1, 2, 30)."""
+    return "(" + ", ".join(f"{value:.3g}" for value in values) + ")"

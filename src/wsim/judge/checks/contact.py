@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.geometry import conjugate, rotate, smallest_extent
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
@@ -16,8 +16,8 @@ from wsim.judge.verdict import RepairTarget
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.contact import Placed
     from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.placed import Placed
     from wsim.judge.verdict import Finding
     from wsim.scene.world import Shape
 
@@ -84,24 +84,15 @@ class CheckTunnelling(Check):
         thick = smallest_extent(shape.shape)
         return self.failed(
             f"{body.prim} passes through {shape.owner}, {thick * 1e3:.3g} mm thick, from {start:.3f} to {end:.3f} s",
-            prim=body.prim,
-            time=end,
-            span=(start, end),
-            line=body.line,
-            value=float(np.linalg.norm(evidence.motion.com[k + 1, i] - evidence.motion.com[k, i])),
-            expected=0.0,
-            unit="m",
-            limit_from="its centre goes in by one face and out by the opposite one",
+            prim=body.prim, time=end, span=(start, end),
+            value=float(np.linalg.norm(evidence.motion.com[k + 1, i] - evidence.motion.com[k, i])), expected=0.0,
+            unit="m", limit_from="its centre goes in by one face and out by the opposite one",
             target=RepairTarget(
-                kind="time step",
-                prim=body.prim,
-                parameter="time_step",
-                direction="lower",
-                suggested=0.25 * thick / max(float(evidence.motion.speed[k, i]), 1e-9),
-                unit="s",
+                kind="time step", prim=body.prim, parameter="time_step", direction="lower",
+                suggested=0.25 * thick / max(float(evidence.motion.speed[k, i]), 1e-9), unit="s",
                 why="a step must not cross more than a quarter of what it is to stop at",
             ),
-        )
+        )  # fmt: skip
 
 
 def _inner_half(shape: Shape) -> Floats:
@@ -151,20 +142,13 @@ class CheckSupport(Check):
         body = evidence.world.bodies[i]
         target = RepairTarget(kind="program", prim=body.prim, why="it is carried by nothing that is there")
         return self.measured(
-            f"{body.prim} is pressed on, and the nearest surface is {gap * 1e3:.3g} mm away or more"
-            if len(wrong)
-            else "Where the solver presses, there is something to press",
-            max(gap, 0.0),
-            limit,
-            "m",
-            expected=0.0,
-            prim=body.prim,
-            time=float(evidence.time[wrong[0]]) if len(wrong) else None,
+            f"{body.prim} is pressed on, and the nearest surface is {gap * 1e3:.3g} mm away or more",
+            max(gap, 0.0), limit, "m", fine="Where the solver presses, there is something to press", expected=0.0,
+            prim=body.prim, time=float(evidence.time[wrong[0]]) if len(wrong) else None,
             span=(float(evidence.time[wrong[0]]), float(evidence.time[wrong[-1]])) if len(wrong) else None,
-            line=body.line,
             limit_from=f"{self.share:g} of its smallest extent, and the way of both in {self.steps:g} time steps",
-            target=target if len(wrong) else None,
-        )
+            target=target,
+        )  # fmt: skip
 
 
 def _nearest(evidence: Evidence, i: int, frames: Indices, limit: Floats) -> Floats:
@@ -263,28 +247,17 @@ class CheckFriction(Check):
 
     def _finding(self, evidence: Evidence, i: int, k: Indices, mu: float, slowed: float) -> Finding:
         body, full = evidence.world.bodies[i], mu * evidence.gravity
-        above = slowed > full
-        limit = full * (self.most if above else self.least)
-        wrong = slowed > limit if above else slowed < limit
         target = RepairTarget(
-            kind="physical parameter",
-            prim=body.prim,
-            parameter="friction",
-            direction="lower" if above else "raise",
-            suggested=mu,
+            kind="physical parameter", prim=body.prim, parameter="friction", suggested=mu,
             why="it is not slowed as its friction has it",
-        )
-        return self.measured(
+        )  # fmt: skip
+        return self.between(
             f"{body.prim} slides, and is slowed by {slowed:.3g} m/s^2; its friction of {mu:g} gives {full:.3g}",
-            slowed,
-            limit,
-            "m/s^2",
-            at_most=above,
-            expected=full,
-            prim=body.prim,
-            time=float(evidence.time[k[0]]),
-            span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
-            line=body.line,
-            limit_from=f"{self.most if above else self.least:g} mu g, mu the greater of the two surfaces'",
-            target=target if wrong else None,
-        )
+            slowed, (full * self.least, full * self.most), "m/s^2", expected=full, prim=body.prim,
+            time=float(evidence.time[k[0]]), span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
+            limit_from=f"{self.most if slowed > full else self.least:g} mu g, mu the greater of the two surfaces'",
+            target=target,
+        )  # fmt: skip
+
+
+CHECKS: Checks = (CheckTunnelling, CheckSupport, CheckFriction)

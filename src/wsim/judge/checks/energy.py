@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
@@ -143,15 +143,12 @@ class CheckEnergy(Check):
             prim=body.prim if alone or wrong else None,
             time=time,
             span=(float(evidence.time[start]), float(evidence.time[end])),
-            line=body.line if alone or wrong else None,
             limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, what one time step cannot resolve, and "
             f"a lift by {self.settling:g} of the size of what may touch something",
             target=RepairTarget(
                 kind="time step", prim=body.prim, parameter="time_step", direction="lower",
-                why="an integrator that gains energy gains less of it in shorter steps, unless something pushes unseen",
-            )
-            if wrong
-            else None,
+                why="an integrator that gains energy gains less of it in shorter steps, unless something pushes unseen"
+            ),
         )  # fmt: skip
 
     def _limit(self, evidence: Evidence, rows: NDArray[np.intp]) -> tuple[float, float]:
@@ -167,3 +164,6 @@ class CheckEnergy(Check):
         # A first-order step leaves positions behind velocities by up to half a step's fall.
         late = float((motion.mass[rows] * g * motion.speed[:, rows].max(axis=0)).sum() * 0.5 * min(motion.dt, 0.005))
         return self.share * scale + lift + late, scale
+
+
+CHECKS: Checks = (CheckEnergy,)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks, share_about
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -39,17 +39,15 @@ class CheckFluidMass(Check):
         inside = sum(self._drowned(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
         value = fluid.density * volume * count / cells
         expected = fluid.density * max(volume - inside, 0.0)
-        above = value > expected
         # A body pushes out the particles whose centres are in it or near: up to a layer of half a spacing all round.
         skin = sum(self._skin(evidence, fluid, i) for i in range(len(evidence.world.bodies)))
-        limit = expected * (1.0 + self.share if above else 1.0 - self.share) - (0.0 if above else fluid.density * skin)
-        wrong = value > limit if above else value < limit
+        low, high = share_about(expected, self.share)
         target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="spacing", direction="change")
-        return self.measured(
+        return self.between(
             f"{fluid.prim} has {value:.4g} kg in {count} particles; its box holds {expected:.4g} kg",
-            value, limit, "kg", at_most=above, expected=expected, prim=fluid.prim, time=0.0, line=fluid.line,
+            value, (low - fluid.density * skin, high), "kg", expected=expected, prim=fluid.prim, time=0.0,
             limit_from=f"density times volume, to {self.share:g}, and a layer at what stands in it",
-            target=target if wrong else None,
+            target=target,
         )  # fmt: skip
 
     @staticmethod
@@ -77,7 +75,7 @@ class CheckPlanFluid(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each fluid that differs, or one for none; nothing where a parameter was changed."""
-        if evidence.plan is None or any(p.value != p.default for p in evidence.world.parameters):
+        if evidence.plan is None or evidence.varied:
             return []
         fluids = {fluid.prim: fluid for fluid in evidence.world.fluids}
         pairs = [(item, fluids.get(evidence.prim(item.name))) for item in evidence.plan.objects]
@@ -89,17 +87,12 @@ class CheckPlanFluid(Check):
         planned = item.registration.density or (item.material.density if item.material is not None else None)
         if planned is None or abs(fluid.density / planned - 1.0) <= self.share:
             return []
-        above = fluid.density > planned
-        target = RepairTarget(
-            kind="fluid", prim=fluid.prim, parameter="density", direction="lower" if above else "raise",
-            suggested=planned, unit="kg/m^3",
-        )  # fmt: skip
+        target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="density", suggested=planned, unit="kg/m^3")
         return [
-            self.measured(
+            self.between(
                 f"{fluid.prim} has a density of {fluid.density:.4g} kg/m^3; the plan has {planned:.4g} kg/m^3",
-                fluid.density, planned * (1.0 + self.share if above else 1.0 - self.share), "kg/m^3", at_most=above,
-                expected=planned, prim=fluid.prim, time=0.0, line=fluid.line,
-                limit_from=f"the plan's material, to {self.share:.0%}", target=target,
+                fluid.density, share_about(planned, self.share), "kg/m^3", expected=planned, prim=fluid.prim, time=0.0,
+                limit_from=f"the plan's material, to {self.share:.0%}", target=target
             )
         ]  # fmt: skip
 
@@ -111,18 +104,14 @@ class CheckPlanFluid(Check):
         level = fluid.center[2] + fluid.size[2] / 2 - floor
         if abs(level - row.value) <= self.spacings * fluid.spacing:
             return []
-        above = level > row.value
-        target = RepairTarget(
-            kind="fluid", prim=fluid.prim, parameter="level", direction="lower" if above else "raise",
-            suggested=row.value, unit="m",
-        )  # fmt: skip
+        off = self.spacings * fluid.spacing
+        target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="level", suggested=row.value, unit="m")
         return [
-            self.measured(
+            self.between(
                 f"{fluid.prim} is filled to {level:.4g} m above the floor of {container.prim}; "
                 f"the plan has {row.value:.4g} m",
-                level, row.value + (1.0 if above else -1.0) * self.spacings * fluid.spacing, "m", at_most=above,
-                expected=row.value, prim=fluid.prim, time=0.0, line=fluid.line,
-                limit_from=f"the plan's level, to {self.spacings:g} particle spacings", target=target,
+                level, (row.value - off, row.value + off), "m", expected=row.value, prim=fluid.prim, time=0.0,
+                limit_from=f"the plan's level, to {self.spacings:g} particle spacings", target=target
             )
         ]  # fmt: skip
 
@@ -171,15 +160,15 @@ class CheckHydrostatic(Check):
 
     def _finding(self, evidence: Evidence, fluid: Fluid, slope: float) -> Finding:
         expected = fluid.density * evidence.gravity
-        above = slope > expected
-        limit = expected * (1.0 + self.share if above else 1.0 - self.share)
-        wrong = slope > limit if above else slope < limit
         target = RepairTarget(
             kind="fluid", prim=fluid.prim, parameter="speed_of_sound", direction="raise",
             why="its pressure does not carry its weight",
         )  # fmt: skip
-        return self.measured(
+        return self.between(
             f"{fluid.prim}: its pressure grows by {slope:.4g} Pa a metre of depth at rest; rho g is {expected:.4g}",
-            slope, limit, "Pa/m", at_most=above, expected=expected, prim=fluid.prim, time=evidence.window_start,
-            line=fluid.line, limit_from=f"{self.share:g} of rho g", target=target if wrong else None,
+            slope, share_about(expected, self.share), "Pa/m", expected=expected, prim=fluid.prim,
+            time=evidence.window_start, limit_from=f"{self.share:g} of rho g", target=target,
         )  # fmt: skip
+
+
+CHECKS: Checks = (CheckPlanFluid, CheckFluidMass, CheckHydrostatic)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -45,20 +45,15 @@ class CheckJoints(Check):
         value = float(error[at])
         what = f"turns by {value:.3g} rad against what it allows" if leans else f"is {value * 1e3:.3g} mm apart"
         return self.measured(
-            f"{joint.prim} {what}" if wrong.any() else f"{joint.prim} holds",
-            value,
-            limit,
-            "rad" if leans else "m",
-            prim=joint.prim,
-            time=since,
+            f"{joint.prim} {what}",
+            value, limit, "rad" if leans else "m", fine=f"{joint.prim} holds", prim=joint.prim, time=since,
             span=(since, float(evidence.time[len(wrong) - 1 - np.argmax(wrong[::-1])])) if wrong.any() else None,
             expected=0.0,
-            line=joint.line,
             limit_from=f"{self.lean:g} rad"
             if leans
             else f"{self.share:g} of {joint.child}'s smallest extent, {size:.3g} m",
-            target=RepairTarget(kind="joint", prim=joint.prim, why="its ends come apart") if wrong.any() else None,
-        )
+            target=RepairTarget(kind="joint", prim=joint.prim, why="its ends come apart"),
+        )  # fmt: skip
 
 
 @dataclass
@@ -84,21 +79,12 @@ class CheckJointLimits(Check):
             unit = "rad" if joint.kind == "revolute" else "m"
             found.append(
                 self.measured(
-                    f"{joint.prim} goes {float(over.max()):.3g} {unit} beyond its limits"
-                    if wrong.any()
-                    else f"{joint.prim} keeps to its limits",
-                    float(max(over.max(), 0.0)),
-                    limit,
-                    unit,
-                    prim=joint.prim,
-                    time=float(evidence.time[at]),
-                    line=joint.line,
-                    limit_from=f"{self.share:g} of its range, for the give of its stops",
-                    target=RepairTarget(kind="joint", prim=joint.prim, parameter="limits", direction="change")
-                    if wrong.any()
-                    else None,
+                    f"{joint.prim} goes {float(over.max()):.3g} {unit} beyond its limits",
+                    float(max(over.max(), 0.0)), limit, unit, fine=f"{joint.prim} keeps to its limits", prim=joint.prim,
+                    time=float(evidence.time[at]), limit_from=f"{self.share:g} of its range, for the give of its stops",
+                    target=RepairTarget(kind="joint", prim=joint.prim, parameter="limits", direction="change"),
                 )
-            )
+            )  # fmt: skip
         return found
 
 
@@ -127,21 +113,18 @@ class CheckDrives(Check):
                 continue
             full = np.abs(effort[evidence.window]) >= self.share * joint.drive.max_effort
             value = float(full.mean())
-            wrong = value > 0.5
             target = RepairTarget(
                 kind="drive", prim=joint.prim, parameter="drive.max_force", direction="raise", why="it is at its limit"
             )
             found.append(
                 self.measured(
                     f"{joint.prim}: its drive is at its full {joint.drive.max_effort:g} at {value:.0%} of the end",
-                    value,
-                    0.5,
-                    "share of frames",
-                    prim=joint.prim,
-                    time=evidence.window_start,
-                    line=joint.line,
+                    value, 0.5, "share of frames", prim=joint.prim, time=evidence.window_start,
                     limit_from="half of the final window: a drive that gets where it is to go no longer strains",
-                    target=target if wrong else None,
+                    target=target,
                 )
-            )
+            )  # fmt: skip
         return found
+
+
+CHECKS: Checks = (CheckJoints, CheckJointLimits, CheckDrives)

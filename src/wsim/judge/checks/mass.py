@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks, share_about
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -37,52 +37,33 @@ class CheckMass(Check):
         return wrong or ([self.passed("Bodies weigh what their sizes and materials give")] if found else [])
 
     def _mass(self, evidence: Evidence, body: Body) -> list[Finding]:
-        item = _planned(evidence, body.prim)
+        item = evidence.planned(body.prim)
         expected = _mass_of(item, body) if item is not None else None
         if expected is None:
             return self._density(body)
-        changed = any(p.value != p.default for p in evidence.world.parameters)
-        share = self.varied if changed else self.share
-        above = body.mass > expected
-        limit = expected * (1.0 + share) if above else expected * (1.0 - share)
-        wrong = body.mass > limit if above else body.mass < limit
+        share = self.varied if evidence.varied else self.share
         return [
-            self.measured(
+            self.between(
                 f"{body.prim} weighs {body.mass:.4g} kg; the plan's material and size give {expected:.4g} kg",
-                body.mass,
-                limit,
-                "kg",
-                at_most=above,
-                expected=expected,
-                prim=body.prim,
-                time=0.0,
-                line=body.line,
+                body.mass, share_about(expected, share), "kg", expected=expected, prim=body.prim, time=0.0,
                 limit_from=f"{share:g} of density times volume, as the plan has them"
-                + ("; a parameter was changed" if changed else ""),
-                target=_mass_target(body, expected) if wrong else None,
+                + ("; a parameter was changed" if evidence.varied else ""),
+                target=_mass_target(body, expected),
             )
-        ]
+        ]  # fmt: skip
 
     def _density(self, body: Body) -> list[Finding]:
         if body.volume <= 0.0:
             return []
         density = body.mass / body.volume
         above = density > 1000.0
-        wrong = not LIGHTEST <= density <= DENSEST
         return [
             self.measured(
                 f"{body.prim} has a density of {density:.4g} kg/m^3",
-                density,
-                DENSEST if above else LIGHTEST,
-                "kg/m^3",
-                at_most=above,
-                prim=body.prim,
-                time=0.0,
-                line=body.line,
-                limit_from="matter: an aerogel has 1 kg/m^3, osmium 22 600",
-                target=_mass_target(body, None) if wrong else None,
+                density, DENSEST if above else LIGHTEST, "kg/m^3", at_most=above, prim=body.prim, time=0.0,
+                limit_from="matter: an aerogel has 1 kg/m^3, osmium 22 600", target=_mass_target(body, None),
             )
-        ]
+        ]  # fmt: skip
 
     def _inertia(self, evidence: Evidence, i: int, body: Body) -> list[Finding]:
         moments = np.linalg.eigvalsh(np.array(body.inertia).reshape(3, 3))
@@ -100,43 +81,25 @@ class CheckMass(Check):
                 f"{body.prim} has moments of inertia of {', '.join(f'{m:.3g}' for m in moments)} kg m^2, which no "
                 f"{body.mass:.3g} kg of its size can have",
                 greatest if greatest > bound or spread >= 0.0 else float(moments[2] - moments[0] - moments[1]),
-                (bound if greatest > bound else 0.0) if above else self.thin * bound,
-                "kg m^2",
-                at_most=above,
-                prim=body.prim,
-                time=0.0,
-                line=body.line,
+                (bound if greatest > bound else 0.0) if above else self.thin * bound, "kg m^2", at_most=above,
+                prim=body.prim, time=0.0,
                 limit_from=f"m R^2 at most, R = {evidence.motion.radius[i]:.3g} m, {self.thin:g} of it at least, "
                 "and the greatest no more than the sum of the others",
                 target=RepairTarget(
-                    kind="physical parameter",
-                    prim=body.prim,
-                    parameter="inertia",
+                    kind="physical parameter", prim=body.prim, parameter="inertia",
                     direction="lower" if above else "raise",
                 ),
             )
-        ]
+        ]  # fmt: skip
 
 
 def _mass_target(body: Body, expected: float | None) -> RepairTarget:
-    direction = "change" if expected is None else "lower" if body.mass > expected else "raise"
-    return RepairTarget.model_validate(
-        {
-            "kind": "physical parameter",
-            "prim": body.prim,
-            "parameter": "density",
-            "direction": direction,
-            "suggested": expected / body.volume if expected is not None and body.volume > 0.0 else None,
-            "unit": "kg/m^3",
-            "why": "its mass is not that of its material and size",
-        }
-    )
-
-
-def _planned(evidence: Evidence, prim: str) -> PlanObject | None:
-    if evidence.plan is None:
-        return None
-    return next((item for item in evidence.plan.objects if evidence.prim(item.name) == prim), None)
+    """Another density; which way follows from the mass that is expected, where one is."""
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="density", direction="change" if expected is None else "",
+        suggested=expected / body.volume if expected is not None and body.volume > 0.0 else None, unit="kg/m^3",
+        why="its mass is not that of its material and size",
+    )  # fmt: skip
 
 
 def _mass_of(item: PlanObject, body: Body) -> float | None:
@@ -162,3 +125,6 @@ def volume_of(item: PlanObject) -> float | None:
     if item.primitive == "capsule":
         return float(np.pi * size[0] ** 2 * (size[1] + 4.0 / 3.0 * size[0]))
     return None
+
+
+CHECKS: Checks = (CheckMass,)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks, share_about
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
@@ -73,24 +73,11 @@ class CheckContinuity(Check):
 
     def _worst(self, evidence: Evidence, value: Floats, limit: Floats, unit: str, verb: str, source: str) -> Finding:
         share = np.where(evidence.motion.kinematic, 0.0, value / limit)
-        k, i = np.unravel_index(int(np.argmax(share)), share.shape)
-        body = evidence.world.bodies[i]
-        start, end = float(evidence.time[k]), float(evidence.time[k + 1])
-        wrong = share[k, i] > 1.0
-        message = f"{body.prim} {verb} {value[k, i]:.3g} {unit} more than its velocity gives, at {end:.3f} s"
-        return self.measured(
-            message if wrong else f"Every body {'moves' if unit == 'm' else 'turns'} by its own velocity",
-            float(value[k, i]),
-            float(limit[k, i]),
-            unit,
-            prim=body.prim,
-            time=end,
-            span=(start, end),
-            expected=0.0 if unit == "m" else None,
-            line=body.line,
-            limit_from=source,
-            target=RepairTarget(kind="program", prim=body.prim, why="its pose is set by hand") if wrong else None,
-        )
+        return _strangest(
+            self, evidence, value, limit, unit, share=share, limit_from=source, expected=0.0 if unit == "m" else None,
+            story=f"{{prim}} {verb} {{value:.3g}} {unit} more than its velocity gives, at {{time:.3f}} s",
+            fine=f"Every body {'moves' if unit == 'm' else 'turns'} by its own velocity", why="its pose is set by hand",
+        )  # fmt: skip
 
 
 def _around(rate: Floats) -> Floats:
@@ -121,58 +108,30 @@ class CheckFreeFlight(Check):
         free = ~(motion.touched[1:] | motion.touched[:-1]) & ~motion.kinematic & ~motion.jointed
         dry = evidence.recording.applied_impulse is not None or not evidence.world.fluids
         _leave_out_what_may_touch(evidence, free, strange > limit, dry)
-        found = [self._strangest(evidence, np.where(free, strange, 0.0), limit)] if free.any() else []
+        found = []
+        if free.any():
+            story = "{prim} touches nothing at {time:.3f} s, and is accelerated by {value:.3g} m/s^2 besides gravity"
+            source = f"{self.share:g} of g, and the rounding of recorded velocities"
+            fine = "Bodies that touch nothing are moved by gravity alone"
+            strange = np.where(free, strange, 0.0)
+            found.append(_strangest(self, evidence, strange, limit, "m/s^2", story, fine, limit_from=source))
         if int(free.sum()) >= self.fewest and evidence.gravity > 0.0:
             found.append(self._gravity(evidence, free))
         return found
 
-    def _strangest(self, evidence: Evidence, strange: Floats, limit: Floats) -> Finding:
-        k, i = np.unravel_index(int(np.argmax(strange / limit)), strange.shape)
-        body = evidence.world.bodies[i]
-        wrong = strange[k, i] > limit[k, i]
-        time = float(evidence.time[k + 1])
-        message = f"{body.prim} touches nothing at {time:.3f} s, and is accelerated by {strange[k, i]:.3g} m/s^2"
-        return self.measured(
-            f"{message} besides gravity" if wrong else "Bodies that touch nothing are moved by gravity alone",
-            float(strange[k, i]),
-            float(limit[k, i]),
-            "m/s^2",
-            prim=body.prim,
-            time=time,
-            span=(float(evidence.time[k]), time),
-            expected=0.0,
-            line=body.line,
-            limit_from=f"{self.share:g} of g, and the rounding of recorded velocities",
-        )
-
     def _gravity(self, evidence: Evidence, free: NDArray[np.bool_]) -> Finding:
-        motion = evidence.motion
-        down = motion.gravity / evidence.gravity
-        measured = float((motion.acceleration[free] @ down).mean())
-        wrong = abs(measured - evidence.gravity) > self.share * evidence.gravity
-        above = measured > evidence.gravity
-        limit = evidence.gravity * (1.0 + (self.share if above else -self.share))
-        target = RepairTarget(
-            kind="physical parameter",
-            parameter="gravity",
-            direction="lower" if above else "raise",
-            suggested=evidence.gravity,
-            unit="m/s^2",
-            why="what falls shows another gravity than the world states",
-        )
+        motion, g = evidence.motion, evidence.gravity
+        measured = float((motion.acceleration[free] @ (motion.gravity / g)).mean())
         where = np.argwhere(free)
-        return self.measured(
-            f"Gravity is {measured:.4g} m/s^2 by what falls, {evidence.gravity:.4g} m/s^2 in the world",
-            measured,
-            limit,
-            "m/s^2",
-            at_most=above,
-            expected=evidence.gravity,
+        return self.between(
+            f"Gravity is {measured:.4g} m/s^2 by what falls, {g:.4g} m/s^2 in the world",
+            measured, share_about(g, self.share), "m/s^2", expected=g,
             prim=evidence.world.bodies[where[0][1]].prim,
+            line=None,  # that body is one of many: no line of its own is to blame
             time=float(evidence.time[where[0][0]]),
             limit_from=f"{self.share:g} of the world's, over {len(where)} body-frames in the air",
-            target=target if wrong else None,
-        )
+            target=_gravity_target(g, "what falls shows another gravity than the world states"),
+        )  # fmt: skip
 
 
 @dataclass
@@ -199,27 +158,31 @@ class CheckFreeTurning(Check):
         limit = self.share * motion.mass * max(evidence.gravity, 1.0) * motion.radius + numerical
         free = ~(motion.touched[1:] | motion.touched[:-1]) & ~motion.kinematic & ~motion.jointed & (limit > 0.0)
         _leave_out_what_may_touch(evidence, free, torque > limit, dry=not evidence.world.fluids)
-        return [self._finding(evidence, np.where(free, torque, 0.0), limit)] if free.any() else []
+        if not free.any():
+            return []
+        story = "{prim} touches nothing at {time:.3f} s, and is turned by a torque of {value:.3g} N m"
+        source = f"{self.share:g} m g R, w^2 dt of what it has, and the rounding of recorded velocities"
+        fine, why = "Bodies that touch nothing keep their angular momentum", "something turns it unseen"
+        torque = np.where(free, torque, 0.0)
+        return [_strangest(self, evidence, torque, limit, "N m", story, fine, why, limit_from=source)]
 
-    def _finding(self, evidence: Evidence, torque: Floats, limit: Floats) -> Finding:
-        share = np.divide(torque, limit, out=np.zeros_like(torque), where=limit > 0.0)
-        k, i = np.unravel_index(int(np.argmax(share)), share.shape)
-        body, time = evidence.world.bodies[i], float(evidence.time[k + 1])
-        wrong = torque[k, i] > limit[k, i]
-        message = f"{body.prim} touches nothing at {time:.3f} s, and is turned by a torque of {torque[k, i]:.3g} N m"
-        return self.measured(
-            message if wrong else "Bodies that touch nothing keep their angular momentum",
-            float(torque[k, i]),
-            float(limit[k, i]),
-            "N m",
-            prim=body.prim,
-            time=time,
-            span=(float(evidence.time[k]), time),
-            expected=0.0,
-            line=body.line,
-            limit_from=f"{self.share:g} m g R, w^2 dt of what it has, and the rounding of recorded velocities",
-            target=RepairTarget(kind="program", prim=body.prim, why="something turns it unseen") if wrong else None,
-        )
+
+def _strangest(
+    check: Check, evidence: Evidence, value: Floats, limit: Floats, unit: str, story: str, fine: str, why: str = "",
+    share: Floats | None = None, **details: object
+) -> Finding:  # fmt: skip
+    """A finding about the body and the interval between frames where a value is largest by its limit, (T - 1, B) both.
+
+    `story` is filled in with prim, time and value; `why` says what is wrong with the program.
+    """
+    if share is None:
+        share = np.divide(value, limit, out=np.zeros_like(value), where=limit > 0.0)
+    k, i = np.unravel_index(int(np.argmax(share)), share.shape)
+    prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + 1])
+    target = RepairTarget(kind="program", prim=prim, why=why) if why else None
+    fields: dict[str, Any] = {"prim": prim, "time": end, "span": (start, end), "expected": 0.0, **details}
+    message = story.format(prim=prim, time=end, value=value[k, i])
+    return check.measured(message, value[k, i], limit[k, i], unit, fine=fine, target=target, **fields)
 
 
 def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: NDArray[np.bool_], dry: bool) -> None:
@@ -244,24 +207,20 @@ class CheckGravity(Check):
             return []
         down = -evidence.world.gravity[2]
         above = down > sum(EARTH) / 2
-        wrong = not EARTH[0] <= down <= EARTH[1]
-        target = RepairTarget(
-            kind="physical parameter",
-            parameter="gravity",
-            direction="lower" if above else "raise",
-            suggested=9.81,
-            unit="m/s^2",
-            why="nothing in the prompt asks for another gravity than the Earth's",
-        )
         return [
             self.measured(
-                f"The world's gravity is {down:.4g} m/s^2 downwards",
-                down,
-                EARTH[1] if above else EARTH[0],
-                "m/s^2",
-                at_most=above,
-                expected=9.81,
-                limit_from="the Earth's, from the equator to the poles",
-                target=target if wrong else None,
+                f"The world's gravity is {down:.4g} m/s^2 downwards", down, EARTH[above], "m/s^2", at_most=above,
+                expected=9.81, limit_from="the Earth's, from the equator to the poles",
+                target=_gravity_target(9.81, "nothing in the prompt asks for another gravity than the Earth's", above)
             )
-        ]
+        ]  # fmt: skip
+
+
+def _gravity_target(to: float, why: str, above: bool | None = None) -> RepairTarget:
+    return RepairTarget(
+        kind="physical parameter", parameter="gravity", suggested=to, unit="m/s^2", why=why,
+        direction="" if above is None else "lower" if above else "raise",
+    )  # fmt: skip
+
+
+CHECKS: Checks = (CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity)

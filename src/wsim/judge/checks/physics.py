@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.contact import overlaps
-from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.evidence.geometry import reach, smallest_extent
+from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,15 +70,10 @@ class CheckExplosion(Check):
         how = "jumps at" if moved[frame, i] > reported[frame, i] and value > limit else "reaches"
         return self.measured(
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
-            value,
-            limit,
-            "m/s",
-            prim=body.prim,
-            time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
-            line=body.line,
+            value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
             limit_from=f"{self.body_factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
             "by a far heavier body, and the work of drives and control",
-        )
+        )  # fmt: skip
 
     @staticmethod
     def _driven(evidence: Evidence) -> Floats:
@@ -103,15 +98,10 @@ class CheckExplosion(Check):
         value, time = float(fastest[frame]), float(track.time[frame])
         return self.measured(
             f"{fluid.prim}: its fastest particle has {value:.3g} m/s, at {time:.3f} s",
-            value,
-            limit,
-            "m/s",
-            prim=fluid.prim,
-            time=self._first(track.time, fastest > limit, time),
-            line=fluid.line,
+            value, limit, "m/s", prim=fluid.prim, time=self._first(track.time, fastest > limit, time),
             limit_from=f"{self.fluid_factor:g} sqrt(v0^2 + 2 g dz), or the speed of sound, beyond which a weakly "
             "compressible fluid is none",
-        )
+        )  # fmt: skip
 
     @staticmethod
     def _first(time: Floats, wrong: NDArray[np.bool_], otherwise: float) -> float:
@@ -173,14 +163,8 @@ class CheckPenetration(Check):
         time = float(evidence.time[at])
         return self.measured(
             f"Deepest penetration, {what}: {max(value, 0.0) * 1e3:.2g} mm {span}, at {time:.3f} s",
-            value,
-            limit,
-            "m",
-            prim=prim,
-            time=time,
-            line=evidence.line(prim),
-            limit_from=source,
-        )
+            value, limit, "m", prim=prim, time=time, limit_from=source,
+        )  # fmt: skip
 
 
 def _share(finding: Finding) -> float:
@@ -208,15 +192,9 @@ def contained(check: Check, evidence: Evidence, fluid: Fluid, share: float) -> F
     time = float(times[np.argmax(outside > share)] if value > share else times[np.argmax(outside)])
     return check.measured(
         f"{value:.2%} of {fluid.prim} is outside {fluid.container}",
-        value,
-        share,
-        "share of particles",
-        prim=fluid.prim,
-        time=time,
-        expected=0.0,
-        line=fluid.line,
+        value, share, "share of particles", prim=fluid.prim, time=time, expected=0.0,
         limit_from=f"{share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m",
-    )
+    )  # fmt: skip
 
 
 @dataclass
@@ -245,7 +223,8 @@ class CheckDensity(Check):
     def _from_scalars(self, evidence: Evidence, fluid: Fluid) -> list[Finding]:
         values = evidence.recording.scalars.get("fluid/density_error_mean")
         if values is None:
-            return [self.failed(f"{fluid.prim}: its density is not in the recording", prim=fluid.prim)]
+            message = f"{fluid.prim}: its density is not in the recording"
+            return [self.failed(message, prim=fluid.prim, line=None)]  # no line of the program is to blame
         return [self._held(fluid, np.abs(values), evidence.time, self.mean, "mean density error")]
 
     def _held(self, fluid: Fluid, error: Floats, time: Floats, limit: float, what: str) -> Finding:
@@ -253,15 +232,10 @@ class CheckDensity(Check):
         value = float(np.sort(error)[max(0, math.ceil(self.times * len(error)) - 1)])
         return self.measured(
             f"{fluid.prim}: {what} {value:.2%}, at {self.times:.0%} of the times or better",
-            value,
-            limit,
-            "1",
-            prim=fluid.prim,
-            time=float(time[np.argmax(error > limit)] if value > limit else time[np.nanargmax(error)]),
-            expected=0.0,
-            line=fluid.line,
+            value, limit, "1", prim=fluid.prim,
+            time=float(time[np.argmax(error > limit)] if value > limit else time[np.nanargmax(error)]), expected=0.0,
             limit_from="a weakly compressible liquid stays within about 1 %; as much again for splashes",
-        )
+        )  # fmt: skip
 
 
 @dataclass
@@ -285,17 +259,12 @@ class CheckWaterLevel(Check):
             found.append(
                 self.measured(
                     f"{fluid.prim}: its surface stands {where}",
-                    abs(level.seen - level.height),
-                    self.spacings * fluid.spacing + slosh,
-                    "m",
-                    prim=fluid.prim,
-                    time=evidence.window_start,
-                    expected=0.0,
-                    line=fluid.line,
+                    abs(level.seen - level.height), self.spacings * fluid.spacing + slosh, "m", prim=fluid.prim,
+                    time=evidence.window_start, expected=0.0,
                     limit_from=f"{self.spacings:g} particle spacing, which they resolve, and v sqrt(H / g): as high as "
                     "it still sloshes",
                 )
-            )
+            )  # fmt: skip
         return found
 
     @staticmethod
@@ -304,3 +273,6 @@ class CheckWaterLevel(Check):
         track = evidence.track(fluid)
         v = track.velocity[track.time >= evidence.window_start - 1e-9]
         return math.sqrt(float(np.mean(np.einsum("tni,tni->tn", v, v)))) if v.size else 0.0
+
+
+CHECKS: Checks = (CheckExplosion, CheckPenetration, CheckFluidContained, CheckDensity, CheckWaterLevel)

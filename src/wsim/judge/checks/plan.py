@@ -1,4 +1,4 @@
-"""Checks of the stage against the plan: sizes, places, colours, surfaces and joints, where the plan gives them."""
+"""Checks of the stage against the plan: sizes, places, colours and surfaces, where the plan gives them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 from wsim.judge.verdict import RepairTarget
 
@@ -20,14 +20,12 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.plan.schema import Joint as PlanJoint
     from wsim.plan.schema import PlanObject
-    from wsim.scene.world import Body, Joint, Shape, Static
+    from wsim.scene.world import Body, Shape, Static
 
     Floats = NDArray[np.float64]
 
 SOLIDS = ("box", "sphere", "cylinder", "capsule")
-JOINTS = {"fixed": "fixed", "hinge": "revolute", "slider": "prismatic", "ball": "spherical"}
 
 
 @dataclass
@@ -49,56 +47,37 @@ class CheckPlanSizes(Check):
         if not shape.collides and item.registration.collision != "none":
             message = f"{made.prim} takes part in no collision; the plan has it as solid"
             target = RepairTarget(kind="geometry", prim=made.prim, parameter="collides", direction="add")
-            return [self.failed(message, prim=made.prim, time=0.0, line=made.line, target=target)]
+            return [self.failed(message, prim=made.prim, time=0.0, target=target)]
         # Of another shape only the bounding box can be compared.
         sizes = (item.size, shape.size)
         if shape.kind != item.primitive or shape.kind == "box":
             sizes = (tuple(sorted(_extent_of(item))), tuple(sorted(_extent(shape))))
-        return self._compare(made.prim, made.line, *sizes)
+        return self._compare(made.prim, *sizes)
 
     def _hollows(self, evidence: Evidence) -> list[Finding]:
         found = []
         for item in evidence.plan.objects if evidence.plan is not None else []:
             container = evidence.container(evidence.prim(item.name))
             if item.primitive == "tank" and container is not None:
-                line = evidence.line(container.prim)
-                found += self._compare(container.prim, line, item.size, container.inner_size)
+                found += self._compare(container.prim, item.size, container.inner_size)
         return found
 
-    def _compare(
-        self, prim: str, line: str | None, planned: tuple[float, ...], made: tuple[float, ...]
-    ) -> list[Finding]:
+    def _compare(self, prim: str, planned: tuple[float, ...], made: tuple[float, ...]) -> list[Finding]:
         ratios = [b / a for a, b in zip(planned, made, strict=True)]
         if not ratios:
             return []
-        worst = max(ratios, key=lambda ratio: abs(math.log(max(ratio, 1e-9))))
-        above = worst > 1.0
-        limit = 1.0 + self.share if above else 1.0 - self.share
-        if abs(worst - 1.0) <= self.share:
+        off = max(ratios, key=lambda ratio: abs(math.log(max(ratio, 1e-9))))
+        if abs(off - 1.0) <= self.share:
             return []
-        at = ratios.index(worst)
+        suggested = planned[ratios.index(off)]
+        target = RepairTarget(kind="geometry", prim=prim, parameter="size", suggested=suggested, unit="m")
         return [
-            self.measured(
-                f"{prim} measures {_listed(made)} m; the plan has {_listed(planned)} m",
-                worst,
-                limit,
-                "1",
-                at_most=above,
-                expected=1.0,
-                prim=prim,
-                time=0.0,
-                line=line,
-                limit_from=f"the plan's size, to {self.share:.0%}",
-                target=RepairTarget(
-                    kind="geometry",
-                    prim=prim,
-                    parameter="size",
-                    direction="lower" if above else "raise",
-                    suggested=planned[at],
-                    unit="m",
-                ),
+            self.between(
+                f"{prim} measures {listed(made)} m; the plan has {listed(planned)} m",
+                off, share_about(1.0, self.share), "1", expected=1.0, prim=prim, time=0.0,
+                limit_from=f"the plan's size, to {self.share:.0%}", target=target,
             )
-        ]
+        ]  # fmt: skip
 
 
 @dataclass
@@ -127,11 +106,11 @@ class CheckPlanPlaces(Check):
         far = float(np.linalg.norm(place - np.array(item.pose.position)))
         limit = self.share * max(_extent_of(item))
         if far > limit:
-            where = _listed(tuple(float(x) for x in place))
+            where = listed(tuple(float(x) for x in place))
             target = RepairTarget(kind="geometry", prim=made.prim, parameter="position", direction="change", unit="m")
             yield self.measured(
-                f"{made.prim} starts at {where} m, {far:.3g} m from the plan's {_listed(item.pose.position)} m",
-                far, limit, "m", expected=0.0, prim=made.prim, time=0.0, line=made.line,
+                f"{made.prim} starts at {where} m, {far:.3g} m from the plan's {listed(item.pose.position)} m",
+                far, limit, "m", expected=0.0, prim=made.prim, time=0.0,
                 limit_from=f"{self.share:g} of its largest extent", target=target,
             )  # fmt: skip
         off = _turned(item, turn, shape)
@@ -139,7 +118,7 @@ class CheckPlanPlaces(Check):
             target = RepairTarget(kind="geometry", prim=made.prim, parameter="rotation_deg", direction="change")
             yield self.measured(
                 f"{made.prim} starts turned by {off:.3g} degrees against the plan",
-                off, self.turn, "deg", expected=0.0, prim=made.prim, time=0.0, line=made.line,
+                off, self.turn, "deg", expected=0.0, prim=made.prim, time=0.0,
                 limit_from="the plan's pose", target=target,
             )  # fmt: skip
 
@@ -148,13 +127,13 @@ class CheckPlanPlaces(Check):
         planned = np.array(item.velocity)
         off = float(np.linalg.norm(np.array(body.velocity) - planned))
         limit = self.speed * max(float(np.linalg.norm(planned)), evidence.velocity_scale(evidence.solid(i).smallest))
-        if off > limit and not any(p.value != p.default for p in evidence.world.parameters):
+        if off > limit and not evidence.varied:
             target = RepairTarget(
                 kind="physical parameter", prim=body.prim, parameter="velocity", direction="change",
                 suggested=float(np.linalg.norm(planned)), unit="m/s",
             )  # fmt: skip
             yield self.measured(
-                f"{body.prim} starts at {_listed(body.velocity)} m/s; the plan has {_listed(item.velocity)} m/s",
+                f"{body.prim} starts at {listed(body.velocity)} m/s; the plan has {listed(item.velocity)} m/s",
                 off, limit, "m/s", expected=0.0, prim=body.prim, time=0.0, line=body.line,
                 limit_from=f"{self.speed:g} of the plan's speed, or of sqrt(g L) if that is more", target=target,
             )  # fmt: skip
@@ -182,109 +161,20 @@ class CheckPlanLooks(Check):
             ("restitution", shape.restitution, material.restitution, self.surface),
         ):
             if abs(value - planned) > limit:
-                target = RepairTarget.model_validate(
-                    {
-                        "kind": "physical parameter",
-                        "prim": made.prim,
-                        "parameter": what,
-                        "direction": "lower" if value > planned else "raise",
-                        "suggested": planned,
-                    }
-                )
-                yield self.measured(
+                target = RepairTarget(kind="physical parameter", prim=made.prim, parameter=what, suggested=planned)
+                yield self.between(
                     f"{made.prim} has a {what} of {value:g}; the plan's {material.name} has {planned:g}",
-                    value, planned + (limit if value > planned else -limit), "1", at_most=value > planned,
-                    expected=planned, prim=made.prim, time=0.0, line=made.line, limit_from="the plan's material",
-                    target=target,
+                    value, (planned - limit, planned + limit), "1", expected=planned, prim=made.prim,
+                    time=0.0, limit_from="the plan's material", target=target,
                 )  # fmt: skip
         off = float(np.abs(np.subtract(shape.color, material.color)).max())
         if off > self.color:
             target = RepairTarget(kind="visual mismatch", prim=made.prim, parameter="color", direction="change")
             yield self.measured(
-                f"{made.prim} has the colour {_listed(shape.color)}; the plan's {material.name} has "
-                f"{_listed(material.color)}",
-                off, self.color, "1", expected=0.0, prim=made.prim, time=0.0, line=made.line,
+                f"{made.prim} has the colour {listed(shape.color)}; the plan's {material.name} has "
+                f"{listed(material.color)}",
+                off, self.color, "1", expected=0.0, prim=made.prim, time=0.0,
                 limit_from="linear red, green and blue in 0..1", target=target,
-            )  # fmt: skip
-
-
-@dataclass
-class CheckPlanJoints(Check):
-    """The world has the plan's joints, between the plan's bodies, with the plan's limits and drives."""
-
-    share: float = 0.05  # of the range, or of what a drive is set to
-    least: float = 0.01  # [rad], [m], or that a second: what a drive may be off of nothing
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding for each joint that is missing, or holds, ends or is driven otherwise; or one for none."""
-        if evidence.plan is None or not evidence.plan.joints:
-            return []
-        varied = any(p.value != p.default for p in evidence.world.parameters)
-        found = []
-        for planned in evidence.plan.joints:
-            made = self._made(evidence, planned)
-            if made is None:
-                child = evidence.prim(planned.child)
-                message = f"The plan's {planned.kind} {planned.name} is not in the world: nothing holds {child} so"
-                target = RepairTarget(kind="joint", prim=child, parameter=planned.name, direction="add")
-                found.append(self.failed(message, prim=child, time=0.0, line=evidence.line(child), target=target))
-            elif not varied:
-                found += [*self._limits(made, planned), *self._drive(evidence, made, planned)]
-        return found or [self.passed("The world has the plan's joints")]
-
-    @staticmethod
-    def _made(evidence: Evidence, planned: PlanJoint) -> Joint | None:
-        """The world's joint between the same two, either way round."""
-        still = {static.prim for static in evidence.world.statics}
-        parent = evidence.prim(planned.parent) if planned.parent is not None else None
-        ends = {None if parent in still else parent, evidence.prim(planned.child)}
-        fitting = (j for j in evidence.world.joints if j.kind == JOINTS[planned.kind] and {j.parent, j.child} == ends)
-        return next(fitting, None)
-
-    def _limits(self, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
-        if planned.limits is None:
-            return
-        scale, unit = (math.radians(1.0), "rad") if planned.kind == "hinge" else (1.0, "m")
-        low, high = (scale * end for end in planned.limits)
-        has = (-math.inf if made.low is None else made.low, math.inf if made.high is None else made.high)
-        # Seen from the other end, or about the opposite axis, a joint turns the other way.
-        off = min(max(abs(has[0] - a), abs(has[1] - b)) for a, b in ((low, high), (-high, -low)))
-        limit = self.share * (high - low)
-        if off > limit:
-            yield self.measured(
-                f"{made.prim} moves within {_listed(has)} {unit}; the plan's {planned.name} within "
-                f"{_listed((low, high))} {unit}",
-                off, limit, unit, expected=0.0, prim=made.prim, time=0.0, line=made.line,
-                limit_from=f"{self.share:g} of the plan's range",
-                target=RepairTarget(kind="joint", prim=made.prim, parameter="limits", direction="change"),
-            )  # fmt: skip
-
-    def _drive(self, evidence: Evidence, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
-        wanted = [
-            actuation
-            for item in (evidence.plan.objects if evidence.plan is not None else [])
-            for actuation in item.registration.actuation
-            if actuation.joint == planned.name
-        ]
-        # What a controller sets, or several drives in turn, is not to be read off the stage.
-        if made.drive is None or len(wanted) != 1 or evidence.recording.metadata.get("controlled"):
-            return
-        kind, targets = wanted[0].kind, wanted[0].target
-        if kind not in ("position", "velocity") or len(targets) != 1:
-            return
-        value = made.drive.position if kind == "position" else made.drive.velocity
-        unit = ("rad" if planned.kind == "hinge" else "m") + ("" if kind == "position" else "/s")
-        off = min(abs(value - targets[0]), abs(value + targets[0]))  # about the opposite axis it is the other way
-        limit = max(self.share * abs(targets[0]), self.least)
-        if off > limit:
-            target = RepairTarget(
-                kind="drive", prim=made.prim, parameter=f"drive.{kind}", direction="change", current=value,
-                suggested=targets[0], unit=unit,
-            )  # fmt: skip
-            yield self.measured(
-                f"{made.prim} is driven to {value:.3g} {unit}; the plan has {targets[0]:.3g} {unit}",
-                off, limit, unit, expected=0.0, prim=made.prim, time=0.0, line=made.line,
-                limit_from=f"{self.share:g} of the plan's, or {self.least:g} {unit}", target=target,
             )  # fmt: skip
 
 
@@ -368,5 +258,4 @@ def _extents(kind: str, size: tuple[float, ...]) -> tuple[float, ...]:
     return size
 
 
-def _listed(values: tuple[float, ...]) -> str:
-    return "(" + ", ".join(f"{value:.3g}" for value in values) + ")"
+CHECKS: Checks = (CheckPlanSizes, CheckPlanPlaces, CheckPlanLooks)

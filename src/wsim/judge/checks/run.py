@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
+from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class CheckFinite(Check):
         if first is not None:
             time, prim, what = first
             message = f"{prim}: the {what} is not a finite number from {time:.3f} s on"
-            return [self.failed(message, prim=prim, time=time, line=evidence.line(prim), limit_from="NaN or infinity")]
+            return [self.failed(message, prim=prim, time=time, limit_from="NaN or infinity")]
         return [self._rotations(evidence)]
 
     def _rotations(self, evidence: Evidence) -> Finding:
@@ -58,15 +58,9 @@ class CheckFinite(Check):
         if value > self.rotation_error:
             message = f"{prim}: its rotation is no unit quaternion at {evidence.time[frame]:.3f} s"
         return self.measured(
-            message,
-            value,
-            self.rotation_error,
-            "1",
-            prim=prim,
-            time=float(evidence.time[frame]),
-            line=evidence.line(prim),
+            message, value, self.rotation_error, "1", prim=prim, time=float(evidence.time[frame]),
             limit_from="a quaternion's length is 1, to single precision and the integrator's drift",
-        )
+        )  # fmt: skip
 
 
 def _earlier(a: tuple[float, str, str] | None, b: tuple[float, str, str]) -> tuple[float, str, str]:
@@ -90,15 +84,10 @@ class CheckComplete(Check):
         found.append(
             self.measured(
                 f"{message}: {error}" if error and reached < limit else message,
-                reached,
-                limit,
-                "s",
-                at_most=False,
-                time=reached,
-                expected=planned,
+                reached, limit, "s", at_most=False, time=reached, expected=planned,
                 limit_from=f"the planned duration less {self.frames_missing:g} frames",
             )
-        )
+        )  # fmt: skip
         back = np.flatnonzero(np.diff(evidence.time) <= 0)
         if len(back):
             found.append(self.failed("Recorded times do not increase", time=float(evidence.time[back[0]])))
@@ -113,7 +102,7 @@ class CheckComplete(Check):
             track = evidence.recording.fluids.get(fluid.prim)
             if track is None or len(track.time) == 0 or track.position.shape[1] == 0:
                 message = f"{fluid.prim}: the recording holds no particles of it"
-                found.append(self.failed(message, prim=fluid.prim, line=fluid.line))
+                found.append(self.failed(message, prim=fluid.prim))
         return found
 
 
@@ -131,8 +120,7 @@ class CheckLog(Check):
             bad = entry.level.upper() in self.levels or any(word in entry.text.lower() for word in self.words)
             if bad:
                 message = f"{entry.level.upper()} in the log: {entry.text}"
-                line = evidence.line(entry.prim)
-                found.append(self.failed(message, prim=entry.prim, time=entry.time, line=line))
+                found.append(self.failed(message, prim=entry.prim, time=entry.time))
         return found or [self.passed("The log has no error and no overflow")]
 
 
@@ -161,11 +149,11 @@ class CheckPlanObjects(Check):
             elif prim not in has[kind]:
                 actual = next((name for name, prims in has.items() if prim in prims), "something else")
                 message = f"{prim} is {actual}; the plan has it as {kind}"
-                found.append(self.failed(message, prim=prim, line=evidence.line(prim)))
+                found.append(self.failed(message, prim=prim))
         planned = {evidence.prim(item.name) for item in evidence.plan.objects}
         for prim in sorted(everything - planned):
             message = f"{prim} is in the world, but not in the plan"
-            found.append(self.failed(message, prim=prim, line=evidence.line(prim)))
+            found.append(self.failed(message, prim=prim))
         return found or [self.passed(f"The world has the plan's {len(planned)} objects and no others")]
 
 
@@ -196,3 +184,6 @@ class CheckPlanControl(Check):
                 ),
             )
         ]
+
+
+CHECKS: Checks = (CheckFinite, CheckComplete, CheckLog, CheckPlanObjects, CheckPlanControl)

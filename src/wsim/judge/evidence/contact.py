@@ -7,30 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, depth_inside, matrices, multiply, radius_about, rotate
+from wsim.judge.evidence.geometry import conjugate, depth_inside, matrices, multiply, rotate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.placed import Placed
+    from wsim.judge.evidence.recorded import Recorded
     from wsim.scene.world import Shape
 
     Floats = NDArray[np.float64]
 
 MOST_VERTICES = 200  # of a mesh that are probed
 CHUNK = 2048  # frames probed at once
-
-
-@dataclass
-class Placed:
-    """A colliding shape through time."""
-
-    owner: str  # prim of its body or static
-    body: int  # row of its body, or -1
-    shape: Shape
-    position: Floats  # (T, 3)
-    rotation: Floats  # (T, 4)
-    radius: float  # of a ball about it [m]
 
 
 @dataclass
@@ -42,30 +31,7 @@ class Overlap:
     depth: Floats  # (T,) [m]; not positive when apart
 
 
-def placed_shapes(evidence: Evidence) -> list[Placed]:
-    """All colliding shapes, those of bodies first."""
-    placed = []
-    frames = len(evidence.time)
-    for i, body in enumerate(evidence.world.bodies):
-        q = evidence.body_q[:, i, 3:]
-        for shape in body.shapes:
-            if shape.collides:
-                position, turned = evidence.body_q[:, i, :3], q
-                if any(shape.position):
-                    position = position + rotate(q, np.array(shape.position, dtype=np.float64))
-                if any(shape.rotation[:3]):
-                    turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
-                placed.append(Placed(body.prim, i, shape, position, turned, radius_about(shape)))
-    for static in evidence.world.statics:
-        for shape in static.shapes:
-            if shape.collides:
-                fixed = np.broadcast_to(np.array(shape.position, dtype=np.float64), (frames, 3))
-                turned = np.broadcast_to(np.array(shape.rotation, dtype=np.float64), (frames, 4))
-                placed.append(Placed(static.prim, -1, shape, fixed, turned, radius_about(shape)))
-    return placed
-
-
-def overlaps(evidence: Evidence) -> list[Overlap]:
+def overlaps(evidence: Recorded) -> list[Overlap]:
     """Every pair of shapes, of different owners and with no joint between them, that overlap at some time.
 
     A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
@@ -91,7 +57,7 @@ def overlaps(evidence: Evidence) -> list[Overlap]:
     return found
 
 
-def distance(evidence: Evidence, one: str, other: str) -> Floats:
+def distance(evidence: Recorded, one: str, other: str) -> Floats:
     """The gap between two objects at each frame, (T,) [m]; not positive when they touch, inf where nothing collides."""
     shapes = evidence.placed
     near = np.ones(len(evidence.time), dtype=bool)

@@ -12,7 +12,7 @@ from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.recorded import Recorded
     from wsim.scene.world import Joint, Quat, Vec3
 
     Floats = NDArray[np.float64]
@@ -29,7 +29,7 @@ class JointTrack:
     position: Floats  # its own motion: of a hinge [rad], of a slider [m]; 0 for the others
 
 
-def track_of(evidence: Evidence, joint: Joint) -> JointTrack | None:
+def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
     """A joint's track; None where the recording does not say where its anchors are."""
     if joint.parent_anchor is None or joint.child_anchor is None:
         return None
@@ -56,7 +56,7 @@ def track_of(evidence: Evidence, joint: Joint) -> JointTrack | None:
     return JointTrack(np.linalg.norm(offset, axis=1), angle, position)
 
 
-def _anchor(evidence: Evidence, prim: str | None, position: Vec3, turn: Quat) -> tuple[Floats, Floats]:
+def _anchor(evidence: Recorded, prim: str | None, position: Vec3, turn: Quat) -> tuple[Floats, Floats]:
     """Where an anchor is in the world, (T, 3) and (T, 4)."""
     own = np.array(turn, dtype=np.float64)
     if prim is None:

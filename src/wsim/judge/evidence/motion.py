@@ -15,7 +15,7 @@ from wsim.judge.evidence.geometry import conjugate, depth_inside, radius_about, 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.recorded import Recorded
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -27,23 +27,23 @@ FLOAT32 = float(np.finfo(np.float32).eps)  # a recording's rounding, relative
 class Motion:
     """Arrays worked out when they are first asked for."""
 
-    def __init__(self, evidence: Evidence) -> None:
-        self._evidence = evidence
-        bodies = evidence.world.bodies
-        self.gravity: Floats = np.array(evidence.world.gravity)
+    def __init__(self, recorded: Recorded) -> None:
+        self._recorded = recorded
+        bodies = recorded.world.bodies
+        self.gravity: Floats = np.array(recorded.world.gravity)
         self.mass: Floats = np.array([body.mass for body in bodies])
         self.kinematic: Bools = np.array([body.kinematic for body in bodies], dtype=bool)
-        self.v: Floats = evidence.body_qd[:, :, :3]
-        self.w: Floats = evidence.body_qd[:, :, 3:]
-        self.h: Floats = np.maximum(np.diff(evidence.time), 1e-9)  # length of each interval (T - 1,) [s]
+        self.v: Floats = recorded.body_qd[:, :, :3]
+        self.w: Floats = recorded.body_qd[:, :, 3:]
+        self.h: Floats = np.maximum(np.diff(recorded.time), 1e-9)  # length of each interval (T - 1,) [s]
         self.speed: Floats = np.linalg.norm(self.v, axis=2)
 
     # ---- where and how fast
     @cached_property
     def com(self) -> Floats:
         """Centres of mass, (T, B, 3) [m]."""
-        own = np.array([body.com for body in self._evidence.world.bodies]).reshape(-1, 3)
-        q = self._evidence.body_q
+        own = np.array([body.com for body in self._recorded.world.bodies]).reshape(-1, 3)
+        q = self._recorded.body_q
         moved: Floats = q[:, :, :3] if not own.any() else q[:, :, :3] + rotate(q[:, :, 3:], own[None])
         return moved
 
@@ -51,10 +51,10 @@ class Motion:
     def radius(self) -> Floats:
         """Radius of a ball about each centre of mass that holds the body's colliding shapes, (B,) [m]."""
         found = []
-        for i, body in enumerate(self._evidence.world.bodies):
+        for i, body in enumerate(self._recorded.world.bodies):
             reaches = [
                 float(np.linalg.norm(np.subtract(shape.position, body.com))) + radius_about(shape)
-                for shape in self._evidence.solid(i).shapes
+                for shape in self._recorded.solid(i).shapes
             ]
             found.append(max(reaches, default=0.0))
         return np.array(found)
@@ -62,13 +62,13 @@ class Motion:
     @cached_property
     def dt(self) -> float:
         """The simulator's time step, or where it is not known the time between frames [s]."""
-        known = self._evidence.recording.metadata.get("time_step") or self._evidence.world.time_step
+        known = self._recorded.recording.metadata.get("time_step") or self._recorded.world.time_step
         return float(known or (np.median(self.h) if len(self.h) else 1.0))
 
     @cached_property
     def acceleration(self) -> Floats:
         """Mean acceleration over each interval less what fluid and control gave, (T - 1, B, 3) [m/s^2]."""
-        impulse = self._evidence.recording.applied_impulse
+        impulse = self._recorded.recording.applied_impulse
         gained = np.diff(self.v, axis=0)
         if impulse is not None:
             gained = gained - np.asarray(impulse[1:], dtype=np.float64) / self.mass[:, None]
@@ -78,24 +78,24 @@ class Motion:
     @cached_property
     def touched(self) -> Bools:
         """Whether the solver had a contact of the body, (T, B)."""
-        return np.asarray(np.any(self._evidence.recording.contact_force != 0.0, axis=2))
+        return np.asarray(np.any(self._recorded.recording.contact_force != 0.0, axis=2))
 
     # ---- angular momentum and energy
     @cached_property
     def inertia(self) -> Floats:
         """Inertia about each centre of mass, in the body's frame, (B, 3, 3) [kg m^2]."""
-        return np.array([body.inertia for body in self._evidence.world.bodies]).reshape(-1, 3, 3)
+        return np.array([body.inertia for body in self._recorded.world.bodies]).reshape(-1, 3, 3)
 
     @cached_property
     def angular_momentum(self) -> Floats:
         """Angular momentum about each centre of mass, (T, B, 3) [kg m^2/s]."""
-        q = self._evidence.body_q[:, :, 3:]
+        q = self._recorded.body_q[:, :, 3:]
         return rotate(q, np.einsum("bij,tbj->tbi", self.inertia, rotate(conjugate(q), self.w)))
 
     @cached_property
     def kinetic(self) -> Floats:
         """Kinetic energy, (T, B) [J]."""
-        spin = rotate(conjugate(self._evidence.body_q[:, :, 3:]), self.w)
+        spin = rotate(conjugate(self._recorded.body_q[:, :, 3:]), self.w)
         turning = np.einsum("tbi,bij,tbj->tb", spin, self.inertia, spin)
         found: Floats = 0.5 * (self.mass * self.speed**2 + turning)
         return found
@@ -109,17 +109,17 @@ class Motion:
     @cached_property
     def applied_work(self) -> Floats | None:
         """Work of fluid and control on each body since the start, (T, B) [J]; None where it is not recorded."""
-        work = self._evidence.recording.applied_work
+        work = self._recorded.recording.applied_work
         return None if work is None else np.cumsum(np.asarray(work, dtype=np.float64), axis=0)
 
     # ---- what hangs together
     @cached_property
     def unit(self) -> NDArray[np.intp]:
         """The number of the mechanism that each body is part of, (B,); a loose body is one of its own."""
-        bodies = self._evidence.world.bodies
+        bodies = self._recorded.world.bodies
         row = {body.prim: i for i, body in enumerate(bodies)}
         unit = np.arange(len(bodies))
-        for joint in self._evidence.world.joints:
+        for joint in self._recorded.world.joints:
             if joint.parent in row and joint.child in row:
                 unit[unit == unit[row[joint.child]]] = unit[row[joint.parent]]
         return unit
@@ -127,8 +127,8 @@ class Motion:
     @cached_property
     def jointed(self) -> Bools:
         """Whether a joint holds the body, (B,)."""
-        held = {end for joint in self._evidence.world.joints for end in (joint.parent, joint.child)}
-        return np.array([body.prim in held for body in self._evidence.world.bodies], dtype=bool)
+        held = {end for joint in self._recorded.world.joints for end in (joint.parent, joint.child)}
+        return np.array([body.prim in held for body in self._recorded.world.bodies], dtype=bool)
 
     # ---- whom it may meet
     @cached_property
@@ -163,7 +163,7 @@ class Motion:
         Surfaces are nearer to each other than the other's surface is to the ball about body i: never less than true.
         """
         near = np.zeros(len(intervals), dtype=bool)
-        for shape in self._evidence.placed:
+        for shape in self._recorded.placed:
             if shape.body == i:
                 continue
             reach = self.reach[intervals, i] + (self.reach[intervals, shape.body] if shape.body >= 0 else 0.0)
@@ -179,10 +179,10 @@ class Motion:
     def wet(self, i: int, intervals: NDArray[np.intp]) -> Bools:
         """Whether a particle is so near body i that the fluid may push it within the intervals, (len(intervals),)."""
         wet = np.zeros(len(intervals), dtype=bool)
-        for fluid in self._evidence.world.fluids:
-            track = self._evidence.track(fluid)
+        for fluid in self._recorded.world.fluids:
+            track = self._recorded.track(fluid)
             for n, k in enumerate(intervals):
-                frame = int(np.argmin(np.abs(track.time - self._evidence.time[k])))
+                frame = int(np.argmin(np.abs(track.time - self._recorded.time[k])))
                 apart = track.position[frame] - self.com[k, i].astype(np.float32)
                 reach = self.radius[i] + self.reach[k, i] + 3.0 * fluid.spacing
                 wet[n] |= bool(np.any(np.einsum("ni,ni->n", apart, apart) < reach * reach))

@@ -11,7 +11,7 @@ from wsim.judge.evidence.geometry import conjugate, matrices, rotate
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.contact import Placed
+    from wsim.judge.evidence.placed import Placed
     from wsim.scene.world import Shape
 
     Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import WINDOW, WINDOW_MOST, WINDOW_SHARE, MissingError
+from wsim.judge.evidence.recorded import WINDOW, WINDOW_MOST, WINDOW_SHARE, MissingError
 from wsim.judge.language import measures_contact, measures_fluid, measures_place, measures_whole
 from wsim.judge.language.measure import MEASURERS, Measure
 from wsim.judge.language.trace import Trace, extreme, pick, pick_all, span_of, until

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.evidence.geometry import rotate
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import gap, moving_size, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.objectives.objective import support_of

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
 from wsim.plan.schema.formula import FillsTo, Floats, Sinks, Submerged

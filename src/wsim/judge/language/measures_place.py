@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import Evidence, MissingError
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.geometry import conjugate, multiply, reach, rotate
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.plan.schema.formula import (

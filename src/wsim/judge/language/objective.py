@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def _finding(check: Check, part: Formula, signals: Signals, evidence: Evidence) 
     measure = outcome.measures[int(outcome.measure[0])]
     frame = int(np.argmin(np.abs(signals.time - outcome.moment[0])))
     moment, said = float(outcome.moment[0]), sentence(part)
-    details: dict[str, object] = {"prim": measure.prim, "line": evidence.line(measure.prim), "time": moment}
+    details: dict[str, Any] = {"prim": measure.prim, "line": evidence.line(measure.prim), "time": moment}
     if not np.isfinite(outcome.robustness[0]):
         return check.failed(
             f"{said} cannot hold: the {measure.what} of {measure.prim} is not known at {moment:.3f} s",

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import Evidence, MissingError
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.geometry import conjugate, rotate
+from wsim.judge.evidence.recorded import MissingError
 from wsim.recording.recording import Recording
 
 if TYPE_CHECKING:

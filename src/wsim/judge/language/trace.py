@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import MissingError
+from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.physics import contained
-from wsim.judge.evidence.evidence import MissingError
-from wsim.judge.objectives.objective import ObjectiveCheck
+from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -75,16 +75,12 @@ class ObjectiveFloats(ObjectiveCheck):
             story = f"{prim} went under at {under:.3f} s and stays there: {depth}"
         return [
             self.measured(
-                story,
-                a.draft,
-                expected + tolerance if deeper else expected - tolerance,
-                "m",
-                at_most=deeper,
+                story, a.draft, expected + tolerance if deeper else expected - tolerance, "m", at_most=deeper,
                 expected=expected,
                 time=evidence.earliest(under, evidence.since(wrong)) if failing else evidence.window_start,
                 limit_from=source,
             )
-        ]
+        ]  # fmt: skip
 
     def _went_under(self, evidence: Evidence, a: _Afloat) -> float | None:
         """When the body's highest point left the surface for good [s]."""
@@ -105,15 +101,10 @@ class ObjectiveFloats(ObjectiveCheck):
         )
         # It fails whatever the depth: at or above the limit it would float against physics.
         return self.failed(
-            message,
-            value=a.draft,
-            expected=depth,
-            limit=a.height,
-            margin=min(a.height - a.draft, -abs(a.ratio - 1.0) * tolerance),
-            unit="m",
-            time=evidence.earliest(under),
+            message, value=a.draft, expected=depth, limit=a.height,
+            margin=min(a.height - a.draft, -abs(a.ratio - 1.0) * tolerance), unit="m", time=evidence.earliest(under),
             limit_from="the body's height: what floats is never deeper",
-        )
+        )  # fmt: skip
 
     def _as_planned(self, evidence: Evidence, a: _Afloat) -> str:
         """The depth that the plan's own material would have given."""
@@ -159,14 +150,10 @@ class ObjectiveSubmerged(ObjectiveCheck):
         return [
             self.measured(
                 f"{prim} {story}: its highest point is {value:.4g} m below the surface at the least",
-                value,
-                limit,
-                "m",
-                at_most=False,
-                time=evidence.earliest(evidence.since(depth < limit)),
+                value, limit, "m", at_most=False, time=evidence.earliest(evidence.since(depth < limit)),
                 limit_from="the surface",
             )
-        ]
+        ]  # fmt: skip
 
 
 @dataclass
@@ -193,14 +180,9 @@ class ObjectiveStaysInside(ObjectiveCheck):
         return [
             self.measured(
                 f"{prim} {story} {container.prim}: its centre comes within {value:.4g} m of a wall or the floor",
-                value,
-                limit,
-                "m",
-                at_most=False,
-                time=at,
-                limit_from="the walls' inner faces",
+                value, limit, "m", at_most=False, time=at, limit_from="the walls' inner faces",
             )
-        ]
+        ]  # fmt: skip
 
 
 @dataclass
@@ -228,15 +210,10 @@ class ObjectiveFills(ObjectiveCheck):
         return [
             self.measured(
                 f"{value:.1%} of {fluid.prim} is in {container.prim} at the end",
-                value,
-                1.0 - self.objective.tolerance if self.objective.tolerance else self.share,
-                "share of particles",
-                at_most=False,
-                expected=1.0,
-                time=evidence.window_start,
-                limit_from="the rest may splash out",
+                value, 1.0 - self.objective.tolerance if self.objective.tolerance else self.share, "share of particles",
+                at_most=False, expected=1.0, time=evidence.window_start, limit_from="the rest may splash out",
             )
-        ]
+        ]  # fmt: skip
 
 
 def _afloat(evidence: Evidence, name: str, ref: str) -> _Afloat:
@@ -283,3 +260,11 @@ def _still_draft(evidence: Evidence, a: _Afloat) -> float:
         under = sum(evidence.solid(j).volume_below(q, float(at[2]), middle) for j, (at, q) in poses.items())
         low, high = (middle, high) if under < a.needed else (low, middle)
     return (low + high) / 2 - float(evidence.ends(a.i)[0][evidence.window].mean())
+
+
+OBJECTIVES: Objectives = {
+    "floats": ObjectiveFloats,
+    "submerged": ObjectiveSubmerged,
+    "stays_inside": ObjectiveStaysInside,
+    "fills": ObjectiveFills,
+}

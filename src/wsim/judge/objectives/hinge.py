@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 from wsim.judge.evidence.pendulum import swing_stretch
-from wsim.judge.objectives.objective import ObjectiveCheck
+from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,7 +51,7 @@ class ObjectiveSwings(ObjectiveCheck):
         found = [
             self.measured(
                 f"{prim} is let go at {math.degrees(amplitude):.3g} degrees", math.degrees(amplitude), self.least,
-                "deg", at_most=False, time=float(evidence.time[0]), limit_from="a smaller swing is rest",
+                "deg", at_most=False, time=float(evidence.time[0]), limit_from="a smaller swing is rest"
             )
         ]  # fmt: skip
         if not found[0].passed:
@@ -68,7 +68,7 @@ class ObjectiveSwings(ObjectiveCheck):
             self.measured(
                 f"{prim} swings with a period of {value:.4g} s, where theory has {expected:.4g} s", value, limit, "s",
                 at_most=slow, expected=expected, time=float(crossings[0]),
-                limit_from=f"2 pi sqrt(I / m g d) at this amplitude, to {self.share:.0%}",
+                limit_from=f"2 pi sqrt(I / m g d) at this amplitude, to {self.share:.0%}"
             )
         )  # fmt: skip
         late = np.abs(swing.angle[evidence.time >= crossings[0]])
@@ -78,7 +78,7 @@ class ObjectiveSwings(ObjectiveCheck):
                 f"{prim} swings up to {highest:.4g} degrees after it was let go at {math.degrees(amplitude):.4g}",
                 highest, (1 + self.growth) * math.degrees(amplitude), "deg", expected=math.degrees(amplitude),
                 time=float(evidence.time[evidence.time >= crossings[0]][np.argmax(late)]),
-                limit_from=f"energy: no higher than at the start, to {self.growth:.0%}",
+                limit_from=f"energy: no higher than at the start, to {self.growth:.0%}"
             )
         )  # fmt: skip
         return found
@@ -167,6 +167,12 @@ class ObjectiveTilts(ObjectiveCheck):
         return [
             self.measured(
                 f"{prim} goes down by {value:.3g} degrees on the side of {self.ref()}", value, limit, "deg",
-                at_most=False, time=float(evidence.time[np.argmax(below)]), limit_from="clearly out of level",
+                at_most=False, time=float(evidence.time[np.argmax(below)]), limit_from="clearly out of level"
             )
         ]  # fmt: skip
+
+
+OBJECTIVES: Objectives = {
+    "swings": ObjectiveSwings,
+    "tilts": ObjectiveTilts,
+}

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.contact import distance
-from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.evidence.geometry import rotate
-from wsim.judge.objectives.objective import ObjectiveCheck
+from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,13 +55,9 @@ class ObjectiveMoves(ObjectiveCheck):
         time = float(evidence.time[np.argmax(reached)] if reached.any() else evidence.time[-1])
         return self.measured(
             f"{evidence.world.bodies[i].prim} moves {value:.4g} m {where}",
-            value,
-            limit,
-            "m",
-            at_most=False,
-            time=time,
+            value, limit, "m", at_most=False, time=time,
             limit_from="the plan's distance" if wanted is not None else f"{self.share:g} of its smallest extent",
-        )
+        )  # fmt: skip
 
 
 @dataclass
@@ -85,13 +81,9 @@ class ObjectiveSlides(ObjectiveMoves):
         word = "rolls" if value > self.turning else "slides"
         return self.measured(
             f"{evidence.world.bodies[i].prim} {word}: its turning makes up {value:.2f} of its way",
-            value,
-            self.turning,
-            "1",
-            at_most=not rolls,
-            expected=1.0 if rolls else 0.0,
+            value, self.turning, "1", at_most=not rolls, expected=1.0 if rolls else 0.0,
             limit_from="1 is rolling without slipping, 0 sliding without turning",
-        )
+        )  # fmt: skip
 
     def _frames(self, evidence: Evidence, i: int) -> NDArray[np.bool_]:
         """From the start until the planned way is made; all, where it never is."""
@@ -132,15 +124,11 @@ class ObjectiveRollsDown(ObjectiveSlides):
         found.append(
             self.measured(
                 f"{body.prim} gathers speed at {value:.4g} m/s^2; a rolling ball of its inertia does at {expected:.4g}",
-                value,
-                expected * (1 - self.accuracy if low else 1 + self.accuracy),
-                "m/s^2",
-                at_most=not low,
-                expected=expected,
-                time=float(evidence.time[here][-1]),
+                value, expected * (1 - self.accuracy if low else 1 + self.accuracy), "m/s^2", at_most=not low,
+                expected=expected, time=float(evidence.time[here][-1]),
                 limit_from=f"g sin(slope) / (1 + I / m r^2), to {self.accuracy:.0%}",
             )
-        )
+        )  # fmt: skip
         return found
 
     def _on_ramp(self, evidence: Evidence, body: Body) -> NDArray[np.bool_]:
@@ -191,7 +179,7 @@ class ObjectiveFlies(ObjectiveCheck):
         found = [
             self.measured(
                 f"{prim} flies for {flown:.3g} s before it touches anything", flown, self.seconds, "s", at_most=False,
-                time=flown, limit_from="shorter than this is no flight",
+                time=flown, limit_from="shorter than this is no flight"
             )
         ]  # fmt: skip
         start, velocity = evidence.body_q[0, i, :3], np.array(body.velocity)
@@ -202,7 +190,7 @@ class ObjectiveFlies(ObjectiveCheck):
         found.append(
             self.measured(
                 f"{prim} is at most {off.max():.3g} m off the parabola of its start", float(off.max()), limit, "m",
-                expected=0.0, time=float(t[np.argmax(off)]), limit_from=f"{self.share:g} of the way flown, {way:.3g} m",
+                expected=0.0, time=float(t[np.argmax(off)]), limit_from=f"{self.share:g} of the way flown, {way:.3g} m"
             )
         )  # fmt: skip
         return found
@@ -234,7 +222,7 @@ class ObjectiveCollidesWith(ObjectiveCheck):
         found = [
             self.measured(
                 f"{prim} comes within {max(float(gap.min()), 0.0):.3g} m of {other}", float(gap.min()), reach, "m",
-                time=time, expected=0.0, limit_from="the way that they close between two recorded frames",
+                time=time, expected=0.0, limit_from="the way that they close between two recorded frames"
             )
         ]  # fmt: skip
         if found[0].passed:
@@ -260,7 +248,7 @@ class ObjectiveCollidesWith(ObjectiveCheck):
                 f"{body.prim} changes its velocity by {changes[whose]:.3g} m/s as they meet, beyond what friction can",
                 changes[whose], self.change * float(speed[before]), "m/s",
                 at_most=False, prim=body.prim, time=time, line=body.line,
-                limit_from=f"{self.change:g} of the speed at which they approach",
+                limit_from=f"{self.change:g} of the speed at which they approach"
             )
         ]  # fmt: skip
         # A third body may take its share of the momentum, and a static one any amount.
@@ -302,3 +290,12 @@ def _friction(evidence: Evidence) -> float:
     shapes = [shape for body in evidence.world.bodies for shape in body.shapes]
     shapes += [shape for static in evidence.world.statics for shape in static.shapes]
     return max((shape.friction for shape in shapes), default=0.5)
+
+
+OBJECTIVES: Objectives = {
+    "moves": ObjectiveMoves,
+    "slides": ObjectiveSlides,
+    "rolls_down": ObjectiveRollsDown,
+    "flies": ObjectiveFlies,
+    "collides_with": ObjectiveCollidesWith,
+}

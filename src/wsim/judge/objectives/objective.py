@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check
-from wsim.judge.evidence.evidence import MissingError
 from wsim.judge.evidence.geometry import rotate
+from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,6 +54,9 @@ class ObjectiveCheck(Check):
         if self.objective.ref is None:
             raise MissingError(f'"{self.objective.kind}" needs another object, and the plan names none')
         return self.objective.ref
+
+
+Objectives = dict[str, type[ObjectiveCheck]]  # by their kind in a plan
 
 
 @dataclass

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check
 from wsim.judge.evidence.geometry import conjugate, rotate
-from wsim.judge.objectives.objective import ObjectiveCheck, Support, support_of
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives, Support, support_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,48 +18,6 @@ if TYPE_CHECKING:
     from wsim.judge.verdict import Finding
 
     Floats = NDArray[np.float64]
-
-ROUND = ("sphere", "cylinder", "capsule")
-
-
-@dataclass
-class CheckSettled(Check):
-    """What is to float or rest has come to rest, so that a mean over the last second means something.
-
-    Floating or round bodies may drift or roll: only their vertical speed counts.
-    """
-
-    factor: float = 0.05  # of sqrt(g L), L the body's smallest extent
-    seconds: float = 0.5
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding for each body that an objective wants floating, under water or at rest."""
-        if evidence.plan is None:
-            return []
-        found = []
-        wanted = [o for o in evidence.plan.objectives if o.kind in ("floats", "submerged", "rests_on")]
-        for name in dict.fromkeys(objective.object for objective in wanted):
-            prim = evidence.prim(name)
-            if any(body.prim == prim for body in evidence.world.bodies):
-                found.append(self._speed(evidence, evidence.index(prim)))
-        return found
-
-    def _speed(self, evidence: Evidence, i: int) -> Finding:
-        body, solid = evidence.world.bodies[i], evidence.solid(i)
-        vertical = bool(evidence.world.fluids) or any(shape.kind in ROUND for shape in solid.shapes)
-        v = evidence.body_qd[evidence.last(self.seconds), i, :3]
-        speed = math.sqrt(float(np.mean(v[:, 2] ** 2 if vertical else np.sum(v**2, axis=1))))
-        limit = self.factor * evidence.velocity_scale(solid.smallest)
-        return self.measured(
-            f"{body.prim} has {'a vertical speed' if vertical else 'a speed'} of {speed:.3g} m/s (rms) at the end",
-            speed,
-            limit,
-            "m/s",
-            prim=body.prim,
-            time=float(evidence.time[-1]) - self.seconds,
-            line=body.line,
-            limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L",
-        )
 
 
 @dataclass
@@ -98,17 +55,13 @@ class ObjectiveRestsOn(ObjectiveCheck):
         word = "does not rest on" if failing else "rests on"
         return self.measured(
             f"{prim} {word} {support.name}: its lowest point is {value * 1e3:.3g} mm above it",
-            value,
-            tolerance if value >= 0 else -tolerance,
-            "m",
-            at_most=value >= 0,
-            expected=0.0,
+            value, tolerance if value >= 0 else -tolerance, "m", at_most=value >= 0, expected=0.0,
             time=evidence.earliest(since if failing else None),
             limit_from="the plan's tolerance"
             if self.objective.tolerance
             else f"{self.share:g} of the body's height"
             + (f", or {self.spacings:g} particle spacings if more" if support.fluid else ""),
-        )
+        )  # fmt: skip
 
     def _force(self, evidence: Evidence, i: int, support: Support) -> Finding | None:
         """The mean contact force against weight less buoyancy; None where no force was recorded."""
@@ -127,14 +80,8 @@ class ObjectiveRestsOn(ObjectiveCheck):
         return self.measured(
             f"{body.prim} is carried with {value:.4g} N; its weight {'less buoyancy' if buoyancy else 'alone'} is "
             f"{expected:.4g} N",
-            value,
-            limit,
-            "N",
-            at_most=above,
-            expected=expected,
-            time=evidence.window_start,
-            limit_from=source,
-        )
+            value, limit, "N", at_most=above, expected=expected, time=evidence.window_start, limit_from=source,
+        )  # fmt: skip
 
     @staticmethod
     def _by_fluid(evidence: Evidence, i: int, support: Support) -> tuple[float, float]:
@@ -180,12 +127,9 @@ class ObjectiveStaysOn(ObjectiveCheck):
             return [
                 self.failed(
                     f"{prim} leaves {support.name} at {time:.3f} s: it is no longer over it",
-                    time=time,
-                    limit=tolerance,
-                    unit="m",
-                    limit_from=source,
+                    time=time, limit=tolerance, unit="m", limit_from=source,
                 )
-            ]
+            ]  # fmt: skip
         word = "leaves" if off.any() else "stays on"
         message = f"{prim} {word} {support.name}: the gap reaches {value * 1e3:.3g} mm"
         return [self.measured(message, value, tolerance, "m", expected=0.0, time=time, limit_from=source)]
@@ -244,11 +188,16 @@ class ObjectiveSettles(ObjectiveCheck):
         return [
             self.measured(
                 f"{prim} {word}: {value:.3g} m/s (rms) at the end",
-                value,
-                limit,
-                "m/s",
-                expected=0.0,
+                value, limit, "m/s", expected=0.0,
                 time=evidence.earliest(evidence.since(speed > limit), float(evidence.time[-1]) - self.seconds),
                 limit_from=f"{self.factor:g} sqrt(g L), L = {size:.3g} m: a head of {self.factor**2 / 2:.2g} L",
             )
-        ]
+        ]  # fmt: skip
+
+
+OBJECTIVES: Objectives = {
+    "rests_on": ObjectiveRestsOn,
+    "stays_on": ObjectiveStaysOn,
+    "topples": ObjectiveTopples,
+    "settles": ObjectiveSettles,
+}

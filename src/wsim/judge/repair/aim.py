@@ -1,24 +1,22 @@
 """What to change so that a failed finding passes.
 
 A check that knows says so itself, with `target=` in its finding. For the others there is one rule for each check or
-objective class, in the tables of `targets_run`, `targets_objectives` and `targets_language`. What no rule covers gets
-a target that says so.
+objective class, in the tables of `run`, `objectives` and `language`. What no rule covers gets a target that says so.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from wsim.judge.repair.language import formula
 from wsim.judge.repair.objectives import OBJECTIVES
+from wsim.judge.repair.rule import Rule
 from wsim.judge.repair.run import CHECKS
 from wsim.judge.verdict import Finding, RepairTarget
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
-
-    Rule = Callable[[Finding, Evidence], RepairTarget]
 
 # What fails before there is a recording: the program's own text is to be mended.
 STAGES = {

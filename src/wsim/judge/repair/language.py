@@ -6,44 +6,28 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.language.measure import MEASURERS
-from wsim.judge.language.signals import Signals
+from wsim.judge.repair.asked import decider
 from wsim.judge.repair.objectives import (
     collides_with,
     fallen_through,
     floats,
     friction,
-    objective_of,
     stays_inside,
     submerged,
     swings,
 )
-from wsim.judge.repair.run import leak, longer_run, settled, shorter_step
+from wsim.judge.repair.rule import (
+    Rule,
+    longer_run,
+    shorter_step,
+)
+from wsim.judge.repair.run import leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
-from wsim.plan.schema.formula import Ordered, Predicate
+from wsim.plan.schema.formula import Predicate
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.measure import Measure
-    from wsim.judge.repair.aim import Rule
-
-SAME = 1e-6  # share by which a finding's value may differ from its measure's
-
-
-def decider(finding: Finding, evidence: Evidence) -> tuple[Predicate, Measure] | None:
-    """The predicate, and its measure, that a finding's number comes from; None where the finding has none."""
-    item = objective_of(finding, evidence)
-    if item is None or item.formula is None or finding.value is None:
-        return None
-    signals = Signals.of(evidence)
-    for node in item.formula.walk():
-        if isinstance(node, Predicate) and not isinstance(node, Ordered):
-            for measure in MEASURERS[type(node)](node, signals):
-                if (measure.prim, measure.unit) == (finding.prim, finding.unit):
-                    values = np.broadcast_to(measure.value, (1, len(signals.time)))[0]
-                    if np.isclose(values, finding.value, rtol=SAME, atol=1e-12).any():
-                        return node, measure
-    return None
 
 
 def formula(finding: Finding, evidence: Evidence) -> RepairTarget:

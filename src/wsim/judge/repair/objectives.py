@@ -8,61 +8,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.geometry import rotate, smallest_extent
-from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives.objective import ObjectiveCheck
-from wsim.judge.repair.run import (
+from wsim.judge.repair.asked import ref_of
+from wsim.judge.repair.rule import (
+    Rule,
     add_collision,
     collides,
     density,
     finer,
-    leak,
     longer_run,
     overlapping_start,
     planned_density,
-    settled,
     shapes_of,
     shorter_step,
     time_step,
 )
+from wsim.judge.repair.run import leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.repair.aim import Rule
-    from wsim.plan.schema import Objective
     from wsim.scene.world import Fluid
 
 SAME = 0.01  # share by which two densities differ by rounding alone
-
-
-def objective_of(finding: Finding, evidence: Evidence) -> Objective | None:
-    """The plan's objective that a finding answers."""
-    items = evidence.plan.objectives if evidence.plan is not None else []
-    return next((item for item in items if sentence_of(item) == finding.objective), None)
-
-
-def sentence_of(item: Objective) -> str:
-    """An objective in words, as its findings carry it."""
-    if item.formula is None:
-        return ObjectiveCheck(item).sentence
-    return ObjectiveFormula(item).sentence
-
-
-def ref_of(finding: Finding, evidence: Evidence) -> str:
-    """The prim of the other object of a finding's objective, or nothing."""
-    item = objective_of(finding, evidence)
-    if item is None:
-        return ""
-    name = item.ref
-    if item.formula is not None:
-        from wsim.judge.repair.language import decider
-
-        found = decider(finding, evidence)
-        others = (
-            (getattr(found[0], field, None) for field in ("ref", "fluid", "target", "center", "on")) if found else ()
-        )
-        name = next((other for other in others if isinstance(other, str)), None)
-    return evidence.prim(name) if name is not None else ""
 
 
 def own_density(evidence: Evidence, prim: str, to: float | None, why: str) -> RepairTarget:
@@ -205,14 +172,9 @@ def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, w
     if to is not None and now is not None and (to > now) != (way == "raise"):
         to = None  # friction is on the right side of it already: it is not what is wrong, or not alone
     return RepairTarget(
-        kind="physical parameter",
-        prim=body.prim,
-        parameter="friction",
-        direction=way,
-        current=now,
-        suggested=to,
+        kind="physical parameter", prim=body.prim, parameter="friction", direction=way, current=now, suggested=to,
         why=why,
-    )
+    )  # fmt: skip
 
 
 def stays_inside(finding: Finding, evidence: Evidence) -> RepairTarget:

@@ -1,0 +1,40 @@
+"""All checks, in the order of their findings.
+
+A module of checks ends with `CHECKS`, its classes; a new module is named here, in one of the two lists.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wsim.judge.checks import (
+    camera,
+    contact,
+    energy,
+    fluid,
+    joint,
+    mass,
+    motion,
+    physics,
+    plan,
+    plan_joints,
+    rest,
+    run,
+    settled,
+)
+
+if TYPE_CHECKING:
+    from wsim.judge.checks.check import Check
+
+RUN = (run,)
+PHYSICS = (physics, settled, motion, energy, contact, rest, joint, mass, plan, plan_joints, fluid, camera)
+
+
+def run_checks() -> list[Check]:
+    """The checks that need no finite numbers."""
+    return [check() for module in RUN for check in module.CHECKS]
+
+
+def physics_checks() -> list[Check]:
+    """The checks of what the numbers say."""
+    return [check() for module in PHYSICS for check in module.CHECKS]

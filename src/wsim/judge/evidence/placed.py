@@ -1,0 +1,52 @@
+"""The colliding shapes of bodies and static objects, where they are at each frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.geometry import multiply, radius_about, rotate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Shape, World
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class Placed:
+    """A colliding shape through time."""
+
+    owner: str  # prim of its body or static
+    body: int  # row of its body, or -1
+    shape: Shape
+    position: Floats  # (T, 3)
+    rotation: Floats  # (T, 4)
+    radius: float  # of a ball about it [m]
+
+
+def placed_shapes(world: World, body_q: Floats) -> list[Placed]:
+    """All colliding shapes, those of bodies first."""
+    placed = []
+    frames = len(body_q)
+    for i, body in enumerate(world.bodies):
+        q = body_q[:, i, 3:]
+        for shape in body.shapes:
+            if shape.collides:
+                position, turned = body_q[:, i, :3], q
+                if any(shape.position):
+                    position = position + rotate(q, np.array(shape.position, dtype=np.float64))
+                if any(shape.rotation[:3]):
+                    turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
+                placed.append(Placed(body.prim, i, shape, position, turned, radius_about(shape)))
+    for static in world.statics:
+        for shape in static.shapes:
+            if shape.collides:
+                fixed = np.broadcast_to(np.array(shape.position, dtype=np.float64), (frames, 3))
+                turned = np.broadcast_to(np.array(shape.rotation, dtype=np.float64), (frames, 4))
+                placed.append(Placed(static.prim, -1, shape, fixed, turned, radius_about(shape)))
+    return placed

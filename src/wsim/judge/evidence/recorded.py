@@ -1,0 +1,199 @@
+"""What a recording says, as it says it: times, poses, who is who, and which line made it."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.geometry import Solid, conjugate, mean_rotation, rotate
+from wsim.judge.evidence.placed import placed_shapes
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.placed import Placed
+    from wsim.plan.schema import Plan, PlanObject
+    from wsim.recording.recording import FluidTrack, Recording
+    from wsim.scene.world import Body, Container, Fluid, Static
+
+    Floats = NDArray[np.float64]
+
+WINDOW = 1.0  # means are taken over the last second [s],
+WINDOW_SHARE = 0.25  # or this share of a longer run,
+WINDOW_MOST = 0.5  # but never over more than this share
+
+
+class MissingError(LookupError):
+    """What a check needs is not in the recording."""
+
+
+class Recorded:
+    """Times, poses, shapes and who is who. T frames, B bodies in the order of `world.bodies`."""
+
+    def __init__(self, recording: Recording, plan: Plan | None = None) -> None:
+        self.recording = recording
+        self.plan = plan
+        self.world = recording.world
+        self.time: Floats = np.asarray(recording.time, dtype=np.float64)
+        self.body_q: Floats = np.asarray(recording.body_q, dtype=np.float64)
+        self.body_qd: Floats = np.asarray(recording.body_qd, dtype=np.float64)
+        self._solids: dict[int, Solid] = {}
+        self._ends: dict[int, tuple[Floats, Floats]] = {}
+
+    # ---- time
+    @cached_property
+    def window_start(self) -> float:
+        """When the final window begins [s]."""
+        first, last = float(self.time[0]), float(self.time[-1])
+        span = last - first
+        return last - min(max(WINDOW, WINDOW_SHARE * span), WINDOW_MOST * span)
+
+    @cached_property
+    def window(self) -> NDArray[np.bool_]:
+        """Frames of the final window, (T,)."""
+        return self.time >= self.window_start - 1e-9
+
+    def last(self, seconds: float) -> NDArray[np.bool_]:
+        """Frames of the last seconds, (T,)."""
+        return self.time >= self.time[-1] - seconds - 1e-9
+
+    def since(self, wrong: NDArray[np.bool_]) -> float | None:
+        """When the last unbroken stretch of `wrong` (T,) that reaches the end began [s]; None if the end is right."""
+        if not wrong[-1]:
+            return None
+        right = np.flatnonzero(~wrong)
+        return float(self.time[right[-1] + 1 if len(right) else 0])
+
+    def earliest(self, *times: float | None) -> float:
+        """The first of some times that is known, or the start of the final window [s]."""
+        return next((time for time in times if time is not None), self.window_start)
+
+    # ---- who is who
+    @cached_property
+    def gravity(self) -> float:
+        """The strength of gravity [m/s^2]."""
+        return float(np.linalg.norm(self.world.gravity))
+
+    @property
+    def varied(self) -> bool:
+        """Whether a parameter of the program was set to another value than its own."""
+        return any(parameter.value != parameter.default for parameter in self.world.parameters)
+
+    def planned(self, prim: str) -> PlanObject | None:
+        """The plan's object that a prim is made of."""
+        items = self.plan.objects if self.plan is not None else []
+        return next((item for item in items if self.prim(item.name) == prim), None)
+
+    @staticmethod
+    def prim(name: str) -> str:
+        """The prim of a plan's object."""
+        return f"/World/{name}"
+
+    def index(self, prim: str) -> int:
+        """The row of a body; MissingError naming the known ones."""
+        for i, body in enumerate(self.world.bodies):
+            if body.prim == prim:
+                return i
+        raise MissingError(f"the world has no body {prim}; it has {self._listed([b.prim for b in self.world.bodies])}")
+
+    def body(self, prim: str) -> Body:
+        """A body by prim; MissingError."""
+        return self.world.bodies[self.index(prim)]
+
+    def static(self, prim: str) -> Static | None:
+        """A static object by prim."""
+        return next((static for static in self.world.statics if static.prim == prim), None)
+
+    def container(self, prim: str) -> Container | None:
+        """A container by prim."""
+        return next((container for container in self.world.containers if container.prim == prim), None)
+
+    def fluid(self, prim: str) -> Fluid:
+        """A fluid by its prim or its container's; MissingError."""
+        for fluid in self.world.fluids:
+            if prim in (fluid.prim, fluid.container):
+                return fluid
+        raise MissingError(f"the world has no fluid {prim}; it has {self._listed([f.prim for f in self.world.fluids])}")
+
+    def track(self, fluid: Fluid) -> FluidTrack:
+        """A fluid's particles through time; MissingError."""
+        track = self.recording.fluids.get(fluid.prim)
+        if track is None or len(track.time) == 0 or track.position.shape[1] == 0:
+            raise MissingError(f"the recording has no particles of {fluid.prim}")
+        return track
+
+    def line(self, prim: str | None) -> str | None:
+        """The program's line that made a prim."""
+        lines = {item.prim: item.line for item in self.world.fluids}
+        lines |= {item.prim: item.line for item in self.world.joints}
+        lines |= {item.prim: item.line for item in self.world.statics}
+        lines |= {item.prim: item.line for item in self.world.bodies}
+        return lines.get(prim) if prim is not None else None
+
+    @staticmethod
+    def _listed(prims: list[str]) -> str:
+        return ", ".join(prims) if prims else "none"
+
+    # ---- bodies
+    def solid(self, i: int) -> Solid:
+        """A body's shapes."""
+        if i not in self._solids:
+            self._solids[i] = Solid(self.world.bodies[i])
+        return self._solids[i]
+
+    def ends(self, i: int) -> tuple[Floats, Floats]:
+        """Height of a body's lowest and highest point, (T,) each [m]."""
+        if i not in self._ends:
+            low, high = self.solid(i).reach(self.body_q[:, i, 3:])
+            z = self.body_q[:, i, 2]
+            self._ends[i] = (z + low, z + high)
+        return self._ends[i]
+
+    def resting_pose(self, i: int) -> tuple[Floats, Floats]:
+        """A body's mean position (3,) and rotation (4,) over the final window."""
+        q = self.body_q[self.window, i]
+        return q[:, :3].mean(axis=0), mean_rotation(q[:, 3:])
+
+    def velocity_scale(self, length: float) -> float:
+        """The speed sqrt(g L) that gravity gives over a length [m/s]."""
+        return math.sqrt(max(self.gravity, 1e-9) * length)
+
+    @cached_property
+    def placed(self) -> list[Placed]:
+        """All colliding shapes through time, those of bodies first."""
+        return placed_shapes(self.world, self.body_q)
+
+    # ---- fluid
+    def container_of(self, fluid: Fluid) -> Container | None:
+        """The container that a fluid fills."""
+        return self.container(fluid.container) if fluid.container is not None else None
+
+    @staticmethod
+    def local(container: Container, points: Floats) -> Floats:
+        """Points (..., 3) in a container's frame, its inner box centred on the origin [m]."""
+        q = np.array(container.rotation, dtype=np.float64)
+        shifted = points - np.array(container.inner_center)
+        if np.array_equal(q, [0.0, 0.0, 0.0, 1.0]):
+            return shifted
+        return rotate(conjugate(q), shifted)
+
+    def outside(self, fluid: Fluid) -> Floats:
+        """Share of a fluid's particles more than a spacing outside its container, at each of its frames, (T,).
+
+        Above the open rim a particle is still inside as long as it is over the container.
+        """
+        container = self.container_of(fluid)
+        track = self.track(fluid)
+        if container is None:
+            return np.zeros(len(track.time))
+        return np.array([self.strayed(container, fluid, frame).mean() for frame in track.position])
+
+    def strayed(self, container: Container, fluid: Fluid, points: Floats) -> NDArray[np.bool_]:
+        """Which of a fluid's particles (N, 3) are more than a spacing outside a container, (N,)."""
+        p = self.local(container, points)
+        half = np.array(container.inner_size) / 2 + fluid.spacing
+        strayed: NDArray[np.bool_] = (np.abs(p[:, 0]) > half[0]) | (np.abs(p[:, 1]) > half[1]) | (p[:, 2] < -half[2])
+        return strayed

@@ -1,0 +1,105 @@
+"""What the rules of repair share: the targets that several of them suggest, and the numbers that these come from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from wsim.judge.evidence.contact import overlaps
+from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.evidence.geometry import smallest_extent
+from wsim.judge.verdict import Finding, RepairTarget
+
+if TYPE_CHECKING:
+    from wsim.scene.world import Fluid, Shape
+
+Rule = Callable[[Finding, Evidence], RepairTarget]
+
+
+def shorter_step(evidence: Evidence, share: float, why: str) -> RepairTarget:
+    """A time step of a share of the one that was taken [s]."""
+    step = time_step(evidence)
+    suggested = step * share if step else None
+    return RepairTarget(
+        kind="time step", parameter="time_step", direction="lower", current=step, suggested=suggested, unit="s", why=why
+    )
+
+
+def longer_run(evidence: Evidence, seconds: float | None, why: str) -> RepairTarget:
+    """A run that lasts so long [s]."""
+    now = evidence.world.duration
+    return RepairTarget(
+        kind="settlement", parameter="duration", direction="raise", current=now, suggested=seconds, unit="s", why=why
+    )
+
+
+def time_step(evidence: Evidence) -> float | None:
+    """The step that was taken, where the recording or the stage tells it [s]."""
+    step = evidence.recording.metadata.get("time_step") or evidence.world.time_step
+    return float(step) if step else None
+
+
+def density(evidence: Evidence, prim: str) -> float:
+    """A body's mean density [kg/m^3]; MissingError."""
+    i = evidence.index(prim)
+    return evidence.world.bodies[i].mass / evidence.solid(i).volume
+
+
+def planned_density(evidence: Evidence, prim: str) -> float | None:
+    """The density of the material that the plan has for a prim [kg/m^3]."""
+    item = evidence.planned(prim)
+    return item.material.density if item is not None and item.material is not None else None
+
+
+def collides(evidence: Evidence, prim: str) -> bool:
+    """Whether a prim is there and has a shape that others can touch."""
+    return any(shape.collides for shape in shapes_of(evidence, prim))
+
+
+def shapes_of(evidence: Evidence, prim: str) -> list[Shape]:
+    """The shapes of a body or a static object; none of what is not there."""
+    found = [shape for body in evidence.world.bodies if body.prim == prim for shape in body.shapes]
+    return found + [shape for static in evidence.world.statics if static.prim == prim for shape in static.shapes]
+
+
+def add_collision(prim: str) -> RepairTarget:
+    """A collision shape for what has none."""
+    why = "none of its shapes collides, so that nothing can stand on it or stop at it"
+    return RepairTarget(kind="geometry", prim=prim, parameter="collision", direction="add", why=why)
+
+
+def overlapping_start(evidence: Evidence, prim: str | None) -> RepairTarget | None:
+    """The target for a body that starts inside another object: apart by as much."""
+    pairs = [pair for pair in overlaps(evidence) if prim in (pair.a.owner, pair.b.owner) or prim is None]
+    deepest = max(pairs, key=lambda pair: float(pair.depth[0]), default=None)
+    if deepest is None:
+        return None
+    depth = float(deepest.depth[0])
+    size = min(smallest_extent(part.shape) for part in (deepest.a, deepest.b) if part.body >= 0)
+    if depth <= 1e-3 * size:  # touching
+        return None
+    why = f"it starts {depth:.3g} m inside {deepest.b.owner}: move them apart by that"
+    owner = deepest.a.owner
+    return RepairTarget(kind="settlement", prim=owner, parameter="position", direction="change", unit="m", why=why)
+
+
+def faster_sound(evidence: Evidence, fluid: Fluid, wanted: float, why: str) -> RepairTarget:
+    """A stiffer fluid [m/s]."""
+    return RepairTarget(
+        kind="fluid", prim=fluid.prim, parameter="speed_of_sound", direction="raise",
+        current=sound_speed(evidence, fluid), suggested=wanted, unit="m/s", why=why,
+    )  # fmt: skip
+
+
+def sound_speed(evidence: Evidence, fluid: Fluid) -> float | None:
+    """A fluid's speed of sound as it was simulated [m/s]."""
+    sound = fluid.speed_of_sound or evidence.recording.metadata.get("speed_of_sound")
+    return float(sound) if sound else None
+
+
+def finer(evidence: Evidence, fluid: Fluid, share: float, why: str) -> RepairTarget:
+    """A share of the particle spacing [m]."""
+    return RepairTarget(
+        kind="resolution", prim=fluid.prim, parameter="spacing", direction="lower", current=fluid.spacing,
+        suggested=fluid.spacing * share, unit="m", why=why,
+    )  # fmt: skip
