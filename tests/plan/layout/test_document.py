@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from wsim.plan.schema import PREDICATES
-from wsim.plan.schema.plan import VIEWS
+from wsim.plan.schema.draft import VIEWS
 
 ROOT = Path(__file__).parents[3]
 TEXT = (ROOT / "docs" / "predicates.md").read_text(encoding="utf-8")

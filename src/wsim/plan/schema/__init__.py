@@ -1,6 +1,19 @@
 """The plan's model: a pydantic schema in which nothing dangles."""
 
 from wsim.plan.schema.base import Name, Vec3
+from wsim.plan.schema.draft import (
+    Assumption,
+    CameraPlan,
+    ImageHints,
+    Joint,
+    JointDrive,
+    Objective,
+    Outputs,
+    ReferenceImage,
+    SensorPlan,
+    SimulationPlan,
+    Step,
+)
 from wsim.plan.schema.explain import explain
 from wsim.plan.schema.objects import (
     Actuation,
@@ -13,21 +26,7 @@ from wsim.plan.schema.objects import (
     Registration,
     Topology,
 )
-from wsim.plan.schema.plan import (
-    PLAN_VERSION,
-    Assumption,
-    CameraPlan,
-    ImageHints,
-    Joint,
-    JointDrive,
-    Objective,
-    Outputs,
-    Plan,
-    ReferenceImage,
-    SensorPlan,
-    SimulationPlan,
-    Step,
-)
+from wsim.plan.schema.plan import PLAN_VERSION, Plan
 from wsim.plan.schema.relations import PREDICATES, TEMPLATES, Predicate, Region, Relation
 
 __all__ = [

@@ -7,194 +7,21 @@ is the centre of its bottom face, and a fluid in a container, which has none.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from pydantic import model_validator
 
-from pydantic import Field, model_validator
-
-from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
-from wsim.plan.schema.formula import Formula
-from wsim.plan.schema.objects import PlanObject
+from wsim.plan.schema.draft import Draft
+from wsim.plan.schema.problems import problems
 
 PLAN_VERSION = 2
-VIEWS = ("side_minus_x", "side_plus_x", "side_minus_y", "side_plus_y", "top_down")
-View = Literal[
-    "side_minus_x", "side_plus_x", "side_minus_y", "side_plus_y", "top_down",
-    "side_minus_x_room", "side_plus_x_room", "side_minus_y_room", "side_plus_y_room", "top_down_room",
-]  # fmt: skip
+SHOWN = 20  # problems in a message
 
 
-class ImageHints(Strict):
-    """What a reference picture says."""
-
-    visible_objects: list[Word] = Field(default_factory=list, max_length=1000)
-    scale: Text = ""
-    support: list[Text] = Field(default_factory=list, max_length=1000)
-    layout: list[Text] = Field(default_factory=list, max_length=1000)
-    scene_type: Text = ""
-    action_intent: Text = ""
-    constraints: list[Text] = Field(default_factory=list, max_length=1000)
-
-
-class ReferenceImage(Strict):
-    """A picture that came with the prompt."""
-
-    path: Word
-    sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")] | None = None
-    hints: ImageHints = Field(default_factory=ImageHints)
-
-
-class JointDrive(Strict):
-    """A motor or spring on a joint: force = stiffness (position - q) + damping (velocity - q'), at most `max_force`.
-
-    A hinge: [deg], [deg/s], [N m/rad], [N m s/rad], [N m]. A slider: [m], [m/s], [N/m], [N s/m], [N].
-    """
-
-    position: Number = 0.0
-    velocity: Number = 0.0
-    stiffness: NotNegative = 0.0
-    damping: NotNegative = 0.0
-    max_force: Positive | None = None
-
-    @model_validator(mode="after")
-    def _acts(self) -> JointDrive:
-        if self.stiffness == 0.0 and self.damping == 0.0:
-            raise ValueError("a drive needs stiffness to hold a position, or damping to hold a velocity")
-        return self
-
-
-class Joint(Strict):
-    """What holds two bodies together; without `parent` the child is held by the world."""
-
-    name: Name
-    kind: Literal["fixed", "hinge", "slider", "ball"]
-    child: Name
-    parent: Name | None = None
-    anchor: Vec3 | None = None  # [m], from the child's centre, before it is turned; its centre if left out
-    axis: Literal["X", "Y", "Z"] = "Y"
-    limits: tuple[Number, Number] | None = None  # [deg] of a hinge, [m] of a slider
-    drive: JointDrive | None = None
-
-    @model_validator(mode="after")
-    def _can_be_driven(self) -> Joint:
-        if self.drive is not None and self.kind not in ("hinge", "slider"):
-            raise ValueError(f"joint {self.name}: a {self.kind} joint has no drive; a hinge or a slider has")
-        return self
-
-
-class CameraPlan(Strict):
-    """A camera: from `eye` at `target`, or by a `view` of the scene or of one object, which the layout resolves."""
-
-    name: Name
-    eye: Vec3 | None = None  # [m]
-    target: Vec3 | None = None  # [m]
-    view: View | None = None
-    of: Name | None = None
-
-    @model_validator(mode="after")
-    def _one_way(self) -> CameraPlan:
-        placed = self.eye is not None and self.target is not None
-        if not placed and self.view is None:
-            raise ValueError(f'camera {self.name}: give "eye" and "target", or a "view"')
-        if placed and self.eye == self.target:
-            raise ValueError(f"camera {self.name}: eye and target are both {self.eye}; move one of them")
-        return self
-
-
-class SensorPlan(Strict):
-    """Something that measures, on a body or in the world."""
-
-    name: Name
-    kind: Literal["camera", "imu", "contact", "force", "lidar", "pose"]
-    mount: Name | None = None
-    rate: Positive = 30.0  # [1/s]
-
-
-class Step(Strict):
-    """One stage of the implementation, and what it must show when it is done."""
-
-    title: Word
-    objects: list[Name] = Field(default_factory=list, max_length=10_000)
-    shows: Text
-
-
-class Objective(Strict):
-    """What must happen. `kind` is a name of the judge's closed list, or "formula", which says it in full."""
-
-    kind: Literal[
-        "floats", "rests_on", "submerged", "stays_on", "topples", "stays_inside", "settles", "swings", "slides",
-        "rolls_down", "moves", "flies", "collides_with", "tilts", "fills", "formula",
-    ]  # fmt: skip
-    object: Name
-    ref: Name | None = None
-    tolerance: NotNegative | None = None
-    value: Positive | None = None  # the least distance [m] of what moves, slides or rolls
-    direction: Literal["front", "back", "left", "right"] | None = None  # of what moves
-    sentence: Text = ""
-    formula: Formula | None = None  # of the kind "formula": docs/objectives.md
-
-    @model_validator(mode="after")
-    def _says_it_once(self) -> Objective:
-        if (self.kind == "formula") != (self.formula is not None):
-            lacks = "it has none" if self.formula is None else f"this is {self.kind!r}"
-            raise ValueError(f'"formula" goes with the kind "formula" and with no other; {lacks}')
-        return self
-
-
-class SimulationPlan(Strict):
-    """How long, how fine, where."""
-
-    duration: Positive = 5.0  # [s]
-    time_step: NotNegative = 0.0  # [s]; 0 = chosen by the simulator
-    spacing: NotNegative = 0.0  # SPH particle spacing [m]
-    frame_rate: Positive = 30.0
-    device: Word = "auto"
-    seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
-
-
-class Outputs(Strict):
-    """What a run leaves beside the recording and the verdict."""
-
-    video: bool = True
-    stills: list[Name] = Field(default_factory=list, max_length=100)  # cameras; all if empty
-
-
-class Assumption(Strict):
-    """A choice that the prompt left open, with the default taken."""
-
-    subject: Text
-    choice: Text
-    why: Text
-
-
-class Plan(Strict):
-    """Everything that is to be built and judged."""
-
-    version: Literal[2] = 2
-    title: Text
-    prompt: Text
-    image: ReferenceImage | None = None
-    objects: list[PlanObject] = Field(max_length=10_000)
-    joints: list[Joint] = Field(default_factory=list, max_length=10_000)
-    cameras: list[CameraPlan] = Field(default_factory=list, max_length=100)
-    sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)
-    steps: list[Step] = Field(default_factory=list, max_length=1000)
-    objectives: list[Objective] = Field(default_factory=list, max_length=10_000)
-    simulation: SimulationPlan = Field(default_factory=SimulationPlan)
-    outputs: Outputs = Field(default_factory=Outputs)
-    assumptions: list[Assumption] = Field(default_factory=list, max_length=10_000)
-
-    def object(self, name: str) -> PlanObject:
-        """The object of that name; KeyError naming the known ones."""
-        for candidate in self.objects:
-            if candidate.name == name:
-                return candidate
-        raise KeyError(f"no object {name!r}; the plan has {[o.name for o in self.objects]}")
+class Plan(Draft):
+    """A draft that holds together."""
 
     @model_validator(mode="after")
     def _whole(self) -> Plan:
-        from wsim.plan.schema.problems import problems
-
         found = problems(self)
         if found:
-            raise ValueError("; ".join(found[:20]))
+            raise ValueError("; ".join(found[:SHOWN]))
         return self

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from wsim.plan.schema.supports import FILLS, support_problems
 
 if TYPE_CHECKING:
+    from wsim.plan.schema.draft import Draft
     from wsim.plan.schema.objects import PlanObject
-    from wsim.plan.schema.plan import Plan
     from wsim.plan.schema.relations import Relation
 
 SHOWN = 12  # names in a message
@@ -21,12 +21,12 @@ _NEEDS_OBJECTIVE_REF = {
 }  # fmt: skip
 
 
-def problems(plan: Plan) -> list[str]:
+def problems(plan: Draft) -> list[str]:
     """All of them."""
     return [*_names(plan), *_rows(plan), *support_problems(plan), *_groups(plan), *_joints(plan), *_others(plan)]
 
 
-def _names(plan: Plan) -> Iterator[str]:
+def _names(plan: Draft) -> Iterator[str]:
     named = {
         "objects": [item.name for item in plan.objects],
         "cameras": [camera.name for camera in plan.cameras],
@@ -43,13 +43,13 @@ def _names(plan: Plan) -> Iterator[str]:
                 taken[name] = where
 
 
-def _known(plan: Plan) -> str:
+def _known(plan: Draft) -> str:
     names = [item.name for item in plan.objects]
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return (", ".join(names[:SHOWN]) or "no objects") + more
 
 
-def _rows(plan: Plan) -> Iterator[str]:
+def _rows(plan: Draft) -> Iterator[str]:
     items = {item.name: item for item in plan.objects}
     groups = {row.group for item in plan.objects for row in item.relations if row.predicate == "GROUP"}
     for i, item in enumerate(plan.objects):
@@ -78,7 +78,7 @@ def _row_problems(where: str, item: PlanObject, row: Relation, items: dict[str, 
         yield f"{where}: CONTAINS-FLUID is a container's; {item.name} is a {item.role}"
 
 
-def _groups(plan: Plan) -> Iterator[str]:
+def _groups(plan: Draft) -> Iterator[str]:
     made: dict[str, tuple[str, int]] = {}
     member_of: dict[str, str] = {}
     rows = [(i, j, item, row) for i, item in enumerate(plan.objects) for j, row in enumerate(item.relations)]
@@ -116,7 +116,7 @@ def _groups(plan: Plan) -> Iterator[str]:
             )
 
 
-def _joints(plan: Plan) -> Iterator[str]:
+def _joints(plan: Draft) -> Iterator[str]:
     names = {item.name for item in plan.objects}
     for i, joint in enumerate(plan.joints):
         for field in ("child", "parent"):
@@ -131,7 +131,7 @@ def _joints(plan: Plan) -> Iterator[str]:
             yield f"joints.{i}.limits: a {joint.kind} joint has none; remove them"
 
 
-def _others(plan: Plan) -> Iterator[str]:
+def _others(plan: Draft) -> Iterator[str]:
     names = {item.name for item in plan.objects}
     cameras = {camera.name for camera in plan.cameras}
     for i, objective in enumerate(plan.objectives):

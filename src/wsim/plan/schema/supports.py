@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from wsim.plan.schema.draft import Draft
     from wsim.plan.schema.objects import PlanObject
-    from wsim.plan.schema.plan import Plan
     from wsim.plan.schema.relations import Relation
 
 FILLS = ("fills_container_to_top", "fills_container_lower_half")
@@ -27,7 +27,7 @@ _ALSO_SUPPORTS = (
 )
 
 
-def support_problems(plan: Plan) -> list[str]:
+def support_problems(plan: Draft) -> list[str]:
     """All of them."""
     return [*_surfaces(plan), *_order(plan), *_doubles(plan), *_circles(plan)]
 
@@ -37,7 +37,7 @@ def is_support(row: Relation) -> bool:
     return row.spec.kind == "support" or row.predicate in _ALSO_SUPPORTS
 
 
-def _surfaces(plan: Plan) -> Iterator[str]:
+def _surfaces(plan: Draft) -> Iterator[str]:
     """A fluid says how high it stands, and in what."""
     for i, item in enumerate(plan.objects):
         if item.role != "fluid":
@@ -54,7 +54,7 @@ def _surfaces(plan: Plan) -> Iterator[str]:
             )
 
 
-def _order(plan: Plan) -> Iterator[str]:
+def _order(plan: Draft) -> Iterator[str]:
     """A fluid's surface is settled before anything is placed by it: it comes first in the list."""
     index = {item.name: k for k, item in enumerate(plan.objects)}
     for i, item in enumerate(plan.objects):
@@ -68,7 +68,7 @@ def _order(plan: Plan) -> Iterator[str]:
                     )
 
 
-def _doubles(plan: Plan) -> Iterator[str]:
+def _doubles(plan: Draft) -> Iterator[str]:
     for i, item in enumerate(plan.objects):
         first: tuple[int, Relation] | None = None
         for j, row in enumerate(item.relations):
@@ -94,7 +94,7 @@ def _said(row: Relation) -> str:
     return f"{row.sentence()} ({row.predicate})"
 
 
-def _circles(plan: Plan) -> Iterator[str]:
+def _circles(plan: Draft) -> Iterator[str]:
     """Each circle of supports once, named by its rows. Iterative: a chain may be as long as the plan."""
     items = {item.name: item for item in plan.objects}
     anchors = {row.group: item.name for item in plan.objects for row in item.relations if row.predicate == "GROUP"}
