@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from hashlib import sha256
 from typing import Any
 
 import pytest
@@ -11,11 +13,13 @@ from tests.agents.flies import BALL, GROUND, MOVES, PROMPT, answer
 from tests.agents.scripted import Server, text
 from wsim.agents.ask import RETRIES, Desk
 from wsim.agents.failures import ModelError
-from wsim.agents.planner import plan_with, read_plan
+from wsim.agents.planner import HINTS, plan_with, read_plan
 from wsim.errors import UserError
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
+from wsim.tools.plan import plan_lines
 
+PICTURE = b"\xff\xd8\xff\xe0 a picture"
 SENTENCE = "finally (reaches(ball, (0, 0, 1.2), within 10 cm))"
 
 
@@ -125,13 +129,32 @@ def test_what_is_wrong_goes_back_then_there_is_a_plan(server: Server, desk: Desk
 
 def test_the_catalogue_and_the_picture_go_with_the_prompt(server: Server, desk: Desk) -> None:
     server.script["planner"] = [text(json.dumps(answer()))]
-    plan_with(desk, "A wooden crate falls.", [b"\xff\xd8\xff\xe0 a picture"], "reference.jpg")
+    plan_with(desk, "A wooden crate falls.", [PICTURE], "reference.jpg")
     (request,) = server.asked("planner")
     assert "Assets of the catalogue that may fit:" in request
     assert "A reference picture is attached (reference.jpg)" in request
     parts = server.requests[0]["messages"][1]["content"]
     assert [part["type"] for part in parts] == ["text", "image_url"]
     assert parts[1]["image_url"]["url"].startswith("data:image/jpeg;base64,")
+
+
+def test_hints_written_as_the_request_asks_are_taken(server: Server, desk: Desk) -> None:
+    """The form that the request shows, filled in as it stands there."""
+    server.script["planner"] = [text(json.dumps(answer(**json.loads(re.sub(r"\bstr\b", '"a ball"', HINTS)))))]
+    plan = plan_with(desk, PROMPT, [PICTURE], "reference.jpg")
+    assert plan.image is not None
+    assert set(plan.image.hints.model_dump()) == plan.image.hints.model_fields_set  # the form leaves none out
+    assert plan.image.hints.visible_objects == ["a ball"]
+    assert (plan.image.path, plan.image.sha256) == ("reference.jpg", sha256(PICTURE).hexdigest())
+    assert f"fill image.hints from it: {HINTS}" in server.asked("planner")[0]
+    assert "picture reference.jpg: " in "\n".join(plan_lines(plan))
+
+
+def test_a_picture_that_nobody_gave_is_refused() -> None:
+    with pytest.raises(UserError, match=r"image\.path"):
+        read_plan(answer(image={"hints": {}}), PROMPT)
+    with pytest.raises(UserError, match=r"image\.hints\.colour"):
+        read_plan(answer(image={"hints": {"colour": "red"}}), PROMPT, {"path": "reference.jpg"})
 
 
 def test_a_planner_that_gives_none_is_a_model_error(server: Server, desk: Desk) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
 
 ASSETS = 6  # of the catalogue that are offered
+HINTS = (
+    '{"image": {"hints": {"visible_objects": [str], "scale": str, "support": [str], "layout": [str], '
+    '"scene_type": str, "action_intent": str, "constraints": [str]}}}'
+)
 
 
 def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: str = "") -> Plan:
@@ -35,19 +40,30 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
         BudgetError: If tokens or time ran out.
     """
     request = [f"Prompt: {prompt}"]
+    known: dict[str, str] = {}
     if pictures:
-        request.append(f"A reference picture is attached ({image}); fill reference_image.hints from it.")
+        known = {"path": image, "sha256": sha256(pictures[0]).hexdigest()}
+        request.append(f"A reference picture is attached ({image}); fill image.hints from it: {HINTS}")
     request.append(_catalogue(prompt))
-    return desk.ask("planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt), pictures=pictures)
+    return desk.ask(
+        "planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt, known), pictures=pictures
+    )
 
 
-def read_plan(answer: dict[str, Any], prompt: str) -> Plan:
+def read_plan(answer: dict[str, Any], prompt: str, picture: dict[str, str] | None = None) -> Plan:
     """A plan from a model's answer: shorthand is written out, sentences become formulas, places are worked out.
+
+    Args:
+        answer: What the model said.
+        prompt: What it was asked for.
+        picture: `path` and `sha256` of the reference picture, if there is one: what no model can know.
 
     Raises:
         UserError: What is wrong with it, with its path in the plan.
     """
     data = {"title": prompt[:80], **answer, "prompt": prompt}
+    if picture and isinstance(data.get("image") or {}, dict):
+        data["image"] = {**(data.get("image") or {}), **picture}
     if isinstance(data.get("objects"), list):
         data["objects"] = [_written_out(item) if isinstance(item, dict) else item for item in data["objects"]]
     objectives = data.get("objectives")

@@ -92,11 +92,20 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
     if part != "all":
         return parts[part](plan, name) or [f"no {part}" + (f" that name {name}" if name else "")]
     run = plan.simulation
-    lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s"]
+    lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s", *_picture(plan)]
     for key in ("objects", "relations", "objectives", "joints", "cameras"):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
     return [*lines, *([f"also: {', '.join(rest)}"] if rest else [])]
+
+
+def _picture(plan: Plan) -> list[str]:
+    """What the planner saw in the reference picture."""
+    if plan.image is None:
+        return []
+    seen = {field: said for field, said in plan.image.hints if said}
+    told = "; ".join(f"{field}: {said if isinstance(said, str) else ', '.join(said)}" for field, said in seen.items())
+    return [f"picture {plan.image.path}: {told or 'no hints'}"]
 
 
 def _objects(plan: Plan, name: str) -> list[str]:
