@@ -120,6 +120,14 @@ def test_it_reads_as_a_person_would_write_it() -> None:
     assert compose(_tank_plan()) == EXPECTED
 
 
+def test_a_fluids_own_density_comes_before_its_materials() -> None:
+    plan = _tank_plan()
+    plan.object("water").material = Material(name="water", density=1000.0, color=(0.1, 0.2, 0.3))
+    assert "density=1000.0, color=(0.1, 0.2, 0.3)" in " ".join(compose(plan).split())
+    plan.object("water").registration.density = 1025.0
+    assert "density=1025.0, color=(0.1, 0.2, 0.3)" in " ".join(compose(plan).split())
+
+
 def test_the_same_plan_gives_the_same_text() -> None:
     assert compose(_tank_plan()) == compose(Plan.model_validate_json(_tank_plan().model_dump_json()))
 

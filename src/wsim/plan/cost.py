@@ -16,8 +16,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from wsim.defaults import GRAVITY
 from wsim.plan.drawing.silhouettes import scene_of
-from wsim.plan.schema import Plan, PlanObject
+from wsim.plan.schema import Plan
+from wsim.plan.spacing import spacing_of
 
 PARTICLE_STEPS = 1.3e6  # of one CPU core [1/s]
 BODY_STEP = 0.4e-3  # wall time of a step of five bodies [s]
@@ -26,7 +28,6 @@ LAYERS = 2  # of wall particles
 COURANT = 0.8
 SMOOTHING = 1.3  # smoothing length over spacing
 SOUND_OVER_SPEED = 10.0
-GRAVITY = 9.81  # [m/s^2]
 
 
 @dataclass(frozen=True)
@@ -58,23 +59,18 @@ class Cost:
 
 def cost_of(plan: Plan) -> Cost:
     """Particles, steps and time of a laid-out plan."""
-    fluids = [item for item in plan.objects if item.primitive == "fluid"]
     boxes = _boxes(plan)
-    spacing = plan.simulation.spacing or min(
-        (item.registration.spacing for item in fluids if item.registration.spacing), default=0.0
-    )
-    wet = [boxes[item.name] for item in fluids if item.name in boxes]
-    volume = sum(math.prod(box) for box in wet)
-    if volume > 0.0 and spacing == 0.0:
-        spacing = (volume / 8000.0) ** (1 / 3)  # what the program takes where the plan leaves it open
+    fluids = [item for item in plan.objects if item.primitive == "fluid" and item.name in boxes]
+    wet = [(boxes[item.name], spacing_of(plan, item, boxes[item.name])) for item in fluids]
+    spacing = min((apart for _, apart in wet), default=0.0)  # of walls and bodies, and what the step must resolve
     step = plan.simulation.time_step or LARGEST_STEP
-    if volume > 0.0:
-        speed = max(math.sqrt(GRAVITY * max(box[2] for box in wet)), _fall(plan))
+    if wet:
+        speed = max(math.sqrt(GRAVITY * max(box[2] for box, _ in wet)), _fall(plan))
         step = min(step, COURANT * SMOOTHING * spacing / (SOUND_OVER_SPEED * speed))
     frames = max(1, round(plan.simulation.duration * plan.simulation.frame_rate))
     steps = frames * max(1, math.ceil(1.0 / plan.simulation.frame_rate / step - 1e-9))
-    fluid = round(volume / spacing**3) if volume > 0.0 else 0
-    others = round(_others(plan, boxes, spacing)) if volume > 0.0 else 0
+    fluid = round(sum(math.prod(box) / apart**3 for box, apart in wet))
+    others = round(_others(plan, boxes, spacing)) if wet else 0
     bodies = sum(item.state == "dynamic" for item in plan.objects)
     wall = steps * ((fluid + others) / PARTICLE_STEPS + BODY_STEP * max(1.0, bodies / 5))
     return Cost(fluid, others, plan.simulation.duration, steps, wall)
@@ -97,20 +93,9 @@ def _others(plan: Plan, boxes: dict[str, tuple[float, float, float]], spacing: f
             x, y, z = (edge / spacing for edge in item.size)
             count += (x + 2 * LAYERS) * (y + 2 * LAYERS) * (z + LAYERS) - x * y * z
         elif item.role != "fluid" and item.state != "static" and item.name in boxes:
-            count += _filling(item, boxes[item.name]) / spacing**3
+            filled = 0.5 * math.prod(boxes[item.name]) if item.volume is None else item.volume  # an asset: half its box
+            count += filled / spacing**3
     return count
-
-
-def _filling(item: PlanObject, box: tuple[float, float, float]) -> float:
-    """Volume of a thing [m^3]; of an asset, half of its box."""
-    size = item.size
-    if item.primitive == "sphere":
-        return 4 / 3 * math.pi * size[0] ** 3
-    if item.primitive == "cylinder":
-        return math.pi * size[0] ** 2 * size[1]
-    if item.primitive == "capsule":
-        return math.pi * size[0] ** 2 * (size[1] + 4 / 3 * size[0])
-    return math.prod(size) if item.primitive == "box" else 0.5 * math.prod(box)
 
 
 def _fall(plan: Plan) -> float:

@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 from itertools import product
 
+from wsim.defaults import FIELD_OF_VIEW
 from wsim.plan.layout import Box, LayoutError, extents, solids
 from wsim.plan.layout.bodies import around, hollow, is_hollow
 from wsim.plan.layout.boxes import turned, union
 from wsim.plan.rooms import between_walls
 from wsim.plan.schema import CameraPlan, Plan, PlanObject, Vec3
 
-FIELD_OF_VIEW = 50.0  # horizontal, the default of wsim.scene [deg]
 ASPECT = 9 / 16
 MARGIN = 1.2
 RAISED = 0.22  # of its distance: how much higher than what it looks at the eye is, so that tops are seen

@@ -10,16 +10,16 @@ import unicodedata
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
+from wsim.defaults import FRAME_RATE, GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import CameraPlan, FromAsset, Joint, JointDrive, Material, Plan, PlanObject
+from wsim.plan.spacing import spacing_of
 from wsim.program.source import WIDTH, call, comment, number, prose, tuple_of
 
 _AXES = "xyz"
-_DEFAULT_FRAME_RATE = 30.0
 _JOINTS = {"fixed": "fixed", "hinge": "revolute", "slider": "prismatic", "ball": "spherical"}
 _LIMITS = {"hinge": "limits_deg", "slider": "limits"}
 _SOUND_OVER_FALL = 30.0
-_PARTICLES = 8000  # of a fluid whose spacing the plan leaves open
 
 
 def compose(plan: Plan) -> str:
@@ -208,14 +208,14 @@ class _Composer:
         else:
             volume = item.size
             arguments = [f"size={tuple_of(item.size)}", f"position={tuple_of(_position(item))}"]
-        spacing = item.registration.spacing or self.plan.simulation.spacing or _spacing(volume)
-        arguments.append(f"spacing={number(spacing)}")
+        arguments.append(f"spacing={number(spacing_of(self.plan, item, volume))}")
         if item.registration.viscosity is not None:
             arguments.append(f"viscosity={number(item.registration.viscosity)}")
         if any(objective.kind == "fills" and objective.object == item.name for objective in self.plan.objectives):
             arguments.append(f"speed_of_sound={number(_sound(item))}")
+        if item.density is not None:
+            arguments.append(f"density={number(item.density)}")
         if item.material is not None:
-            arguments.append(f"density={number(item.material.density)}")
             arguments.append(f"color={tuple_of(item.material.color)}")
         return arguments
 
@@ -247,7 +247,7 @@ class _Composer:
     def _simulation(self) -> list[str]:
         simulation = self.plan.simulation
         arguments = [f"duration={number(simulation.duration)}"]
-        if simulation.frame_rate != _DEFAULT_FRAME_RATE:
+        if simulation.frame_rate != FRAME_RATE:
             arguments.append(f"frame_rate={number(simulation.frame_rate)}")
         if simulation.time_step:
             arguments.append(f"time_step={number(simulation.time_step)}")
@@ -381,11 +381,6 @@ def _size(item: PlanObject) -> list[str]:
     return []
 
 
-def _spacing(size: Sequence[float]) -> float:
-    """A spacing that gives some thousand particles, at least four of them across the least edge [m]."""
-    return float(f"{min((math.prod(size) / _PARTICLES) ** (1 / 3), min(size) / 4):.2g}")
-
-
 def _sound(poured: PlanObject) -> float:
     """Numerical speed of sound of what is poured [m/s].
 
@@ -393,4 +388,4 @@ def _sound(poured: PlanObject) -> float:
     choice, ten times the speed, lets it spring back through the rim.
     """
     top = _position(poured)[2] + (poured.size[2] / 2 if poured.size else 0.0)
-    return float(f"{_SOUND_OVER_FALL * math.sqrt(2 * 9.81 * max(top, 0.01)):.2g}")
+    return float(f"{_SOUND_OVER_FALL * math.sqrt(2 * GRAVITY * max(top, 0.01)):.2g}")

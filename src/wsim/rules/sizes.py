@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
@@ -156,13 +155,6 @@ def _mass(thing: Thing) -> float | None:
     return mass
 
 
-def mean_density(item: PlanObject) -> float:
-    """Of a body, from its mass if it has one [kg/m^3]."""
-    if item.registration.mass is not None:
-        return item.registration.mass / volume(item)
-    return item.material.density if item.material is not None else 1000.0
-
-
 def thickness(item: PlanObject) -> float:
     """The smallest extent of a thing [m]: what the fluid's particles have to resolve."""
     if item.primitive in ("sphere", "capsule"):
@@ -170,18 +162,6 @@ def thickness(item: PlanObject) -> float:
     if item.primitive == "cylinder":
         return min(2 * item.size[0], item.size[1])
     return min(item.size)
-
-
-def volume(item: PlanObject) -> float:
-    """Volume of a thing [m^3]."""
-    if item.primitive == "sphere":
-        return 4 / 3 * math.pi * item.size[0] ** 3
-    if item.primitive == "cylinder":
-        return math.pi * item.size[0] ** 2 * item.size[1]
-    if item.primitive == "capsule":
-        radius, height = item.size
-        return math.pi * radius**2 * (height + 4 / 3 * radius)
-    return math.prod(item.size)
 
 
 def names(thing: Thing, taken: set[str]) -> list[str]:

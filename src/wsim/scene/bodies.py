@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
+from wsim.defaults import BODY_DENSITY
 from wsim.scene.authoring import Handle, note_line, rotation, set_extent, set_pose
 from wsim.scene.materials import Material, Materials, bind
 from wsim.scene.validate import Call, Vec3
-
-DENSITY = 1000.0  # [kg/m^3], what UsdPhysics takes where nothing is said
 
 
 @dataclass(frozen=True)
@@ -69,7 +68,7 @@ class Bodies(Materials):
         moving = self._moving(call, options, velocity, spin)
         material = self._surface(call, options.material, options.friction, options.restitution, options.color)
         if mass is None and density is None:
-            density = material.density or DENSITY
+            density = material.density or BODY_DENSITY
 
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)

@@ -12,6 +12,7 @@ from typing import Any
 
 from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
 
+from wsim.defaults import DURATION, FLUID_DENSITY, FRAME_RATE, GRAVITY
 from wsim.errors import UserError
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
@@ -101,11 +102,11 @@ def _run(prims: list[Usd.Prim]) -> dict[str, Any]:
     strength = float(scene.GetGravityMagnitudeAttr().Get())
     # USD's fallbacks: no direction is down, and a magnitude of -inf is that of the Earth.
     direction = direction.GetNormalized() if direction.GetLength() > 0.0 else Gf.Vec3d(0.0, 0.0, -1.0)
-    strength = strength if strength >= 0.0 else 9.81
+    strength = strength if strength >= 0.0 else GRAVITY
     return {
         "gravity": to_vec3(direction * strength),
-        "duration": float(_value(prim, "duration", 5.0)),
-        "frame_rate": float(_value(prim, "frameRate", 30.0)),
+        "duration": float(_value(prim, "duration", DURATION)),
+        "frame_rate": float(_value(prim, "frameRate", FRAME_RATE)),
         "time_step": float(_value(prim, "timeStep", 0.0)),
         "seed": int(_value(prim, "seed", 0)),
     }
@@ -172,7 +173,7 @@ def _fluid(prim: Usd.Prim) -> Fluid:
     looks = [shape for child in prim.GetChildren() if child.IsA(UsdGeom.Gprim) and (shape := _look(child))]
     fluid = Fluid(
         prim=str(prim.GetPath()),
-        density=_value(prim, "density", 1000.0),
+        density=_value(prim, "density", FLUID_DENSITY),
         viscosity=_value(prim, "viscosity", 0.001),
         spacing=_value(prim, "spacing", 0.0),
         size=to_vec3(_value(prim, "size", Gf.Vec3f(0.0))),

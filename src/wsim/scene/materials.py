@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
 
+from wsim.defaults import FRICTION
 from wsim.scene.authoring import LOOKS, Author, Handle, note_line
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
@@ -20,7 +21,6 @@ _PALETTE: tuple[Vec3, ...] = (
     (0.67, 0.11, 0.0),
     (0.6, 0.19, 0.39),
 )
-FRICTION = 0.5
 RESTITUTION = 0.0
 
 

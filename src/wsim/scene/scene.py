@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Sdf, UsdGeom, UsdPhysics
 
+from wsim.defaults import DURATION, FRAME_RATE, GRAVITY
 from wsim.scene import schema
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
 from wsim.scene.catalogued import Catalogued
@@ -18,7 +19,6 @@ from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.views import Views
 
-_GRAVITY = (0.0, 0.0, -9.81)
 _MAX_SEED = 2**31 - 1
 
 
@@ -40,9 +40,9 @@ class Scene(Fluids, Joints, Views, Catalogued):
         self._parameters: list[str] = []
         seed = call.integer("seed", seed, 0, _MAX_SEED)
         self._random = np.random.default_rng(seed)
-        self._duration, self._frame_rate = 5.0, 30.0
+        self._duration, self._frame_rate = DURATION, FRAME_RATE
         physics = UsdPhysics.Scene.Define(self._stage, PHYSICS_SCENE)
-        self._set_gravity(_GRAVITY)
+        self._set_gravity((0.0, 0.0, -GRAVITY))
         schema.apply(physics.GetPrim(), schema.SCENE, {})
         self._author_run(0.0, seed)
 

@@ -9,6 +9,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from wsim.defaults import DURATION, FIELD_OF_VIEW, FRAME_RATE, GRAVITY
+
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 ShapeKind = Literal["box", "sphere", "cylinder", "capsule", "mesh", "plane"]
@@ -128,7 +130,7 @@ class Camera(_Model):
     eye: Vec3
     target: Vec3
     up: Vec3 = (0.0, 0.0, 1.0)
-    fov: float = 50.0  # horizontal [deg]
+    fov: float = FIELD_OF_VIEW  # horizontal [deg]
     width: int = 640
     height: int = 360
 
@@ -160,9 +162,9 @@ class World(_Model):
 
     version: int = SCHEMA_VERSION
     name: str = "world"
-    gravity: Vec3 = (0.0, 0.0, -9.81)  # [m/s^2]
-    duration: float = 5.0  # [s]
-    frame_rate: float = 30.0  # recorded frames a second
+    gravity: Vec3 = (0.0, 0.0, -GRAVITY)  # [m/s^2]
+    duration: float = DURATION  # [s]
+    frame_rate: float = FRAME_RATE  # recorded frames a second
     time_step: float = 0.0  # [s]; 0: chosen by the simulator
     seed: int = 0
     bodies: list[Body] = Field(default_factory=list)

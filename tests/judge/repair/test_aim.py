@@ -11,7 +11,7 @@ from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.repair.aim import STAGES, aim, rules
 from wsim.judge.repair.language import RULES
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
-from wsim.plan.schema import Objective
+from wsim.plan.schema import Objective, Registration
 from wsim.plan.schema.formula import VOCABULARY
 from wsim.scene.world import Joint, Shape, Static
 
@@ -65,6 +65,14 @@ def test_dense_wood_is_to_be_as_light_as_planned(pool):
     )  # fmt: skip
     assert found.current == pytest.approx(2500.0) and found.suggested == 600.0 and found.unit == "kg/m^3"
     assert found.sentence == f"lower density of {BLOCK} from 2500 to 600 kg/m^3"
+
+
+@pytest.mark.parametrize("own", [{"density": 500.0}, {"mass": 500.0 * 0.2 * 0.2 * 0.14}])
+def test_a_density_of_its_own_comes_before_the_materials(pool, own):
+    case = pool(density=2500.0)
+    case.plan.object(BLOCK.rsplit("/", 1)[-1]).registration = Registration(**own)
+    found = target(judge(case.recording, case.plan), "ObjectiveFloats")
+    assert found.suggested == pytest.approx(500.0)
 
 
 def test_a_draft_off_by_the_density_or_by_the_spacing(pool):

@@ -84,7 +84,7 @@ class CheckPlanFluid(Check):
         return found or ([self.passed("Fluids are of the plan's density and level")] if known else [])
 
     def _density(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
-        planned = item.registration.density or (item.material.density if item.material is not None else None)
+        planned = item.density
         if planned is None or abs(fluid.density / planned - 1.0) <= self.share:
             return []
         target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="density", suggested=planned, unit="kg/m^3")

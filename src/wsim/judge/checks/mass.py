@@ -13,7 +13,6 @@ from wsim.judge.verdict import RepairTarget
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.plan.schema import PlanObject
     from wsim.scene.world import Body
 
 LIGHTEST, DENSEST = 1.0, 22_600.0  # [kg/m^3]: an aerogel, osmium
@@ -38,7 +37,7 @@ class CheckMass(Check):
 
     def _mass(self, evidence: Evidence, body: Body) -> list[Finding]:
         item = evidence.planned(body.prim)
-        expected = _mass_of(item, body) if item is not None else None
+        expected = item.mass if item is not None else None
         if expected is None:
             return self._density(body)
         share = self.varied if evidence.varied else self.share
@@ -100,31 +99,6 @@ def _mass_target(body: Body, expected: float | None) -> RepairTarget:
         suggested=expected / body.volume if expected is not None and body.volume > 0.0 else None, unit="kg/m^3",
         why="its mass is not that of its material and size",
     )  # fmt: skip
-
-
-def _mass_of(item: PlanObject, body: Body) -> float | None:
-    """What the plan's size and material weigh [kg]; None for an asset, which has a mass of its own."""
-    if item.registration.mass is not None:
-        return item.registration.mass
-    density = item.registration.density or (item.material.density if item.material is not None else None)
-    volume = volume_of(item)
-    if density is None or volume is None:
-        return None
-    return density * volume
-
-
-def volume_of(item: PlanObject) -> float | None:
-    """The volume of a plan's primitive [m^3]; None for what has none of its own."""
-    size = item.size
-    if item.primitive == "box":
-        return float(np.prod(size))
-    if item.primitive == "sphere":
-        return float(4.0 / 3.0 * np.pi * size[0] ** 3)
-    if item.primitive == "cylinder":
-        return float(np.pi * size[0] ** 2 * size[1])
-    if item.primitive == "capsule":
-        return float(np.pi * size[0] ** 2 * (size[1] + 4.0 / 3.0 * size[0]))
-    return None
 
 
 CHECKS: Checks = (CheckMass,)

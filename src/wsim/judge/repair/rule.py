@@ -46,9 +46,9 @@ def density(evidence: Evidence, prim: str) -> float:
 
 
 def planned_density(evidence: Evidence, prim: str) -> float | None:
-    """The density of the material that the plan has for a prim [kg/m^3]."""
+    """The density that the plan has for a prim [kg/m^3]."""
     item = evidence.planned(prim)
-    return item.material.density if item is not None and item.material is not None else None
+    return item.density if item is not None else None
 
 
 def collides(evidence: Evidence, prim: str) -> bool:

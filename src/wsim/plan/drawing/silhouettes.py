@@ -10,8 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.layout import WALL, extents
+from wsim.plan.layout import extents
 from wsim.plan.schema import Plan, PlanObject, Pose, Vec3
 
 View = Literal["above", "side"]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from wsim.plan import templates
 from wsim.plan.layout import headings, heights, plane, sizes
 from wsim.plan.layout.bodies import extents, solids
-from wsim.plan.layout.boxes import GAP, WALL, Box
+from wsim.plan.layout.boxes import GAP, Box
 from wsim.plan.layout.check import check_clear, check_floats, check_rows
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.layout.measure import residual, unsatisfied
@@ -19,7 +19,6 @@ from wsim.plan.schema import Plan
 
 __all__ = [
     "GAP",
-    "WALL",
     "Box",
     "LayoutError",
     "check_clear",

@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import Any
 
 from wsim.assets import get
-from wsim.plan.layout.boxes import TOUCH, WALL, Box, Matrix, Solid, rotation
+from wsim.defaults import WALL
+from wsim.plan.layout.boxes import TOUCH, Box, Matrix, Solid, rotation
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.schema import FromAsset, PlanObject, Vec3
 

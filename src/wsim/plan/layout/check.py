@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from math import pi
-
+from wsim.defaults import FLUID_DENSITY
 from wsim.plan import templates
-from wsim.plan.layout.bodies import convex, local_size, solids
+from wsim.plan.layout.bodies import convex, solids
 from wsim.plan.layout.boxes import TOUCH, depth
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.layout.measure import unsatisfied
 from wsim.plan.layout.space import exempt
 from wsim.plan.layout.world import World
 from wsim.plan.schema import Plan, PlanObject
-
-WATER = 1000.0  # density of a fluid that states none [kg/m^3]
 
 
 def check_clear(plan: Plan) -> None:
@@ -90,32 +87,11 @@ def check_floats(plan: Plan) -> list[str]:
             for row in templates.expand_row(item, relation, items):
                 if row.predicate != "FLOATS-AT-SURFACE" or row.ref is None:
                     continue
-                fluid, own = items[row.ref], _density(item)
-                liquid = _density(fluid) or WATER
+                fluid, own = items[row.ref], item.density
+                liquid = fluid.density or FLUID_DENSITY
                 if own is not None and own >= liquid:
                     found.append(
                         f"{row}: {item.name} has {own:g} kg/m^3 and {fluid.name} {liquid:g} kg/m^3, it sinks; "
                         "give it a lighter material, or SUBMERGED"
                     )
     return found
-
-
-def _density(item: PlanObject) -> float | None:
-    """Mean density of what the object displaces [kg/m^3], as far as the plan says."""
-    if item.registration.density is not None:
-        return item.registration.density
-    if item.registration.mass is not None and item.primitive not in ("ground", "fluid", "asset", "tank"):
-        return item.registration.mass / volume(item)
-    return item.material.density if item.material is not None else None
-
-
-def volume(item: PlanObject) -> float:
-    """Volume of a primitive [m^3]."""
-    x, y, z = local_size(item)
-    r = x / 2
-    return {
-        "box": x * y * z,
-        "sphere": 4 / 3 * pi * r**3,
-        "cylinder": pi * r**2 * z,
-        "capsule": pi * r**2 * (z - 2 * r) + 4 / 3 * pi * r**3,
-    }[item.primitive]

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from wsim.defaults import DURATION, FRAME_RATE
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
@@ -137,10 +138,10 @@ class Objective(Strict):
 class SimulationPlan(Strict):
     """How long, how fine, where."""
 
-    duration: Positive = 5.0  # [s]
+    duration: Positive = DURATION  # [s]
     time_step: NotNegative = 0.0  # [s]; 0 = chosen by the simulator
     spacing: NotNegative = 0.0  # SPH particle spacing [m]
-    frame_rate: Positive = 30.0
+    frame_rate: Positive = FRAME_RATE
     device: Word = "auto"
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from wsim.defaults import FRICTION
 from wsim.plan.schema.base import Color, Name, NotNegative, Positive, Share, Strict, Text, Vec3, Word
 from wsim.plan.schema.relations import Relation
 
@@ -97,7 +99,7 @@ class Material(Strict):
 
     name: Word
     density: Positive  # [kg/m^3]
-    friction: NotNegative = 0.5
+    friction: NotNegative = FRICTION
     restitution: Share = 0.0
     color: Color = (0.7, 0.7, 0.7)
     opacity: Share = 1.0
@@ -189,6 +191,36 @@ class PlanObject(Strict):
     def size(self) -> tuple[float, ...]:
         """The primitive's size [m]; empty for an asset."""
         return self.built.size if isinstance(self.built, Proxy) else ()
+
+    @property
+    def volume(self) -> float | None:
+        """What the primitive fills [m^3]; None where the plan does not say: an asset, a hollow tank, fluid in one."""
+        size = self.size
+        if self.primitive == "sphere":
+            return 4 / 3 * math.pi * size[0] ** 3
+        if self.primitive == "cylinder":
+            return math.pi * size[0] ** 2 * size[1]
+        if self.primitive == "capsule":
+            return math.pi * size[0] ** 2 * (size[1] + 4 / 3 * size[0])
+        return math.prod(size) if self.primitive in ("box", "fluid") and size else None
+
+    @property
+    def density(self) -> float | None:
+        """Mean density [kg/m^3], as far as the plan says: its own, that of its mass, or its material's."""
+        given, volume = self.registration, self.volume
+        if given.density is not None:
+            return given.density
+        if given.mass is not None and volume is not None:
+            return given.mass / volume
+        return self.material.density if self.material is not None else None
+
+    @property
+    def mass(self) -> float | None:
+        """Its own mass, or that of its density and volume [kg]; None where the plan does not say."""
+        if self.registration.mass is not None:
+            return self.registration.mass
+        density, volume = self.density, self.volume
+        return density * volume if density is not None and volume is not None else None
 
     @property
     def relations(self) -> list[Relation]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.layout import WALL
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.rules.cast import Beside
 from wsim.rules.places import SIDES

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
-from wsim.rules.scenes.part import GRAVITY, Part, pair_friction, tidy
+from wsim.rules.scenes.part import Part, pair_friction, tidy
 from wsim.rules.sizes import bodies
 
 if TYPE_CHECKING:

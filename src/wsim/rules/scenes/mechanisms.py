@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Joint, Objective, PlanObject, Pose, Vec3
 from wsim.rules.materials import material_named
-from wsim.rules.scenes.part import GRAVITY, Part, fall_time, tidy
+from wsim.rules.scenes.part import Part, fall_time, tidy
 from wsim.rules.sizes import LARGEST, SMALLEST, bodies, material_of, names, size_of
 
 if TYPE_CHECKING:

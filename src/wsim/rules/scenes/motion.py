@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.rules.materials import GROUND_LOOK
-from wsim.rules.scenes.part import DIRECTIONS, GRAVITY, Part, pair_friction, stopping_distance, tidy, times
+from wsim.rules.scenes.part import DIRECTIONS, Part, pair_friction, stopping_distance, tidy, times
 from wsim.rules.sizes import bodies
 
 if TYPE_CHECKING:

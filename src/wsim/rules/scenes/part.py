@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from wsim.defaults import GRAVITY
 from wsim.plan.schema import Joint, Objective, PlanObject, Vec3
 
-GRAVITY = 9.81  # [m/s^2]
 DIRECTIONS: dict[str, Vec3] = {
     "front": (1.0, 0.0, 0.0),
     "back": (-1.0, 0.0, 0.0),

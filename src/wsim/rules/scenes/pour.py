@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.layout import WALL
 from wsim.plan.schema import Objective, PlanObject, Pose
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import GLASS_LOOK, WATER

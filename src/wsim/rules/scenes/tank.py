@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from wsim.defaults import FLUID_DENSITY, WALL
 from wsim.errors import UserError
 from wsim.plan.layout import extents
 from wsim.plan.schema import Material, Objective, PlanObject, Relation
-from wsim.rules.materials import GLASS_LOOK, WATER, WATER_DENSITY
+from wsim.rules.materials import GLASS_LOOK, WATER
 from wsim.rules.scenes.part import Part
-from wsim.rules.sizes import bodies, mean_density, thickness, volume
+from wsim.rules.sizes import bodies, thickness
 
 if TYPE_CHECKING:
     from wsim.rules.cast import Cast, Thing
@@ -86,7 +87,7 @@ def build_tank(cast: Cast, taken: set[str]) -> Part:
     tallest = max((extents(s.item, _lying(s.item))[2] for s in swimmers), default=0.14)
     duration = math.ceil(2 * DURATION * max(1.0, math.sqrt(tallest / 0.14))) / 2
     return Part(
-        objects=objects, objectives=objectives, duration=duration, spacing=spacing, surface=round(0.02 + level, 6)
+        objects=objects, objectives=objectives, duration=duration, spacing=spacing, surface=round(WALL + level, 6)
     )
 
 
@@ -97,15 +98,15 @@ def _lying(item: PlanObject) -> tuple[float, float, float]:
 def _swimmers(thing: Thing, cast: Cast, taken: set[str]) -> list[Swimmer]:
     items = bodies(thing, cast, taken)
     assert items[0].material is not None
-    end = _end(thing, items[0].material, mean_density(items[0]), cast)
+    end = _end(thing, items[0].material, items[0].density or FLUID_DENSITY, cast)
     start = _start(thing, end, cast)
     return [Swimmer(thing, item, end, start) for item in items]
 
 
 def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Literal["floats", "sinks", "submerged"]:
     """What was asked for, even if it cannot happen; the material decides where nothing was."""
-    ratio = f"{material.name}, {density:g} kg/m^3, in water of {WATER_DENSITY:g} kg/m^3"
-    light = density < WATER_DENSITY
+    ratio = f"{material.name}, {density:g} kg/m^3, in water of {FLUID_DENSITY:g} kg/m^3"
+    light = density < FLUID_DENSITY
     if "float" in thing.does:
         if not light:
             cast.assume(
@@ -166,7 +167,7 @@ def _dimensions(swimmers: list[Swimmer], cast: Cast) -> tuple[float, tuple[float
     if spacing > wanted:
         cast.assume("water", f"particles {spacing:g} m apart", f"{wanted:g} m would take more than {MOST_PARTICLES:,}")
     # Everything that is heavier than its draft allows counts as fully under water: the rise is then an upper bound.
-    rise = sum(volume(s.item) * min(1.0, _ratio(s.item)) for s in swimmers) / (length * depth)
+    rise = sum((s.item.volume or 0.0) * min(1.0, _ratio(s.item)) for s in swimmers) / (length * depth)
     height = math.ceil((level + rise + FREEBOARD_SPACINGS * spacing) / 0.05 - 1e-9) * 0.05
     inner = (length, depth, round(height, 6))
     cast.assume(
@@ -195,7 +196,7 @@ def _spacing(swimmers: list[Swimmer], tallest: float) -> float:
 
 
 def _ratio(item: PlanObject) -> float:
-    return mean_density(item) / WATER_DENSITY
+    return (item.density or FLUID_DENSITY) / FLUID_DENSITY
 
 
 def _up(length: float, spacing: float) -> float:
