@@ -167,6 +167,7 @@ class _Evaluation:
         if isinstance(formula, Until):
             hold, goal = self._trace(formula.hold, timed=True), self._trace(formula.goal, timed=True)
             return until(hold, goal, self.signals.time, formula.window)
+        assert isinstance(formula, Then)  # the one kind of node that is left
         return self._one_after_another(formula)
 
     def _in_time(self, predicate: Predicate) -> Trace:

@@ -245,6 +245,7 @@ def sentence(formula: Formula) -> str:
         return f"finally{seconds}({sentence(formula.of)})"
     if isinstance(formula, Ordered):
         return f"ordered({', '.join(sentence(event) for event in formula.events)})"
+    assert isinstance(formula, Predicate)  # the one kind of node that is left
     return f"{formula.op}({', '.join(_arguments(formula))})"
 
 

@@ -38,7 +38,7 @@ def formula(finding: Finding, evidence: Evidence) -> RepairTarget:
         return RepairTarget(kind="program", prim=finding.prim, parameter="order", direction="change", why=why)
     predicate, measure = found
     late = _late(predicate, measure, finding, evidence)
-    return late or RULES[predicate.op](finding.model_copy(update={"span": None}), evidence)  # type: ignore[attr-defined]
+    return late or RULES[predicate.op](finding.model_copy(update={"span": None}), evidence)
 
 
 def _late(predicate: Predicate, measure: Measure, finding: Finding, evidence: Evidence) -> RepairTarget | None:

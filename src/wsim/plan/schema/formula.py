@@ -6,26 +6,17 @@ docs/objectives.md explains all of them. A name is a plan object's, or a prim's 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal, Union, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union
 
-from pydantic import AfterValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from wsim.plan.schema.base import NotNegative, Number, Positive, Strict, Vec3
+from wsim.plan.schema.base import NotNegative, Number, Positive, Vec3
+from wsim.plan.schema.nodes import Always, And, Eventually, Finally, Node, Not, Or, Then, Until
 
-DEEPEST = 40  # nodes above one another: deeper is no objective that a person reads, and would exhaust the stack
+__all__ = ["VOCABULARY", "Always", "And", "Eventually", "Finally", "Formula", "Node", "Not", "Or", "Then", "Until"]
+
 Named = Annotated[str, Field(pattern=r"^(/?[A-Za-z_][A-Za-z0-9_]*)(/[A-Za-z_][A-Za-z0-9_]*)*$", max_length=200)]
 Place = Named | Vec3  # an object, or a point [m]
-
-
-def _ordered(window: tuple[float, float | None]) -> tuple[float, float | None]:
-    if window[1] is not None and window[1] < window[0]:
-        raise ValueError(f"the window [{window[0]:g}, {window[1]:g}] s ends before it begins; swap the two")
-    return window
-
-
-# From and to, in seconds from the moment at which the formula is asked; None is the end of the recording.
-Window = Annotated[tuple[NotNegative, NotNegative | None], AfterValidator(_ordered)]
 
 
 def quantity(unit: str, *default: float | None, **bounds: Any) -> Any:
@@ -33,164 +24,10 @@ def quantity(unit: str, *default: float | None, **bounds: Any) -> Any:
     return Field(*default, json_schema_extra={"unit": unit}, **bounds)
 
 
-class Node(Strict):
-    """A formula. `&`, `|` and `~` combine formulas; `until` and `then` put them in time."""
-
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, frozen=True)
-
-    def parts(self) -> tuple[Formula, ...]:
-        """The formulas that this one is made of."""
-        return ()
-
-    def walk(self) -> Iterator[Node]:
-        """This node and all below it."""
-        yield self
-        for part in self.parts():
-            yield from part.walk()
-
-    def names(self) -> set[str]:
-        """Every object that the formula speaks of."""
-        return {name for node in self.walk() if isinstance(node, Predicate) for name in node.objects_named()}
-
-    @model_validator(mode="after")
-    def _shallow(self) -> Node:
-        if self.depth() > DEEPEST:
-            raise ValueError(f"formulas are nested more than {DEEPEST} deep; split the objective in several")
-        return self
-
-    def depth(self) -> int:
-        """How many nodes stand above one another."""
-        return 1 + max((part.depth() for part in self.parts()), default=0)
-
-    def __and__(self, other: Formula) -> And:
-        mine = self.of if isinstance(self, And) else (self,)
-        return And.model_validate({"of": (*mine, other)})
-
-    def __or__(self, other: Formula) -> Or:
-        mine = self.of if isinstance(self, Or) else (self,)
-        return Or.model_validate({"of": (*mine, other)})
-
-    def __invert__(self) -> Not:
-        return Not.model_validate({"of": self})
-
-    def until(self, other: Formula, window: tuple[float, float | None] | None = None) -> Until:
-        """This holds at each moment until the other does."""
-        return Until.model_validate({"hold": self, "goal": other, "window": window})
-
-    def then(self, other: Formula, window: tuple[float, float | None] | None = None) -> Then:
-        """First this, and afterwards the other."""
-        events, windows = (self.events, self.windows) if isinstance(self, Then) else ((self,), ())
-        return Then.model_validate({"events": (*events, other), "windows": (*windows, window)})
-
-
-# ---- operators
-class And(Node):
-    """All of them hold."""
-
-    op: Literal["and"] = "and"
-    of: tuple[Formula, ...] = Field(min_length=2, max_length=100)
-
-    def parts(self) -> tuple[Formula, ...]:
-        """The conjuncts."""
-        return self.of
-
-
-class Or(Node):
-    """At least one of them holds."""
-
-    op: Literal["or"] = "or"
-    of: tuple[Formula, ...] = Field(min_length=2, max_length=100)
-
-    def parts(self) -> tuple[Formula, ...]:
-        """The disjuncts."""
-        return self.of
-
-
-class Not(Node):
-    """It does not hold."""
-
-    op: Literal["not"] = "not"
-    of: Formula
-
-    def parts(self) -> tuple[Formula, ...]:
-        """What is denied."""
-        return (self.of,)
-
-
-class Always(Node):
-    """It holds at each frame of the window; without a window, to the end."""
-
-    op: Literal["always"] = "always"
-    window: Window | None = None
-    of: Formula
-
-    def parts(self) -> tuple[Formula, ...]:
-        """What holds."""
-        return (self.of,)
-
-
-class Eventually(Node):
-    """It holds at some frame of the window; without a window, up to the end."""
-
-    op: Literal["eventually"] = "eventually"
-    window: Window | None = None
-    of: Formula
-
-    def parts(self) -> tuple[Formula, ...]:
-        """What comes to hold."""
-        return (self.of,)
-
-
-class Finally(Node):
-    """It holds at each of the recording's last seconds; without a number, over the judge's final window."""
-
-    op: Literal["finally"] = "finally"
-    seconds: Positive | None = None
-    of: Formula
-
-    def parts(self) -> tuple[Formula, ...]:
-        """What holds at the end."""
-        return (self.of,)
-
-
-class Until(Node):
-    """`hold` holds at each frame before one of the window at which `goal` holds."""
-
-    op: Literal["until"] = "until"
-    window: Window | None = None
-    hold: Formula
-    goal: Formula
-
-    def parts(self) -> tuple[Formula, ...]:
-        """What holds, and until what."""
-        return (self.hold, self.goal)
-
-
-class Then(Node):
-    """The events happen one after another, each in its window after the one before; None: any time after it."""
-
-    op: Literal["then"] = "then"
-    events: tuple[Formula, ...] = Field(min_length=2, max_length=20)
-    windows: tuple[Window | None, ...]
-
-    @model_validator(mode="after")
-    def _matched(self) -> Then:
-        if len(self.windows) != len(self.events) - 1:
-            raise ValueError(
-                f"then: {len(self.events)} events have {len(self.events) - 1} windows between them, not "
-                f"{len(self.windows)}"
-            )
-        return self
-
-    def parts(self) -> tuple[Formula, ...]:
-        """The events."""
-        return self.events
-
-
-# ---- predicates
 class Predicate(Node):
     """Something that a frame of a recording shows, with a margin. `alone` is how it is read outside of any time."""
 
+    op: str
     alone: ClassVar[Literal["always", "eventually", "finally", "now"]] = "always"
     NAMES: ClassVar[tuple[str, ...]] = ("object", "ref", "fluid", "target", "center", "on")
 
@@ -427,19 +264,20 @@ class StaysInside(Predicate):
     share: Positive = quantity("1", 0.01, lt=1.0)
 
 
-Formula = Annotated[
-    Union[  # noqa: UP007 - the discriminator reads a list better than twenty bars
-        And, Or, Not, Always, Eventually, Finally, Until, Then,
-        Reaches, StaysWithin, RestsOn, SupportedBy, ContainedIn, Floats, Sinks, Submerged, Touches, NeverTouches,
-        Upright, SpeedBetween, FollowsPath, Crosses, Ordered, Swings, RollsWithoutSlip, Settles, Conserves,
-        CollidesWith, FillsTo, StaysInside,
-    ],
-    Field(discriminator="op"),
-]  # fmt: skip
+_KINDS: tuple[type[Node], ...] = (
+    And, Or, Not, Always, Eventually, Finally, Until, Then,
+    Reaches, StaysWithin, RestsOn, SupportedBy, ContainedIn, Floats, Sinks, Submerged, Touches, NeverTouches,
+    Upright, SpeedBetween, FollowsPath, Crosses, Ordered, Swings, RollsWithoutSlip, Settles, Conserves,
+    CollidesWith, FillsTo, StaysInside,
+)  # fmt: skip
+if TYPE_CHECKING:
+    Formula = Node
+else:
+    Formula = Annotated[Union[_KINDS], Field(discriminator="op")]  # noqa: UP007 - made of a list
 
-for _node in (And, Or, Not, Always, Eventually, Finally, Until, Then, Ordered):
-    _node.model_rebuild()
+for _kind in (And, Or, Not, Always, Eventually, Finally, Until, Then, Ordered):
+    _kind.model_rebuild(_types_namespace={"Formula": Formula})
 
 VOCABULARY: dict[str, type[Predicate]] = {
-    kind.model_fields["op"].default: kind for kind in get_args(get_args(Formula)[0]) if issubclass(kind, Predicate)
+    kind.model_fields["op"].default: kind for kind in _KINDS if issubclass(kind, Predicate)
 }
