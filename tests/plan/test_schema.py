@@ -233,6 +233,24 @@ MISTAKES = {
         lambda d: d.update(joints=[joint(kind="fixed", limits=[0, 1])]),
         ["joints.0.limits: a fixed joint has none"],
     ),
+    "actuation of no joint": (
+        lambda d: (
+            d.update(joints=[joint()]),
+            of(d, "steel_ball")["registration"].update(
+                actuation=[{"kind": "velocity", "joint": "axle", "target": [1]}]
+            ),
+        ),
+        ["objects.{steel_ball}.registration.actuation.0.joint: no joint 'axle'; the plan has hinge"],
+    ),
+    "a joint driven twice": (
+        lambda d: (
+            d.update(joints=[joint(drive={"velocity": 1.0, "damping": 1.0})]),
+            of(d, "steel_ball")["registration"].update(
+                actuation=[{"kind": "velocity", "joint": "hinge", "target": [1]}]
+            ),
+        ),
+        ["objects.{steel_ball}.registration.actuation.0.joint: hinge has a drive; remove it, or this actuation"],
+    ),
     "camera's name": (
         lambda d: d["cameras"][0].update(name="steel_ball"),
         ["cameras.0.name", "taken by objects.{steel_ball}"],

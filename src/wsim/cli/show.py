@@ -15,6 +15,7 @@ from rich.text import Text
 
 from wsim.plan.cost import cost_of
 from wsim.plan.drawing.text import draw_text
+from wsim.plan.unheeded import unheeded
 
 if TYPE_CHECKING:
     from wsim.judge.verdict import Finding, Verdict
@@ -92,6 +93,8 @@ def show_plan(plan: Plan, questions: Sequence[Question] = (), picture: Path | No
         console.print(
             f"  assumed: {assumption.subject}: {assumption.choice} ({assumption.why})", style="dim", markup=False
         )
+    for line in unheeded(plan):
+        console.print(f"  not done: {line}", markup=False)
     console.print(draw_text(plan, min(console.width, 100)), markup=False, no_wrap=True, emoji=False)
     console.print(f"  cost: {cost_of(plan).sentence()}", markup=False)
     if picture:

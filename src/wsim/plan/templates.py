@@ -7,7 +7,7 @@ template makes one of the layout's own rows, which `wsim.plan.layout.rows` lists
 from __future__ import annotations
 
 from wsim.plan.layout.rows import Row
-from wsim.plan.schema import Plan, PlanObject, Relation, Topology
+from wsim.plan.schema import Plan, PlanObject, Relation
 
 CLEARANCE = 0.02  # under what is let go over something [m]
 OVERLAP = 0.05  # of a bridge's end on what carries it [m]
@@ -67,7 +67,7 @@ def write_out_fluids(plan: Plan) -> Plan:
                 rows.append(Relation(predicate="FREE-SURFACE-AT", value=_level(row, items)))
             else:
                 rows.append(row)
-        return item.model_copy(update={"topology": Topology(relation=rows)})
+        return item.related(rows)
 
     return plan.model_copy(update={"objects": [written(item) for item in plan.objects]})
 

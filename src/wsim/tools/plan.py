@@ -10,6 +10,7 @@ from pydantic import Field
 
 from wsim.errors import UserError
 from wsim.plan.store import load, save
+from wsim.plan.unheeded import unheeded
 from wsim.tools.base import Arguments, Result, Tool, Workspace
 from wsim.tools.text import number, numbers, table
 
@@ -96,6 +97,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
     for key in ("objects", "relations", "objectives", "joints", "cameras"):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
+    lines += [f"not done: {line}" for line in unheeded(plan) if not name]
     return [*lines, *([f"also: {', '.join(rest)}"] if rest else [])]
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.plan.layout.scenes import GROUND, box, make, rel, solve, tank, water
 from wsim.plan.layout import LayoutError, layout, unsatisfied
 from wsim.plan.layout.boxes import Box, Solid, depth, rotation
-from wsim.plan.schema import PlanObject, Pose, Relation, Topology
+from wsim.plan.schema import PlanObject, Pose, Relation
 
 QUICK = settings(derandomize=True, max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 FACINGS = ("FACING-FRONT", "FACING-LEFT", "FACING-BACK", "FACING-RIGHT")
@@ -135,7 +135,7 @@ def test_what_is_too_large_for_a_container_is_refused_by_name(wide, along_x, row
 def test_two_supports_are_refused_by_name(kinds):
     refs = {"PLACE-ON": "a", "PLACE-IN": "tank", "FLOATS-AT-SURFACE": "water", "SPAWNED-ABOVE": "a"}
     rows = [rel(kind, refs.get(kind), **({"value": 0.1} if kind == "SPAWNED-ABOVE" else {})) for kind in kinds[:2]]
-    double = box("b").model_copy(update={"topology": Topology(relation=rows)})
+    double = box("b").related(rows)
     with pytest.raises(LayoutError, match=f"b {kinds[0]}.*, and b {kinds[1]}.*keep one of them"):
         layout(make().model_copy(update={"objects": [tank(), water(), box("a"), double]}))
 

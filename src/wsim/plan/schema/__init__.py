@@ -24,7 +24,6 @@ from wsim.plan.schema.objects import (
     Pose,
     Proxy,
     Registration,
-    Topology,
 )
 from wsim.plan.schema.plan import PLAN_VERSION, Plan
 from wsim.plan.schema.relations import PREDICATES, TEMPLATES, Predicate, Region, Relation
@@ -57,7 +56,6 @@ __all__ = [
     "SensorPlan",
     "SimulationPlan",
     "Step",
-    "Topology",
     "Vec3",
     "explain",
 ]

@@ -23,7 +23,15 @@ _NEEDS_OBJECTIVE_REF = {
 
 def problems(plan: Draft) -> list[str]:
     """All of them."""
-    return [*_names(plan), *_rows(plan), *support_problems(plan), *_groups(plan), *_joints(plan), *_others(plan)]
+    return [
+        *_names(plan),
+        *_rows(plan),
+        *support_problems(plan),
+        *_groups(plan),
+        *_joints(plan),
+        *_actuation(plan),
+        *_others(plan),
+    ]
 
 
 def _names(plan: Draft) -> Iterator[str]:
@@ -129,6 +137,18 @@ def _joints(plan: Draft) -> Iterator[str]:
             yield f"joints.{i}.limits: {joint.limits[0]:g} is above {joint.limits[1]:g}; swap them"
         if joint.limits is not None and joint.kind in ("fixed", "ball"):
             yield f"joints.{i}.limits: a {joint.kind} joint has none; remove them"
+
+
+def _actuation(plan: Draft) -> Iterator[str]:
+    """A joint that an object's actuation names is there, and has no drive beside it."""
+    joints = {joint.name: joint for joint in plan.joints}
+    for i, item in enumerate(plan.objects):
+        for j, actuation in enumerate(item.registration.actuation):
+            where = f"objects.{i}.registration.actuation.{j}.joint"
+            if actuation.joint is not None and actuation.joint not in joints:
+                yield f"{where}: no joint {actuation.joint!r}; the plan has {', '.join(joints) or 'none'}"
+            elif actuation.joint is not None and joints[actuation.joint].drive is not None:
+                yield f"{where}: {actuation.joint} has a drive; remove it, or this actuation: one thing drives a joint"
 
 
 def _others(plan: Draft) -> Iterator[str]:
