@@ -6,6 +6,7 @@ template makes one of the layout's own rows, which `wsim.plan.layout.rows` lists
 
 from __future__ import annotations
 
+from wsim.plan.layout.bodies import hollow
 from wsim.plan.layout.rows import Row
 from wsim.plan.schema import Plan, PlanObject, Relation, Topology
 
@@ -48,8 +49,6 @@ def expand_row(item: PlanObject, relation: Relation, items: dict[str, PlanObject
 
 
 def _level(relation: Relation, items: dict[str, PlanObject]) -> float:
-    from wsim.plan.layout.bodies import hollow
-
     return round(hollow(items[relation.ref or ""]).size[2] * FILLS[relation.predicate], 6)
 
 
