@@ -5,7 +5,8 @@ import pytest
 from tests.plan.layout.scenes import asset, at, box, rel, solve, tank, water, yaw
 from wsim.plan.layout import LayoutError, extents, residual, unsatisfied
 from wsim.plan.schema import TEMPLATES, Pose, Relation
-from wsim.plan.templates import CLEARANCE, expand_row
+from wsim.plan.schema.predicates import CLEARANCE
+from wsim.plan.templates import expand_row
 
 A = box("a", pose=Pose(position=(1.0, 2.0, 0.05)))  # 0.2 x 0.4 x 0.1 m
 SMALL = (0.1, 0.2, 0.04)

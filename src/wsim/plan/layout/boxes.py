@@ -9,7 +9,6 @@ from itertools import product
 from wsim.plan.schema import Vec3
 
 WALL = 0.02  # thickness of a tank's walls and floor [m], the default of wsim.scene
-GAP = 0.05  # between neighbours whose side relation states no gap [m]
 TOUCH = 1e-3  # faces that meet may overlap by this much [m]
 TINY = 1e-9
 

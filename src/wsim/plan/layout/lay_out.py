@@ -41,7 +41,7 @@ def _settle(world: World) -> None:
         if not headings.depends_on_places(world) or not _moved(before, world.state()):
             return
     moved = _moved(before, world.state())
-    rows = [row for row in world.rows if row.item in moved and row.predicate in (*headings.BY_PLACE, "SPAN")]
+    rows = [row for row in world.rows if row.item in moved and row.spec.by_place]
     raise LayoutError(
         f"headings and places chase each other after {ROUNDS} rounds: {'; '.join(map(str, rows or moved))}; "
         "give one of them a fixed heading, such as FACING-FRONT"

@@ -10,6 +10,7 @@ from wsim.plan.layout.boxes import Box, union
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.layout.rows import Row, placing
 from wsim.plan.schema import Plan, PlanObject, Pose, Vec3
+from wsim.plan.schema.predicates import Kind
 
 
 @dataclass
@@ -87,15 +88,19 @@ class World:
         """The object's first row of one of these predicates."""
         return next((row for row in self.of[name] if row.predicate in predicates), None)
 
+    def row_of(self, name: str, kind: Kind) -> Row | None:
+        """The object's first row of a kind."""
+        return next((row for row in self.of[name] if row.spec.kind == kind), None)
+
     def rotation(self, name: str) -> Vec3:
         """Roll, pitch, yaw of a body [deg]."""
         roll, pitch = self._lying(name)
         return (roll, pitch, self.yaw.get(name, 0.0))
 
     def _lying(self, name: str) -> tuple[float, float]:
-        row = self.row(name, "LIES-ALONG-X", "LIES-ALONG-Y")
+        row = self.row_of(name, "posture")
         if row is not None:
-            return (0.0, 90.0) if row.predicate == "LIES-ALONG-X" else (90.0, 0.0)
+            return (0.0, 90.0) if row.spec.axis == 0 else (90.0, 0.0)
         pose = self.items[name].pose
         return pose.rotation_deg[:2] if pose is not None else (0.0, 0.0)
 

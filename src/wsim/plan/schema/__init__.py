@@ -28,7 +28,8 @@ from wsim.plan.schema.plan import (
     SimulationPlan,
     Step,
 )
-from wsim.plan.schema.relations import PREDICATES, TEMPLATES, Predicate, Region, Relation
+from wsim.plan.schema.predicates import PREDICATES, TEMPLATES, Predicate
+from wsim.plan.schema.relations import Region, Relation
 
 __all__ = [
     "PLAN_VERSION",

@@ -10,31 +10,10 @@ if TYPE_CHECKING:
     from wsim.plan.schema.plan import Plan
     from wsim.plan.schema.relations import Relation
 
-FILLS = ("fills_container_to_top", "fills_container_lower_half")
-# Rows that say where an object starts in height, beside those of the kind "support".
-_ALSO_SUPPORTS = (
-    "FLOATS-AT-SURFACE",
-    "SUBMERGED",
-    "spawned_on_top",
-    "placed_on_top",
-    "centered_on_ref",
-    "bottom_flush_water_surface",
-    "center_at_water_surface",
-    "top_flush_water_surface",
-    "floats_at_surface",
-    "bridge_between_a_and_b",
-    *FILLS,
-)
-
 
 def support_problems(plan: Plan) -> list[str]:
     """All of them."""
     return [*_surfaces(plan), *_order(plan), *_doubles(plan), *_circles(plan)]
-
-
-def is_support(row: Relation) -> bool:
-    """Whether the row says what carries its object."""
-    return row.spec.kind == "support" or row.predicate in _ALSO_SUPPORTS
 
 
 def _surfaces(plan: Plan) -> Iterator[str]:
@@ -42,7 +21,7 @@ def _surfaces(plan: Plan) -> Iterator[str]:
     for i, item in enumerate(plan.objects):
         if item.role != "fluid":
             continue
-        filled = any(row.predicate in FILLS for row in item.relations)
+        filled = any(row.spec.fills for row in item.relations)
         contained = item.relation("PLACE-IN") is not None
         level = item.relation("FREE-SURFACE-AT") is not None
         if not (filled or contained or item.size):
@@ -50,7 +29,7 @@ def _surfaces(plan: Plan) -> Iterator[str]:
         elif contained and not (filled or level or item.size):
             yield (
                 f'objects.{i}.topology.relation: the fluid {item.name} needs FREE-SURFACE-AT with "value", its level '
-                f"above the inner floor in metres; or {FILLS[0]} in place of PLACE-IN, or a size (x, y, z)"
+                f"above the inner floor in metres; or fills_container_to_top in place of PLACE-IN, or a size (x, y, z)"
             )
 
 
@@ -72,7 +51,7 @@ def _doubles(plan: Plan) -> Iterator[str]:
     for i, item in enumerate(plan.objects):
         first: tuple[int, Relation] | None = None
         for j, row in enumerate(item.relations):
-            if not is_support(row):
+            if not row.spec.carries:
                 continue
             if first is None:
                 first = (j, row)
@@ -86,7 +65,7 @@ def _doubles(plan: Plan) -> Iterator[str]:
 
 def _same_container(a: Relation, b: Relation) -> bool:
     """A fluid in a container, and the template that says how far it fills it, agree."""
-    fills = (a.predicate in FILLS) != (b.predicate in FILLS)
+    fills = bool(a.spec.fills) != bool(b.spec.fills)
     return fills and "PLACE-IN" in (a.predicate, b.predicate) and a.ref == b.ref
 
 
@@ -123,7 +102,7 @@ def _carriers(item: PlanObject, items: dict[str, PlanObject], anchors: dict[str 
     """What carries an object, with the number of the row that says so."""
     found = []
     for j, row in enumerate(item.relations):
-        if is_support(row):
+        if row.spec.carries:
             for _, name in row.refs():
                 carrier = name if name in items else anchors.get(name, "")
                 if carrier in items and carrier != item.name:
