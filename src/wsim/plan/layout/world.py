@@ -10,6 +10,7 @@ from wsim.plan.layout.boxes import Box, union
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.layout.rows import Row, placing
 from wsim.plan.schema import Plan, PlanObject, Pose, Vec3
+from wsim.plan.schema.circles import in_turn, round_again
 from wsim.plan.schema.predicates import Kind
 
 
@@ -182,23 +183,9 @@ def in_order(needs: dict[str, list[tuple[str, Row]]], what: str) -> list[str]:
         LayoutError: they need each other in a circle; names its rows.
     """
     order: list[str] = []
-    done: set[str] = set()
-    for start in needs:
-        path: list[tuple[str, Row | None]] = [(start, None)] if start not in done else []
-        on_path = {start}
-        while path:
-            name = path[-1][0]
-            after = next(((n, row) for n, row in needs.get(name, []) if n not in done), None)
-            if after is None:
-                path.pop()
-                on_path.discard(name)
-                done.add(name)
-                order.append(name)
-            elif after[0] in on_path:
-                names = [n for n, _ in path]
-                circle = [row for _, row in path[names.index(after[0]) + 1 :]] + [after[1]]
-                raise LayoutError(f"{what} go round in a circle: {'; '.join(map(str, circle))}; remove one of them")
-            else:
-                path.append(after)
-                on_path.add(after[0])
+    for found in in_turn(needs, lambda name: [one for one, _ in needs.get(name, [])]):
+        if isinstance(found, list):
+            circle = [next(row for one, row in needs[a] if one == b) for a, b in round_again(found)]
+            raise LayoutError(f"{what} go round in a circle: {'; '.join(map(str, circle))}; remove one of them")
+        order.append(found)
     return order

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from wsim.plan.schema.circles import in_turn, round_again
+
 if TYPE_CHECKING:
     from wsim.plan.schema.objects import PlanObject
     from wsim.plan.schema.plan import Plan
@@ -74,28 +76,13 @@ def _said(row: Relation) -> str:
 
 
 def _circles(plan: Plan) -> Iterator[str]:
-    """Each circle of supports once, named by its rows. Iterative: a chain may be as long as the plan."""
+    """Each circle of supports once, named by its rows."""
     items = {item.name: item for item in plan.objects}
     anchors = {row.group: item.name for item in plan.objects for row in item.relations if row.predicate == "GROUP"}
     index = {item.name: i for i, item in enumerate(plan.objects)}
-    done: set[str] = set()
-    for start in items:
-        path: list[str] = []
-        on_path: set[str] = set()
-        todo: list[tuple[str, bool]] = [(start, False)]
-        while todo:
-            name, leaving = todo.pop()
-            if leaving:
-                on_path.discard(path.pop())
-                done.add(name)
-            elif name in on_path:
-                circle = path[path.index(name) :]
-                yield _circle(circle, items, anchors, index)
-            elif name not in done:
-                path.append(name)
-                on_path.add(name)
-                todo.append((name, True))
-                todo += [(ref, False) for _, ref in _carriers(items[name], items, anchors)]
+    for found in in_turn(items, lambda name: [ref for _, ref in reversed(_carriers(items[name], items, anchors))]):
+        if isinstance(found, list):
+            yield _circle(found, items, anchors, index)
 
 
 def _carriers(item: PlanObject, items: dict[str, PlanObject], anchors: dict[str | None, str]) -> list[tuple[int, str]]:
@@ -114,7 +101,7 @@ def _circle(
     circle: list[str], items: dict[str, PlanObject], anchors: dict[str | None, str], index: dict[str, int]
 ) -> str:
     rows = []
-    for name, carrier in zip(circle, [*circle[1:], circle[0]], strict=True):
+    for name, carrier in round_again(circle):
         j = next(j for j, ref in _carriers(items[name], items, anchors) if ref == carrier)
         rows.append((f"objects.{index[name]}.topology.relation.{j}", f"{name} {items[name].relations[j].sentence()}"))
     shown = [f"{said} ({where})" for where, said in rows[:6]] + (["…"] if len(rows) > 6 else [])
