@@ -121,6 +121,15 @@ def test_a_bridge_over_what_is_free():
     assert at(placed, "b") == pytest.approx((0.0, 0.0, 1.07)) and unsatisfied(placed) == []
 
 
+@pytest.mark.parametrize(("level", "height"), [("top_flush", 0.5), ("bottom_flush", 0.02), ("centers", 0.26)])
+def test_faces_level_with_a_tank(level, height):
+    """Nothing stands on a tank's top, but its rim has a height: 0.5 m of water over a floor of 0.02 m."""
+    row = rel(f"adjacent_plus_x_{level}", "tank")
+    placed = solve(tank(), box("b", row, size=SMALL))
+    assert at(placed, "b") == pytest.approx((at(placed, "tank")[0] + 0.52 + 0.05, at(placed, "tank")[1], height))
+    assert residual(placed, placed.object("b"), row) < 1e-6
+
+
 def test_flush_with_platform_top():
     step = box("b", rel("flush_with_platform_top", "a"), rel("FRONT-OF", "a", gap=0.0), size=SMALL)
     placed = solve(A, step)

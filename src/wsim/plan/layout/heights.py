@@ -94,9 +94,9 @@ def _taken(world: World, name: str) -> float:
     ref, row = found
     high = world.extents(name)[2]
     if row.spec.kind == "level" and row.spec.sign > 0:
-        return top(world, ref, None) - high
+        return highest(world, ref) - high
     if row.spec.kind == "level" and row.spec.sign == 0:
-        return (bottom(world, ref) + top(world, ref, None) - high) / 2
+        return (bottom(world, ref) + highest(world, ref) - high) / 2
     unit = world.unit_of.get(name)
     if row.predicate == "COPY-GROUP" and unit is not None:
         copied = world.groups[row.group or ""]
@@ -108,7 +108,7 @@ def _taken(world: World, name: str) -> float:
 def _check_level(world: World, row: Row) -> None:
     """A row that asks for level faces beside one that says what carries the body: both must hold."""
     low, ref_low = world.bottom[row.item], bottom(world, row.ref or "")
-    high, ref_high = low + world.extents(row.item)[2], top(world, row.ref or "", None)
+    high, ref_high = low + world.extents(row.item)[2], highest(world, row.ref or "")
     off = {1.0: high - ref_high, -1.0: low - ref_low, 0.0: (low + high - ref_low - ref_high) / 2}[row.spec.sign]
     if abs(off) > TOUCH:
         other = support(world, row.item) or (source(world, row.item) or (None, None))[1]
@@ -156,6 +156,14 @@ def top(world: World, ref: str, anchor: str | None) -> float:
     if any(world.rotation(ref)[:2]) and anchor is None:
         return world.bottom[ref] + world.extents(ref)[2]
     return world.bottom[ref] + surface(item, anchor)[2]
+
+
+def highest(world: World, ref: str) -> float:
+    """Height of the highest point of a body, a group or a fluid [m]; of a tank, which has no top, the rim."""
+    item = world.items.get(ref)
+    if item is not None and item.primitive == "tank":
+        return world.bottom[ref] + world.extents(ref)[2]
+    return top(world, ref, None)
 
 
 def floor(world: World, container: str) -> float:
