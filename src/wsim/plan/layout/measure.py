@@ -268,9 +268,12 @@ def _lies(scene: _Scene, row: Row) -> float:
 
 
 def _still_surface(scene: _Scene, row: Row) -> float:
-    """How far the level is above the rim."""
-    held = scene.container(scene.items[row.item])
-    return 0.0 if held is None else max(0.0, (row.value or 0.0) - hollow(scene.items[held]).size[2])
+    """How far the level is above the rim, or from where another row has it."""
+    fluid, level = scene.items[row.item], row.value or 0.0
+    held = scene.container(fluid)
+    if held is None:
+        return 0.0
+    return max(level - hollow(scene.items[held]).size[2], abs(scene.floor(held) + level - scene.surface(fluid)))
 
 
 def _floating(scene: _Scene, row: Row) -> float:
