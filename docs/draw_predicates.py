@@ -1,15 +1,17 @@
-"""Draw the pictures of predicates.md: every row as the layout solves it.
+"""Draw the pictures of predicates.md, every row as the layout solves it, and write its tables of rows.
 
     pip install 'wsim[plots]'
     python docs/draw_predicates.py
 
-One sheet a group, into docs/images/predicates. The reference is grey, the object that has the row is orange; an arrow
-is an object's +X. Top views look down with +X up and +Y to the left; side views look along +Y or -X.
+One sheet a group, into docs/images/predicates; the tables from `wsim.plan.schema.predicates`. The reference is grey,
+the object that has the row is orange; an arrow is an object's +X. Top views look down with +X up and +Y to the left;
+side views look along +Y or -X.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,9 +24,15 @@ from matplotlib.patches import FancyArrow, Polygon
 from wsim.plan.layout import layout
 from wsim.plan.layout.bodies import convex, local_size, solids
 from wsim.plan.layout.boxes import turned, union
-from wsim.plan.schema import CameraPlan, External, Material, Plan, PlanObject, Pose, Proxy, Region, Relation
+from wsim.plan.schema import PREDICATES, CameraPlan, External, Material, Plan, PlanObject, Pose, Proxy, Region, Relation
 
+PAGE = Path(__file__).parent / "predicates.md"
 INTO = Path(__file__).parent / "images" / "predicates"
+SECTIONS = {
+    "Position": ("side", "alignment", "support", "size"), "Orientation": ("orientation", "posture"),
+    "Fluid": ("fluid",), "Grouping": ("group",), "Templates": ("template",),
+}  # fmt: skip
+TESTED = "[test_a_layout_keeps_it](../tests/plan/test_predicate_table.py)"  # of each row that has no test of its own
 WOOD = Material(name="wood", density=600.0)
 REF, OWN, REST, FLUID = "#b8bcc4", "#f0913a", "#d9dce1", "#a7d3f0"
 
@@ -323,8 +331,24 @@ def frame(axes: object, example: Example, ends: list[tuple[float, float]]) -> No
         side.set_color("#cccccc")
 
 
+def tables(page: str) -> str:
+    """The page with its tables of rows as the predicates are now; each keeps the test that the page names."""
+    tests = dict(re.findall(r"^\| `([^`]+)` \| .* \| (\[test_\w+\]\(\S+\)) \|$", page, re.MULTILINE))
+    for title, kinds in SECTIONS.items():
+        rows = ""
+        for spec in (spec for spec in PREDICATES.values() if spec.kind in kinds):
+            arguments = [f"`{name}`" for name in spec.needs] + [f"`{name}`?" for name in spec.takes]
+            test = tests.get(spec.name, TESTED)
+            rows += f"| `{spec.name}` | {', '.join(arguments) or '–'} | {spec.means} | {test} |\n"
+        before, after = page.split(f"\n## {title}\n")
+        after = re.sub(r"(\| --- .*\n)(?:\|.*\n)*", lambda head, rows=rows: head[1] + rows, after, count=1)
+        page = f"{before}\n## {title}\n{after}"
+    return page
+
+
 def main() -> None:
-    """Draw all sheets."""
+    """Write the tables and draw all sheets."""
+    PAGE.write_text(tables(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
     INTO.mkdir(parents=True, exist_ok=True)
     for name, make in GROUPS.items():
         examples = make()

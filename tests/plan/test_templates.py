@@ -5,7 +5,8 @@ import pytest
 from tests.plan.layout.scenes import asset, at, box, rel, solve, tank, water, yaw
 from wsim.plan.layout import LayoutError, extents, residual, unsatisfied
 from wsim.plan.schema import TEMPLATES, Pose, Relation
-from wsim.plan.templates import CLEARANCE, expand_row
+from wsim.plan.schema.predicates import CLEARANCE
+from wsim.plan.templates import expand_row
 
 A = box("a", pose=Pose(position=(1.0, 2.0, 0.05)))  # 0.2 x 0.4 x 0.1 m
 SMALL = (0.1, 0.2, 0.04)
@@ -118,6 +119,15 @@ def test_a_bridge_over_what_is_free():
     placed = solve(p, q, deck, on_it)
     assert placed.object("deck").size[0] == pytest.approx(1.1)
     assert at(placed, "b") == pytest.approx((0.0, 0.0, 1.07)) and unsatisfied(placed) == []
+
+
+@pytest.mark.parametrize(("level", "height"), [("top_flush", 0.5), ("bottom_flush", 0.02), ("centers", 0.26)])
+def test_faces_level_with_a_tank(level, height):
+    """Nothing stands on a tank's top, but its rim has a height: 0.5 m of water over a floor of 0.02 m."""
+    row = rel(f"adjacent_plus_x_{level}", "tank")
+    placed = solve(tank(), box("b", row, size=SMALL))
+    assert at(placed, "b") == pytest.approx((at(placed, "tank")[0] + 0.52 + 0.05, at(placed, "tank")[1], height))
+    assert residual(placed, placed.object("b"), row) < 1e-6
 
 
 def test_flush_with_platform_top():

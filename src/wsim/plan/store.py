@@ -12,6 +12,7 @@ from wsim.errors import UserError
 from wsim.plan.layout import LayoutError, layout
 from wsim.plan.schema import PLAN_VERSION, Plan, explain
 from wsim.plan.templates import write_out_fluids
+from wsim.plan.views import resolve_all
 
 LARGEST = 20_000_000  # bytes of a plan's file: a plan of ten thousand objects has about ten million
 
@@ -40,22 +41,12 @@ def made(data: Any, where: Path) -> Plan:
 def _placed(plan: Plan, path: Path) -> Plan:
     try:
         if all(item.pose is not None or item.primitive in ("ground", "fluid") for item in plan.objects):
-            return _with_cameras(write_out_fluids(plan))
+            return resolve_all(write_out_fluids(plan), keep=True)
         return layout(plan)
     except LayoutError as error:
         raise UserError(f"{path}: {error}") from error
     except ValidationError as error:  # rows of numbers in range can add up to a place that is not
         raise UserError(f"{path}: laid out, it is no plan: {explain(error)}") from error
-
-
-def _with_cameras(plan: Plan) -> Plan:
-    """The views that no layout has worked out yet, worked out."""
-    if all(camera.eye is not None and camera.target is not None for camera in plan.cameras):
-        return plan
-    from wsim.plan.views import resolve
-
-    cameras = [camera if camera.eye and camera.target else resolve(plan, camera) for camera in plan.cameras]
-    return plan.model_copy(update={"cameras": cameras})
 
 
 def read(path: str | Path) -> Plan:

@@ -10,9 +10,9 @@ import math
 from itertools import product
 
 from wsim.defaults import FIELD_OF_VIEW
-from wsim.plan.layout import Box, LayoutError, extents, solids
-from wsim.plan.layout.bodies import around, hollow, is_hollow
-from wsim.plan.layout.boxes import turned, union
+from wsim.plan.layout.bodies import around, extents, hollow, is_hollow, solids
+from wsim.plan.layout.boxes import Box, turned, union
+from wsim.plan.layout.errors import LayoutError
 from wsim.plan.rooms import between_walls
 from wsim.plan.schema import CameraPlan, Plan, PlanObject, Vec3
 
@@ -66,6 +66,16 @@ def cameras(plan: Plan, above: float | None = None) -> list[CameraPlan]:
         target=_rounded(centre[0], centre[1], low[2]),
     )
     return [side, top]
+
+
+def resolve_all(plan: Plan, keep: bool = False) -> Plan:
+    """The plan with an eye and a target for every camera; with `keep`, those that have them stay where they are.
+
+    Raises:
+        LayoutError: As `resolve`.
+    """
+    cameras = [camera if keep and camera.eye and camera.target else resolve(plan, camera) for camera in plan.cameras]
+    return plan.model_copy(update={"cameras": cameras})
 
 
 def resolve(plan: Plan, camera: CameraPlan) -> CameraPlan:

@@ -10,7 +10,7 @@ from wsim.plan.schema.draft import VIEWS
 
 ROOT = Path(__file__).parents[3]
 TEXT = (ROOT / "docs" / "predicates.md").read_text(encoding="utf-8")
-ROWS = re.findall(r"^\| `([^`]+)` \| (.*?) \| .* \| \[(test_\w+)\]\(\.\./([\w/]+\.py)\) \|$", TEXT, re.MULTILINE)
+ROWS = re.findall(r"^\| `([^`]+)` \| (.*?) \| (.*) \| \[(test_\w+)\]\(\.\./([\w/]+\.py)\) \|$", TEXT, re.MULTILINE)
 
 
 def test_every_row_of_the_schema_is_there():
@@ -19,10 +19,11 @@ def test_every_row_of_the_schema_is_there():
 
 
 @pytest.mark.parametrize("name", PREDICATES)
-def test_arguments_are_the_schemas(name):
-    [said] = [arguments for row, arguments, *_ in ROWS if row == name]
+def test_arguments_and_meaning_are_the_tables(name):
+    [(said, means)] = [(arguments, means) for row, arguments, means, *_ in ROWS if row == name]
     spec = PREDICATES[name]
     assert re.findall(r"`(\w+)`(\??)", said) == [(a, "") for a in spec.needs] + [(a, "?") for a in spec.takes]
+    assert means == spec.means
 
 
 @pytest.mark.parametrize(("test", "path"), sorted({(test, path) for *_, test, path in ROWS}))

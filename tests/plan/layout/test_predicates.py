@@ -181,6 +181,15 @@ def test_free_surface_at():
         solve(tank(), full, box("b", rel("FLOATS-AT-SURFACE", "water")))
 
 
+def test_a_fluid_has_one_level():
+    """Of two rows the first was taken, and the second counted as kept."""
+    first, other = rel("FREE-SURFACE-AT", value=0.3), rel("FREE-SURFACE-AT", value=0.2)
+    for rows in ([rel("PLACE-IN", "tank"), first, other], [rel("fills_container_to_top", "tank"), other]):
+        with pytest.raises(LayoutError, match=r"water FREE-SURFACE-AT .value 0.2. is off by 0.[13] m"):
+            solve(tank(), water(*rows))
+    assert unsatisfied(solve(tank(), water(rel("PLACE-IN", "tank"), first, first))) == []
+
+
 def test_floats_at_surface():
     things = [box(f"b{k}", rel("FLOATS-AT-SURFACE", "water", gap=0.01)) for k in range(3)]
     placed = solve(tank(), water(), *things)

@@ -209,7 +209,7 @@ def _silhouette(item: PlanObject, solid: _Solid, view: View, area: float) -> Sil
 
 def _front(item: PlanObject) -> Point | None:
     """Where a thing's +X face is, of what drives or walks, and of what a row turns."""
-    turned = any(row.spec.kind == "orientation" and not row.predicate.startswith("LIES") for row in item.relations)
+    turned = any(row.spec.kind == "orientation" for row in item.relations)
     if item.pose is None or not (turned or item.role in ("vehicle", "robot")):
         return None
     ahead = _placed(

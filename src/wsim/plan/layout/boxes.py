@@ -8,7 +8,6 @@ from itertools import product
 
 from wsim.plan.schema import Vec3
 
-GAP = 0.05  # between neighbours whose side relation states no gap [m]
 TOUCH = 1e-3  # faces that meet may overlap by this much [m]
 TINY = 1e-9
 

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from wsim.plan.layout.rows import Row
     from wsim.plan.layout.world import World
 
-FIXED = {"FACING-FRONT": 0.0, "FACING-LEFT": 90.0, "FACING-BACK": 180.0, "FACING-RIGHT": -90.0}  # [deg]
-BY_PLACE = ("FACING-TO", "FACING-OPPOSITE-TO", "ORIENT-BY-RELATIVE-SIDE")
-HEADINGS = (*FIXED, *BY_PLACE, "FACING-SAME-AS", "RANDOM-ROT")
 ALIKE = 0.05  # headings that two rows give a body may differ by this [deg]
 
 
@@ -59,11 +56,11 @@ def check_headings(world: World) -> None:
 
 def depends_on_places(world: World) -> bool:
     """Whether a row needs places to say a heading or a size, so that one round is not enough."""
-    return any(row.predicate in (*BY_PLACE, "SPAN") for row in world.rows)
+    return any(row.spec.by_place for row in world.rows)
 
 
 def _rows(world: World, name: str) -> list[Row]:
-    return [] if name in world.kept else [row for row in world.of[name] if row.predicate in HEADINGS]
+    return [] if name in world.kept else [row for row in world.of[name] if row.spec.kind == "orientation"]
 
 
 def _needs(world: World, name: str) -> list[tuple[str, Row]]:
@@ -111,18 +108,18 @@ def _heading(world: World, name: str) -> float:
 
 def by_row(world: World, row: Row) -> float | None:
     """The heading that a row gives [deg]; none while a place that it needs is unknown, or two are the same."""
-    if row.predicate in FIXED:
-        return FIXED[row.predicate]
     if row.predicate == "RANDOM-ROT":
         return drawn(world.plan.simulation.seed, row.item, row.range)
     if row.predicate == "FACING-SAME-AS":
         return world.yaw.get(world.owner(row.ref or ""), 0.0)
+    if not row.spec.by_place:
+        return tidy_angle(90.0 * row.spec.axis + (180.0 if row.spec.sign < 0 else 0.0))
     if not world.centre or any(name not in world.centre for name in (row.item, *world.names(row.ref or ""))):
         return None
     if row.predicate == "ORIENT-BY-RELATIVE-SIDE":
         return _square_to(world, row)
     heading = _towards(world, row.item, row.ref or "")
-    if heading is None or row.predicate == "FACING-TO":
+    if heading is None or row.spec.sign > 0:
         return heading
     return tidy_angle(heading + 180.0)
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from wsim.plan.layout.bodies import STANDS, hollow, surface
 from wsim.plan.layout.boxes import TOUCH
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.layout.rows import LEVELS, SUPPORTS
 from wsim.plan.layout.world import in_order
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ def raise_bodies(world: World) -> None:
         if name in world.bodies:
             world.bottom[name] = _bottom(world, name)
     for row in world.rows:
-        if row.predicate in LEVELS and row.item in world.bottom:
+        if row.spec.kind == "level" and row.item in world.bottom:
             _check_level(world, row)
 
 
@@ -36,7 +35,7 @@ def support(world: World, name: str) -> Row | None:
     Raises:
         LayoutError: two rows say it.
     """
-    rows = [row for row in world.of[name] if row.predicate in (*SUPPORTS, "SPAN")]
+    rows = [row for row in world.of[name] if row.spec.carries]
     firm = [row for row in rows if row.predicate != "PLACE-ANYWHERE" or row.ref is not None] or rows[:1]
     if len(firm) > 1:
         raise LayoutError(f"{firm[0]}, and {firm[1]}: both say how high {name} starts; keep one of them")
@@ -45,7 +44,7 @@ def support(world: World, name: str) -> Row | None:
 
 def source(world: World, name: str) -> tuple[str, Row] | None:
     """Where a body that names no support takes its height from: a faces-level row, a mirror, a copy, a group."""
-    row = world.row(name, *LEVELS) or world.row(name, "SYMMETRY-ALONG")
+    row = world.row_of(name, "level") or world.row(name, "SYMMETRY-ALONG")
     if row is not None and row.ref is not None:
         return row.ref, row
     unit = world.unit_of.get(name)
@@ -94,10 +93,10 @@ def _taken(world: World, name: str) -> float:
         return world.base
     ref, row = found
     high = world.extents(name)[2]
-    if row.predicate == "LEVEL-TOPS":
-        return top(world, ref, None) - high
-    if row.predicate == "LEVEL-CENTERS":
-        return (bottom(world, ref) + top(world, ref, None) - high) / 2
+    if row.spec.kind == "level" and row.spec.sign > 0:
+        return highest(world, ref) - high
+    if row.spec.kind == "level" and row.spec.sign == 0:
+        return (bottom(world, ref) + highest(world, ref) - high) / 2
     unit = world.unit_of.get(name)
     if row.predicate == "COPY-GROUP" and unit is not None:
         copied = world.groups[row.group or ""]
@@ -109,12 +108,8 @@ def _taken(world: World, name: str) -> float:
 def _check_level(world: World, row: Row) -> None:
     """A row that asks for level faces beside one that says what carries the body: both must hold."""
     low, ref_low = world.bottom[row.item], bottom(world, row.ref or "")
-    high, ref_high = low + world.extents(row.item)[2], top(world, row.ref or "", None)
-    off = {
-        "LEVEL-TOPS": high - ref_high,
-        "LEVEL-BOTTOMS": low - ref_low,
-        "LEVEL-CENTERS": (low + high - ref_low - ref_high) / 2,
-    }[row.predicate]
+    high, ref_high = low + world.extents(row.item)[2], highest(world, row.ref or "")
+    off = {1.0: high - ref_high, -1.0: low - ref_low, 0.0: (low + high - ref_low - ref_high) / 2}[row.spec.sign]
     if abs(off) > TOUCH:
         other = support(world, row.item) or (source(world, row.item) or (None, None))[1]
         raise LayoutError(f"{row}: it is {off:+.3g} m from there, by {other}; remove one of the two rows")
@@ -161,6 +156,14 @@ def top(world: World, ref: str, anchor: str | None) -> float:
     if any(world.rotation(ref)[:2]) and anchor is None:
         return world.bottom[ref] + world.extents(ref)[2]
     return world.bottom[ref] + surface(item, anchor)[2]
+
+
+def highest(world: World, ref: str) -> float:
+    """Height of the highest point of a body, a group or a fluid [m]; of a tank, which has no top, the rim."""
+    item = world.items.get(ref)
+    if item is not None and item.primitive == "tank":
+        return world.bottom[ref] + world.extents(ref)[2]
+    return top(world, ref, None)
 
 
 def floor(world: World, container: str) -> float:

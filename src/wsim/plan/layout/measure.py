@@ -11,13 +11,13 @@ from collections.abc import Callable
 
 from wsim.plan import templates
 from wsim.plan.layout.bodies import around, hollow, local_size, surface
-from wsim.plan.layout.boxes import GAP, TOUCH, Box, angle_between, rotation, turned, union
+from wsim.plan.layout.boxes import TOUCH, Box, angle_between, rotation, turned, union
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.layout.rows import CENTERS, EDGES, SIDES, Row
-from wsim.plan.schema import Plan, PlanObject, Relation
+from wsim.plan.layout.rows import Row
+from wsim.plan.schema import Plan, PlanObject, Relation, Vec3
 
 DEGREES = 0.1  # an orientation that is this far off counts as kept [deg]
-IN_DEGREES = "orientation"  # the kind of row whose residual is an angle
+IN_DEGREES = ("orientation", "posture")  # the kinds of row whose residual is an angle
 
 
 def residual(plan: Plan, item: PlanObject, row: Relation) -> float:
@@ -29,11 +29,11 @@ def residual(plan: Plan, item: PlanObject, row: Relation) -> float:
         row: One of its relations.
 
     Returns:
-        Metres, or degrees where the predicate is of the kind "orientation"; 0 when the row holds. A template's is the
+        Metres, or degrees where the predicate is of a kind in `IN_DEGREES`; 0 when the row holds. A template's is the
         largest of its parts'.
     """
     scene = _Scene(plan)
-    return max(_MEASURES[part.predicate](scene, part) for part in templates.expand_row(item, row, scene.items))
+    return max(_off(scene, part) for part in templates.expand_row(item, row, scene.items))
 
 
 def unsatisfied(plan: Plan, tolerance: float = TOUCH) -> list[str]:
@@ -47,9 +47,9 @@ def unsatisfied(plan: Plan, tolerance: float = TOUCH) -> list[str]:
     found = []
     for item in plan.objects:
         for relation in item.relations:
-            angular = relation.spec.kind == IN_DEGREES
+            angular = relation.spec.kind in IN_DEGREES
             for part in templates.expand_row(item, relation, scene.items):
-                off = _MEASURES[part.predicate](scene, part)
+                off = _off(scene, part)
                 if off > (DEGREES if angular else tolerance):
                     found.append(f"{part} is off by {off:.4g} {'deg' if angular else 'm'}")
                     break
@@ -128,21 +128,20 @@ class _Scene:
 
 
 def _side(scene: _Scene, row: Row) -> float:
-    axis, sign = SIDES[row.predicate]
+    axis, sign = row.spec.axis, row.spec.sign
     mine, theirs = scene.whole(row), scene.box(row.ref or "")
     gap = mine.low[axis] - theirs.high[axis] if sign > 0 else theirs.low[axis] - mine.high[axis]
-    return abs(gap - (GAP if row.gap is None else row.gap))
+    return abs(gap - (row.gap or 0.0))
 
 
-def _edge(scene: _Scene, row: Row) -> float:
-    axis, sign = EDGES[row.predicate]
-    mine, theirs = scene.whole(row), scene.box(row.ref or "")
-    return abs(mine.high[axis] - theirs.high[axis] if sign > 0 else mine.low[axis] - theirs.low[axis])
+def _in_line(scene: _Scene, row: Row) -> float:
+    mine, theirs = (_face(box, row)[row.spec.axis] for box in (scene.whole(row), scene.box(row.ref or "")))
+    return abs(mine - theirs)
 
 
-def _center(scene: _Scene, row: Row) -> float:
-    axis = CENTERS[row.predicate]
-    return abs(scene.whole(row).center[axis] - scene.box(row.ref or "").center[axis])
+def _face(box: Box, row: Row) -> Vec3:
+    """A point of the face of a box that a row is about, or its middle."""
+    return {1.0: box.high, -1.0: box.low, 0.0: box.center}[row.spec.sign]
 
 
 def _on_base(scene: _Scene, row: Row) -> float:
@@ -218,17 +217,15 @@ def _height(scene: _Scene, row: Row) -> float:
     return abs(local_size(scene.items[row.item])[2] - (row.value or 0.0))
 
 
-def _facing(heading: float) -> Callable[[_Scene, Row], float]:
-    return lambda scene, row: angle_between(scene.yaw(row.item), heading)
-
-
-def _looking(turn: float) -> Callable[[_Scene, Row], float]:
-    def off(scene: _Scene, row: Row) -> float:
+def _facing(scene: _Scene, row: Row) -> float:
+    """From where it looks to the direction along an axis of the world, or to, or away from, another's middle."""
+    way = [0.0, 0.0]
+    way[row.spec.axis] = 1.0
+    if row.spec.by_place:
         here, there = scene.box(row.item).center, scene.box(row.ref or "").center
-        direction = math.degrees(math.atan2(there[1] - here[1], there[0] - here[0]))
-        return angle_between(scene.yaw(row.item), direction + turn)
-
-    return off
+        way = [there[0] - here[0], there[1] - here[1]]
+    direction = math.degrees(math.atan2(row.spec.sign * way[1], row.spec.sign * way[0]))
+    return angle_between(scene.yaw(row.item), direction)
 
 
 def _same_heading(scene: _Scene, row: Row) -> float:
@@ -266,14 +263,17 @@ def _lies(scene: _Scene, row: Row) -> float:
     if pose is None:
         return 0.0
     turn = rotation((pose.rotation_deg[0], pose.rotation_deg[1], 0.0))
-    along = abs(turn[0 if row.predicate == "LIES-ALONG-X" else 1][2])
+    along = abs(turn[row.spec.axis][2])
     return math.degrees(math.acos(min(1.0, along)))
 
 
 def _still_surface(scene: _Scene, row: Row) -> float:
-    """How far the level is above the rim."""
-    held = scene.container(scene.items[row.item])
-    return 0.0 if held is None else max(0.0, (row.value or 0.0) - hollow(scene.items[held]).size[2])
+    """How far the level is above the rim, or from where another row has it."""
+    fluid, level = scene.items[row.item], row.value or 0.0
+    held = scene.container(fluid)
+    if held is None:
+        return 0.0
+    return max(level - hollow(scene.items[held]).size[2], abs(scene.floor(held) + level - scene.surface(fluid)))
 
 
 def _floating(scene: _Scene, row: Row) -> float:
@@ -295,7 +295,7 @@ def _mirror(scene: _Scene, row: Row) -> float:
     x, y = turned((a[0] - p[0], a[1] - p[1]), -axis)
     ix, iy = turned((x, -y), axis)
     off = math.dist((p[0] + ix, p[1] + iy), c[:2])
-    stated = any(r.spec.kind == IN_DEGREES for r in scene.items[row.item].relations)
+    stated = any(r.spec.kind in IN_DEGREES for r in scene.items[row.item].relations)
     turn = 0.0 if stated else angle_between(scene.yaw(row.item), 2 * axis - scene.yaw(row.ref or ""))
     return max(off, _arc(scene, row.item, turn))
 
@@ -320,17 +320,11 @@ def _copied(scene: _Scene, row: Row) -> float:
 
 
 def _level(scene: _Scene, row: Row) -> float:
-    mine, ref = scene.box(row.item), row.ref or ""
+    ref = row.ref or ""
     ground = scene.items.get(ref)
     flat = ground is not None and ground.primitive in ("ground", "fluid")
-    low, high = (scene.top(ref),) * 2 if flat else (scene.box(ref).low[2], scene.box(ref).high[2])
-    return abs(
-        {
-            "LEVEL-TOPS": mine.high[2] - high,
-            "LEVEL-BOTTOMS": mine.low[2] - low,
-            "LEVEL-CENTERS": mine.center[2] - (low + high) / 2,
-        }[row.predicate]
-    )
+    theirs = scene.top(ref) if flat else _face(scene.box(ref), row)[2]
+    return abs(_face(scene.box(row.item), row)[2] - theirs)
 
 
 def _span(scene: _Scene, row: Row) -> float:
@@ -354,27 +348,23 @@ def _no_measure(scene: _Scene, row: Row) -> float:
     return 0.0
 
 
-_MEASURES: dict[str, Callable[[_Scene, Row], float]] = {
-    **dict.fromkeys(SIDES, _side),
-    **dict.fromkeys(EDGES, _edge),
-    **dict.fromkeys(CENTERS, _center),
+_OF_KIND: dict[str, Callable[[_Scene, Row], float]] = {
+    "side": _side,
+    "alignment": _in_line,
+    "level": _level,
+    "orientation": _facing,
+    "posture": _lies,
+}
+_OF_ITS_OWN: dict[str, Callable[[_Scene, Row], float]] = {
     "PLACE-ON-BASE": _on_base,
     "PLACE-ON": _on,
     "PLACE-IN": _in,
     "PLACE-ANYWHERE": _anywhere,
     "SPAWNED-ABOVE": _above,
     "HEIGHT": _height,
-    "FACING-FRONT": _facing(0.0),
-    "FACING-LEFT": _facing(90.0),
-    "FACING-BACK": _facing(180.0),
-    "FACING-RIGHT": _facing(-90.0),
-    "FACING-TO": _looking(0.0),
-    "FACING-OPPOSITE-TO": _looking(180.0),
     "FACING-SAME-AS": _same_heading,
     "RANDOM-ROT": _random,
     "ORIENT-BY-RELATIVE-SIDE": _square,
-    "LIES-ALONG-X": _lies,
-    "LIES-ALONG-Y": _lies,
     "FREE-SURFACE-AT": _still_surface,
     "FLOATS-AT-SURFACE": _floating,
     "SUBMERGED": _submerged,
@@ -382,8 +372,9 @@ _MEASURES: dict[str, Callable[[_Scene, Row], float]] = {
     "SYMMETRY-ALONG": _mirror,
     "GROUP": _no_measure,
     "COPY-GROUP": _copied,
-    "LEVEL-TOPS": _level,
-    "LEVEL-BOTTOMS": _level,
-    "LEVEL-CENTERS": _level,
     "SPAN": _span,
 }
+
+
+def _off(scene: _Scene, row: Row) -> float:
+    return (_OF_ITS_OWN.get(row.predicate) or _OF_KIND[row.spec.kind])(scene, row)

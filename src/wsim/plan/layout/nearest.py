@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.plan.layout.areas import Area, room_in
-from wsim.plan.layout.boxes import GAP, TOUCH, Box, turned
+from wsim.plan.layout.boxes import TOUCH, Box, turned
+from wsim.plan.schema.predicates import GAP
 
 if TYPE_CHECKING:
     from wsim.plan.layout.equations import System, Var

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from wsim.plan.layout.boxes import GAP, turned
+from wsim.plan.layout.boxes import turned
 from wsim.plan.layout.equations import Conflict, System, Var
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.layout.rows import CENTERS, EDGES, SIDES, Row
 from wsim.plan.layout.settle import Wish, settle
 from wsim.plan.layout.sizes import gap_between
 
 if TYPE_CHECKING:
+    from wsim.plan.layout.rows import Row
     from wsim.plan.layout.world import Unit, World
 
 
@@ -87,8 +87,8 @@ def _in_line(world: World, rows: list[Row], names: set[str]) -> list[Wish]:
     """Neighbours would stand in line, across the side that relates them."""
     made: list[Wish] = []
     for row in rows:
-        if row.predicate in SIDES and row.item in names:
-            made += _between(world, row, 1 - SIDES[row.predicate][0], 0.0, 0.0, 0.0)
+        if row.spec.kind == "side" and row.item in names:
+            made += _between(world, row, 1 - row.spec.axis, 0.0, 0.0, 0.0)
     return made
 
 
@@ -107,15 +107,11 @@ def _state(system: System, terms: dict[Var, float], const: float, row: Row | Non
 
 
 def _equations(world: World, row: Row) -> list[tuple[dict[Var, float], float]]:
-    if row.predicate in SIDES:
-        axis, sign = SIDES[row.predicate]
-        gap = GAP if row.gap is None else row.gap
-        return _between(world, row, axis, -sign, sign, sign * gap)
-    if row.predicate in EDGES:
-        axis, sign = EDGES[row.predicate]
+    axis, sign = row.spec.axis, row.spec.sign
+    if row.spec.kind == "side":
+        return _between(world, row, axis, -sign, sign, sign * (row.gap or 0.0))
+    if row.spec.kind == "alignment":
         return _between(world, row, axis, sign, sign, 0.0)
-    if row.predicate in CENTERS:
-        return _between(world, row, CENTERS[row.predicate], 0.0, 0.0, 0.0)
     if row.predicate == "SYMMETRY-ALONG":
         return _mirrored(world, row)
     return _over_gap(world, row) if row.predicate == "SPAN" else []

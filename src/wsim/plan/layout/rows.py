@@ -1,14 +1,4 @@
-"""A row as the layout takes it: a primitive predicate of one object, and the row of the plan that it came from.
-
-Beside the primitive rows of the schema there are four kinds that only templates make:
-
-| kind | meaning |
-| --- | --- |
-| LEVEL-TOPS | top faces of the object and of `ref` level |
-| LEVEL-BOTTOMS | bottom faces level |
-| LEVEL-CENTERS | centres level |
-| SPAN | a box whose length, heading and centre come from the gap between `ref` and `other`, on both tops |
-"""
+"""A row as the layout takes it: one of `ROWS` of one object, and the row of the plan that it came from."""
 
 from __future__ import annotations
 
@@ -16,31 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from wsim.plan.schema import PlanObject, Region, Relation
-
-LEVELS = ("LEVEL-TOPS", "LEVEL-BOTTOMS", "LEVEL-CENTERS")
-SUPPORTS = (
-    "PLACE-ON-BASE",
-    "PLACE-ON",
-    "PLACE-IN",
-    "PLACE-ANYWHERE",
-    "SPAWNED-ABOVE",
-    "FLOATS-AT-SURFACE",
-    "SUBMERGED",
-)
-SIDES: dict[str, tuple[int, float]] = {
-    "FRONT-OF": (0, 1.0),
-    "BACK-OF": (0, -1.0),
-    "LEFT-OF": (1, 1.0),
-    "RIGHT-OF": (1, -1.0),
-}
-EDGES: dict[str, tuple[int, float]] = {
-    "ALIGN-FRONT": (0, 1.0),
-    "ALIGN-BACK": (0, -1.0),
-    "ALIGN-LEFT": (1, 1.0),
-    "ALIGN-RIGHT": (1, -1.0),
-}
-CENTERS = {"ALIGN-CENTER-FB": 0, "ALIGN-CENTER-LR": 1}
-PLACELESS = ("GROUP", "CONTAINS-FLUID", "HEIGHT")  # rows that say nothing of where their object is
+from wsim.plan.schema.predicates import ROWS, Predicate
+from wsim.plan.schema.relations import ARGUMENTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +32,16 @@ class Row:
 
     @classmethod
     def of(cls, item: str, source: Relation, predicate: str | None = None, **changes: Any) -> Row:
-        """The row that a relation states, or one that a template makes of it."""
-        given = {name: getattr(source, name) for name in Relation.model_fields if name not in ("predicate", "members")}
-        given["members"] = tuple(source.members or ())
-        return cls(item, predicate or source.predicate, source, **{**given, **changes})
+        """The row that a relation states, or one that a template makes of it: what is not given has its default."""
+        spec = ROWS[predicate or source.predicate]
+        stated = {**spec.defaults, **stated_by(source), **changes}
+        taken = {name: value for name, value in stated.items() if name in (*spec.needs, *spec.takes)}
+        return cls(item, spec.name, source, **{**taken, "members": tuple(taken.get("members", ()))})
+
+    @property
+    def spec(self) -> Predicate:
+        """What the row means."""
+        return ROWS[self.predicate]
 
     def __str__(self) -> str:
         source = self.source
@@ -77,6 +50,11 @@ class Row:
         return " ".join([self.item, source.predicate, *named]) + (f" ({', '.join(numbers)})" if numbers else "")
 
 
+def stated_by(relation: Relation) -> dict[str, Any]:
+    """The arguments that a relation gives."""
+    return {name: value for name in ARGUMENTS if (value := getattr(relation, name)) is not None}
+
+
 def placing(item: PlanObject) -> bool:
     """Whether any of the object's rows says where it is or how it is turned."""
-    return any(row.predicate not in PLACELESS for row in item.relations)
+    return any(row.spec.places for row in item.relations)

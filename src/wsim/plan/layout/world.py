@@ -10,6 +10,8 @@ from wsim.plan.layout.boxes import Box, union
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.layout.rows import Row, placing
 from wsim.plan.schema import Plan, PlanObject, Pose, Vec3
+from wsim.plan.schema.circles import in_turn, round_again
+from wsim.plan.schema.predicates import Kind
 
 
 @dataclass
@@ -87,15 +89,19 @@ class World:
         """The object's first row of one of these predicates."""
         return next((row for row in self.of[name] if row.predicate in predicates), None)
 
+    def row_of(self, name: str, kind: Kind) -> Row | None:
+        """The object's first row of a kind."""
+        return next((row for row in self.of[name] if row.spec.kind == kind), None)
+
     def rotation(self, name: str) -> Vec3:
         """Roll, pitch, yaw of a body [deg]."""
         roll, pitch = self._lying(name)
         return (roll, pitch, self.yaw.get(name, 0.0))
 
     def _lying(self, name: str) -> tuple[float, float]:
-        row = self.row(name, "LIES-ALONG-X", "LIES-ALONG-Y")
+        row = self.row_of(name, "posture")
         if row is not None:
-            return (0.0, 90.0) if row.predicate == "LIES-ALONG-X" else (90.0, 0.0)
+            return (0.0, 90.0) if row.spec.axis == 0 else (90.0, 0.0)
         pose = self.items[name].pose
         return pose.rotation_deg[:2] if pose is not None else (0.0, 0.0)
 
@@ -177,23 +183,9 @@ def in_order(needs: dict[str, list[tuple[str, Row]]], what: str) -> list[str]:
         LayoutError: they need each other in a circle; names its rows.
     """
     order: list[str] = []
-    done: set[str] = set()
-    for start in needs:
-        path: list[tuple[str, Row | None]] = [(start, None)] if start not in done else []
-        on_path = {start}
-        while path:
-            name = path[-1][0]
-            after = next(((n, row) for n, row in needs.get(name, []) if n not in done), None)
-            if after is None:
-                path.pop()
-                on_path.discard(name)
-                done.add(name)
-                order.append(name)
-            elif after[0] in on_path:
-                names = [n for n, _ in path]
-                circle = [row for _, row in path[names.index(after[0]) + 1 :]] + [after[1]]
-                raise LayoutError(f"{what} go round in a circle: {'; '.join(map(str, circle))}; remove one of them")
-            else:
-                path.append(after)
-                on_path.add(after[0])
+    for found in in_turn(needs, lambda name: [one for one, _ in needs.get(name, [])]):
+        if isinstance(found, list):
+            circle = [next(row for one, row in needs[a] if one == b) for a, b in round_again(found)]
+            raise LayoutError(f"{what} go round in a circle: {'; '.join(map(str, circle))}; remove one of them")
+        order.append(found)
     return order

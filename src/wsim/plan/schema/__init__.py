@@ -26,7 +26,8 @@ from wsim.plan.schema.objects import (
     Registration,
 )
 from wsim.plan.schema.plan import PLAN_VERSION, Plan
-from wsim.plan.schema.relations import PREDICATES, TEMPLATES, Predicate, Region, Relation
+from wsim.plan.schema.predicates import PREDICATES, TEMPLATES, Predicate
+from wsim.plan.schema.relations import Region, Relation
 
 __all__ = [
     "PLAN_VERSION",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from wsim.plan.schema.supports import FILLS, support_problems
+from wsim.plan.schema.supports import support_problems
 
 if TYPE_CHECKING:
     from wsim.plan.schema.draft import Draft
@@ -13,9 +13,6 @@ if TYPE_CHECKING:
     from wsim.plan.schema.relations import Relation
 
 SHOWN = 12  # names in a message
-_OF_A_FLUID = ("FLOATS-AT-SURFACE", "SUBMERGED", "CONTAINS-FLUID", "floats_at_surface")
-_SURFACE_TEMPLATES = ("bottom_flush_water_surface", "center_at_water_surface", "top_flush_water_surface")
-_FOR_FLUIDS = ("FREE-SURFACE-AT", *FILLS)
 _NEEDS_OBJECTIVE_REF = {
     "floats", "rests_on", "submerged", "stays_on", "stays_inside", "rolls_down", "collides_with", "tilts", "fills",
 }  # fmt: skip
@@ -72,18 +69,14 @@ def _rows(plan: Draft) -> Iterator[str]:
 
 
 def _row_problems(where: str, item: PlanObject, row: Relation, items: dict[str, PlanObject]) -> Iterator[str]:
-    other = items.get(row.ref or "")
-    if other is not None and row.predicate in (*_OF_A_FLUID, *_SURFACE_TEMPLATES) and other.role != "fluid":
-        yield f"{where}.ref: {row.predicate} needs a fluid; {row.ref} is a {other.role}"
-    if other is not None and row.predicate in FILLS and other.role != "container":
-        yield f"{where}.ref: {row.predicate} needs a container; {row.ref} is a {other.role}"
+    other, spec = items.get(row.ref or ""), row.spec
+    if other is not None and spec.ref_role not in (None, other.role):
+        yield f"{where}.ref: {row.predicate} needs a {spec.ref_role}; {row.ref} is a {other.role}"
     # What is hollow beside tanks is known to the catalogue alone; the layout asks it.
     if other is not None and row.predicate == "PLACE-IN" and other.primitive in ("ground", "fluid"):
         yield f"{where}.ref: PLACE-IN needs a container; {row.ref} is a {other.role}"
-    if row.predicate in _FOR_FLUIDS and item.role != "fluid":
-        yield f"{where}: {row.predicate} is a fluid's; {item.name} is a {item.role}"
-    if row.predicate == "CONTAINS-FLUID" and item.role != "container":
-        yield f"{where}: CONTAINS-FLUID is a container's; {item.name} is a {item.role}"
+    if spec.of_role not in (None, item.role):
+        yield f"{where}: {row.predicate} is a {spec.of_role}'s; {item.name} is a {item.role}"
 
 
 def _groups(plan: Draft) -> Iterator[str]:

@@ -5,26 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from wsim.plan.schema.circles import in_turn, round_again
+
 if TYPE_CHECKING:
     from wsim.plan.schema.draft import Draft
     from wsim.plan.schema.objects import PlanObject
     from wsim.plan.schema.relations import Relation
-
-FILLS = ("fills_container_to_top", "fills_container_lower_half")
-# Rows that say where an object starts in height, beside those of the kind "support".
-_ALSO_SUPPORTS = (
-    "FLOATS-AT-SURFACE",
-    "SUBMERGED",
-    "spawned_on_top",
-    "placed_on_top",
-    "centered_on_ref",
-    "bottom_flush_water_surface",
-    "center_at_water_surface",
-    "top_flush_water_surface",
-    "floats_at_surface",
-    "bridge_between_a_and_b",
-    *FILLS,
-)
 
 
 def support_problems(plan: Draft) -> list[str]:
@@ -32,17 +18,12 @@ def support_problems(plan: Draft) -> list[str]:
     return [*_surfaces(plan), *_order(plan), *_doubles(plan), *_circles(plan)]
 
 
-def is_support(row: Relation) -> bool:
-    """Whether the row says what carries its object."""
-    return row.spec.kind == "support" or row.predicate in _ALSO_SUPPORTS
-
-
 def _surfaces(plan: Draft) -> Iterator[str]:
     """A fluid says how high it stands, and in what."""
     for i, item in enumerate(plan.objects):
         if item.role != "fluid":
             continue
-        filled = any(row.predicate in FILLS for row in item.relations)
+        filled = any(row.spec.fills for row in item.relations)
         contained = item.relation("PLACE-IN") is not None
         level = item.relation("FREE-SURFACE-AT") is not None
         if not (filled or contained or item.size):
@@ -50,7 +31,7 @@ def _surfaces(plan: Draft) -> Iterator[str]:
         elif contained and not (filled or level or item.size):
             yield (
                 f'objects.{i}.topology.relation: the fluid {item.name} needs FREE-SURFACE-AT with "value", its level '
-                f"above the inner floor in metres; or {FILLS[0]} in place of PLACE-IN, or a size (x, y, z)"
+                f"above the inner floor in metres; or fills_container_to_top in place of PLACE-IN, or a size (x, y, z)"
             )
 
 
@@ -72,7 +53,7 @@ def _doubles(plan: Draft) -> Iterator[str]:
     for i, item in enumerate(plan.objects):
         first: tuple[int, Relation] | None = None
         for j, row in enumerate(item.relations):
-            if not is_support(row):
+            if not row.spec.carries:
                 continue
             if first is None:
                 first = (j, row)
@@ -86,7 +67,7 @@ def _doubles(plan: Draft) -> Iterator[str]:
 
 def _same_container(a: Relation, b: Relation) -> bool:
     """A fluid in a container, and the template that says how far it fills it, agree."""
-    fills = (a.predicate in FILLS) != (b.predicate in FILLS)
+    fills = bool(a.spec.fills) != bool(b.spec.fills)
     return fills and "PLACE-IN" in (a.predicate, b.predicate) and a.ref == b.ref
 
 
@@ -95,35 +76,20 @@ def _said(row: Relation) -> str:
 
 
 def _circles(plan: Draft) -> Iterator[str]:
-    """Each circle of supports once, named by its rows. Iterative: a chain may be as long as the plan."""
+    """Each circle of supports once, named by its rows."""
     items = {item.name: item for item in plan.objects}
     anchors = {row.group: item.name for item in plan.objects for row in item.relations if row.predicate == "GROUP"}
     index = {item.name: i for i, item in enumerate(plan.objects)}
-    done: set[str] = set()
-    for start in items:
-        path: list[str] = []
-        on_path: set[str] = set()
-        todo: list[tuple[str, bool]] = [(start, False)]
-        while todo:
-            name, leaving = todo.pop()
-            if leaving:
-                on_path.discard(path.pop())
-                done.add(name)
-            elif name in on_path:
-                circle = path[path.index(name) :]
-                yield _circle(circle, items, anchors, index)
-            elif name not in done:
-                path.append(name)
-                on_path.add(name)
-                todo.append((name, True))
-                todo += [(ref, False) for _, ref in _carriers(items[name], items, anchors)]
+    for found in in_turn(items, lambda name: [ref for _, ref in reversed(_carriers(items[name], items, anchors))]):
+        if isinstance(found, list):
+            yield _circle(found, items, anchors, index)
 
 
 def _carriers(item: PlanObject, items: dict[str, PlanObject], anchors: dict[str | None, str]) -> list[tuple[int, str]]:
     """What carries an object, with the number of the row that says so."""
     found = []
     for j, row in enumerate(item.relations):
-        if is_support(row):
+        if row.spec.carries:
             for _, name in row.refs():
                 carrier = name if name in items else anchors.get(name, "")
                 if carrier in items and carrier != item.name:
@@ -135,7 +101,7 @@ def _circle(
     circle: list[str], items: dict[str, PlanObject], anchors: dict[str | None, str], index: dict[str, int]
 ) -> str:
     rows = []
-    for name, carrier in zip(circle, [*circle[1:], circle[0]], strict=True):
+    for name, carrier in round_again(circle):
         j = next(j for j, ref in _carriers(items[name], items, anchors) if ref == carrier)
         rows.append((f"objects.{index[name]}.topology.relation.{j}", f"{name} {items[name].relations[j].sentence()}"))
     shown = [f"{said} ({where})" for where, said in rows[:6]] + (["…"] if len(rows) > 6 else [])
