@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
 from wsim.rules.grammar import NotUnderstood
+from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import arrange, common, do, hang, part, put, put_inside, stand, support, where
-
-if TYPE_CHECKING:
-    from wsim.rules.meaning import Reader
-    from wsim.rules.phrases import Action, Phrase, Place
+from wsim.rules.reader import Reader
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
 _ORDER = "knows these words, but not in this order"

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from wsim.plan.schema import Assumption
 from wsim.rules.lexicon import Noun, lexicon
-
-if TYPE_CHECKING:
-    from wsim.rules.phrases import Phrase
+from wsim.rules.phrases import Phrase
 
 ROUND = ("sphere", "cylinder", "capsule")
 

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
 from wsim.rules.grammar import NotUnderstood
-
-if TYPE_CHECKING:
-    from wsim.rules.meaning import Reader
-    from wsim.rules.phrases import Phrase, Place
+from wsim.rules.phrases import Phrase, Place
+from wsim.rules.reader import Reader
 
 _ORDER = "knows these words, but not in this order"
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")

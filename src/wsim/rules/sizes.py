@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
 from wsim.plan.schema import External, Material, PlanObject, Proxy, Registration, Relation
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import material_named
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 _FLOATING_RADIUS = 0.09  # of a ball that is lighter than water: it must draw more than a particle or two [m]
 SMALLEST, LARGEST = 0.02, 5.0  # what a length in the prompt may be [m]

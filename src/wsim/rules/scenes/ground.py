@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from wsim.errors import UserError
 from wsim.plan.layout import WALL
 from wsim.plan.schema import Objective, PlanObject, Relation
-from wsim.rules.cast import Beside
+from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.motion import hit, meet, move, struck, throw_height
 from wsim.rules.scenes.part import Part, fall_time
 from wsim.rules.sizes import bodies
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 GAP = 0.15  # between neighbours on the ground [m]
 GAP_ABOVE = 0.08  # between neighbours on a table [m]

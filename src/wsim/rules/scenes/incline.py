@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import GRAVITY, Part, pair_friction, tidy
 from wsim.rules.sizes import bodies
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 ROLLING_ANGLE = 20.0  # [deg], where the prompt gives none
 ABOVE, BELOW = 8.0, 6.0  # from the angle of friction to that of what slides, or of what rests [deg]

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
 from wsim.plan.schema import Joint, Objective, PlanObject, Pose, Vec3
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.part import GRAVITY, Part, fall_time, tidy
 from wsim.rules.sizes import LARGEST, SMALLEST, bodies, material_of, names, size_of
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 ROD_LENGTH, ROD_RADIUS = 1.0, 0.008  # [m]
 ANGLE = 20.0  # of a pendulum at the start [deg]

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
 from wsim.rules.scenes.part import DIRECTIONS, GRAVITY, Part, pair_friction, stopping_distance, tidy, times
 from wsim.rules.sizes import bodies
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 HIT_SPEED = 3.0  # [m/s]
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]

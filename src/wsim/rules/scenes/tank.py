@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from wsim.errors import UserError
 from wsim.plan.layout import extents
 from wsim.plan.schema import Material, Objective, PlanObject, Relation
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import GLASS_LOOK, WATER, WATER_DENSITY
 from wsim.rules.scenes.part import Part
 from wsim.rules.sizes import bodies, mean_density, thickness, volume
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 LAYERS_FLOATING = 4.5  # particle spacings in the height of what floats, at least
 LAYERS_SINKING = 4.0  # and in what sinks
