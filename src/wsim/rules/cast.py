@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from wsim.plan.schema import Assumption
+from wsim.plan.schema import Assumption, AssumptionKind
 from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.phrases import Phrase
 
@@ -88,9 +88,16 @@ class Cast:
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)
 
-    def assume(self, subject: str, choice: str, why: str) -> None:
-        """Note a choice that the prompt left open."""
-        self.assumptions.append(Assumption(subject=subject, choice=choice, why=why))
+    def assume(
+        self, subject: str, choice: str, why: str, kind: AssumptionKind | None = None, value: str | None = None
+    ) -> None:
+        """Note a choice that the prompt left open; its kind and value, where a person may be asked for another."""
+        self.assumptions.append(Assumption(subject=subject, choice=choice, why=why, kind=kind, value=value))
+
+    def assume_height(self, subject: str, choice: str, height: float) -> None:
+        """Note from how high a thing comes [m]; the choice has a place for it."""
+        length = f"{height:g} m"
+        self.assume(subject, choice.format(length), "the prompt gives no height", "height", length)
 
     @property
     def wet(self) -> bool:

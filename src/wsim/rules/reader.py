@@ -93,7 +93,8 @@ class Reader:
     def _count(self, phrase: Phrase, group: bool) -> int:
         if phrase.count is None:
             if phrase.plural or group:
-                self.cast.assume(phrase.words, f"{UNCOUNTED} of them", "the prompt gives no number")
+                choice, why = f"{UNCOUNTED} of them", "the prompt gives no number"
+                self.cast.assume(phrase.words, choice, why, "count", str(UNCOUNTED))
                 return UNCOUNTED
             return 1
         if not 1 <= phrase.count <= MOST_OF_A_KIND:

@@ -20,7 +20,7 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     word = thing.phrase.material
     if word is None:
         word = thing.noun.material or _default_material(thing)
-        cast.assume(thing.words, f"of {word}", "the prompt names no material")
+        cast.assume(thing.words, f"of {word}", "the prompt names no material", "material", word)
     elif word == "metal":
         cast.assume(thing.words, "of steel", "the prompt says metal, not which")
     material = material_named(word)

@@ -16,6 +16,7 @@ from wsim.plan.schema.objects import (
 from wsim.plan.schema.plan import (
     PLAN_VERSION,
     Assumption,
+    AssumptionKind,
     CameraPlan,
     ImageHints,
     Joint,
@@ -36,6 +37,7 @@ __all__ = [
     "TEMPLATES",
     "Actuation",
     "Assumption",
+    "AssumptionKind",
     "CameraPlan",
     "External",
     "FromAsset",

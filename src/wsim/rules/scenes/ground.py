@@ -178,7 +178,7 @@ def _drop_height(thing: Thing, cast: Cast, part: Part) -> float | None:
     height = thing.drop_height
     if height is None:
         height = DROP_HEIGHT
-        cast.assume(thing.words, f"dropped from {height:g} m above what it lands on", "the prompt gives no height")
+        cast.assume_height(thing.words, "dropped from {} above what it lands on", height)
     part.duration = max(part.duration, round(2.0 + 2 * fall_time(height), 1))
     return height
 

@@ -10,6 +10,7 @@ from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import GRAVITY, Part, pair_friction, tidy
 from wsim.rules.sizes import bodies
 
+BARE_DURATION = 1.0  # of a scene with a ramp and nothing on it: that long it is seen to stand [s]
 ROLLING_ANGLE = 20.0  # [deg], where the prompt gives none
 ABOVE, BELOW = 8.0, 6.0  # from the angle of friction to that of what slides, or of what rests [deg]
 STEEPEST = 60.0  # [deg]
@@ -45,6 +46,8 @@ def build_inclines(cast: Cast, taken: set[str]) -> Part:
     slab = slab.model_copy(update={"pose": pose})
     part.objects.append(slab)
     part.names[id(ramp)] = [slab.name]
+    if not riders:
+        part.duration = BARE_DURATION
     across = _across(slab, list(made.values()), ramp)
     for thing, y in zip(riders, across, strict=True):
         _rider(thing, made[id(thing)], slab, angle, y, part, cast)

@@ -148,7 +148,7 @@ def _ride(thing: Thing, plank: PlanObject, at: Vec3, part: Part, cast: Cast, tak
     if "drop" in thing.does:
         height = thing.drop_height if thing.drop_height is not None else DROP_HEIGHT
         if thing.drop_height is None:
-            cast.assume(thing.words, f"dropped from {height:g} m above the seesaw", "the prompt gives no height")
+            cast.assume_height(thing.words, "dropped from {} above the seesaw", height)
     cast.assume(thing.words, "over the front end", "the prompt does not say which end")
     position = (tidy(at[0]), 0.0, tidy(at[2] + height + half))
     part.posed.append(item.related([]).model_copy(update={"pose": Pose(position=position)}))

@@ -201,7 +201,7 @@ def throw_height(thing: Thing, cast: Cast) -> float:
     """How high a throw starts, of its lowest point [m]."""
     if thing.drop_height is None:
         thing.drop_height = THROW_HEIGHT
-        cast.assume(thing.words, f"thrown from {THROW_HEIGHT:g} m up", "the prompt gives no height")
+        cast.assume_height(thing.words, "thrown from {} up", THROW_HEIGHT)
     return thing.drop_height
 
 
@@ -212,7 +212,7 @@ def _aimed(thing: Thing, item: PlanObject, aimed: str, cast: Cast, part: Part) -
     speed = THROW_SPEED if thing.speed is None else thing.speed
     height = 0.5 if thing.drop_height is None else thing.drop_height
     if thing.drop_height is None:
-        cast.assume(thing.words, f"thrown from {height:g} m up", "the prompt gives no height")
+        cast.assume_height(thing.words, "thrown from {} up", height)
     middle = _middle(aimed, part)
     radius = item.size[0] if item.primitive != "box" else item.size[2] / 2
     time = AIM_DISTANCE / speed

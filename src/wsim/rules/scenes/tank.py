@@ -116,7 +116,8 @@ def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Litera
                 thing.words, f"warning: {ratio} floats", "the plan asks for what the prompt says; the judge will not"
             )
         return "sinks" if "sink" in thing.does else "submerged"
-    cast.assume(thing.words, "expected to float" if light else "expected to sink", f"{ratio}; the prompt does not say")
+    end = "float" if light else "sink"
+    cast.assume(thing.words, f"expected to {end}", f"{ratio}; the prompt does not say", "end", end)
     return "floats" if light else "sinks"
 
 
@@ -125,7 +126,7 @@ def _start(thing: Thing, end: str, cast: Cast) -> Relation:
         height = thing.drop_height
         if height is None:
             height = DROP_HEIGHT
-            cast.assume(thing.words, f"dropped from {height:g} m above the water", "the prompt gives no height")
+            cast.assume_height(thing.words, "dropped from {} above the water", height)
         return Relation(predicate="SPAWNED-ABOVE", ref="water", value=height)
     if end == "floats":
         return Relation(predicate="FLOATS-AT-SURFACE", ref="water", gap=START_GAP)
