@@ -112,14 +112,25 @@ def _settle(reader: Reader) -> None:
         if ("drop" in thing.does or not thing.does) and thing.support is None and thing.inside is None:
             where = "in the tank of water" if wet else "on the ground"
             reader.cast.assume(thing.words, where, "the prompt does not say where")
-    if any(thing.group and thing.place == "water" for thing in reader.cast.things):
-        raise UserError(
-            "the builtin planner stacks things on the ground, not in water; unstack them, or leave the water out"
-        )
-    if reader.cast.wet and any({*MOVES} & {*thing.does} for thing in reader.cast.things):
-        raise UserError("the builtin planner rolls things in a scene without a tank; leave the tank out, or what rolls")
+    _check_water(reader.cast)
     if not reader.cast.things and not reader.cast.wet and reader.cast.pour is None:
         raise NotUnderstood(["the prompt"], "found nothing to build in")
+
+
+def _check_water(cast: Cast) -> None:
+    """Refuse what is stacked or rolls where there is water."""
+    for thing in cast.things:
+        if thing.group and thing.place == "water":
+            raise UserError(
+                f"{thing.words!r}: the builtin planner stacks things on the ground, not in water; unstack them, or "
+                "leave the water out"
+            )
+    for thing in cast.things:
+        if cast.wet and {*MOVES} & {*thing.does}:
+            raise UserError(
+                f"{thing.words!r}: the builtin planner rolls things in a scene without a tank; leave the tank out, or "
+                "what rolls"
+            )
 
 
 def _check_used(thing: Thing) -> None:

@@ -158,8 +158,9 @@ def _dimensions(swimmers: list[Swimmer], cast: Cast) -> tuple[float, tuple[float
             break
         spacing = round(spacing * 1.1, 4)
     if spacing > 1.5 * wanted:
+        named = ", ".join(dict.fromkeys(repr(swimmer.thing.words) for swimmer in swimmers))
         raise UserError(
-            f"the tank for these things would need {round(length * depth * level / wanted**3):,} particles of water; "
+            f"the tank for {named} would need {round(length * depth * level / wanted**3):,} particles of water; "
             f"the builtin planner uses up to {MOST_PARTICLES:,}: ask for fewer things, or sizes closer to each other"
         )
     if spacing > wanted:
