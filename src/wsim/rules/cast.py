@@ -99,6 +99,13 @@ class Cast:
         length = f"{height:g} m"
         self.assume(subject, choice.format(length), "the prompt gives no height", "height", length)
 
+    def drop_height(self, thing: Thing, usual: float, above: str) -> float:
+        """From how high above something a thing drops [m]; the usual is noted where the prompt leaves it open."""
+        if thing.drop_height is not None:
+            return thing.drop_height
+        self.assume_height(thing.words, f"dropped from {{}} above {above}", usual)
+        return usual
+
     @property
     def wet(self) -> bool:
         """Whether the scene has a tank of water that stands in it from the start."""

@@ -7,7 +7,7 @@ import math
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.scenes.part import GRAVITY, Part, pair_friction, tidy
+from wsim.rules.scenes.part import GRAVITY, Part, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
 BARE_DURATION = 1.0  # of a scene with a ramp and nothing on it: that long it is seen to stand [s]
@@ -113,7 +113,7 @@ def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: fl
         raise UserError(f"{thing.words!r}: the builtin planner rolls balls only")
     if item.primitive not in ("box", "sphere"):
         raise UserError(f"{thing.words!r}: the builtin planner puts balls and boxes on a ramp")
-    half = item.size[0] if item.primitive == "sphere" else item.size[2] / 2
+    half = tall(item) / 2
     along = item.size[0] if item.primitive == "sphere" else item.size[0] / 2
     s, h = -length / 2 + EDGE + along, thick / 2 + half + START_GAP
     assert slab.pose is not None

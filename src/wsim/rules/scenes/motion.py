@@ -8,7 +8,7 @@ from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
-from wsim.rules.scenes.part import DIRECTIONS, GRAVITY, Part, pair_friction, stopping_distance, tidy, times
+from wsim.rules.scenes.part import DIRECTIONS, GRAVITY, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
 
 HIT_SPEED = 3.0  # [m/s]
@@ -226,11 +226,7 @@ def _aimed(thing: Thing, item: PlanObject, aimed: str, cast: Cast, part: Part) -
 def _middle(name: str, part: Part) -> float:
     """Height of the centre of something that stands on the ground, or on others that do [m]."""
     item = next(item for item in part.objects if item.name == name)
-    return _top(name, part) - _tall(item) / 2
-
-
-def _tall(item: PlanObject) -> float:
-    return item.size[-1] if len(item.size) > 1 else 2 * item.size[0]
+    return _top(name, part) - tall(item) / 2
 
 
 def _top(name: str, part: Part) -> float:
@@ -238,7 +234,7 @@ def _top(name: str, part: Part) -> float:
     items = {item.name: item for item in part.objects}
     height, at = 0.0, items.get(name)
     while at is not None:
-        height += _tall(at)
+        height += tall(at)
         row = at.relation("PLACE-ON")
         at = items.get(row.ref or "") if row is not None else None
     return height

@@ -123,10 +123,7 @@ def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Litera
 
 def _start(thing: Thing, end: str, cast: Cast) -> Relation:
     if "drop" in thing.does:
-        height = thing.drop_height
-        if height is None:
-            height = DROP_HEIGHT
-            cast.assume_height(thing.words, "dropped from {} above the water", height)
+        height = cast.drop_height(thing, DROP_HEIGHT, "the water")
         return Relation(predicate="SPAWNED-ABOVE", ref="water", value=height)
     if end == "floats":
         return Relation(predicate="FLOATS-AT-SURFACE", ref="water", gap=START_GAP)
