@@ -205,10 +205,13 @@ def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
 
 
 def _noun(key: str, fields: dict[str, Any], asset: Asset | None) -> Noun:
-    own = tuple(fields["size"]) if "size" in fields else None
-    if asset is None and own is None:
+    size: tuple[float, ...]
+    if "size" in fields:
+        size, mass = tuple(fields["size"]), None
+    elif asset is not None:
+        size, mass = _built(asset, fields["primitive"], fields.get("top")), asset.mass
+    else:
         raise ValueError(f"nouns.toml: {key} has neither an asset nor a size")
-    size = own or _built(asset, fields["primitive"], fields.get("top"))
     return Noun(
         key=key,
         family=fields["class"],
@@ -217,7 +220,7 @@ def _noun(key: str, fields: dict[str, Any], asset: Asset | None) -> Noun:
         afloat=tuple(fields.get("afloat", size)),
         length=fields["length"],
         material=fields.get("material"),
-        mass=asset.mass if asset is not None and own is None else None,
+        mass=mass,
         asset=asset.id if asset is not None else None,
         lies=fields.get("lies", False),
     )
