@@ -409,16 +409,20 @@ def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):
 
 
 @pytest.mark.parametrize(
-    ("controlled", "shows", "outcome"),
+    ("controlled", "shows", "controls", "outcome"),
     [
-        (False, "it floats", None),
-        (True, "it floats", False),
-        (True, "control holds the ball up", True),
-        (False, "control holds the ball up", False),
+        (False, "it floats", None, None),
+        (True, "it floats", None, False),
+        (True, "control holds the ball up", None, True),
+        (False, "control holds the ball up", None, False),
+        (True, "it floats", True, True),
+        (False, "it floats", True, False),
+        (True, "it floats out of control", False, False),
+        (False, "it floats out of control", False, None),
     ],
 )
-def test_control_acts_only_where_the_plan_asks_for_it(pool, controlled, shows, outcome):
+def test_control_acts_only_where_the_plan_asks_for_it(pool, controlled, shows, controls, outcome):
     case = pool().changed(metadata={"controlled": controlled})
-    plan = case.plan.model_copy(update={"steps": [Step(title="motion", shows=shows)]})
+    plan = case.plan.model_copy(update={"steps": [Step(title="motion", shows=shows, controls=controls)]})
     found = [finding.passed for finding in CheckPlanControl().evaluate(Evidence(case.recording, plan))]
     assert found == ([] if outcome is None else [outcome])

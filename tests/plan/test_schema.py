@@ -5,7 +5,7 @@ from pydantic import ValidationError
 
 from wsim.errors import UserError
 from wsim.plan import load
-from wsim.plan.schema import Plan
+from wsim.plan.schema import Assumption, Plan, Step
 from wsim.rules.planner import plan
 
 PROMPT = "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks."
@@ -348,3 +348,27 @@ def test_numbers_must_be_finite(data):
     of(data, "steel_ball")["velocity"] = [0.0, 0.0, float("nan")]
     with pytest.raises(ValidationError):
         Plan.model_validate(data)
+
+
+def test_what_is_open_of_a_choice_or_a_step_is_not_written():
+    plain = {"subject": "a ball", "choice": "of wood", "why": "the prompt names no material"}
+    assert Assumption(**plain).model_dump(mode="json") == plain
+    kind = {**plain, "kind": "material", "value": "wood"}
+    assert Assumption.model_validate_json(Assumption(**kind).model_dump_json()) == Assumption(**kind)
+    assert Step(title="motion", shows="it turns").model_dump() == {
+        "title": "motion",
+        "objects": [],
+        "shows": "it turns",
+    }
+    assert Step(title="motion", shows="it turns", controls=False).model_dump()["controls"] is False
+    for half in ({"kind": "material"}, {"value": "wood"}):
+        with pytest.raises(ValidationError, match="go together"):
+            Assumption(**plain, **half)
+
+
+def test_a_step_asks_for_control_by_its_field_or_by_its_words():
+    """A plan from before the field names control in words."""
+    assert Step(title="The motor turns", shows="Control turns the crank").asks_for_control
+    assert Step(title="motion", shows="it turns", controls=True).asks_for_control
+    assert not Step(title="motion", shows="it is out of control", controls=False).asks_for_control
+    assert not Step(title="motion", shows="it turns").asks_for_control

@@ -189,3 +189,8 @@ def test_tanks_fit_their_things_at_any_scale(prompt):
             assert level > 2 * max(item.size[-1], item.size[0] if item.primitive == "sphere" else 0)
     displaced = sum(math.prod(o.size) for o in made.objects if o.primitive == "box")
     assert tank.size[2] > level + displaced / (tank.size[0] * tank.size[1])
+
+
+def test_a_ramp_alone_is_a_scene():
+    assert plan("A ramp").simulation.duration == 1.0
+    assert plan("A ramp and a ball").simulation.duration == 3.0

@@ -10,6 +10,7 @@ import pytest
 
 from wsim.assets import load_catalogue
 from wsim.errors import UserError
+from wsim.plan.layout import WALL
 from wsim.rules.grammar import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.planner import plan
@@ -136,6 +137,45 @@ def test_measures_are_taken_as_said():
 def test_the_catalogue_is_in_the_lexicon():
     known = {noun.asset for noun in lexicon().nouns.values()}
     assert set(load_catalogue()) <= known
+
+
+OWN_SIZE = {"ramp", "seesaw", "domino"}  # which the rules build in another shape than the catalogue's
+
+
+@pytest.mark.parametrize("noun", [noun for noun in lexicon().nouns.values() if noun.asset], ids=lambda noun: noun.key)
+def test_what_stands_for_an_asset_is_as_large_and_heavy(noun):
+    asset = load_catalogue()[noun.asset]
+    if noun.key in OWN_SIZE:
+        assert noun.mass is None
+        return
+    assert noun.mass == asset.mass
+    stands_on = asset.anchors["seat"][2] if noun.key == "bench" else asset.size[2]
+    outer = {
+        "box": lambda: noun.size,
+        "cylinder": lambda: (2 * noun.size[0], 2 * noun.size[0], noun.size[1]),
+        "tank": lambda: (noun.size[0] + 2 * WALL, noun.size[1] + 2 * WALL, noun.size[2] + WALL),
+    }[noun.primitive]()
+    assert outer[2] == pytest.approx(stands_on)
+    assert min(outer[:2]) == pytest.approx(min(asset.size[:2]))
+    assert all(edge <= own + 1e-6 for edge, own in zip(outer[:2], asset.size[:2], strict=True))
+
+
+def test_a_mass_of_the_catalogue_goes_with_its_size():
+    """A barrel in water is a small one: the mass of the large one would sink it."""
+    assert plan("A barrel on the ground").object("barrel").registration.mass == load_catalogue()["barrel"].mass
+    afloat = plan("A barrel floats in a tank of water")
+    assert afloat.object("barrel").registration.mass is None
+    assert not any(assumption.choice.startswith("warning") for assumption in afloat.assumptions)
+    assert plan("An oak barrel on the ground").object("oak_barrel").registration.mass is None
+
+
+def test_a_thing_of_the_usual_size_goes_into_its_vessel():
+    assert plan("A ball falls into a bucket").object("ball").size == (0.1,)
+    made = plan("A ball falls into a bowl")
+    assert made.object("ball").size == (made.object("bowl").size[2] / 2,)
+    assert any(assumption.why == "so that it goes into a bowl" for assumption in made.assumptions)
+    with pytest.raises(UserError, match="does not fit into bowl"):
+        plan("A potted plant in a bowl")
 
 
 def test_planning_loads_no_simulator():

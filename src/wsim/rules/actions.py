@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
-from wsim.rules.grammar import NotUnderstood
+from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
+from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import arrange, common, do, hang, part, put, put_inside, stand, support, where
-
-if TYPE_CHECKING:
-    from wsim.rules.meaning import Reader
-    from wsim.rules.phrases import Action, Phrase, Place
+from wsim.rules.reader import Reader
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
-_ORDER = "knows these words, but not in this order"
 _INTO = ("into", "to", "against", "towards", "at")
 
 
@@ -30,7 +26,7 @@ def meet(reader: Reader, things: list[Thing], action: Action) -> None:
         raise NotUnderstood([action.words], "lets two things collide; name two, or what is hit:")
     for place in action.places:
         if not all(common(reader, thing, place) for thing in things):
-            raise NotUnderstood([place.words], _ORDER)
+            raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     for thing in things:
         put(thing, "ground")
         do(thing, "meet")
@@ -48,7 +44,7 @@ def _in_water(reader: Reader, thing: Thing, action: Action) -> None:
         if place.preposition == "time" and common(reader, thing, place):
             continue
         if place.phrase is None or place.preposition not in ("in", "into", "inside", "on", "onto", "at", "to"):
-            raise NotUnderstood([action.words], _ORDER)
+            raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
         if where(reader, place.phrase) != "water" and place.phrase.kind != "ground":
             raise NotUnderstood([action.words], f"cannot let a thing {action.verb} there:")
         if action.verb == "float" and part(place.phrase) == "bottom":
@@ -86,7 +82,7 @@ def _fall(reader: Reader, thing: Thing, action: Action) -> None:
 
 def _land(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
     if place.phrase is None or place.preposition not in ("in", "into", "inside", "on", "onto", "to", "at"):
-        raise NotUnderstood([action.words], _ORDER)
+        raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
     at = where(reader, place.phrase)
     if not isinstance(at, Thing):
         put(thing, at)
@@ -125,7 +121,7 @@ def _go(reader: Reader, thing: Thing, action: Action, how: str) -> None:
         if place.preposition == "toward":
             thing.direction = place.direction
         elif place.phrase is None or place.preposition in ("from", "inside", "in"):
-            raise NotUnderstood([action.words], _ORDER)
+            raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
         elif place.preposition in ("on", "onto", "along", "down", "off"):
             _on_path(reader, thing, action, place)
         elif place.preposition in _INTO:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
-from wsim.plan.schema import Assumption
+from wsim.plan.schema import Assumption, AssumptionKind
 from wsim.rules.lexicon import Noun, lexicon
-
-if TYPE_CHECKING:
-    from wsim.rules.phrases import Phrase
+from wsim.rules.phrases import Phrase
 
 ROUND = ("sphere", "cylinder", "capsule")
 
@@ -91,9 +88,23 @@ class Cast:
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)
 
-    def assume(self, subject: str, choice: str, why: str) -> None:
-        """Note a choice that the prompt left open."""
-        self.assumptions.append(Assumption(subject=subject, choice=choice, why=why))
+    def assume(
+        self, subject: str, choice: str, why: str, kind: AssumptionKind | None = None, value: str | None = None
+    ) -> None:
+        """Note a choice that the prompt left open; its kind and value, where a person may be asked for another."""
+        self.assumptions.append(Assumption(subject=subject, choice=choice, why=why, kind=kind, value=value))
+
+    def assume_height(self, subject: str, choice: str, height: float) -> None:
+        """Note from how high a thing comes [m]; the choice has a place for it."""
+        length = f"{height:g} m"
+        self.assume(subject, choice.format(length), "the prompt gives no height", "height", length)
+
+    def drop_height(self, thing: Thing, usual: float, above: str) -> float:
+        """From how high above something a thing drops [m]; the usual is noted where the prompt leaves it open."""
+        if thing.drop_height is not None:
+            return thing.drop_height
+        self.assume_height(thing.words, f"dropped from {{}} above {above}", usual)
+        return usual
 
     @property
     def wet(self) -> bool:

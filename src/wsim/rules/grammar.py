@@ -39,7 +39,7 @@ class NotUnderstood(UserError):  # noqa: N818 - it reads as the sentence it carr
 
 
 _UNKNOWN = "does not know"
-_ORDER = "knows these words, but not in this order"
+NOT_IN_THIS_ORDER = "knows these words, but not in this order"
 
 
 def _suggestion(word: str) -> str:
@@ -136,7 +136,7 @@ class _Tokens:
     def fail(self, position: int) -> NotUnderstood:
         """The words from a position of the text on, not understood in this order."""
         rest = [word for word, (start, _) in zip(self.words, self.spans, strict=True) if start >= position]
-        return NotUnderstood([" ".join(rest[:_SHOWN] or self.words[-1:])], _ORDER)
+        return NotUnderstood([" ".join(rest[:_SHOWN] or self.words[-1:])], NOT_IN_THIS_ORDER)
 
     def _token(self, kind: str, value: Any, at: int, used: int) -> tuple[Token, int]:
         start, end = self.spans[at][0], self.spans[at + used - 1][1]

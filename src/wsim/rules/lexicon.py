@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 from typing import Any, Literal
 
-from wsim.assets import load_catalogue
+from wsim.assets import Asset, load_catalogue
+from wsim.defaults import WALL
 from wsim.plan.schema import Material
 
 Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw"]
@@ -27,7 +29,7 @@ class Noun:
         afloat: The same for one in water [m].
         length: What a bare length in the prompt is: "edges", "edge", "diameter", "x", "y", "z" or "rod".
         material: Its material where neither the prompt nor the scene names one.
-        mass: [kg], of a thing that is not solid through and through.
+        mass: [kg], of the catalogue's thing, at that size.
         asset: The catalogue's entry that the primitive stands for.
         lies: Whether it starts on its side.
     """
@@ -114,8 +116,10 @@ def lexicon() -> Lexicon:
     _quantities(made, _data("quantities"))
     _materials(made, _data("materials"))
     _verbs(made, _data("verbs"))
-    _nouns(made, _data("nouns"))
-    _catalogue(made)
+    nouns = _data("nouns")
+    _groups(made, nouns)
+    _nouns(made, nouns)
+    _others(made)
     return made
 
 
@@ -177,27 +181,7 @@ def _verbs(made: Lexicon, data: dict[str, Any]) -> None:
             made.add(form, "VERB", verb)
 
 
-def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
-    for key, fields in data["noun"].items():
-        size = tuple(fields["size"])
-        made.nouns[key] = Noun(
-            key=key,
-            family=fields["class"],
-            primitive=fields["primitive"],
-            size=size,
-            afloat=tuple(fields.get("afloat", size)),
-            length=fields["length"],
-            material=fields.get("material"),
-            mass=fields.get("mass"),
-            asset=fields.get("asset"),
-            lies=fields.get("lies", False),
-        )
-        for words in fields["words"]:
-            made.add(words, "NOUN", Named(key, plural=False))
-        for words in fields.get("filled", []):
-            made.add(words, "NOUN", Named(key, plural=False, filled=True))
-        for words in fields.get("plurals", [word + "s" for word in fields["words"]]):
-            made.add(words, "NOUN", Named(key, plural=True))
+def _groups(made: Lexicon, data: dict[str, Any]) -> None:
     for arrangement, fields in data["group"].items():
         made.groups[arrangement] = fields["axis"]
         for word in fields["words"]:
@@ -208,19 +192,84 @@ def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
                 made.add(word, terminal, key)
 
 
-def _catalogue(made: Lexicon) -> None:
-    """The catalogue's other names for what is known, and its other things, as solid stand-ins of their boxes."""
-    by_asset = {noun.asset: noun.key for noun in made.nouns.values() if noun.asset is not None}
+def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
+    catalogue = load_catalogue()
+    taken = made.vocabulary
+    for key, fields in data["noun"].items():
+        asset = catalogue[fields["asset"]] if "asset" in fields else None
+        noun = made.nouns[key] = _noun(key, fields, asset)
+        words = [*fields.get("words", ()), *(_names(asset, made, taken) if asset is not None else ())]
+        for filled in fields.get("filled", []):
+            made.add(filled, "NOUN", Named(noun.key, plural=False, filled=True))
+        _name(made, key, words, fields.get("plurals", ()))
+
+
+def _noun(key: str, fields: dict[str, Any], asset: Asset | None) -> Noun:
+    size: tuple[float, ...]
+    if "size" in fields:
+        size, mass = tuple(fields["size"]), None
+    elif asset is not None:
+        size, mass = _built(asset, fields["primitive"], fields.get("top")), asset.mass
+    else:
+        raise ValueError(f"nouns.toml: {key} has neither an asset nor a size")
+    return Noun(
+        key=key,
+        family=fields["class"],
+        primitive=fields["primitive"],
+        size=size,
+        afloat=tuple(fields.get("afloat", size)),
+        length=fields["length"],
+        material=fields.get("material"),
+        mass=mass,
+        asset=asset.id if asset is not None else None,
+        lies=fields.get("lies", False),
+    )
+
+
+def _built(asset: Asset, primitive: str, top: str | None) -> tuple[float, ...]:
+    """The primitive's size that fills an asset's box [m]; a cylinder leaves out what stands off, such as a handle."""
+    x, y, z = asset.size
+    if top is not None:
+        z = asset.anchors[top][2]
+    if primitive == "cylinder":
+        size: tuple[float, ...] = (min(x, y) / 2, z)
+    elif primitive == "tank":  # the room inside its walls and above its floor
+        size = (x - 2 * WALL, y - 2 * WALL, z - WALL)
+    else:
+        size = (x, y, z)
+    return tuple(round(edge, 6) for edge in size)
+
+
+def _names(asset: Asset, made: Lexicon, taken: set[str]) -> Iterator[str]:
+    """What the catalogue calls an asset, less what has a meaning: "wooden table" is a material and a thing."""
+    for name in asset.names:
+        words = name.replace("-", " ").split()
+        if words[0] not in made.materials and (len(words) > 1 or words[0] not in taken):
+            yield " ".join(words)
+
+
+def _name(made: Lexicon, key: str, words: Iterable[str], plurals: Iterable[str]) -> None:
+    """Enter a thing's words, and their plurals."""
+    for word in plurals:
+        made.add(word, "NOUN", Named(key, plural=True))
+    for word in words:
+        if tuple(word.split()) not in made.entries:  # the catalogue calls a shelf "shelves", too
+            made.add(word, "NOUN", Named(key, plural=False))
+            made.add(_plural(word), "NOUN", Named(key, plural=True))
+
+
+def _plural(word: str) -> str:
+    if word.endswith("shelf"):
+        return word[:-1] + "ves"
+    return word + ("es" if word.endswith(("s", "x", "ch", "sh")) else "s")
+
+
+def _others(made: Lexicon) -> None:
+    """The catalogue's other things, as solid stand-ins of their boxes."""
+    known = {noun.asset for noun in made.nouns.values()}
+    taken = made.vocabulary
     for asset in load_catalogue().values():
-        key = by_asset.get(asset.id)
-        if key is None:
-            key = asset.id.replace("-", "_").replace(" ", "_")
-            size = tuple(asset.size)
-            made.nouns[key] = Noun(key, "solid", "box", size, size, "z", "wood", asset.mass, asset.id)
-        taken = made.vocabulary
-        for name in asset.names:
-            words = name.lower().replace("-", " ").split()
-            # A word that already means something keeps its meaning; "wooden table" is a material and a thing.
-            if words[0] not in made.materials and (len(words) > 1 or words[0] not in taken):
-                made.add(" ".join(words), "NOUN", Named(key, plural=False))
-                made.add(" ".join(words) + "s", "NOUN", Named(key, plural=True))
+        if asset.id not in known:
+            size = _built(asset, "box", None)
+            made.nouns[asset.id] = Noun(asset.id, "solid", "box", size, size, "z", "wood", asset.mass, asset.id)
+            _name(made, asset.id, list(_names(asset, made, taken)), ())

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from wsim.errors import UserError
 from wsim.rules.cast import Beside, Thing
-from wsim.rules.grammar import NotUnderstood
+from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
+from wsim.rules.phrases import Phrase, Place
+from wsim.rules.reader import Reader
 
-if TYPE_CHECKING:
-    from wsim.rules.meaning import Reader
-    from wsim.rules.phrases import Phrase, Place
-
-_ORDER = "knows these words, but not in this order"
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
 
@@ -89,7 +84,7 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
     if other.count > 1 and not other.group:
         raise NotUnderstood([place.phrase.words], "cannot tell which of them this is")
     if predicate not in SIDES and place.length is not None:
-        raise NotUnderstood([place.words], _ORDER)
+        raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     if place.side.assume:
         reader.cast.assume(thing.words, place.side.assume, f"the prompt says {place.words!r}, not on which side")
     thing.beside.append(Beside(predicate, other, gap=place.length))

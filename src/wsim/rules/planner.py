@@ -15,7 +15,6 @@ import re
 from wsim.errors import UserError
 from wsim.plan.layout import layout
 from wsim.plan.schema import Plan, SimulationPlan
-from wsim.plan.steps import steps
 from wsim.plan.views import cameras
 from wsim.rules.cast import Cast
 from wsim.rules.grammar import NotUnderstood, parse
@@ -28,6 +27,7 @@ from wsim.rules.scenes.motion import ground_object
 from wsim.rules.scenes.part import Part
 from wsim.rules.scenes.pour import build_pour
 from wsim.rules.scenes.tank import build_tank
+from wsim.rules.steps import steps
 
 __all__ = ["NotUnderstood", "plan"]
 

@@ -13,7 +13,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 from pydantic import BaseModel
 
@@ -48,12 +48,7 @@ class Question(BaseModel):
     assumption: int
 
 
-# kind: what the assumption's reason and choice look like, what else the answer may be, and what must be so in the plan.
-_WHY: dict[Kind, tuple[str, str]] = {
-    "count": (r"gives no number", r"^(\d+)\b"),
-    "height": (r"gives no height", r"from ([\d.]+ m)\b"),
-    "material": (r"names no material", r"^of (\w+)$"),
-}
+# kind: what else the answer may be, and what any answer looks like.
 _CHOICES: dict[Kind, tuple[str, ...]] = {
     "count": ("2", "3", "5", "10"),
     "height": ("0.2 m", "0.5 m", "1 m", "2 m"),
@@ -69,7 +64,7 @@ _SHAPE: dict[Kind, tuple[str, str]] = {
 def questions(plan: Plan) -> list[Question]:
     """What to ask about a plan of the builtin planner: counts first, since they change the sentence most."""
     found: list[Question] = []
-    for kind in _WHY:
+    for kind in get_args(Kind):
         for index, assumption in enumerate(plan.assumptions):
             question = _question(kind, index, assumption, plan)
             if question is None:
@@ -80,9 +75,8 @@ def questions(plan: Plan) -> list[Question]:
 
 
 def _question(kind: Kind, index: int, assumption: Assumption, plan: Plan) -> Question | None:
-    why, choice = _WHY[kind]
-    taken = re.search(choice, assumption.choice)
-    if not re.search(why, assumption.why) or taken is None or not _once(plan.prompt, assumption.subject):
+    default = assumption.value
+    if assumption.kind != kind or default is None or not _once(plan.prompt, assumption.subject):
         return None
     reason = _reason(kind, assumption, plan)
     if reason is None:
@@ -92,7 +86,6 @@ def _question(kind: Kind, index: int, assumption: Assumption, plan: Plan) -> Que
         "height": f"From how high does {assumption.subject!r} drop? {reason}",
         "material": f"What is {assumption.subject!r} made of? {reason}",
     }[kind]
-    default = taken.group(1)
     return Question(
         id=f"{kind}_{_stem(plan, assumption.subject)}",
         kind=kind,
@@ -111,9 +104,10 @@ def _reason(kind: Kind, assumption: Assumption, plan: Plan) -> str | None:
     if kind == "height":
         topples = any(objective.kind == "topples" for objective in plan.objectives)
         return "It decides whether what it hits falls over." if topples else None
-    ends = [other.choice for other in plan.assumptions if other.subject == assumption.subject]
-    end = next((choice for choice in ends if choice.startswith("expected to ")), None)
-    return f"It decides whether it floats or sinks; {assumption.choice} it is {end}." if end else None
+    ends = [other.value for other in plan.assumptions if other.subject == assumption.subject and other.kind == "end"]
+    return (
+        f"It decides whether it floats or sinks; of {assumption.value} it is expected to {ends[0]}." if ends else None
+    )
 
 
 def _stem(plan: Plan, subject: str) -> str:
@@ -185,7 +179,7 @@ def _again(plan: Plan, question: Question, subject: str, answer: str, planner: P
 
 
 def _open(plan: Plan, kind: Kind) -> int:
-    return sum(bool(re.search(_WHY[kind][0], assumption.why)) for assumption in plan.assumptions)
+    return sum(assumption.kind == kind for assumption in plan.assumptions)
 
 
 def _sentences(sentence: str, subject: str, kind: Kind, answer: str) -> Iterable[tuple[str, str]]:

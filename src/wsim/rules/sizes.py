@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from wsim.errors import UserError
 from wsim.plan.schema import External, Material, PlanObject, Proxy, Registration, Relation
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import material_named
 
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
-
 _FLOATING_RADIUS = 0.09  # of a ball that is lighter than water: it must draw more than a particle or two [m]
+_PLAY = 0.8  # of a vessel's width, which what is put in it takes up at most
 SMALLEST, LARGEST = 0.02, 5.0  # what a length in the prompt may be [m]
 LIGHTEST, HEAVIEST = 0.001, 10_000.0  # and a mass [kg]
 
@@ -22,7 +19,7 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     word = thing.phrase.material
     if word is None:
         word = thing.noun.material or _default_material(thing)
-        cast.assume(thing.words, f"of {word}", "the prompt names no material")
+        cast.assume(thing.words, f"of {word}", "the prompt names no material", "material", word)
     elif word == "metal":
         cast.assume(thing.words, "of steel", "the prompt says metal, not which")
     material = material_named(word)
@@ -57,6 +54,10 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
                 f"{thing.words!r}: {length:g} m is outside {SMALLEST:g} to {LARGEST:g} m, the builtin planner's range"
             )
     why = "the prompt gives no size"
+    if thing.inside is not None and noun.asset is None:  # what the catalogue has is as large as it is
+        fitting = _fitting(size, thing.inside.noun.size)
+        why = why if fitting == size else f"so that it goes into {thing.inside.words}"
+        size = fitting
     if phrase.length is not None:
         size = _from_length(thing, phrase.length, size)
         why = f"{phrase.length:g} m is {_MEANS[noun.length]}"
@@ -68,6 +69,15 @@ def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) 
         why = "the prompt's own measures; the rest is the usual"
     cast.assume(thing.words, _describe(noun.primitive, size), why)
     return size
+
+
+def _fitting(size: tuple[float, ...], room: tuple[float, ...]) -> tuple[float, ...]:
+    """The usual size, made smaller where it does not go into a vessel with play around it, and up to the rim [m]."""
+    round_ = len(size) < 3
+    wide = 2 * size[0] if round_ else max(size[:2])
+    tall = size[-1] if len(size) > 1 else wide
+    share = min(1.0, _PLAY * min(room[:2]) / wide, room[2] / tall)
+    return size if share == 1.0 else tuple(round(edge * share, 4) for edge in size)
 
 
 _MEANS = {
@@ -136,18 +146,19 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
         construction=proxy if noun.asset is None else External(candidate=noun.asset, stand_in=proxy),
         material=None if noun.family == "vessel" else material,
         state="static" if static else "dynamic",
-        registration=Registration(mass=None if static else _mass(thing)),
+        registration=Registration(mass=None if static else _mass(thing, size)),
         words=thing.words,
     )
     rows = [Relation(predicate="LIES-ALONG-Y")] if noun.lies else []
     return [made.model_copy(update={"name": name}).related(rows) for name in names(thing, taken)]
 
 
-def _mass(thing: Thing) -> float | None:
+def _mass(thing: Thing, size: tuple[float, ...]) -> float | None:
+    """What the prompt says, or the catalogue of a thing as large as its own and of its own material [kg]."""
     mass = thing.phrase.measures.get("mass")
     if mass is None:
-        plain = thing.phrase.material is None and thing.phrase.scale is None and thing.phrase.length is None
-        return thing.noun.mass if plain and not thing.phrase.measures and thing.phrase.edges is None else None
+        own = thing.phrase.material is None and not thing.phrase.measures and size == thing.noun.size
+        return thing.noun.mass if own else None
     if not LIGHTEST <= mass <= HEAVIEST:
         raise UserError(
             f"{thing.words!r}: {mass:g} kg is outside {LIGHTEST:g} to {HEAVIEST:g} kg, the builtin planner's range"

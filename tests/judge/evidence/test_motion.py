@@ -283,7 +283,7 @@ def test_poured_water_ends_in_the_vessel(spilt, passed):
     size = plan.object("bowl").size
     time = times_of(plan)
     rng = np.random.default_rng(0)
-    position = rng.uniform(-0.4, 0.4, (len(time), 100, 3)) * (size[0], size[1], 0.1) + (0.0, 0.0, 0.08)
+    position = rng.uniform(-0.4, 0.4, (len(time), 100, 3)) * size + (0.0, 0.0, 0.02 + size[2] / 2)
     position[:, :spilt, 0] = 2.0
     zero = np.zeros_like(position)
     track = FluidTrack(time, position, zero, np.full(position.shape[:2], 1000.0))

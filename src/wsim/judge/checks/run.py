@@ -167,7 +167,7 @@ class CheckPlanControl(Check):
         if plan is None:
             return []
         asked = [item.name for item in plan.objects if item.registration.actuation]
-        asked += [step.title for step in plan.steps if "control" in f"{step.title} {step.shows}".lower()]
+        asked += [step.title for step in plan.steps if step.asks_for_control]
         if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if controlled else []
         message = (

@@ -3,6 +3,7 @@
 from wsim.plan.schema.base import Name, Vec3
 from wsim.plan.schema.draft import (
     Assumption,
+    AssumptionKind,
     CameraPlan,
     ImageHints,
     Joint,
@@ -35,6 +36,7 @@ __all__ = [
     "TEMPLATES",
     "Actuation",
     "Assumption",
+    "AssumptionKind",
     "CameraPlan",
     "External",
     "FromAsset",

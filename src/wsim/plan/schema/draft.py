@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from wsim.defaults import DURATION, FRAME_RATE
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
@@ -104,12 +104,26 @@ class SensorPlan(Strict):
     rate: Positive = 30.0  # [1/s]
 
 
-class Step(Strict):
+class _Sparse(Strict):
+    """A model whose open fields are not written, so that a plan without them reads as it always did."""
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in write(self).items() if value is not None}
+
+
+class Step(_Sparse):
     """One stage of the implementation, and what it must show when it is done."""
 
     title: Word
     objects: list[Name] = Field(default_factory=list, max_length=10_000)
     shows: Text
+    controls: bool | None = None  # whether the program's control acts here; open: if the words name it
+
+    @property
+    def asks_for_control(self) -> bool:
+        """Whether the program must have a `control`. Plans without the field say so in words: "control turns ..."."""
+        return "control" in f"{self.title} {self.shows}".lower() if self.controls is None else self.controls
 
 
 class Objective(Strict):
@@ -153,12 +167,32 @@ class Outputs(Strict):
     stills: list[Name] = Field(default_factory=list, max_length=100)  # cameras; all if empty
 
 
-class Assumption(Strict):
-    """A choice that the prompt left open, with the default taken."""
+AssumptionKind = Literal["count", "height", "material", "end"]
+
+
+class Assumption(_Sparse):
+    """A choice that the prompt left open, with the default taken.
+
+    Attributes:
+        subject: The prompt's words for what it is about.
+        choice: In words.
+        why: Why this was open.
+        kind: What was chosen, where another choice may change the outcome: how many, from how high, of what; or the end
+            that is expected.
+        value: The choice alone, of that kind: "3", "0.5 m", "wood"; "float" or "sink".
+    """
 
     subject: Text
     choice: Text
     why: Text
+    kind: AssumptionKind | None = None
+    value: Word | None = None
+
+    @model_validator(mode="after")
+    def _kind_and_value(self) -> Assumption:
+        if (self.kind is None) != (self.value is None):
+            raise ValueError('"kind" and "value" go together; give both, or neither')
+        return self
 
 
 class Draft(Strict):

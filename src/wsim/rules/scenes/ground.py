@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation
-from wsim.rules.cast import Beside
+from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.motion import hit, meet, move, struck, throw_height
-from wsim.rules.scenes.part import Part, fall_time
+from wsim.rules.scenes.part import Part, fall_time, tall
 from wsim.rules.sizes import bodies
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 GAP = 0.15  # between neighbours on the ground [m]
 GAP_ABOVE = 0.08  # between neighbours on a table [m]
@@ -148,7 +143,7 @@ def _in_plane(thing: Thing, made: list[PlanObject], index: int, part: Part, ends
         centred = ("ALIGN-CENTER-LR", "ALIGN-CENTER-FB") if "drop" in thing.does else ()
         return [Relation(predicate=predicate, ref=vessel) for predicate in centred]
     if thing.arrangement == "row" and index > 0:
-        gap = round(ROW_SHARE * (item.size[-1] if len(item.size) > 1 else 2 * item.size[0]), 3)
+        gap = round(ROW_SHARE * tall(item), 3)
         return [Relation(predicate="FRONT-OF", ref=made[index - 1].name, gap=gap)]
     sides = _sides(thing) if index == 0 else []
     if not sides:
@@ -180,10 +175,7 @@ def _drop_height(thing: Thing, cast: Cast, part: Part) -> float | None:
         return throw_height(thing, cast) if thing.support is None else thing.drop_height
     if "drop" not in thing.does:
         return None
-    height = thing.drop_height
-    if height is None:
-        height = DROP_HEIGHT
-        cast.assume(thing.words, f"dropped from {height:g} m above what it lands on", "the prompt gives no height")
+    height = cast.drop_height(thing, DROP_HEIGHT, "what it lands on")
     part.duration = max(part.duration, round(2.0 + 2 * fall_time(height), 1))
     return height
 

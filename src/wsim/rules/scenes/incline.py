@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
-from wsim.rules.scenes.part import Part, pair_friction, tidy
+from wsim.rules.cast import Cast, Thing
+from wsim.rules.scenes.part import Part, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
-
+BARE_DURATION = 1.0  # of a scene with a ramp and nothing on it: that long it is seen to stand [s]
 ROLLING_ANGLE = 20.0  # [deg], where the prompt gives none
 ABOVE, BELOW = 8.0, 6.0  # from the angle of friction to that of what slides, or of what rests [deg]
 STEEPEST = 60.0  # [deg]
@@ -49,6 +47,8 @@ def build_inclines(cast: Cast, taken: set[str]) -> Part:
     slab = slab.model_copy(update={"pose": pose})
     part.objects.append(slab)
     part.names[id(ramp)] = [slab.name]
+    if not riders:
+        part.duration = BARE_DURATION
     across = _across(slab, list(made.values()), ramp)
     for thing, y in zip(riders, across, strict=True):
         _rider(thing, made[id(thing)], slab, angle, y, part, cast)
@@ -114,7 +114,7 @@ def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: fl
         raise UserError(f"{thing.words!r}: the builtin planner rolls balls only")
     if item.primitive not in ("box", "sphere"):
         raise UserError(f"{thing.words!r}: the builtin planner puts balls and boxes on a ramp")
-    half = item.size[0] if item.primitive == "sphere" else item.size[2] / 2
+    half = tall(item) / 2
     along = item.size[0] if item.primitive == "sphere" else item.size[0] / 2
     s, h = -length / 2 + EDGE + along, thick / 2 + half + START_GAP
     assert slab.pose is not None

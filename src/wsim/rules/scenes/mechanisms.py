@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Joint, Objective, PlanObject, Pose, Vec3
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
-from wsim.rules.scenes.part import Part, fall_time, tidy
+from wsim.rules.scenes.part import Part, fall_time, tall, tidy
 from wsim.rules.sizes import LARGEST, SMALLEST, bodies, material_of, names, size_of
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 ROD_LENGTH, ROD_RADIUS = 1.0, 0.008  # [m]
 ANGLE = 20.0  # of a pendulum at the start [deg]
@@ -147,12 +144,10 @@ def build_seesaw(cast: Cast, taken: set[str]) -> Part:
 
 def _ride(thing: Thing, plank: PlanObject, at: Vec3, part: Part, cast: Cast, taken: set[str]) -> None:
     [item] = bodies(thing, cast, taken)
-    half = item.size[0] if item.primitive == "sphere" else item.size[-1] / 2
+    half = tall(item) / 2
     height = 0.001
     if "drop" in thing.does:
-        height = thing.drop_height if thing.drop_height is not None else DROP_HEIGHT
-        if thing.drop_height is None:
-            cast.assume(thing.words, f"dropped from {height:g} m above the seesaw", "the prompt gives no height")
+        height = cast.drop_height(thing, DROP_HEIGHT, "the seesaw")
     cast.assume(thing.words, "over the front end", "the prompt does not say which end")
     position = (tidy(at[0]), 0.0, tidy(at[2] + height + half))
     part.posed.append(item.related([]).model_copy(update={"pose": Pose(position=position)}))

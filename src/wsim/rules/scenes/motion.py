@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
-from wsim.rules.scenes.part import DIRECTIONS, Part, pair_friction, stopping_distance, tidy, times
+from wsim.rules.scenes.part import DIRECTIONS, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 HIT_SPEED = 3.0  # [m/s]
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
@@ -205,7 +202,7 @@ def throw_height(thing: Thing, cast: Cast) -> float:
     """How high a throw starts, of its lowest point [m]."""
     if thing.drop_height is None:
         thing.drop_height = THROW_HEIGHT
-        cast.assume(thing.words, f"thrown from {THROW_HEIGHT:g} m up", "the prompt gives no height")
+        cast.assume_height(thing.words, "thrown from {} up", THROW_HEIGHT)
     return thing.drop_height
 
 
@@ -216,7 +213,7 @@ def _aimed(thing: Thing, item: PlanObject, aimed: str, cast: Cast, part: Part) -
     speed = THROW_SPEED if thing.speed is None else thing.speed
     height = 0.5 if thing.drop_height is None else thing.drop_height
     if thing.drop_height is None:
-        cast.assume(thing.words, f"thrown from {height:g} m up", "the prompt gives no height")
+        cast.assume_height(thing.words, "thrown from {} up", height)
     middle = _middle(aimed, part)
     radius = item.size[0] if item.primitive != "box" else item.size[2] / 2
     time = AIM_DISTANCE / speed
@@ -230,11 +227,7 @@ def _aimed(thing: Thing, item: PlanObject, aimed: str, cast: Cast, part: Part) -
 def _middle(name: str, part: Part) -> float:
     """Height of the centre of something that stands on the ground, or on others that do [m]."""
     item = next(item for item in part.objects if item.name == name)
-    return _top(name, part) - _tall(item) / 2
-
-
-def _tall(item: PlanObject) -> float:
-    return item.size[-1] if len(item.size) > 1 else 2 * item.size[0]
+    return _top(name, part) - tall(item) / 2
 
 
 def _top(name: str, part: Part) -> float:
@@ -242,7 +235,7 @@ def _top(name: str, part: Part) -> float:
     items = {item.name: item for item in part.objects}
     height, at = 0.0, items.get(name)
     while at is not None:
-        height += _tall(at)
+        height += tall(at)
         row = at.relation("PLACE-ON")
         at = items.get(row.ref or "") if row is not None else None
     return height

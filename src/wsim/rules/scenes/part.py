@@ -57,6 +57,11 @@ def times(direction: Vec3, speed: float) -> Vec3:
     return (direction[0] * speed + 0.0, direction[1] * speed + 0.0, direction[2] * speed + 0.0)
 
 
+def tall(item: PlanObject) -> float:
+    """Height of a thing as it stands, without a capsule's ends [m]."""
+    return item.size[-1] if len(item.size) > 1 else 2 * item.size[0]
+
+
 def pair_friction(a: PlanObject, b: PlanObject) -> float:
     """Friction between two things: the larger of the two, as MuJoCo takes it."""
     return max((item.material.friction for item in (a, b) if item.material is not None), default=0.5)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
+from wsim.rules.cast import Cast
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import GLASS_LOOK, WATER
 from wsim.rules.scenes.part import Part, fall_time, tidy
 from wsim.rules.sizes import bodies
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast
 
 FILL = 0.25  # of the vessel's volume: so that the splash stays in
 HEIGHT = 0.08  # that the water falls to the vessel's floor, or 0.4 of the vessel's own height where that is less [m]

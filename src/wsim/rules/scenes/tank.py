@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from wsim.defaults import FLUID_DENSITY, WALL
 from wsim.errors import UserError
 from wsim.plan.layout import extents
 from wsim.plan.schema import Material, Objective, PlanObject, Relation
+from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import GLASS_LOOK, WATER
 from wsim.rules.scenes.part import Part
 from wsim.rules.sizes import bodies, thickness
-
-if TYPE_CHECKING:
-    from wsim.rules.cast import Cast, Thing
 
 LAYERS_FLOATING = 4.5  # particle spacings in the height of what floats, at least
 LAYERS_SINKING = 4.0  # and in what sinks
@@ -119,16 +117,14 @@ def _end(thing: Thing, material: Material, density: float, cast: Cast) -> Litera
                 thing.words, f"warning: {ratio} floats", "the plan asks for what the prompt says; the judge will not"
             )
         return "sinks" if "sink" in thing.does else "submerged"
-    cast.assume(thing.words, "expected to float" if light else "expected to sink", f"{ratio}; the prompt does not say")
+    end = "float" if light else "sink"
+    cast.assume(thing.words, f"expected to {end}", f"{ratio}; the prompt does not say", "end", end)
     return "floats" if light else "sinks"
 
 
 def _start(thing: Thing, end: str, cast: Cast) -> Relation:
     if "drop" in thing.does:
-        height = thing.drop_height
-        if height is None:
-            height = DROP_HEIGHT
-            cast.assume(thing.words, f"dropped from {height:g} m above the water", "the prompt gives no height")
+        height = cast.drop_height(thing, DROP_HEIGHT, "the water")
         return Relation(predicate="SPAWNED-ABOVE", ref="water", value=height)
     if end == "floats":
         return Relation(predicate="FLOATS-AT-SURFACE", ref="water", gap=START_GAP)
@@ -160,8 +156,9 @@ def _dimensions(swimmers: list[Swimmer], cast: Cast) -> tuple[float, tuple[float
             break
         spacing = round(spacing * 1.1, 4)
     if spacing > 1.5 * wanted:
+        named = ", ".join(dict.fromkeys(repr(swimmer.thing.words) for swimmer in swimmers))
         raise UserError(
-            f"the tank for these things would need {round(length * depth * level / wanted**3):,} particles of water; "
+            f"the tank for {named} would need {round(length * depth * level / wanted**3):,} particles of water; "
             f"the builtin planner uses up to {MOST_PARTICLES:,}: ask for fewer things, or sizes closer to each other"
         )
     if spacing > wanted:
