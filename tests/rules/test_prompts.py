@@ -9,8 +9,8 @@ from random import Random
 import pytest
 
 from wsim.assets import load_catalogue
+from wsim.defaults import WALL
 from wsim.errors import UserError
-from wsim.plan.layout import WALL
 from wsim.rules.grammar import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.planner import plan
