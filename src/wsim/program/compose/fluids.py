@@ -1,0 +1,53 @@
+"""Arguments of `scene.fluid`: what fills a tank, or stands as a block of its own."""
+
+from __future__ import annotations
+
+import math
+
+from wsim.defaults import GRAVITY
+from wsim.plan.schema import PlanObject
+from wsim.plan.spacing import spacing_of
+from wsim.program.compose.draft import Draft
+from wsim.program.compose.poses import position
+from wsim.program.source import number, tuple_of
+
+_SOUND_OVER_FALL = 30.0
+
+
+def container(item: PlanObject) -> str | None:
+    """The name of what an object is placed in."""
+    relation = item.relation("PLACE-IN")
+    return relation.ref if relation is not None else None
+
+
+def arguments(draft: Draft, item: PlanObject) -> list[str]:
+    """All arguments but the name."""
+    plan = draft.plan
+    held = container(item)
+    level = item.relation("FREE-SURFACE-AT")
+    if held is not None and level is not None and level.value is not None:
+        volume = (*plan.object(held).size[:2], level.value)
+        found = [f"fills={draft.handles[held]}", f"level={number(level.value)}"]
+    else:
+        volume = item.size
+        found = [f"size={tuple_of(item.size)}", f"position={tuple_of(position(item))}"]
+    found.append(f"spacing={number(spacing_of(plan, item, volume))}")
+    if item.registration.viscosity is not None:
+        found.append(f"viscosity={number(item.registration.viscosity)}")
+    if any(objective.kind == "fills" and objective.object == item.name for objective in plan.objectives):
+        found.append(f"speed_of_sound={number(_sound(item))}")
+    if item.density is not None:
+        found.append(f"density={number(item.density)}")
+    if item.material is not None:
+        found.append(f"color={tuple_of(item.material.color)}")
+    return found
+
+
+def _sound(poured: PlanObject) -> float:
+    """Numerical speed of sound of what is poured [m/s].
+
+    A block that lands flat stops at once; what it is compressed by is its speed over that of sound. The solver's own
+    choice, ten times the speed, lets it spring back through the rim.
+    """
+    top = position(poured)[2] + (poured.size[2] / 2 if poured.size else 0.0)
+    return float(f"{_SOUND_OVER_FALL * math.sqrt(2 * GRAVITY * max(top, 0.01)):.2g}")

@@ -1,0 +1,47 @@
+"""The objects of a plan, in order: each a call of the scene, or a loop of calls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wsim.plan.schema import PlanObject
+from wsim.program.compose import assets, fluids, loops, shapes
+from wsim.program.compose.draft import Draft
+from wsim.program.source import call
+
+
+def statements(draft: Draft) -> list[str]:
+    """All objects; those that the program speaks of again get a variable."""
+    plan = draft.plan
+    lines: list[str] = []
+    containers = {fluids.container(item) for item in plan.objects if item.primitive == "fluid"}
+    jointed = {name for joint in plan.joints for name in (joint.child, joint.parent)}
+    for group in loops.groups(_ordered(plan.objects), jointed):
+        if len(group) > 1:
+            lines += loops.loop(draft, group)
+            continue
+        item = group[0]
+        target = "scene." + item.primitive
+        if item.name in containers | jointed:
+            draft.handles[item.name] = draft.variable(item.name)
+            target = f"{draft.handles[item.name]} = {target}"
+        lines += call(target, [f'"{item.name}"', *_arguments(draft, item)])
+    return lines
+
+
+def _arguments(draft: Draft, item: PlanObject) -> list[str]:
+    if item.primitive == "fluid":
+        return fluids.arguments(draft, item)
+    if item.primitive == "asset":
+        return assets.arguments(item)
+    return shapes.arguments(draft, item)
+
+
+def _ordered(objects: Sequence[PlanObject]) -> list[PlanObject]:
+    """In the plan's order, but a fluid straight after the tank that it fills."""
+    filling = [item for item in objects if item.primitive == "fluid" and fluids.container(item) is not None]
+    ordered = []
+    for item in objects:
+        if item not in filling:
+            ordered += [item, *(fluid for fluid in filling if fluids.container(fluid) == item.name)]
+    return ordered
