@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 
 from wsim.program.api.entry import Entry, Parameter
-from wsim.program.validator.values import Value
+from wsim.program.validator.values import Instance, Value, blur
 
 
 @dataclass
@@ -38,6 +38,14 @@ class Arguments:
         places = [p for p in way if p.kind in ("positional", "either")]
         found = {parameter.name: each for parameter, each in zip(places, self.given, strict=False) if parameter.name}
         return found | self.named
+
+    def hand_over(self) -> None:
+        """They go to code that is not read here, and may be changed by it."""
+        for value in (*self.values, *(value for value, _ in self.named.values())):
+            blur(value)
+            if isinstance(value, Instance) and value.world is not None:
+                value.world.touched()
+                value.world.open = True
 
 
 @dataclass(frozen=True)

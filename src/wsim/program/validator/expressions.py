@@ -5,13 +5,12 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Callable
-from difflib import get_close_matches
 from typing import Any
 
-from wsim.program.validator import constants
+from wsim.program.validator import attributes, calls, comprehensions, operators, strings
 from wsim.program.validator.arguments import Arguments
-from wsim.program.validator.objects import Objects
-from wsim.program.validator.state import assigned
+from wsim.program.validator.problem import spelt
+from wsim.program.validator.state import State
 from wsim.program.validator.values import (
     UNKNOWN,
     Const,
@@ -23,28 +22,19 @@ from wsim.program.validator.values import (
     NotKnownError,
     Scope,
     Value,
-    each_of,
     elements,
     merged,
     plain,
 )
 
 _GIVEN = {
-    "__name__",
-    "__file__",
-    "__doc__",
-    "__builtins__",
-    "__spec__",
-    "__package__",
-    "__loader__",
-    "__annotations__",
+    "__name__", "__file__", "__doc__", "__builtins__", "__spec__", "__package__", "__loader__", "__annotations__",
     "__path__",
-}
+}  # fmt: skip
 _GUARDS = {"hasattr", "isinstance", "issubclass", "callable", "type", "getattr", "platform"}
-_MOST = 400  # items of a comprehension that are read one by one
 
 
-class Expressions(Objects):
+class Expressions(State):
     """Reads expressions."""
 
     def value(self, node: ast.expr | None) -> Value:
@@ -95,11 +85,10 @@ class Expressions(Objects):
         while scope is not None:
             known |= scope.local | set(scope.values)
             scope = scope.outer
-        close = get_close_matches(name, known, n=1, cutoff=0.75)
-        return f'"{close[0]}"' if close else self.elsewhere(name)
+        return spelt(name, known, 0.75) or self.elsewhere(name)
 
     def _attribute(self, node: ast.Attribute) -> Value:
-        return self.attribute(self.value(node.value), node.attr, node)
+        return attributes.attribute(self, self.value(node.value), node.attr, node)
 
     def _call(self, node: ast.Call) -> Value:
         called = self.value(node.func)
@@ -123,7 +112,7 @@ class Expressions(Objects):
                 arguments.named |= {key: (item, keyword.value) for key, item in value.pairs.items()}
             else:
                 arguments.open = True
-        return self.call(called, arguments)
+        return calls.call(self, called, arguments)
 
     def _tuple(self, node: ast.Tuple) -> Value:
         return self._sequence(tuple, node.elts)
@@ -163,13 +152,13 @@ class Expressions(Objects):
 
     def _binop(self, node: ast.BinOp) -> Value:
         left, right = self.value(node.left), self.value(node.right)
-        found = self.tried(node, lambda: constants.binary(node.op, left, right))
+        found = self.tried(node, lambda: operators.binary(node.op, left, right))
         if found is UNKNOWN and isinstance(left, Instance) and left.type == "numpy.ndarray":
             return left
         return found
 
     def _unaryop(self, node: ast.UnaryOp) -> Value:
-        return constants.unary(node.op, self.value(node.operand))
+        return operators.unary(node.op, self.value(node.operand))
 
     def _boolop(self, node: ast.BoolOp) -> Value:
         result = self.value(node.values[0])
@@ -179,7 +168,7 @@ class Expressions(Objects):
                     self.value(each)
             return UNKNOWN
         for each in node.values[1:]:
-            known = constants.truth(result)
+            known = operators.truth(result)
             if known is not None and known == isinstance(node.op, ast.Or):
                 return result
             if known is None:
@@ -213,13 +202,13 @@ class Expressions(Objects):
         known = isinstance(left, (Items, Dict, Instance, Named, Function)) and not getattr(left, "loose", False)
         if known and isinstance(right, Const) and right.value is None and isinstance(op, (ast.Is, ast.IsNot)):
             return UNKNOWN if isinstance(left, Instance) else Const(isinstance(op, ast.IsNot))
-        return constants.compare(op, left, right)
+        return operators.compare(op, left, right)
 
     def _ifexp(self, node: ast.IfExp) -> Value:
         if guards(node.test):
             with self.problems.quiet(), self.unsure():
                 return merged(self.value(node.body), self.value(node.orelse))
-        known = constants.truth(self.value(node.test))
+        known = operators.truth(self.value(node.test))
         if known is not None:
             return self.value(node.body if known else node.orelse)
         with self.unsure():
@@ -240,7 +229,7 @@ class Expressions(Objects):
                 return value.pairs.get(key, UNKNOWN) if value.exact else UNKNOWN
             except (NotKnownError, TypeError):
                 return UNKNOWN
-        return self.tried(node, lambda: constants.subscript(value, index))
+        return self.tried(node, lambda: operators.subscript(value, index))
 
     def _sliced(self, value: Value, node: ast.Slice) -> Value:
         bounds = [None if part is None else self.value(part) for part in (node.lower, node.upper, node.step)]
@@ -250,35 +239,7 @@ class Expressions(Objects):
                 return Items(value.kind, value.items[cut])
             except (TypeError, ValueError):
                 return UNKNOWN
-        return constants.subscript(value, Const(cut)) if isinstance(value, Const) else UNKNOWN
-
-    def _joinedstr(self, node: ast.JoinedStr) -> Value:
-        text = ""
-        known = True
-        for part in node.values:
-            if isinstance(part, ast.Constant):
-                text += str(part.value)
-                continue
-            assert isinstance(part, ast.FormattedValue)
-            shown = self._formatted(part)
-            known = known and shown is not None
-            text += shown or ""
-        return Const(text) if known else Instance("builtins.str")
-
-    def _formatted(self, node: ast.FormattedValue) -> str | None:
-        value = self.value(node.value)
-        form = self.value(node.format_spec) if node.format_spec is not None else Const("")
-        if not isinstance(value, Const) or not isinstance(form, Const) or not _is_short(form.value):
-            return None
-        if not isinstance(value.value, (str, int, float, bool)):
-            return None
-        shown: dict[int, Callable[[object], str]] = {115: str, 114: repr, 97: ascii}
-        try:
-            if node.conversion in shown:
-                return format(shown[node.conversion](value.value), form.value)
-            return format(value.value, form.value)
-        except (ValueError, TypeError):
-            return None
+        return operators.subscript(value, Const(cut)) if isinstance(value, Const) else UNKNOWN
 
     def _namedexpr(self, node: ast.NamedExpr) -> Value:
         value = self.value(node.value)
@@ -293,84 +254,17 @@ class Expressions(Objects):
     def _starred(self, node: ast.Starred) -> Value:
         return self.value(node.value)
 
-    # -- comprehensions ------------------------------------------------------------------------------------------
-
     def _listcomp(self, node: ast.ListComp) -> Value:
-        return self._comprehension(node, list)
+        return comprehensions.items(self, node, list)
 
     def _setcomp(self, node: ast.SetComp) -> Value:
-        return self._comprehension(node, set)
+        return comprehensions.items(self, node, set)
 
     def _generatorexp(self, node: ast.GeneratorExp) -> Value:
-        return self._comprehension(node, list)
+        return comprehensions.items(self, node, list)
 
-    def _comprehension(self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp, kind: type) -> Value:
-        made: list[Value] = []
-        exact = self._each(node.generators, lambda: made.append(self.value(node.elt)))
-        if exact:
-            return Items(kind, made)
-        return Items(kind, [], exact=False, each=made[0] if len(made) == 1 else UNKNOWN)
-
-    def _dictcomp(self, node: ast.DictComp) -> Value:
-        pairs: dict[Any, Value] = {}
-
-        def add() -> None:
-            key, value = self.value(node.key), self.value(node.value)
-            pairs[plain(key)] = value
-
-        try:
-            return Dict(pairs) if self._each(node.generators, add) else Dict({}, exact=False)
-        except (NotKnownError, TypeError):
-            return Dict({}, exact=False)
-
-    def _each(self, generators: list[ast.comprehension], read: Callable[[], None]) -> bool:
-        """Read something for each round of a comprehension; False if they are not known, and one stands for all."""
-        first = self.value(generators[0].iter)
-        before = self.scope
-        names = frozenset().union(*(assigned([ast.Expr(g.target)]) for g in generators))
-        self.scope = Scope(names, before)
-        try:
-            return self._round(generators, 0, first, read)
-        finally:
-            self.scope = before
-
-    def _round(self, generators: list[ast.comprehension], depth: int, source: Value, read: Callable[[], None]) -> bool:
-        if depth == len(generators):
-            read()
-            return True
-        items = elements(source, _MOST)
-        self.steps -= len(items or ())
-        if items is None or self.steps <= 0:
-            each = each_of(source)
-            self.rounds += 1
-            with self.unsure():
-                self._one(generators, depth, each, read)
-            self.rounds -= 1
-            return False
-        exact = [self._one(generators, depth, item, read) for item in items]
-        return all(exact)
-
-    def _one(self, generators: list[ast.comprehension], depth: int, item: Value, read: Callable[[], None]) -> bool:
-        self.bind(generators[depth].target, item)
-        exact = True
-        for test in generators[depth].ifs:
-            known = constants.truth(self.value(test))
-            if known is False:
-                return exact
-            exact = exact and known is True
-        if depth + 1 < len(generators):
-            source = self.value(generators[depth + 1].iter)
-            return self._round(generators, depth + 1, source, read) and exact
-        if exact:
-            read()
-            return True
-        with self.unsure():
-            read()
-        return False
-
-    def bind(self, target: ast.expr, value: Value) -> None:
-        """Assign a value to a target; see `Statements`."""
-        raise NotImplementedError
+    _dictcomp = comprehensions.pairs
+    _joinedstr = strings.joined
 
 
 def guards(test: ast.expr) -> bool:
@@ -380,9 +274,3 @@ def guards(test: ast.expr) -> bool:
         if name in _GUARDS or "version" in name.lower():
             return True
     return False
-
-
-def _is_short(form: object) -> bool:
-    """Whether a format asks for no more than a line."""
-    digits = "".join(c if c.isdigit() else " " for c in str(form)).split()
-    return all(len(number) <= 2 for number in digits)

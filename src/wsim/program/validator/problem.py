@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 
 @dataclass(frozen=True)
@@ -59,3 +60,9 @@ class Problems:
     def sorted(self) -> list[Problem]:
         """All of them, in the order of the program."""
         return sorted(self._found.values(), key=lambda p: (p.line, p.column, p.code))
+
+
+def spelt(name: str, known: Iterable[str], cutoff: float = 0.6) -> str:
+    """The one of some names that is spelt most like a wrong one, in quotes; "" if none is near."""
+    close = get_close_matches(name, list(known), n=1, cutoff=cutoff)
+    return f'"{close[0]}"' if close else ""

@@ -6,14 +6,15 @@ import ast
 from typing import Any
 
 from wsim.program.api.lookup import Index
-from wsim.program.validator.functions import Functions
-from wsim.program.validator.values import UNKNOWN, Function, Instance, Value
+from wsim.program.validator import functions
+from wsim.program.validator.statements import Statements
+from wsim.program.validator.values import Function, Instance, Value
 
 _SCENE = "wsim.scene.Scene"
 _CONTROL_WORLD = "wsim.program.control_world.ControlWorld"
 
 
-class Reader(Functions):
+class Reader(Statements):
     """One reading of one program."""
 
     def __init__(self, index: Index, tree: ast.Module) -> None:
@@ -40,7 +41,7 @@ class Reader(Functions):
         for function in list(self.functions):
             if function.node not in self.called:
                 with self.unsure():
-                    self._guarded(lambda f=function: self.enter(f, {}, called=False))
+                    self._guarded(lambda f=function: functions.enter(self, f, {}, called=False))
 
     def _enter(self, function: Function, name: str, needs: str, first: Value) -> None:
         node = function.node
@@ -59,9 +60,9 @@ class Reader(Functions):
             given[places[0].arg] = first
         if name == "control":
             with self.unsure():
-                self._guarded(lambda: self.enter(function, given, called=False))
+                self._guarded(lambda: functions.enter(self, function, given, called=False))
             return
-        self._guarded(lambda: self.enter(function, given))
+        self._guarded(lambda: functions.enter(self, function, given))
         if self.whole and fits and not function.plain:
             self.whole = False
         empty = not self.world.names and not self.world.others and not self.world.open and self.world.trusted
@@ -75,6 +76,3 @@ class Reader(Functions):
         except RecursionError:
             self.whole = False
             self.world.open = True
-
-
-__all__ = ["UNKNOWN", "Reader"]

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from difflib import SequenceMatcher
-from typing import Any
+from typing import Any, Literal
 
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index, rank
 from wsim.program.api.words import parts, related, stem
+from wsim.program.validator.operators import FailsError
 from wsim.program.validator.problem import Problems
 from wsim.program.validator.scratch import World
-from wsim.program.validator.values import UNKNOWN, Function, Named, Scope, Value
+from wsim.program.validator.values import UNKNOWN, Function, Scope, Value
+
+Flow = Literal["on", "break", "continue", "return", "raise"]  # how statements end
 
 _NEAR = 0.55
 # Names of older versions whose new ones are spelt otherwise.
@@ -73,6 +76,28 @@ class State:
     def value(self, node: ast.expr | None) -> Value:
         """What an expression gives; see `Expressions`."""
         raise NotImplementedError
+
+    def block(self, body: list[ast.stmt]) -> Flow:
+        """Read statements in order, until one leaves; see `Statements`."""
+        raise NotImplementedError
+
+    def bind(self, target: ast.expr, value: Value) -> None:
+        """Assign a value to a name, to several, or to a part of something; see `Statements`."""
+        raise NotImplementedError
+
+    def tried(self, node: ast.AST, compute: Callable[[], Value]) -> Value:
+        """A value that is computed from known ones; a problem where that fails, as it will when the program runs."""
+        try:
+            return compute()
+        except FailsError as error:
+            if self.certain:
+                self.problems.add(node, "value", f"this fails: {error}")
+            return UNKNOWN
+
+    def unit_of(self, name: str) -> str:
+        """The unit of what was assigned to a name."""
+        holder = self.scope.holder(name)
+        return holder.units.get(name, "") if holder is not None else ""
 
     @contextmanager
     def unsure(self) -> Iterator[None]:
@@ -175,11 +200,3 @@ def _nearness(name: str, other: str) -> float:
     alike = {word for word in one if word in two or related(word) & two}
     start = 0.15 if other.lower().startswith(name.lower()) else 0.0
     return start + max(spelling, 0.5 * spelling + 0.6 * len(alike) / max(len(one), len(two)))
-
-
-def named(value: Value) -> str:
-    """The whole name of a module, class or function; "" of anything else."""
-    return value.name if isinstance(value, Named) else ""
-
-
-__all__ = ["UNKNOWN", "State", "assigned", "named"]

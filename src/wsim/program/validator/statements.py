@@ -3,33 +3,14 @@
 from __future__ import annotations
 
 import ast
-from typing import Literal
 
-from wsim.program.validator import constants, units
-from wsim.program.validator.expressions import guards
-from wsim.program.validator.importing import Importing
-from wsim.program.validator.state import assigned
-from wsim.program.validator.values import (
-    UNKNOWN,
-    Const,
-    Dict,
-    Instance,
-    Items,
-    NotKnownError,
-    Object,
-    Scope,
-    Value,
-    blur,
-    each_of,
-    elements,
-    merged,
-    plain,
-)
-
-Flow = Literal["on", "break", "continue", "return", "raise"]
+from wsim.program.validator import assignments, functions, importing, objects, operators
+from wsim.program.validator.expressions import Expressions, guards
+from wsim.program.validator.state import Flow, assigned
+from wsim.program.validator.values import UNKNOWN, Const, Value, blur, each_of, elements, merged
 
 
-class Statements(Importing):
+class Statements(Expressions):
     """Reads statements."""
 
     def block(self, body: list[ast.stmt]) -> Flow:
@@ -51,103 +32,15 @@ class Statements(Importing):
                 self.value(child)
         return "on"
 
-    # -- assignments ---------------------------------------------------------------------------------------------
-
-    def _do_assign(self, node: ast.Assign) -> None:
-        value = self.value(node.value)
-        told = units.said(node.value, self.unit_of)
-        for target in node.targets:
-            self._units_of_target(target, node.value, told)
-            self.bind(target, value)
-            if isinstance(target, ast.Name):
-                self.scope.units[target.id] = told
-
-    def _do_annassign(self, node: ast.AnnAssign) -> None:
-        if node.value is not None:
-            self.bind(node.target, self.value(node.value))
-
-    def _do_augassign(self, node: ast.AugAssign) -> None:
-        right = self.value(node.value)
-        if isinstance(node.target, ast.Name):
-            left = self._name(ast.copy_location(ast.Name(node.target.id, ast.Load()), node.target))
-            if isinstance(left, Items) and left.kind is list:
-                more = elements(right)
-                if self.certain and left.exact and more is not None and isinstance(node.op, ast.Add):
-                    left.items.extend(more)
-                else:
-                    blur(left)
-                return
-            self.bind(node.target, self.tried(node, lambda: constants.binary(node.op, left, right)))
-        elif isinstance(node.target, ast.Attribute):
-            owner = self.value(node.target.value)
-            held = self.attribute(owner, node.target.attr, node.target)
-            if isinstance(owner, Object):
-                blur(held)
-                kept: Value = held if isinstance(held, (Items, Dict)) else UNKNOWN
-                if isinstance(held, Const):
-                    kept = self.tried(node, lambda: constants.binary(node.op, held, right))
-                self.store_in(owner, node.target.attr, kept)
-            self._units_of_target(node.target, node.value, units.said(node.value, self.unit_of))
-        elif isinstance(node.target, ast.Subscript):
-            blur(self.value(node.target.value))
-
-    def _units_of_target(self, target: ast.expr, value: ast.expr, told: str) -> None:
-        """A joint's target is in radians."""
-        if isinstance(target, ast.Attribute) and target.attr == "target" and told == "deg":
-            owner = self.value(target.value)
-            if isinstance(owner, Instance) and owner.type.endswith(".ControlJoint"):
-                message = '"target" of a joint is in radians, and is given degrees; convert with math.radians'
-                self.problems.add(value, "unit", message)
-
-    def bind(self, target: ast.expr, value: Value) -> None:
-        """Assign a value to a name, to several, or to a part of something."""
-        if isinstance(target, ast.Name):
-            holder = self.scope if self.scope.of_class else self.scope.holder(target.id) or self.scope
-            holder.values[target.id] = UNKNOWN if target.id in self.shared else value
-        elif isinstance(target, (ast.Tuple, ast.List)):
-            self._unpack(target, value)
-        elif isinstance(target, ast.Starred):
-            self.bind(target.value, UNKNOWN)
-        elif isinstance(target, ast.Attribute):
-            owner = self.value(target.value)
-            if isinstance(owner, Object):
-                self.store_in(owner, target.attr, value)
-            else:
-                self.store(owner, target.attr, target)
-        elif isinstance(target, ast.Subscript):
-            self._put(self.value(target.value), self.value(target.slice), value)
-
-    def _unpack(self, target: ast.Tuple | ast.List, value: Value) -> None:
-        items = elements(value)
-        starred = any(isinstance(each, ast.Starred) for each in target.elts)
-        if items is not None and not starred and len(items) != len(target.elts):
-            counts = f"{len(target.elts)} names are given {len(items)} values"
-            self.problems.add(target, "value", counts)
-        if items is None or starred or len(items) != len(target.elts):
-            items = [each_of(value)] * len(target.elts)
-        for part, item in zip(target.elts, items, strict=True):
-            self.bind(part, item)
-
-    def _put(self, holder: Value, index: Value, value: Value) -> None:
-        try:
-            if isinstance(holder, Dict) and self.certain and holder.exact:
-                holder.pairs[plain(index)] = value
-                return
-            if isinstance(holder, Items) and self.certain and holder.exact and holder.kind is list:
-                holder.items[plain(index)] = value
-                return
-        except (NotKnownError, TypeError, IndexError):
-            pass
-        blur(holder)
-
-    def _do_delete(self, node: ast.Delete) -> None:
-        for target in node.targets:
-            if isinstance(target, ast.Name):
-                self.scope.values[target.id] = UNKNOWN
-            else:
-                blur(self.value(getattr(target, "value", None)))
-
-    # -- flow ----------------------------------------------------------------------------------------------------
+    bind = assignments.bind
+    _do_assign = assignments.assign
+    _do_annassign = assignments.annotated
+    _do_augassign = assignments.augmented
+    _do_delete = assignments.delete
+    _do_import = importing.modules
+    _do_importfrom = importing.names
+    _do_functiondef = _do_asyncfunctiondef = functions.define
+    _do_classdef = objects.define
 
     def _do_expr(self, node: ast.Expr) -> None:
         self.value(node.value)
@@ -184,7 +77,7 @@ class Statements(Importing):
             with self.problems.quiet():
                 self.block(node.body)
             return "on"
-        known = constants.truth(self.value(node.test))
+        known = operators.truth(self.value(node.test))
         if known is not None:
             return self.block(node.body if known else node.orelse)
         return self._branches([node.body, node.orelse])
@@ -321,16 +214,6 @@ class Statements(Importing):
     def _do_global(self, node: ast.Global) -> None:
         for name in node.names:
             self.module.values.setdefault(name, UNKNOWN)
-
-    def _do_classdef(self, node: ast.ClassDef) -> None:
-        bases = [self.value(each) for each in node.bases]
-        for each in node.decorator_list:
-            self.value(each)
-        inner = Scope(assigned(node.body), self.scope, of_class=True)
-        before, self.scope = self.scope, inner
-        self.block(node.body)
-        self.scope = before
-        self.bind(ast.Name(node.name), self.made_class(node, inner.values, bases))
 
 
 def _joined(ends: list[dict[str, Value]]) -> dict[str, Value]:

@@ -13,6 +13,7 @@ from pxr import Sdf
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index
 from wsim.program.validator.arguments import Arguments
+from wsim.program.validator.problem import spelt
 from wsim.program.validator.state import State
 from wsim.program.validator.types import class_of
 from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, Value
@@ -107,10 +108,9 @@ def _schema_name(reader: State, call: str, value: Value, node: ast.AST) -> None:
     entry = reader.entry(value.value.partition(":")[0])
     if entry is None or entry.kind != "schema":
         known = reader.index.programs.schemas()
-        close = get_close_matches(value.value, known, n=1, cutoff=0.6)
         if call != "ApplyAPI" and not get_close_matches(value.value, known, n=1, cutoff=0.88):
             return  # a stage may name schemas that are not installed
-        reader.problems.add(node, "name", f'no schema "{value.value}" is installed', f'"{close[0]}"' if close else "")
+        reader.problems.add(node, "name", f'no schema "{value.value}" is installed', spelt(value.value, known))
 
 
 def _makes(reader: State, entry: Entry, bound: dict[str, Any], arguments: Arguments) -> None:
@@ -130,9 +130,9 @@ def _makes(reader: State, entry: Entry, bound: dict[str, Any], arguments: Argume
     if entry.short == "DefinePrim" and isinstance(kind, Const) and isinstance(kind.value, str) and kind.value:
         found = reader.entry(kind.value)
         if found is None or found.kind != "schema":
-            close = get_close_matches(kind.value, reader.index.programs.schemas(), n=1, cutoff=0.6)
+            close = spelt(kind.value, reader.index.programs.schemas())
             if close:
-                reader.problems.add(kind_node, "name", f'no schema "{kind.value}" is installed', f'"{close[0]}"')
+                reader.problems.add(kind_node, "name", f'no schema "{kind.value}" is installed', close)
 
 
 def _schema_attribute(reader: State, name: str) -> str:
@@ -203,9 +203,8 @@ def _value(reader: State, entry: Entry, attribute: Entry | None, value: Value, n
         return
     allowed = attribute.extra.get("allowed") if attribute is not None else None
     if allowed and isinstance(value, Const) and value.value not in allowed:
-        close = get_close_matches(str(value.value), allowed, n=1, cutoff=0.5)
         message = f'"{base}" = "{value.value}" must be one of {", ".join(allowed)}'
-        reader.problems.add(node, "value", message, f'"{close[0]}"' if close else "")
+        reader.problems.add(node, "value", message, spelt(str(value.value), allowed, 0.5))
 
 
 def _is_wrong(kind: str, value: Const | Items) -> bool:
