@@ -100,10 +100,7 @@ class ControlProcess:
         self._open: list[int] = []
         self._first = True
         self._watched = time.monotonic()
-        memory = os.memfd_create("wsim-control", os.MFD_ALLOW_SEALING | os.MFD_CLOEXEC)
-        os.ftruncate(memory, layout.size)
-        # A file that its other user could cut short would crash this process on its next look.
-        fcntl.fcntl(memory, _ADD_SEALS, _SEALS)
+        memory = _shared_memory(layout.size)
         self._arrays = layout.views(mmap.mmap(memory, layout.size))
         ask_read, self._ask = os.pipe()
         self._answer, answer_write = os.pipe()
@@ -116,18 +113,8 @@ class ControlProcess:
             "ask_fd": ask_read,
             "answer_fd": answer_write,
         }
-        theirs = [memory, ask_read, answer_write]
         paths = [self._program, *(Path(path).resolve() for path in readable)]
-        try:
-            self._process = SandboxProcess(
-                job, limits=self._limits, isolation=isolation, readable=paths, descriptors=theirs
-            )
-        except BaseException:
-            self._close_pipes()
-            raise
-        finally:
-            for descriptor in theirs:
-                os.close(descriptor)
+        self._process = self._started(job, [memory, ask_read, answer_write], isolation, paths)
         self._poll = select.poll()
         self._poll.register(self._answer, select.POLLIN)
         try:
@@ -182,6 +169,19 @@ class ControlProcess:
         self._process.close()
         self._close_pipes()
         self._arrays = {}  # the shared memory goes with its last view
+
+    def _started(
+        self, job: dict[str, Any], theirs: Sequence[int], isolation: str, readable: Sequence[Path]
+    ) -> SandboxProcess:
+        """The process at work on a job; `theirs` are its ends of what is shared, and closed here."""
+        try:
+            return SandboxProcess(job, limits=self._limits, isolation=isolation, readable=readable, descriptors=theirs)
+        except BaseException:
+            self._close_pipes()
+            raise
+        finally:
+            for descriptor in theirs:
+                os.close(descriptor)
 
     def _write(self, t: float, arrays: Mapping[str, ArrayLike]) -> None:
         if not self._open:
@@ -242,3 +242,12 @@ class ControlProcess:
     def _close_pipes(self) -> None:
         while self._open:
             os.close(self._open.pop())
+
+
+def _shared_memory(size: int) -> int:
+    """A descriptor of memory of so many bytes, whose size nobody can change."""
+    memory = os.memfd_create("wsim-control", os.MFD_ALLOW_SEALING | os.MFD_CLOEXEC)
+    os.ftruncate(memory, size)
+    # A file that its other user could cut short would crash this process on its next look.
+    fcntl.fcntl(memory, _ADD_SEALS, _SEALS)
+    return memory

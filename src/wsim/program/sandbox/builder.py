@@ -73,11 +73,7 @@ def build(
                 log = printable(process.log)
                 problems: list[str] = []
                 if kind == "ok":
-                    kind, message = _look(target, limits)
-                if kind == "ok":
-                    checker.send(b"g")
-                    checker.wait(limits.check_seconds)
-                    kind, message, problems = _checked(checker)
+                    kind, message, problems = _stage(target, checker, limits)
         finally:
             os.close(target)
         if kind == "ok":
@@ -100,6 +96,16 @@ def _numbers(params: Mapping[str, float]) -> dict[str, float]:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
             raise UserError(f"parameter {name} = {value!r} must be a finite number")
     return {str(name): float(value) for name, value in params.items()}
+
+
+def _stage(target: int, checker: SandboxProcess, limits: Limits) -> tuple[Kind, str, list[str]]:
+    """What is to be said of the stage that a program wrote, without having it read in this process."""
+    kind, message = _look(target, limits)
+    if kind != "ok":
+        return kind, message, []
+    checker.send(b"g")
+    checker.wait(limits.check_seconds)
+    return _checked(checker)
 
 
 def _look(target: int, limits: Limits) -> tuple[Kind, str]:
