@@ -21,7 +21,7 @@ def test_a_recorded_run_is_made_again(recorded: Path, tmp_path: Path) -> None:
     again = replay(recorded, tmp_path, device="cpu")
     before = json.loads((recorded / "run.json").read_text(encoding="utf-8"))
     after = again.generated.run.facts()
-    assert after["status"] == before["status"]
+    assert after["status"] == before["status"], (after["summary"], again.divergences[:3])
     assert after.get("best") == before.get("best")
     assert [(row["reached"], row["kept"]) for row in after["iterations"]] == [
         (row["reached"], row["kept"]) for row in before["iterations"]
