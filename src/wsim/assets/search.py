@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import SequenceMatcher
 from itertools import takewhile
 from typing import Literal
 
 from wsim.assets.catalogue import Asset, load_catalogue
+from wsim.search.words import alike, singular, split
 
 Kind = Literal["id", "name", "stem", "phrase", "words", "fuzzy"]
 
 # The best that each kind of match can reach. Above a half, the noun itself is what the asset is called.
 ID, NAME, STEM, PHRASE, WORDS, FUZZY = 1.0, 0.9, 0.8, 0.7, 0.45, 0.3
 ASIDE = 0.5  # what counts less: a name after a preposition ("a lamp on a desk" is a lamp), a word that only describes
-ALIKE = 0.8  # share of two words' letters from which one may be a slip for the other
-SHORTEST = 4  # letters of a word that may be a slip: shorter ones are like too many others
 
 _ARTICLES = frozenset({"a", "an", "the", "some", "any", "my", "your", "one"})
 _PREPOSITIONS = frozenset(
@@ -54,7 +51,7 @@ def search(words: str, limit: int = 5, catalogue: Mapping[str, Asset] | None = N
     """
     if limit < 1:
         raise ValueError(f"limit = {limit} must be at least 1")
-    query = [word for word in _split(words) if word not in _ARTICLES]
+    query = [word for word in split(words) if word not in _ARTICLES]
     if not query:
         return []
     assets = (load_catalogue() if catalogue is None else catalogue).values()
@@ -63,22 +60,8 @@ def search(words: str, limit: int = 5, catalogue: Mapping[str, Asset] | None = N
     return sorted(hits, key=lambda hit: (-hit.score, hit.asset.id))[:limit]
 
 
-def stem(word: str) -> str:
-    """A noun in the singular, by the rules of English spelling: shelves, benches, dominoes, desks."""
-    for ending, instead in (("ies", "y"), ("lves", "lf"), ("oes", "o")):
-        if word.endswith(ending) and len(word) > len(ending) + 2:
-            return word.removesuffix(ending) + instead
-    if re.search(r"(ss|x|ch|sh)es$", word):
-        return word.removesuffix("es")
-    return word.removesuffix("s") if len(word) > 3 and not word.endswith(("ss", "us")) else word
-
-
-def _split(text: str) -> list[str]:
-    return re.findall(r"[a-z0-9]+", text.lower())
-
-
 def _stems(words: Sequence[str]) -> tuple[str, ...]:
-    return tuple(stem(word) for word in words)
+    return tuple(singular(word) for word in words)
 
 
 def _matches(asset: Asset, query: list[str]) -> Iterator[Hit]:
@@ -87,24 +70,24 @@ def _matches(asset: Asset, query: list[str]) -> Iterator[Hit]:
     head = tuple(takewhile(lambda word: word not in _PREPOSITIONS, stems)) or stems
     for name in dict.fromkeys((asset.id, *asset.names)):
         of_id = name == asset.id
-        words = _split(name)
-        singular = _stems(words)
+        words = split(name)
+        noun = _stems(words)
         if words == query:
             yield Hit(asset, ID if of_id else NAME, "id" if of_id else "name", name)
-        elif singular == stems or "".join(singular) == "".join(stems):
+        elif noun == stems or "".join(noun) == "".join(stems):
             yield Hit(asset, STEM if of_id else STEM - 0.02, "stem", name)
         else:
-            yield from _within(asset, name, singular, head, stems)
+            yield from _within(asset, name, noun, head, stems)
             yield from _slip(asset, name, query, head)
     yield from _by_words(asset, head)
 
 
 def _within(
-    asset: Asset, name: str, singular: tuple[str, ...], head: tuple[str, ...], stems: tuple[str, ...]
+    asset: Asset, name: str, called: tuple[str, ...], head: tuple[str, ...], stems: tuple[str, ...]
 ) -> Iterator[Hit]:
     """A name among other words; one at the end of the head is the noun that the others describe."""
-    count = len(singular)
-    ends = [k + count for k in range(len(stems) - count + 1) if stems[k : k + count] == singular]
+    count = len(called)
+    ends = [k + count for k in range(len(stems) - count + 1) if stems[k : k + count] == called]
     if not ends:
         return
     in_head = [end for end in ends if end <= len(head)]
@@ -116,12 +99,12 @@ def _within(
 
 def _by_words(asset: Asset, head: tuple[str, ...]) -> Iterator[Hit]:
     """Single words; the last one of the head must be a noun of them: "wooden stool" is no wooden table."""
-    named = [_split(name) for name in asset.names]
+    named = [split(name) for name in asset.names]
     sources = (
         (1.0, [words[-1] for words in named]),  # the noun of a name
-        (0.9, _split(asset.category)),
+        (0.9, split(asset.category)),
         (ASIDE, [word for words in named for word in words]),
-        (ASIDE, _split(asset.description)),
+        (ASIDE, split(asset.description)),
     )
     weights: dict[str, float] = {}
     for weight, words in sources:
@@ -136,8 +119,6 @@ def _by_words(asset: Asset, head: tuple[str, ...]) -> Iterator[Hit]:
 def _slip(asset: Asset, name: str, query: list[str], head: tuple[str, ...]) -> Iterator[Hit]:
     """A name that is nearly the query, or nearly its noun."""
     for said, most in ((" ".join(query), FUZZY), (head[-1], 0.9 * FUZZY)):
-        if min(len(said), len(name)) < SHORTEST:
-            continue
-        alike = SequenceMatcher(None, said, name).ratio()
-        if alike >= ALIKE:
-            yield Hit(asset, round(most * alike, 4), "fuzzy", name)
+        share = alike(said, name)
+        if share:
+            yield Hit(asset, round(most * share, 4), "fuzzy", name)

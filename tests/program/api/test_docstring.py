@@ -3,7 +3,6 @@ from __future__ import annotations
 import pytest
 
 from wsim.program.api.docstring import meanings, said_of, unit
-from wsim.program.api.words import related, stem, words
 
 GOOGLE = """Do it.
 
@@ -51,10 +50,3 @@ def test_units_stand_in_brackets(text: str, name: str, expected: str) -> None:
 def test_the_sentence_that_speaks_of_a_name() -> None:
     assert said_of("axis", "It turns. `axis` is a direction. `low` is not.") == "`axis` is a direction."
     assert said_of("axis", "It turns about an axis.") == ""
-
-
-def test_words_of_one_stem_and_of_one_meaning() -> None:
-    assert stem("hinges") == stem("hinged") == stem("hinge")
-    assert words("CreateMassAttr") == [stem("create"), stem("mass"), stem("attr")]
-    assert stem("revolute") in related(stem("hinge"))
-    assert stem("hinge") not in related(stem("hinge"))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -137,3 +139,13 @@ def test_newton_and_warp_are_marked_as_not_for_programs(api: Index) -> None:
     assert not api.show("newton.ModelBuilder").programs
     assert not api.show("warp.quat_identity").programs
     assert api.show("box").programs
+
+
+def test_schemas_are_whole_where_usd_has_read_its_own_before() -> None:
+    code = (
+        "from pxr import Usd; Usd.SchemaRegistry().FindConcretePrimDefinition('Cube')\n"
+        "from wsim.program.api.sources import usd_schemas\n"
+        "print(*(entry.name for entry in usd_schemas.entries()))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert {"PhysicsMassAPI", "NewtonSceneAPI", "WsimFluidAPI"} <= set(done.stdout.split())

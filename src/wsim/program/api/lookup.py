@@ -13,6 +13,8 @@ from wsim.program.api.entry import Entry
 from wsim.program.api.search import Hit, Searcher
 from wsim.program.api.sources import all as sources
 from wsim.program.api.store import Store
+from wsim.program.api.vocabulary import vocabulary
+from wsim.search.ranking import meant
 
 _KEPT = 4  # files of a part in the cache
 Progress = Callable[[str], None]
@@ -37,13 +39,18 @@ class Index:
         self._searcher = _searcher
 
     def search(self, words: str, limit: int = 8) -> list[Hit]:
-        """The entries that fit some words best, by the words and by their meaning.
+        """The entries that fit some words best, by the words, and by those of the same meaning.
 
         Args:
             words: What is wanted, in a person's words or a name's: "hinge", "how heavy", "GetPrimAtPath".
             limit: At most so many.
         """
-        found = [hit for store in (self.programs, self._lower()) for hit in self._searcher(store).search(words, limit)]
+        stores = (self.programs, self._lower())
+        asked = [
+            meant(word, vocabulary(), *(store.ranking for store in stores))
+            for word in dict.fromkeys(vocabulary().stems(words))
+        ]
+        found = [hit for store in stores for hit in self._searcher(store).search(words, asked, limit)]
         return sorted(found, key=lambda hit: -hit.score)[:limit]
 
     def show(self, name: str) -> Entry:

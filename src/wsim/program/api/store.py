@@ -7,22 +7,22 @@ import json
 import os
 import sqlite3
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-import numpy as np
-
 from wsim.program.api.entry import Entry
-from wsim.program.api.vectors import DIMENSIONS, Floats, Term, build
+from wsim.program.api.vocabulary import vocabulary
+from wsim.search.ranking import Ranking
 
 _TABLES = """
 CREATE TABLE entries (id INTEGER PRIMARY KEY, name TEXT UNIQUE, parent TEXT, short TEXT, source TEXT, kind TEXT,
     data TEXT);
-CREATE TABLE terms (word TEXT PRIMARY KEY, ids BLOB, weights BLOB, rarity REAL, vector BLOB);
-CREATE TABLE blobs (name TEXT PRIMARY KEY, data BLOB);
 """
 _INDEXES = "CREATE INDEX by_parent ON entries (parent); CREATE INDEX by_short ON entries (short);"
+# What a word counts by where it stands.
+_WEIGHTS = {"short": 6.0, "parent": 3.0, "summary": 4.0, "doc": 1.0, "parameters": 3.0}
+_DOC = 1200  # characters of a docstring that are read
 
 
 class Store:
@@ -30,6 +30,7 @@ class Store:
 
     def __init__(self, connection: sqlite3.Connection) -> None:
         self._base = connection
+        self.ranking = Ranking(connection, _WEIGHTS)
         self.find = lru_cache(maxsize=None)(self._find)
         self.children = lru_cache(maxsize=None)(self._children)
 
@@ -46,15 +47,7 @@ class Store:
                 for i, e in enumerate(kept)
             ),
         )
-        terms, meaning = build(kept)
-        base.executemany(
-            "INSERT INTO terms VALUES (?, ?, ?, ?, ?)",
-            (
-                (word, t.ids.tobytes(), t.weights.tobytes(), float(t.rarity), t.vector.tobytes())
-                for word, t in terms.items()
-            ),
-        )
-        base.execute("INSERT INTO blobs VALUES ('meaning', ?)", (meaning.tobytes(),))
+        Ranking.create(base, _WEIGHTS, ((i, list(_columns(entry))) for i, entry in enumerate(kept)))
         base.executescript(_INDEXES)
         base.commit()
         return cls(base)
@@ -66,8 +59,8 @@ class Store:
             return None
         try:
             base = sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro&immutable=1", uri=True, check_same_thread=False)
-            base.execute("SELECT length(data) FROM blobs WHERE name = 'meaning'").fetchone()[0]
-        except (sqlite3.Error, TypeError):
+            base.execute("SELECT 1 FROM ranked_words LIMIT 1").fetchone()
+        except sqlite3.Error:
             return None
         return cls(base)
 
@@ -139,19 +132,9 @@ class Store:
         """The whole name of each entry, by number."""
         return [row[0] for row in self._base.execute("SELECT name FROM entries ORDER BY id")]
 
-    def term(self, word: str) -> Term | None:
-        """What is known of a stemmed word."""
-        row = self._base.execute("SELECT ids, weights, rarity, vector FROM terms WHERE word = ?", (word,)).fetchone()
-        if row is None:
-            return None
-        return Term(
-            np.frombuffer(row[0], np.int32),
-            np.frombuffer(row[1], np.float32),
-            row[2],
-            np.frombuffer(row[3], np.float32),
-        )
 
-    def meaning(self) -> Floats:
-        """The entries' vectors of meaning."""
-        row = self._base.execute("SELECT data FROM blobs WHERE name = 'meaning'").fetchone()
-        return np.frombuffer(row[0], np.float32).reshape(-1, DIMENSIONS)
+def _columns(entry: Entry) -> Iterator[list[str]]:
+    """The stems of an entry's name, of what it is in, of its docstring and of its parameters."""
+    own = " ".join(parameter.name for parameter in entry.parameters) if entry.source == "wsim" else ""
+    for text in (entry.short, entry.parent.rpartition(".")[2], entry.summary, entry.doc[:_DOC], own):
+        yield vocabulary().stems(text)

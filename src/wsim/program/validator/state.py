@@ -10,11 +10,12 @@ from typing import Any, Literal
 
 from wsim.program.api.entry import Entry
 from wsim.program.api.lookup import Index, rank
-from wsim.program.api.words import parts, related, stem
+from wsim.program.api.vocabulary import vocabulary
 from wsim.program.validator.operators import FailsError
 from wsim.program.validator.problem import Problems
 from wsim.program.validator.scratch import World
 from wsim.program.validator.values import UNKNOWN, Function, Scope, Value
+from wsim.search.words import split, stem
 
 Flow = Literal["on", "break", "continue", "return", "raise"]  # how statements end
 
@@ -150,7 +151,7 @@ class State:
         if holder.startswith("wsim."):
             for each in names:
                 entry = self.member(holder, each)
-                if entry is not None and any(stem(p.name) in parts(name) - _VERBS for p in entry.parameters):
+                if entry is not None and any(stem(p.name) in _parts(name) for p in entry.parameters):
                     return each
         return ""
 
@@ -191,12 +192,17 @@ def assigned(body: list[Any]) -> frozenset[str]:
     return frozenset(found - outer)
 
 
+def _parts(name: str) -> set[str]:
+    """The stemmed words of a name that say what it is about."""
+    return {stem(part) for part in split(name)} - _VERBS
+
+
 def _nearness(name: str, other: str) -> float:
     """How likely one name is meant by another: by its spelling, its words, and words of the same meaning."""
     spelling = SequenceMatcher(None, name.lower(), other.lower()).ratio()
-    one, two = parts(name) - _VERBS, parts(other) - _VERBS
+    one, two = _parts(name), _parts(other)
     if not one or not two:
         return spelling
-    alike = {word for word in one if word in two or related(word) & two}
+    alike = {word for word in one if word in two or vocabulary().related(word) & two}
     start = 0.15 if other.lower().startswith(name.lower()) else 0.0
     return start + max(spelling, 0.5 * spelling + 0.6 * len(alike) / max(len(one), len(two)))

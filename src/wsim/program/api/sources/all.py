@@ -17,7 +17,7 @@ PACKAGES = {
     "programs": ("numpy", "usd-core", "newton-usd-schemas", "griffelib"),
     "lower": ("newton", "warp-lang", "griffelib"),
 }
-_FORMAT = "1"
+_FORMAT = "2"
 
 
 def key(part: Part) -> str:
@@ -28,15 +28,18 @@ def key(part: Part) -> str:
             parts.append(f"{name} {metadata.version(name)}")
         except metadata.PackageNotFoundError:
             parts.append(f"{name} -")
-    home = Path(__file__).parents[3]
-    files = sorted((home / "program" / "api").rglob("*.py"))
-    if part == "programs":
-        files += sorted((home / "scene").rglob("*"))
-        files += [home / "program" / "control_world.py", *sorted((home / "assets").glob("*.py"))]
-    for file in files:
-        if file.suffix in (".py", ".usda", ".json") and file.is_file():
-            parts.append(hashlib.sha256(file.read_bytes()).hexdigest())
+    parts += [hashlib.sha256(file.read_bytes()).hexdigest() for file in files(part)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:24]
+
+
+def files(part: Part) -> list[Path]:
+    """The files of wsim's that a part hangs on: what reads and stems it, and what of it programs may use."""
+    home = Path(__file__).parents[3]
+    found = sorted([*(home / "program" / "api").rglob("*"), *(home / "search").rglob("*")])
+    if part == "programs":
+        found += sorted((home / "scene").rglob("*"))
+        found += [home / "program" / "control_world.py", *sorted((home / "assets").glob("*.py"))]
+    return [file for file in found if file.suffix in (".py", ".usda", ".json", ".toml") and file.is_file()]
 
 
 def entries(part: Part, progress: Callable[[str], None]) -> Iterator[Entry]:

@@ -1,8 +1,7 @@
 """USD's Python modules, by introspection.
 
 The bindings have no docstrings in the packages that are installed with pip; what they do tell is how each function is
-called, to whoever calls it wrongly: given more arguments than any function has, each answers with its C++ signatures
-and does nothing. What calls return is seen by calling harmless ones on a stage in memory.
+called. What calls return is seen by calling harmless ones on a stage in memory.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
-import re
 from collections.abc import Iterator
 from types import ModuleType
 from typing import Any
@@ -19,16 +17,9 @@ import pxr
 
 from wsim.program.api.docstring import clean, summary
 from wsim.program.api.entry import Entry, Parameter
+from wsim.program.api.sources.pxr_overloads import is_binding, overloads
 from wsim.program.api.sources.pxr_results import results
 from wsim.program.api.sources.python_package import function_entry
-
-_TOO_MANY = 64
-_NAMESPACE = re.compile(r"pxrInternal_v\w+?__pxrReserved__::|std::__cxx11::|std::")
-_TEMPLATES = (
-    (re.compile(r"basic_string<.*?> ?>"), "string"),
-    (re.compile(r"pxr_boost::python::(?:api::)?"), ""),
-    (re.compile(r"Tf(?:Weak|Ref)Ptr<(\w+)>"), r"\1"),
-)
 
 
 def modules() -> list[ModuleType]:
@@ -60,7 +51,7 @@ def _of(value: Any, name: str, module: str, returned: dict[str, str]) -> Iterato
         if value.__module__.startswith(module) or value.__module__.startswith("pxr."):
             yield from _of_class(value, name, module, returned)
         return
-    if _is_binding(value):
+    if is_binding(value):
         yield Entry(name, "function", "pxr", overloads(value), returned.get(name, ""), doc=clean(value.__doc__))
     elif callable(value) and inspect.isroutine(value):
         yield function_entry(value, name, "pxr", "function")
@@ -72,7 +63,7 @@ def _of_class(value: type, name: str, module: str, returned: dict[str, str]) -> 
     bases = tuple(_class_name(base) for base in value.__mro__[1:-1] if base.__module__.startswith("pxr."))
     doc = clean(value.__doc__)
     start = inspect.getattr_static(value, "__init__", None)
-    ways = _without_self(overloads(start)) if _is_binding(start) else ()
+    ways = _without_self(overloads(start)) if is_binding(start) else ()
     if any("raw" in p.annotation for way in ways for p in way):
         ways = ()
     yield Entry(name, "class", "pxr", ways, name, bases, summary(doc), doc[:2000])
@@ -83,7 +74,7 @@ def _of_class(value: type, name: str, module: str, returned: dict[str, str]) -> 
         function = member.__func__ if isinstance(member, (staticmethod, classmethod)) else member
         if isinstance(member, type):
             yield from _of(member, whole, module, returned)
-        elif _is_binding(function):
+        elif is_binding(function):
             found = overloads(function)
             ways = found if isinstance(member, staticmethod) else _without_self(found)
             yield Entry(
@@ -98,70 +89,8 @@ def _of_class(value: type, name: str, module: str, returned: dict[str, str]) -> 
             yield Entry(whole, "attribute", "pxr", returns=_class_name(type(member)))
 
 
-def overloads(function: Any) -> tuple[tuple[Parameter, ...], ...]:
-    """The ways to call a bound C++ function, as it answers to a call that no way fits; empty if it does not tell."""
-    try:
-        function(*[_Nothing()] * _TOO_MANY)
-    except Exception as error:  # noqa: BLE001 - each binding raises its own kind
-        _, found, text = str(error).partition("did not match C++ signature:")
-    else:
-        return ()
-    if not found:
-        return ()
-    ways = [_parse(line.strip()) for line in text.strip().splitlines()]
-    # A function that takes whatever it is given tells of one parameter, or of none.
-    return () if None in ways else tuple(way for way in ways if way is not None)
-
-
-class _Nothing:
-    """What no function takes."""
-
-
-def _parse(line: str) -> tuple[Parameter, ...] | None:
-    line = _NAMESPACE.sub("", line)
-    for pattern, plain in _TEMPLATES:
-        line = pattern.sub(plain, line)
-    inside = re.match(r"^\S+?\((.*)\)$", line)
-    if inside is None or "..." in line:
-        return None
-    return tuple(_parameter(part) for part in _split(inside[1]) if part != "void")
-
-
-def _split(text: str) -> list[str]:
-    """Arguments at commas that stand in no brackets or quotes."""
-    parts, depth, quote, start = [], 0, "", 0
-    for i, c in enumerate(text):
-        if quote:
-            quote = "" if c == quote else quote
-        elif c in "'\"":
-            quote = c
-        elif c in "<([{":
-            depth += 1
-        elif c in ">)]}":
-            depth -= 1
-        elif c == "," and depth == 0:
-            parts.append(text[start:i].strip())
-            start = i + 1
-    return [*parts, text[start:].strip()] if text.strip() else parts
-
-
-def _parameter(text: str) -> Parameter:
-    declared, equals, default = text.partition("=")
-    declared = declared.replace("{lvalue}", "").strip()
-    kind, _, name = declared.rpartition(" ")
-    if not kind or not re.fullmatch(r"\w+", name) or (declared.startswith("unsigned") and kind == "unsigned"):
-        kind, name = declared, ""
-    if name in ("int", "long", "char", "double", "short", "const"):
-        kind, name = declared, ""
-    return Parameter(name, "either" if name else "positional", kind.strip(), default.strip() if equals else None)
-
-
 def _without_self(ways: tuple[tuple[Parameter, ...], ...]) -> tuple[tuple[Parameter, ...], ...]:
     return tuple(way[1:] for way in ways)
-
-
-def _is_binding(value: object) -> bool:
-    return type(value).__module__ == "Boost.Python" and type(value).__name__ == "function"
 
 
 def _class_name(kind: type) -> str:

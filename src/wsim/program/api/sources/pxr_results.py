@@ -10,6 +10,8 @@ from typing import Any
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics, UsdShade
 
+from wsim.program.api.sources.pxr_overloads import is_binding, overloads
+
 _SECONDS = 60.0
 # What only looks, or adds to the stage in memory.
 _HARMLESS = re.compile(
@@ -72,14 +74,14 @@ class _Looker:
             for key, value in sorted(vars(module).items()):
                 if isinstance(value, type) and not key.startswith("_"):
                     self._look_at(value)
-                elif type(value).__module__ == "Boost.Python" and module in (Gf, UsdGeom, UsdShade):
+                elif is_binding(value) and module in (Gf, UsdGeom, UsdShade):
                     self._call(f"{module.__name__}.{key}", value, None)
         return {name: kinds.pop() for name, kinds in self.found.items() if len(kinds) == 1 and kinds != {""}}
 
     def _look_at(self, kind: type) -> None:
         for key, member in sorted(vars(kind).items()):
             function = member.__func__ if isinstance(member, staticmethod) else member
-            if type(function).__module__ != "Boost.Python" or type(function).__name__ != "function":
+            if not is_binding(function):
                 continue
             pure = kind.__module__ == "pxr.Gf" and not key.startswith(("_", "Set"))
             if not pure and not (_HARMLESS.search(key) and not _LEFT_OUT.search(key)) and not self._makes(kind, key):
@@ -114,8 +116,6 @@ class _Looker:
         return None
 
     def _call(self, name: str, function: Any, instance: Any) -> None:
-        from wsim.program.api.sources.pxr_bindings import overloads
-
         for way in overloads(function):
             given: list[Any] = []
             for i, parameter in enumerate(way):

@@ -1,9 +1,16 @@
-"""The USD schemas that are installed: their attributes, types, defaults and documentation, from USD's own registry."""
+"""The USD schemas that are installed: their attributes, types, defaults and documentation, from USD's own registry.
+
+USD reads its schemas once, when a process first opens a stage: who registers some later is not heard. So they are read
+in a process of their own.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import importlib
+import json
+import subprocess
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -18,6 +25,16 @@ INSTANCE = "__INSTANCE_NAME__"
 
 def entries() -> Iterator[Entry]:
     """Each schema by its name, `PhysicsMassAPI`, and its own attributes by theirs, `PhysicsMassAPI.physics:mass`."""
+    command = [sys.executable, "-c", "from wsim.program.api.sources.usd_schemas import _main; _main()"]
+    done = subprocess.run(command, capture_output=True, check=True, text=True)
+    yield from (Entry.from_data(each) for each in json.loads(done.stdout.splitlines()[-1]))
+
+
+def _main() -> None:
+    sys.stdout.write("\n" + json.dumps([entry.as_data() for entry in _read()]) + "\n")
+
+
+def _read() -> Iterator[Entry]:
     with contextlib.suppress(ImportError):
         importlib.import_module("newton_usd_schemas")  # registers Newton's
     registry = Usd.SchemaRegistry()

@@ -1,0 +1,1 @@
+"""What all searches share: words and their stems, words of one meaning, and a ranking in SQLite."""
