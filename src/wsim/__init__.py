@@ -19,6 +19,6 @@ def run(build: Callable[[Scene], None]) -> None:
     Leaves a run folder under ./runs with the stage, the recording, the video, the verdict and a report.
     Unlike `wsim run`, nothing is sandboxed: it is the caller's own program.
     """
-    from wsim.cli.in_process import run_in_process
+    from wsim.cli.in_process import run_in_process  # the simulator, which only a program that runs needs
 
     run_in_process(build)

@@ -13,6 +13,7 @@ from wsim.errors import UserError
 from wsim.judge.evidence.evidence import Evidence
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
+from wsim.tools.signals import find, known
 from wsim.tools.text import number, table
 
 if TYPE_CHECKING:
@@ -43,8 +44,6 @@ class Query(OfIteration):
 
 def query_recording(workspace: Workspace, asked: Query) -> Result:
     """A few numbers of a recording."""
-    from wsim.tools.signals import find, known
-
     path = file_of(workspace, asked.iteration, "recording.rrd", "run_program with the pass physics or full makes one")
     evidence = Evidence(recording.read(path), workspace.plan)
     if not len(evidence.time):
