@@ -68,7 +68,7 @@ def test_an_answer_is_asked_for_written_down_and_charged(server: Server, desk: D
     assert exchange.messages[0]["text"] == body["messages"][0]["content"]
     assert exchange.messages[1] == {"role": "user", "content": "Say a word."}
     assert exchange.reply == {"text": "yes"}
-    account = desk.ledger.account("coder").facts()
+    account = desk.ledger.facts()["by_role"]["coder"]
     assert (account["requests"], account["failed"], account["cached"]) == (1, 0, 0)
     assert (account["input_tokens"], account["output_tokens"]) == (1000, 100)
     assert desk.ledger.tokens == 1100

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.sim.test_ledger import Push, kite
 from wsim.loop.generate import generate
 from wsim.loop.options import Options
 from wsim.recording import read
@@ -83,15 +84,7 @@ def test_a_motors_work_is_in_the_books_as_on_the_cpu(tmp_path):
 def test_control_pushes_and_is_in_the_books(tmp_path):
     """A controller is called between steps, which then are in no graph."""
 
-    class Push:
-        def __call__(self, t, simulation):
-            simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.0, 0.0]], dtype=np.float32))
-
-    def build(scene):
-        scene.simulation(duration=0.5)
-        scene.box("kite", size=(0.4, 0.4, 0.1), mass=2.0, position=(0.0, 0.0, 1.0))
-
-    Simulation(stage_of(tmp_path, build), device=GPU, controller=Push()).run(tmp_path / "r.rrd")
+    Simulation(stage_of(tmp_path, kite), device=GPU, controller=Push()).run(tmp_path / "r.rrd")
     recording = read(tmp_path / "r.rrd")
     pushed = np.outer(recording.time, [3.0, 0.0, 50.0])
     assert np.cumsum(recording.applied_impulse[:, 0], axis=0) == pytest.approx(pushed, abs=1e-3)

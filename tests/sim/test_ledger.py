@@ -42,16 +42,20 @@ def test_a_motors_work_is_the_energy_that_an_arm_gains(tmp_path):
     assert recording.scalars["drive/hinge"][1:] == pytest.approx(effort[1:], rel=0.05, abs=2.0)
 
 
+class Push:
+    """Pushes the only body."""
+
+    def __call__(self, t, simulation):
+        simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.0, 0.0]], dtype=np.float32))
+
+
+def kite(scene):
+    scene.simulation(duration=0.5)
+    scene.box("kite", size=(0.4, 0.4, 0.1), mass=2.0, position=(0.0, 0.0, 1.0))
+
+
 def test_a_push_of_control_is_in_the_books(tmp_path):
-    class Push:
-        def __call__(self, t, simulation):
-            simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.0, 0.0]], dtype=np.float32))
-
-    def build(scene):
-        scene.simulation(duration=0.5)
-        scene.box("kite", size=(0.4, 0.4, 0.1), mass=2.0, position=(0.0, 0.0, 1.0))
-
-    recording = run(tmp_path, build, controller=Push())
+    recording = run(tmp_path, kite, controller=Push())
     motion = Evidence(recording).motion
     time = recording.time
     assert np.cumsum(recording.applied_impulse[:, 0], axis=0) == pytest.approx(

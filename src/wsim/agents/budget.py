@@ -6,6 +6,8 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
+from wsim.runs.records import Account, Usage
+
 
 class BudgetError(Exception):
     """Tokens or time have run out: the run ends here, with the best that it has."""
@@ -28,32 +30,6 @@ class Budget:
     seconds: float = 3600.0
     request_seconds: float = 180.0
     attempts: int = 3
-
-
-@dataclass
-class Account:
-    """What one role has used."""
-
-    requests: int = 0
-    cached: int = 0
-    failed: int = 0
-    input_tokens: int = 0
-    output_tokens: int = 0
-    seconds: float = 0.0
-    dollars: float | None = None  # None: no price is known
-
-    def facts(self) -> dict[str, Any]:
-        """For run.json."""
-        known = {} if self.dollars is None else {"dollars": round(self.dollars, 5)}
-        return {
-            "requests": self.requests,
-            "cached": self.cached,
-            "failed": self.failed,
-            "input_tokens": self.input_tokens,
-            "output_tokens": self.output_tokens,
-            "seconds": round(self.seconds, 1),
-            **known,
-        }
 
 
 @dataclass
@@ -104,7 +80,10 @@ class Ledger:
 
     def facts(self) -> dict[str, Any]:
         """For run.json: by role and in all."""
-        return {
-            "tokens": self.tokens,
-            "by_role": {role: account.facts() for role, account in sorted(self.accounts.items())},
-        }
+        by_role = {role: _rounded(account) for role, account in sorted(self.accounts.items())}
+        return Usage(tokens=self.tokens, by_role=by_role).model_dump(exclude_none=True)
+
+
+def _rounded(account: Account) -> Account:
+    dollars = None if account.dollars is None else round(account.dollars, 5)
+    return account.model_copy(update={"seconds": round(account.seconds, 1), "dollars": dollars})
