@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.evidence.contact import distance, overlaps
-from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.objectives.motion import downhill
 from wsim.judge.objectives.objective import support_of
 from wsim.judge.repair.asked import decider

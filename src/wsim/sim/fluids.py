@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from wsim.errors import UserError
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Body, Fluid, World
 from wsim.solvers.sampling import box_lattice
-from wsim.solvers.shapes import OpenBox, rotate
+from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray
 
@@ -108,28 +109,10 @@ def seed(fluid: Fluid, world: World) -> Seeded:
 
 def _inside(body: Body, points: Array, margin: float) -> Array:
     """Which points lie in a body's shapes, or within `margin` [m] of them."""
-    local = rotate(_conjugate(body.rotation), points - np.array(body.position))
+    local = rotate(conjugate(np.array(body.rotation)), points - np.array(body.position))
     inside = np.zeros(len(points), dtype=bool)
     for shape in body.shapes:
         if not shape.collides:
             continue
-        p = rotate(_conjugate(shape.rotation), local - np.array(shape.position))
-        inside |= _shape_distance(shape.kind, shape.size, p) < margin
+        inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, local))) < margin
     return inside
-
-
-def _conjugate(q: tuple[float, float, float, float]) -> Array:
-    return np.array([-q[0], -q[1], -q[2], q[3]])
-
-
-def _shape_distance(kind: str, size: tuple[float, ...], p: Array) -> Any:
-    """Signed distance [m] to a primitive; a mesh counts as its bounding box."""
-    if kind == "sphere":
-        return np.linalg.norm(p, axis=1) - size[0]
-    if kind == "capsule":
-        above = np.maximum(np.abs(p[:, 2]) - 0.5 * size[1], 0.0)
-        return np.sqrt(p[:, 0] ** 2 + p[:, 1] ** 2 + above**2) - size[0]
-    if kind == "cylinder":
-        radial, axial = np.hypot(p[:, 0], p[:, 1]) - size[0], np.abs(p[:, 2]) - 0.5 * size[1]
-        return np.maximum(radial, axial)
-    return (np.abs(p) - 0.5 * np.array(size)).max(axis=1)

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from wsim.errors import UserError
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.tools.text import name_of, prim_of
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import multiply, radius_about, rotate
+from wsim.geometry.rotations import multiply, rotate
+from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,11 +43,11 @@ def placed_shapes(world: World, body_q: Floats) -> list[Placed]:
                     position = position + rotate(q, np.array(shape.position, dtype=np.float64))
                 if any(shape.rotation[:3]):
                     turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
-                placed.append(Placed(body.prim, i, shape, position, turned, radius_about(shape)))
+                placed.append(Placed(body.prim, i, shape, position, turned, kind_of(shape).radius_about))
     for static in world.statics:
         for shape in static.shapes:
             if shape.collides:
                 fixed = np.broadcast_to(np.array(shape.position, dtype=np.float64), (frames, 3))
                 turned = np.broadcast_to(np.array(shape.rotation, dtype=np.float64), (frames, 4))
-                placed.append(Placed(static.prim, -1, shape, fixed, turned, radius_about(shape)))
+                placed.append(Placed(static.prim, -1, shape, fixed, turned, kind_of(shape).radius_about))
     return placed

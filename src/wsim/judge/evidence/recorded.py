@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import Solid, conjugate, mean_rotation, rotate
+from wsim.geometry.rotations import conjugate, mean_rotation, rotate
+from wsim.geometry.shapes import Solid
 from wsim.judge.evidence.placed import placed_shapes
 
 if TYPE_CHECKING:
@@ -141,7 +142,7 @@ class Recorded:
     def solid(self, i: int) -> Solid:
         """A body's shapes."""
         if i not in self._solids:
-            self._solids[i] = Solid(self.world.bodies[i])
+            self._solids[i] = Solid(self.world.bodies[i].shapes)
         return self._solids[i]
 
     def ends(self, i: int) -> tuple[Floats, Floats]:

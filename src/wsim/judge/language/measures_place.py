@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.shapes import reach
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import conjugate, multiply, reach, rotate
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import gap, touch_reach

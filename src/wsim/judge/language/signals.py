@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.recording.recording import Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.geometry import Solid
+    from wsim.geometry.shapes import Solid
     from wsim.plan.schema import Plan
     from wsim.scene.world import Body, Container, Fluid, World
 

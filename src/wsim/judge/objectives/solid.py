@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, rotate
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives, Support, support_of
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import smallest_extent
+from wsim.geometry.shapes import kind_of
 from wsim.judge.repair.rule import (
     Rule,
     add_collision,
@@ -131,7 +131,7 @@ def leak(finding: Finding, evidence: Evidence) -> RepairTarget:
         return add_collision(container.prim)
     static = evidence.static(container.prim)
     wall = (
-        min((smallest_extent(shape) for shape in static.shapes), default=math.inf) if static is not None else math.inf
+        min((kind_of(shape).thinnest for shape in static.shapes), default=math.inf) if static is not None else math.inf
     )
     if wall < fluid.spacing:
         return RepairTarget(
