@@ -118,5 +118,6 @@ def test_a_kind_tells_one_story(kind):
     assert low == pytest.approx((points @ axes.T).min(axis=0), abs=2e-3)
     assert high == pytest.approx((points @ axes.T).max(axis=0), abs=2e-3)
     assert shape.heights(axes) == pytest.approx(np.array([low, high]))
+    assert shape.volume == pytest.approx(shape.surface().volume)
     probes, margin = shape.probes()
     assert shape.depth(probes) == pytest.approx(np.full(len(probes), margin))

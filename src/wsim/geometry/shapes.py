@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wsim.geometry.kinds import KINDS, Kind
+from wsim.geometry.kinds import KINDS, Kind, mesh
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.geometry.surfaces import Surface
 
@@ -18,43 +19,23 @@ Floats = NDArray[np.float64]
 class Described(Protocol):
     """What is read of a `wsim.scene.world.Shape`."""
 
-    @property
-    def prim(self) -> str:
-        """Its path."""
+    prim: str
+    size: tuple[float, ...]
+    position: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
+    collides: bool
+    vertices: list[tuple[float, float, float]]
+    triangles: list[tuple[int, int, int]]
 
     @property
     def kind(self) -> str:
         """One of `KINDS`."""
 
-    @property
-    def size(self) -> tuple[float, ...]:
-        """The kind's numbers [m]."""
-
-    @property
-    def position(self) -> tuple[float, float, float]:
-        """In its body [m]."""
-
-    @property
-    def rotation(self) -> tuple[float, float, float, float]:
-        """In its body."""
-
-    @property
-    def collides(self) -> bool:
-        """Whether others meet it."""
-
-    @property
-    def vertices(self) -> Sequence[Sequence[float]]:
-        """Of a mesh [m]."""
-
-    @property
-    def triangles(self) -> Sequence[Sequence[int]]:
-        """Of a mesh."""
-
 
 def kind_of(shape: Described) -> Kind:
     """The shape in its own frame."""
     if shape.kind == "mesh":
-        return KINDS["mesh"](*shape.size, shape.vertices, shape.triangles)
+        return mesh(shape.size, shape.vertices, shape.triangles)
     return KINDS[shape.kind](*shape.size)
 
 
@@ -132,7 +113,7 @@ class Solid:
                 high = middle
         return (low + high) / 2 - bottom
 
-    @property
+    @cached_property
     def smallest(self) -> float:
         """The smallest extent of its largest shape [m]."""
         return max(kind_of(shape).thinnest for shape in self.shapes)

@@ -19,7 +19,7 @@ KINDS = {"box": (0.3, 0.2, 0.1), "sphere": (0.1,), "cylinder": (0.1, 0.4), "caps
 def placed(kind, position=(0.0, 0.0, 0.0), rotation=UPRIGHT, size=None):
     shape = Shape(prim=f"/World/{kind}", kind=kind, size=KINDS[kind] if size is None else size)
     position, rotation = np.atleast_2d(np.array(position)), np.atleast_2d(np.array(rotation))
-    return Placed(shape.prim, 0, shape, position, rotation, kind_of(shape).radius_about)
+    return Placed(shape.prim, 0, shape, position, rotation)
 
 
 @pytest.mark.parametrize(

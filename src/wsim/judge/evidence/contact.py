@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, matrices, multiply, rotate
-from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,7 +81,7 @@ def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
     """How deep the points of a are in b, (n,) [m]."""
     if a.shape.kind == "plane":
         return np.full(int(near.sum()), -np.inf)
-    points, margin = kind_of(a.shape).probes()
+    points, margin = a.kind.probes()
     frames = np.flatnonzero(near)
     depth = np.empty(len(frames))
     for start in range(0, len(frames), CHUNK):  # so many frames at once as the processor's cache holds
@@ -91,5 +90,5 @@ def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
         local = rotate(back, a.position[part] - b.position[part])[:, :, None]
         if points.any():  # else it is the middle of a ball, however turned
             local = local + matrices(multiply(back, a.rotation[part])) @ points.T
-        depth[start : start + CHUNK] = kind_of(b.shape).depth(np.moveaxis(local, 1, -1)).max(axis=1)
+        depth[start : start + CHUNK] = b.kind.depth(np.moveaxis(local, 1, -1)).max(axis=1)
     return depth + margin

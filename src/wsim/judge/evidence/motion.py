@@ -173,7 +173,7 @@ class Motion:
                 if shape.shape.kind == "mesh":
                     gap = np.linalg.norm(local, axis=1) - shape.radius
                 else:
-                    gap = -kind_of(shape.shape).depth(local)
+                    gap = -shape.kind.depth(local)
                 near |= gap <= self.radius[i] + reach
         return near
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, matrices, rotate
-from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,4 +45,4 @@ def separation(a: Placed, b: Placed, frames: NDArray[np.intp]) -> Floats:
 
 def _extent(placed: Placed, frames: NDArray[np.intp], axes: Floats) -> tuple[Floats, Floats]:
     """How far a shape reaches from its own place along unit axes (n, A, 3), backwards and forwards, (n, A) each [m]."""
-    return kind_of(placed.shape).ends(rotate(conjugate(placed.rotation[frames])[:, None], axes))
+    return placed.kind.ends(rotate(conjugate(placed.rotation[frames])[:, None], axes))
