@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from newton import GeoType, ShapeFlags
 
 from wsim.errors import UserError
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Body, Fluid, World
+from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.sampling import box_lattice
 from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray
+Depth = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -61,10 +66,15 @@ def expected_speed(world: World) -> float:
         # a free column falls by its height.
         speeds.append(math.sqrt((1.0 if _fills(fluid, world) else 2.0) * g * fluid.size[2]))
     for body in world.bodies:
-        bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
+        bottom = body.position[2] - min((_half_height(shape.kind, shape.size) for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
+
+
+def _half_height(kind: str, size: tuple[float, ...]) -> float:
+    """Least distance from a shape's centre to its surface [m]."""
+    return size[0] if kind in ("sphere", "capsule") else 0.5 * min(size, default=0.0)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
@@ -74,7 +84,25 @@ def _fills(fluid: Fluid, world: World) -> bool:
     )
 
 
-def seed(fluid: Fluid, world: World) -> Seeded:
+def mesh_depths(builder: Any) -> dict[str, list[Depth]]:
+    """How deep points in a body's frame are inside each mesh that the body collides with, by the body's prim.
+
+    As the solver samples them: of a mesh it may be the convex hull, or the parts, that are there.
+    """
+    found: dict[str, list[Depth]] = {}
+    for k, kind in enumerate(builder.shape_type):
+        body, flags = builder.shape_body[k], builder.shape_flags[k]
+        if body < 0 or not flags & ShapeFlags.COLLIDE_SHAPES or kind not in (GeoType.MESH, GeoType.CONVEX_MESH):
+            continue
+        source, pose = builder.shape_source[k], np.array(builder.shape_transform[k])
+        vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * np.array(builder.shape_scale[k])
+        vertices = rotate(pose[3:], vertices) + pose[:3]
+        solid = solid_of(vertices, np.asarray(source.indices).reshape(-1, 3), kind == GeoType.CONVEX_MESH)
+        found.setdefault(str(builder.body_label[body]), []).append(depth_in(solid))
+    return found
+
+
+def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
     """Particles of a box of fluid at rest under its own weight, without those where a body already is.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
@@ -83,13 +111,14 @@ def seed(fluid: Fluid, world: World) -> Seeded:
     Args:
         fluid: The box.
         world: For gravity, and for the bodies that stand in the fluid.
+        meshes: What `mesh_depths` found of those bodies.
     """
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
     position = rotate(np.array(rotation), cells.position) + np.array(fluid.center)
     free = np.ones(len(position), dtype=bool)
     for body in world.bodies:
-        free &= ~_inside(body, position, margin=0.4 * fluid.spacing)
+        free &= ~_inside(body, position, 0.4 * fluid.spacing, meshes.get(body.prim, []))
     position = position[free]
     if len(position) == 0:
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
@@ -102,12 +131,13 @@ def seed(fluid: Fluid, world: World) -> Seeded:
     )
 
 
-def _inside(body: Body, points: Array, margin: float) -> Array:
+def _inside(body: Body, points: Array, margin: float, meshes: list[Depth]) -> Array:
     """Which points lie in a body's shapes, or within `margin` [m] of them."""
     local = rotate(conjugate(np.array(body.rotation)), points - np.array(body.position))
     inside = np.zeros(len(points), dtype=bool)
     for shape in body.shapes:
-        if not shape.collides:
-            continue
-        inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, local))) < margin
+        if shape.collides and shape.kind != "mesh":
+            inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, local))) < margin
+    for depth in meshes:
+        inside |= depth(local) > -margin
     return inside
