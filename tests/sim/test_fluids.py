@@ -8,6 +8,8 @@ import trimesh
 
 from wsim.scene import Scene
 from wsim.scene.describe import describe
+from wsim.scene.world import Body, Fluid, Shape, World
+from wsim.sim.fluids import expected_speed
 from wsim.sim.model import build_model
 
 SPACING = 0.025
@@ -49,3 +51,21 @@ def test_water_stands_around_a_cylinder(filled) -> None:
     position = filled(lambda scene: scene.cylinder("can", radius=0.15, height=0.3, position=(0.0, 0.0, 0.25)))
     grown = math.pi * (0.15 + CLEAR) ** 2 * (0.3 + 2 * CLEAR)
     assert left_out(position) == pytest.approx(grown, rel=0.05)
+
+
+def test_a_lying_can_falls_from_its_lower_side() -> None:
+    """A can of radius 0.3 m and height 2 m reaches 0.3 m down at least; half its radius was taken before."""
+    shape = Shape(prim="/World/can/geometry", kind="cylinder", size=(0.3, 2.0))
+    can = Body(
+        prim="/World/can",
+        mass=1.0,
+        volume=1.0,
+        inertia=(1.0,) * 9,
+        position=(0.0, 0.0, 3.3),
+        rotation=(0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5)),
+        shapes=[shape],
+    )
+    water = Fluid(
+        prim="/World/water", density=1000.0, viscosity=1e-3, spacing=0.05, size=(1.0, 1.0, 0.5), center=(0, 0, 0.25)
+    )
+    assert expected_speed(World(bodies=[can], fluids=[water])) == pytest.approx(math.sqrt(2 * 9.81 * (3.0 - 0.5)))

@@ -66,15 +66,10 @@ def expected_speed(world: World) -> float:
         # a free column falls by its height.
         speeds.append(math.sqrt((1.0 if _fills(fluid, world) else 2.0) * g * fluid.size[2]))
     for body in world.bodies:
-        bottom = body.position[2] - min((_half_height(shape.kind, shape.size) for shape in body.shapes), default=0.0)
+        bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
-
-
-def _half_height(kind: str, size: tuple[float, ...]) -> float:
-    """Least distance from a shape's centre to its surface [m]."""
-    return size[0] if kind in ("sphere", "capsule") else 0.5 * min(size, default=0.0)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
