@@ -59,7 +59,7 @@ def line_of_sight(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> tuple[Flo
     Who looks along `up` has any right that there is; who looks at its own place looks along +X.
     """
     forward = _unit(np.subtract(target, eye))
-    right = np.cross(forward, up)
+    right = np.cross(forward, np.asarray(up))
     if np.linalg.norm(right) < 1e-6:
         right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
     return _unit(right), forward

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,9 @@ class Described(Protocol):
     @property
     def kind(self) -> str:
         """One of `KINDS`."""
+
+
+S = TypeVar("S", bound=Described)
 
 
 def kind_of(shape: Described) -> Kind:
@@ -74,10 +77,10 @@ def reach(shape: Described, q: Floats) -> tuple[Floats, Floats]:
     return centre + low, centre + high
 
 
-class Solid:
+class Solid(Generic[S]):
     """A body's colliding shapes: what displaces fluid and touches others."""
 
-    def __init__(self, shapes: Sequence[Described]) -> None:
+    def __init__(self, shapes: Sequence[S]) -> None:
         self.shapes = [s for s in shapes if s.collides and s.kind != "plane"] or list(shapes)
         self.surfaces = [surface_of(shape) for shape in self.shapes]
         self.volume = sum(surface.volume for surface in self.surfaces)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from wsim.geometry.shapes import Solid
     from wsim.plan.schema import Plan
-    from wsim.scene.world import Body, Container, Fluid, World
+    from wsim.scene.world import Body, Container, Fluid, Shape, World
 
     Floats = NDArray[np.float64]
 
@@ -235,7 +235,7 @@ class Signals:
         """Answers (W * T, ...) with their world axis, (W, T, ...)."""
         return flat.reshape(self.count, len(self.time), *flat.shape[1:])
 
-    def solid(self, name: str) -> Solid:
+    def solid(self, name: str) -> Solid[Shape]:
         """A body's shapes."""
         return self.frames(name).solid(0)
 
