@@ -144,7 +144,7 @@ def leak(finding: Finding, evidence: Evidence) -> RepairTarget:
 def _exits(evidence: Evidence, container: Container, fluid: Fluid) -> Floats:
     """Height above the inner floor at which each particle that gets out did so, (n,) [m]."""
     track = evidence.track(fluid)
-    out = np.array([evidence.strayed(container, fluid, frame) for frame in track.position])
+    out = evidence.containment(container, fluid).strayed
     gone = np.flatnonzero(out.any(axis=0))
     first = np.argmax(out[:, gone], axis=0)
     # Between two frames one may fall below the rim that it came over: it was above it at the frame before.
