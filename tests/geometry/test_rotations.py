@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from wsim.geometry.rotations import conjugate, line_of_sight, matrices, mean_rotation, multiply, rotate
+from wsim.geometry.rotations import conjugate, line_of_sight, matrices, mean_rotation, multiply, rotate, tilt
 
 
 def about(axis: int, degrees: float) -> np.ndarray:
@@ -48,3 +48,9 @@ def test_who_looks_along_up_or_at_oneself_has_a_right_all_the_same(target) -> No
     assert np.linalg.norm(right) == pytest.approx(1.0)
     assert np.linalg.norm(forward) == pytest.approx(1.0)
     assert right @ forward == pytest.approx(0.0)
+
+
+def test_a_tilt_is_since_the_start_and_a_yaw_is_none() -> None:
+    lying = about(0, 90.0)
+    q = np.stack([lying, multiply(about(2, 50.0), lying), multiply(about(0, 30.0), lying)])
+    assert tilt(q) == pytest.approx([0.0, 0.0, 30.0], abs=1e-5)

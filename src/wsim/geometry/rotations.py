@@ -53,6 +53,13 @@ def mean_rotation(q: Floats) -> Floats:
     return np.asarray(vectors[:, -1], dtype=np.float64)
 
 
+def tilt(q: Floats) -> Floats:
+    """The angle between what pointed up at the first of rotations (T, 4) and up, (T,) [deg]."""
+    up = rotate(conjugate(q[0]), np.array([0.0, 0.0, 1.0]))
+    cosine = rotate(q, np.broadcast_to(up, (len(q), 3)))[:, 2]
+    return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
 def line_of_sight(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> tuple[Floats, Floats]:
     """The unit vectors to the right and forward (3,) of who looks from `eye` to `target`, head up.
 
