@@ -47,6 +47,22 @@ def test_water_stands_around_a_mesh_and_not_its_bounding_box(filled, tmp_path) -
     assert beside.any()
 
 
+def test_water_stands_around_what_is_fixed(filled, tmp_path) -> None:
+    """A post and a cone that are screwed to the floor are no fuller of water than those that float."""
+    trimesh.creation.cone(0.15, 0.3).export(tmp_path / "cone.obj")
+
+    def place(static: bool):
+        def fill(scene: Scene) -> None:
+            scene.mesh("cone", file=tmp_path / "cone.obj", position=(0.2, 0.0, 0.1), static=static)
+            scene.box("post", size=(0.2, 0.2, 0.4), position=(-0.2, 0.0, 0.25), rotation_deg=(0, 0, 30), static=static)
+
+        return fill
+
+    fixed, loose = filled(place(static=True)), filled(place(static=False))
+    assert len(fixed) == pytest.approx(len(loose), abs=0.002 * len(loose))
+    assert left_out(fixed) > 0.2 * 0.2 * 0.4 + math.pi * 0.15**2 * 0.3 / 3
+
+
 def test_water_stands_around_a_cylinder(filled) -> None:
     position = filled(lambda scene: scene.cylinder("can", radius=0.15, height=0.3, position=(0.0, 0.0, 0.25)))
     grown = math.pi * (0.15 + CLEAR) ** 2 * (0.3 + 2 * CLEAR)

@@ -13,7 +13,7 @@ from newton import GeoType, ShapeFlags
 from wsim.errors import UserError
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of
-from wsim.scene.world import Body, Fluid, World
+from wsim.scene.world import Fluid, Shape, World
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.sampling import box_lattice
 from wsim.solvers.shapes import OpenBox
@@ -79,41 +79,49 @@ def _fills(fluid: Fluid, world: World) -> bool:
     )
 
 
-def mesh_depths(builder: Any) -> dict[str, list[Depth]]:
-    """How deep points in a body's frame are inside each mesh that the body collides with, by the body's prim.
+def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
+    """How deep points are inside each mesh that collides, by the prim of its body or fixed object, in that one's frame.
 
     As the solver samples them: of a mesh it may be the convex hull, or the parts, that are there.
     """
+    owners = {body.prim for body in world.bodies} | {static.prim for static in world.statics}
     found: dict[str, list[Depth]] = {}
     for k, kind in enumerate(builder.shape_type):
-        body, flags = builder.shape_body[k], builder.shape_flags[k]
-        if body < 0 or not flags & ShapeFlags.COLLIDE_SHAPES or kind not in (GeoType.MESH, GeoType.CONVEX_MESH):
+        owner = str(builder.shape_label[k])
+        while owner and owner not in owners:
+            owner = owner.rpartition("/")[0]
+        if not builder.shape_flags[k] & ShapeFlags.COLLIDE_SHAPES or kind not in (GeoType.MESH, GeoType.CONVEX_MESH):
             continue
         source, pose = builder.shape_source[k], np.array(builder.shape_transform[k])
         vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * np.array(builder.shape_scale[k])
         vertices = rotate(pose[3:], vertices) + pose[:3]
         solid = solid_of(vertices, np.asarray(source.indices).reshape(-1, 3), kind == GeoType.CONVEX_MESH)
-        found.setdefault(str(builder.body_label[body]), []).append(depth_in(solid))
+        found.setdefault(owner, []).append(depth_in(solid))
     return found
 
 
 def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
-    """Particles of a box of fluid at rest under its own weight, without those where a body already is.
+    """Particles of a box of fluid at rest under its own weight, without those where a solid already is.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
     The pressure is hydrostatic.
 
     Args:
         fluid: The box.
-        world: For gravity, and for the bodies that stand in the fluid.
-        meshes: What `mesh_depths` found of those bodies.
+        world: For gravity, and for the bodies and fixed objects that stand in the fluid.
+        meshes: What `mesh_depths` found of those.
     """
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
     position = rotate(np.array(rotation), cells.position) + np.array(fluid.center)
     free = np.ones(len(position), dtype=bool)
+    margin, tanks = 0.4 * fluid.spacing, {container.prim for container in world.containers}
     for body in world.bodies:
-        free &= ~_inside(body, position, 0.4 * fluid.spacing, meshes.get(body.prim, []))
+        local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
+        free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
+    for static in world.statics:
+        if static.prim not in tanks:  # whose fluid is cut to its walls
+            free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
     position = position[free]
     if len(position) == 0:
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
@@ -126,13 +134,12 @@ def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
     )
 
 
-def _inside(body: Body, points: Array, margin: float, meshes: list[Depth]) -> Array:
-    """Which points lie in a body's shapes, or within `margin` [m] of them."""
-    local = rotate(conjugate(np.array(body.rotation)), points - np.array(body.position))
+def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Depth]) -> Array:
+    """Which points lie in an object's shapes, or within `margin` [m] of them, all in its frame."""
     inside = np.zeros(len(points), dtype=bool)
-    for shape in body.shapes:
-        if shape.collides and shape.kind != "mesh":
-            inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, local))) < margin
+    for shape in shapes:
+        if shape.collides and shape.kind not in ("mesh", "plane"):
+            inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, points))) < margin
     for depth in meshes:
-        inside |= depth(local) > -margin
+        inside |= depth(points) > -margin
     return inside

@@ -82,7 +82,7 @@ def _sph_config(world: World) -> Any | None:
 
 
 def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:
-    slices, meshes = {}, mesh_depths(builder)
+    slices, meshes = {}, mesh_depths(builder, world)
     for fluid in world.fluids:
         seeded: Seeded = seed(fluid, world, meshes)
         first, count = builder.particle_count, len(seeded.position)
