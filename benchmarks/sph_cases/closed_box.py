@@ -25,7 +25,7 @@ import warp as wp
 from benchmarks.sph_cases.bodies import make_rigid, outside_box
 from benchmarks.sph_cases.case import Case, Measured
 from benchmarks.sph_cases.water import add_fluid, lattice, make_builder, simulate
-from wsim.solvers.shapes import rotate
+from wsim.geometry.rotations import rotate
 from wsim.solvers.solver_sph import SolverSPH
 
 RHO = 1000.0

@@ -11,10 +11,10 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from scipy.spatial import ConvexHull
 
 from wsim.assets import Asset, load_catalogue
+from wsim.geometry.rotations import matrices
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
-from wsim.scene.usd_shapes import rotation_matrix
 from wsim.scene.world import Shape
 
 ASSETS = Path(__file__).parents[2] / "usd_assets"
@@ -36,11 +36,11 @@ def colliders(asset: Asset) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
     """Each with its rotation matrix and its place in the asset's frame."""
     found = []
     for body in describe(asset.path).bodies:
-        turn = rotation_matrix(body.rotation)
+        turn = matrices(np.array(body.rotation))
         for shape in body.shapes:
             if shape.collides:
                 place = np.array(body.position) + turn @ np.array(shape.position)
-                found.append((shape, turn @ rotation_matrix(shape.rotation), place))
+                found.append((shape, turn @ matrices(np.array(shape.rotation)), place))
     return found
 
 
@@ -125,7 +125,7 @@ class TestAsset:
         world = describe(asset.path)
         mass = sum(body.mass for body in world.bodies)
         com = sum(
-            body.mass * (np.array(body.position) + rotation_matrix(body.rotation) @ np.array(body.com))
+            body.mass * (np.array(body.position) + matrices(np.array(body.rotation)) @ np.array(body.com))
             for body in world.bodies
         )
         com /= mass

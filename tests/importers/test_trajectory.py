@@ -19,11 +19,11 @@ from tests.documents import ROOT, commands
 from tests.patience import STUCK
 from wsim.cli import app
 from wsim.errors import UserError
+from wsim.geometry.rotations import rotate
 from wsim.importers import read_npz
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.trajectory import save
 from wsim.judge import judge
-from wsim.judge.evidence.geometry import rotate
 from wsim.recording import Recording, read
 
 NAMES = ["brick", "ball", "arm"]

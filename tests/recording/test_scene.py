@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
+from wsim.geometry.rotations import rotate
 from wsim.recording import RecordingWriter
-from wsim.recording.shapes import look_at, rgba, rotate, shape_visual
+from wsim.recording.shapes import look_at, rgba, shape_visual
 from wsim.scene.world import Camera, Shape
 
 QUARTER_X = (np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5))  # +90 degrees about X: Z goes to -Y
@@ -83,7 +84,7 @@ def test_camera_axes_are_a_rotation(target):
 
 
 def test_turned_capsules_and_meshes_are_placed():
-    np.testing.assert_allclose(rotate(QUARTER_X, np.array([0.0, 0.0, 1.0])), [0, -1, 0], atol=1e-12)
+    np.testing.assert_allclose(rotate(np.array(QUARTER_X), np.array([0.0, 0.0, 1.0])), [0, -1, 0], atol=1e-12)
     pill = Shape(prim="/World/p", kind="capsule", size=(0.1, 2.0), position=(5, 0, 0), rotation=QUARTER_X)
     start = shape_visual(pill).translations.as_arrow_array().to_pylist()[0]
     assert start == pytest.approx([5, 1, 0], abs=1e-6)

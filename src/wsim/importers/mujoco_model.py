@@ -11,8 +11,9 @@ import mujoco
 import numpy as np
 
 from wsim.errors import UserError
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.shapes import Solid
 from wsim.importers.mujoco_state import body_name, load_model
-from wsim.judge.evidence.geometry import Solid, conjugate, multiply, rotate
 from wsim.scene.world import Body, Joint, Shape, Static, World
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
@@ -71,7 +72,7 @@ def _body(model: Any, b: int, pose: Pose, shapes: list[Shape]) -> Body:
     )
     if not shapes:
         raise UserError(f"{body.prim} has no shape that the judge knows; give it a collision geometry")
-    return body.model_copy(update={"volume": float(Solid(body).volume)})
+    return body.model_copy(update={"volume": float(Solid(body.shapes).volume)})
 
 
 def _shape(model: Any, g: int, frame: Pose | None) -> Shape | None:

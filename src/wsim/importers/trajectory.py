@@ -12,9 +12,9 @@ import numpy as np
 from pydantic import ValidationError
 
 from wsim.errors import UserError
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.mujoco_state import bodies_of_states
-from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 from wsim.recording import Frame, RecordingWriter
 from wsim.recording.recording import Recording
 from wsim.scene.describe import describe

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import rerun.blueprint as rrb
 
+from wsim.geometry.rotations import rotate
 from wsim.recording.columns import HEIGHT_ROOT, LOG_ENTITY, SCALAR_ROOT, TIMELINE, entity_path
-from wsim.recording.shapes import rotate
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
@@ -73,7 +73,7 @@ def _eye(world: World, entity: str | None) -> Any | None:
         return rrb.EyeControls3D(tracking_entity=tracked) if tracked is not None else None
     camera = world.cameras[0]
     half = 0.5 * math.radians(EYE_TURN)
-    turn = (0.0, 0.0, math.sin(half), math.cos(half))
+    turn = np.array([0.0, 0.0, math.sin(half), math.cos(half)])
     offset = rotate(turn, np.subtract(camera.eye, camera.target)) * EYE_DISTANCE
     return rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital,

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import rerun as rr
 
+from wsim.geometry.colour import srgb_of
+from wsim.geometry.rotations import line_of_sight, rotate
 from wsim.recording.columns import entity_path
 
 if TYPE_CHECKING:
@@ -59,11 +61,7 @@ def log_camera(stream: Any, camera: Camera, width: int, height: int, nested: boo
 
 def look_at(camera: Camera) -> NDArray[np.float64]:
     """Rotation (3, 3) from camera axes (x right, y down, z forward) to the world."""
-    forward = _unit(np.subtract(camera.target, camera.eye))
-    right = np.cross(forward, camera.up)
-    if np.linalg.norm(right) < 1e-9:  # looks along its own up: any sideways will do
-        right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
-    right = _unit(right)
+    right, forward = line_of_sight(camera.eye, camera.target, camera.up)
     return np.stack([right, np.cross(forward, right), forward], axis=1)
 
 
@@ -85,8 +83,7 @@ def scene_reach(world: World) -> float:
 def rgba(color: tuple[float, float, float], opacity: float = 1.0) -> list[int]:
     """Linear RGB in 0..1 as the sRGB bytes that Rerun draws, with alpha."""
     linear = np.clip(np.asarray(color, dtype=np.float64), 0.0, 1.0)
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return [*(int(v) for v in np.rint(255 * srgb)), round(255 * min(max(opacity, 0.0), 1.0))]
+    return [*(int(v) for v in np.rint(255 * srgb_of(linear))), round(255 * min(max(opacity, 0.0), 1.0))]
 
 
 def shape_visual(shape: Shape, reach: float = 2.0) -> Any | None:
@@ -108,29 +105,26 @@ def shape_visual(shape: Shape, reach: float = 2.0) -> Any | None:
         case "capsule":
             radius, height = shape.size
             # Rerun's capsule starts at its origin; ours is centred on it.
-            start = np.add(shape.position, rotate(shape.rotation, np.array([0.0, 0.0, -0.5 * height])))
+            start = np.add(shape.position, rotate(np.array(shape.rotation), np.array([0.0, 0.0, -0.5 * height])))
             return rr.Capsules3D(
                 radii=[radius], lengths=[height], translations=[start], quaternions=[shape.rotation], **look
             )
         case "plane":
-            center = np.add(shape.position, rotate(shape.rotation, np.array([0.0, 0.0, -0.5 * PLANE_THICKNESS])))
+            center = np.add(
+                shape.position, rotate(np.array(shape.rotation), np.array([0.0, 0.0, -0.5 * PLANE_THICKNESS]))
+            )
             size = (6.0 * reach, 6.0 * reach, PLANE_THICKNESS)
             return rr.Boxes3D(sizes=[size], centers=[center], quaternions=[shape.rotation], **look)
         case "mesh":
             return _mesh_visual(shape, color)
 
 
-def rotate(quaternion: tuple[float, float, float, float], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Vectors (..., 3) turned by a unit quaternion (x, y, z, w)."""
-    axis, w = np.asarray(quaternion[:3], dtype=np.float64), quaternion[3]
-    twice = 2.0 * np.cross(axis, vectors)
-    return vectors + w * twice + np.cross(axis, twice)
-
-
 def _mesh_visual(shape: Shape, color: list[int]) -> Any | None:
     if not shape.vertices:
         return None
-    vertices = rotate(shape.rotation, np.asarray(shape.vertices, dtype=np.float64)) + np.asarray(shape.position)
+    vertices = rotate(np.array(shape.rotation), np.asarray(shape.vertices, dtype=np.float64)) + np.asarray(
+        shape.position
+    )
     # Corners of its own for each triangle give flat shading, which reads better than smoothed hulls.
     if shape.triangles:
         vertices = vertices[np.asarray(shape.triangles, dtype=np.int64).reshape(-1)]
@@ -150,8 +144,3 @@ def _facts(owner: Body | Static) -> Any:
     if mass is not None:
         facts["mass"] = mass
     return rr.DynamicArchetype("wsim.Prim", components=facts)
-
-
-def _unit(vector: NDArray[np.float64]) -> NDArray[np.float64]:
-    length = float(np.linalg.norm(vector))
-    return vector / length if length > 0.0 else np.array([1.0, 0.0, 0.0])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import radius_about
+from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,7 +28,9 @@ def where_is(recording: Recording, prim: str | None, time: float) -> Ball | None
     for i, body in enumerate(recording.world.bodies):
         if body.prim == prim and body.shapes:
             position = recording.body_q[recording.frame_index(time), i, :3]
-            reach = max(math.dist((0.0, 0.0, 0.0), shape.position) + radius_about(shape) for shape in body.shapes)
+            reach = max(
+                math.dist((0.0, 0.0, 0.0), shape.position) + kind_of(shape).radius_about for shape in body.shapes
+            )
             if np.isfinite(position).all() and math.isfinite(reach):
                 x, y, z = (float(value) for value in position)
                 return (x, y, z), reach

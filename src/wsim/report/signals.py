@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, rotate, tilt
 from wsim.judge.evidence.contact import distance, overlaps
-from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.objectives.motion import downhill
 from wsim.judge.objectives.objective import support_of
 from wsim.judge.repair.asked import decider
@@ -245,10 +245,7 @@ def _energies(evidence: Evidence, i: int) -> Iterator[Signal]:
 
 
 def _tilt(evidence: Evidence, i: int) -> Iterator[Signal]:
-    q = evidence.body_q[:, i, 3:]
-    up = rotate(conjugate(q[0]), np.array([0.0, 0.0, 1.0]))
-    cosine = rotate(q, np.broadcast_to(up, (len(q), 3)))[:, 2]
-    yield Signal("Tilt since the start", "deg", evidence.time, np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+    yield Signal("Tilt since the start", "deg", evidence.time, tilt(evidence.body_q[:, i, 3:]))
 
 
 def _turning(evidence: Evidence, i: int) -> Iterator[Signal]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from pxr import Gf, Usd, UsdPhysics
 
-from wsim.scene.usd_shapes import Array, rotation_matrix, solid, to_quat
+from wsim.geometry.rotations import matrices
+from wsim.scene.usd_shapes import Array, solid, to_quat
 from wsim.scene.world import Shape
 
 _SMALL_SPHERE = 0.1  # [m]: radius of the ball that USD takes a body without colliders for
@@ -54,7 +55,7 @@ def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:
     mass, diagonal, com, axes = UsdPhysics.RigidBodyAPI(prim).ComputeMassProperties(information)
     if not (math.isfinite(mass) and mass > 0.0):
         return _without_geometry(prim)
-    turn = rotation_matrix(to_quat(axes))
+    turn = matrices(np.array(to_quat(axes)))
     inertia = turn @ np.diag(np.array(diagonal, dtype=np.float64)) @ turn.T
     return Mass(float(mass), np.array(com, dtype=np.float64), inertia, volume)
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Gf, Usd, UsdGeom, UsdPhysics, UsdShade
 
+from wsim.geometry.rotations import matrices, multiply
 from wsim.scene.world import Quat, Shape, ShapeKind, Vec3
 
 Array = NDArray[np.float64]
@@ -42,7 +43,7 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
             return None
         local, triangles = mesh
         placed = np.c_[local, np.ones(len(local))] @ np.array(matrix)
-        vertices = (placed[:, :3] - position) @ rotation_matrix(turn)
+        vertices = (placed[:, :3] - position) @ matrices(np.array(turn))
         if matrix.GetDeterminant() < 0.0:
             triangles = triangles[:, ::-1]
         found = ("mesh", tuple(np.ptp(vertices, axis=0).tolist()), (0.0, 0.0, 0.0, 1.0))
@@ -54,7 +55,7 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
         kind=kind,
         size=size,
         position=position,
-        rotation=multiply(turn, own_turn),
+        rotation=tuple(multiply(np.array(turn), np.array(own_turn)).tolist()),
         color=color,
         opacity=opacity,
         collides=collides(prim),
@@ -219,27 +220,3 @@ def to_quat(quat: Gf.Quatd) -> Quat:
     w = quat.GetReal()
     length = math.sqrt(x * x + y * y + z * z + w * w) or 1.0
     return (x / length, y / length, z / length, w / length)
-
-
-def multiply(a: Quat, b: Quat) -> Quat:
-    """The rotation that turns by b, then by a."""
-    ax, ay, az, aw = a
-    bx, by, bz, bw = b
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
-
-
-def rotation_matrix(quat: Quat) -> Array:
-    """The 3 by 3 matrix that turns column vectors."""
-    x, y, z, w = quat
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )

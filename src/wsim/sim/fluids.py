@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from newton import GeoType, ShapeFlags
 
 from wsim.errors import UserError
-from wsim.scene.world import Body, Fluid, World
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import into, kind_of
+from wsim.scene.world import Fluid, Shape, World
+from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.sampling import box_lattice
-from wsim.solvers.shapes import OpenBox, rotate
+from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray
+Depth = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -60,15 +66,10 @@ def expected_speed(world: World) -> float:
         # a free column falls by its height.
         speeds.append(math.sqrt((1.0 if _fills(fluid, world) else 2.0) * g * fluid.size[2]))
     for body in world.bodies:
-        bottom = body.position[2] - min((_half_height(shape.kind, shape.size) for shape in body.shapes), default=0.0)
+        bottom = body.position[2] - 0.5 * min((kind_of(shape).thinnest for shape in body.shapes), default=0.0)
         drop = max((bottom - (f.center[2] + 0.5 * f.size[2]) for f in world.fluids), default=0.0)
         speeds.append(math.sqrt(2.0 * g * max(drop, 0.0)))
     return max(speeds)
-
-
-def _half_height(kind: str, size: tuple[float, ...]) -> float:
-    """Least distance from a shape's centre to its surface [m]."""
-    return size[0] if kind in ("sphere", "capsule") else 0.5 * min(size, default=0.0)
 
 
 def _fills(fluid: Fluid, world: World) -> bool:
@@ -78,22 +79,49 @@ def _fills(fluid: Fluid, world: World) -> bool:
     )
 
 
-def seed(fluid: Fluid, world: World) -> Seeded:
-    """Particles of a box of fluid at rest under its own weight, without those where a body already is.
+def mesh_depths(builder: Any, world: World) -> dict[str, list[Depth]]:
+    """How deep points are inside each mesh that collides, by the prim of its body or fixed object, in that one's frame.
+
+    As the solver samples them: of a mesh it may be the convex hull, or the parts, that are there.
+    """
+    owners = {body.prim for body in world.bodies} | {static.prim for static in world.statics}
+    found: dict[str, list[Depth]] = {}
+    for k, kind in enumerate(builder.shape_type):
+        owner = str(builder.shape_label[k])
+        while owner and owner not in owners:
+            owner = owner.rpartition("/")[0]
+        if not builder.shape_flags[k] & ShapeFlags.COLLIDE_SHAPES or kind not in (GeoType.MESH, GeoType.CONVEX_MESH):
+            continue
+        source, pose = builder.shape_source[k], np.array(builder.shape_transform[k])
+        vertices = np.asarray(source.vertices, dtype=float).reshape(-1, 3) * np.array(builder.shape_scale[k])
+        vertices = rotate(pose[3:], vertices) + pose[:3]
+        solid = solid_of(vertices, np.asarray(source.indices).reshape(-1, 3), kind == GeoType.CONVEX_MESH)
+        found.setdefault(owner, []).append(depth_in(solid))
+    return found
+
+
+def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
+    """Particles of a box of fluid at rest under its own weight, without those where a solid already is.
 
     The mass of each is the fluid's density times its cell, so that the fluid's mass is right whatever the spacing.
     The pressure is hydrostatic.
 
     Args:
         fluid: The box.
-        world: For gravity, and for the bodies that stand in the fluid.
+        world: For gravity, and for the bodies and fixed objects that stand in the fluid.
+        meshes: What `mesh_depths` found of those.
     """
     cells = box_lattice(np.array(fluid.size), fluid.spacing)
     rotation = next((c.rotation for c in world.containers if c.prim == fluid.container), (0.0, 0.0, 0.0, 1.0))
     position = rotate(np.array(rotation), cells.position) + np.array(fluid.center)
     free = np.ones(len(position), dtype=bool)
+    margin, tanks = 0.4 * fluid.spacing, {container.prim for container in world.containers}
     for body in world.bodies:
-        free &= ~_inside(body, position, margin=0.4 * fluid.spacing)
+        local = rotate(conjugate(np.array(body.rotation)), position - np.array(body.position))
+        free &= ~_inside(body.shapes, local, margin, meshes.get(body.prim, []))
+    for static in world.statics:
+        if static.prim not in tanks:  # whose fluid is cut to its walls
+            free &= ~_inside(static.shapes, position, margin, meshes.get(static.prim, []))
     position = position[free]
     if len(position) == 0:
         raise UserError(f"{fluid.prim}: bodies leave no room for fluid of spacing {fluid.spacing} m in {fluid.size} m")
@@ -106,30 +134,12 @@ def seed(fluid: Fluid, world: World) -> Seeded:
     )
 
 
-def _inside(body: Body, points: Array, margin: float) -> Array:
-    """Which points lie in a body's shapes, or within `margin` [m] of them."""
-    local = rotate(_conjugate(body.rotation), points - np.array(body.position))
+def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Depth]) -> Array:
+    """Which points lie in an object's shapes, or within `margin` [m] of them, all in its frame."""
     inside = np.zeros(len(points), dtype=bool)
-    for shape in body.shapes:
-        if not shape.collides:
-            continue
-        p = rotate(_conjugate(shape.rotation), local - np.array(shape.position))
-        inside |= _shape_distance(shape.kind, shape.size, p) < margin
+    for shape in shapes:
+        if shape.collides and shape.kind not in ("mesh", "plane"):
+            inside |= np.maximum.reduce(kind_of(shape).beyond(into(shape, points))) < margin
+    for depth in meshes:
+        inside |= depth(points) > -margin
     return inside
-
-
-def _conjugate(q: tuple[float, float, float, float]) -> Array:
-    return np.array([-q[0], -q[1], -q[2], q[3]])
-
-
-def _shape_distance(kind: str, size: tuple[float, ...], p: Array) -> Any:
-    """Signed distance [m] to a primitive; a mesh counts as its bounding box."""
-    if kind == "sphere":
-        return np.linalg.norm(p, axis=1) - size[0]
-    if kind == "capsule":
-        above = np.maximum(np.abs(p[:, 2]) - 0.5 * size[1], 0.0)
-        return np.sqrt(p[:, 0] ** 2 + p[:, 1] ** 2 + above**2) - size[0]
-    if kind == "cylinder":
-        radial, axial = np.hypot(p[:, 0], p[:, 1]) - size[0], np.abs(p[:, 2]) - 0.5 * size[1]
-        return np.maximum(radial, axial)
-    return (np.abs(p) - 0.5 * np.array(size)).max(axis=1)

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.recording import FluidFrame, Frame
 from wsim.sim.ledger import Ledger
 from wsim.sim.model import Built
 from wsim.sim.rigid import RigidBodies
-from wsim.solvers.shapes import rotate
 
 Array = np.ndarray
 
@@ -92,8 +92,8 @@ def _body_energy(built: Built, body_q: Array, body_qd: Array) -> dict[str, float
     kinetic, potential = 0.0, 0.0
     for k in range(len(mass)):
         pose, twist = body_q[k].astype(np.float64), body_qd[k].astype(np.float64)
-        center = pose[:3] + rotate(pose[3:], com[k : k + 1])[0]
-        spin = rotate(np.array([*(-pose[3:6]), pose[6]]), twist[None, 3:])[0]
+        center = pose[:3] + rotate(pose[3:], com[k])
+        spin = rotate(conjugate(pose[3:]), twist[3:])
         kinetic += 0.5 * mass[k] * float(twist[:3] @ twist[:3]) + 0.5 * float(spin @ inertia[k] @ spin)
         potential -= mass[k] * float(center @ np.array(built.world.gravity))
     return {"energy/kinetic_bodies": kinetic, "energy/potential_bodies": potential}

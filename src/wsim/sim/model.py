@@ -13,7 +13,7 @@ from wsim.errors import UserError
 from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations
 from wsim.sim.contacts import harden_contacts
-from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, seed
+from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
@@ -82,9 +82,9 @@ def _sph_config(world: World) -> Any | None:
 
 
 def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:
-    slices = {}
+    slices, meshes = {}, mesh_depths(builder, world)
     for fluid in world.fluids:
-        seeded: Seeded = seed(fluid, world)
+        seeded: Seeded = seed(fluid, world, meshes)
         first, count = builder.particle_count, len(seeded.position)
         builder.add_particles(
             pos=seeded.position.tolist(),

@@ -14,6 +14,7 @@ import warp as wp
 
 from wsim.kernels.render import surface as kernels
 from wsim.sim.render_materials import OPAQUE, mesh_of, shapes_by_label
+from wsim.solvers.inside import mesh_depth
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
@@ -84,7 +85,8 @@ def _points_inside(model: Any, index: int, spacing: float) -> np.ndarray:
         mesh = mesh_of(model, index)
         corners = mesh.points.numpy()
         lattice = _lattice(corners.min(axis=0), corners.max(axis=0), spacing)
-        depth = _depth(mesh, lattice, shell)
+        # A point farther from the skin than asked for counts as deep inside or outside alike: none is needed there.
+        depth = mesh_depth(mesh, lattice, 2.0 * shell)
     return lattice[(depth < shell) & (depth >= 0.95 * deep)]
 
 
@@ -101,19 +103,3 @@ def _lattice(low: np.ndarray, high: np.ndarray, spacing: float) -> np.ndarray:
     if np.prod([len(axis) for axis in axes]) > MOST_POINTS:
         return np.zeros((0, 3))
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
-def _depth(mesh: wp.Mesh, points: np.ndarray, farthest: float) -> np.ndarray:
-    device = mesh.device
-    out = wp.zeros(len(points), dtype=wp.float32, device=device)
-    if len(points):
-        given = wp.array(points.astype(np.float32), dtype=wp.vec3f, device=device)
-        wp.launch(
-            kernels.depth_in_mesh,
-            dim=len(points),
-            # A point farther from the skin than asked for counts as deep inside or outside alike: none is needed there.
-            inputs=[mesh.id, given, 2.0 * farthest],
-            outputs=[out],
-            device=device,
-        )
-    return out.numpy()

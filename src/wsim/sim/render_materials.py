@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import newton
 import numpy as np
 import warp as wp
 
+from wsim.geometry.colour import srgb_of
 from wsim.sim.render_views import is_ground
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def shape_looks(model: Any, world: World, world_index: int) -> ShapeLooks:
     )
     worlds = model.shape_world.numpy() if labels else []
     for index, shape, ground in shapes_by_label(model, world):
-        looks.color[index] = [_to_srgb(c) for c in shape.color]
+        looks.color[index] = srgb_of(shape.color)
         looks.ground[index] = int(ground)
         if shape.opacity < OPAQUE and index not in looks.hidden:
             looks.hidden.append(index)
@@ -153,9 +153,3 @@ def mesh_of(model: Any, index: int) -> wp.Mesh:
         indices=wp.array(np.asarray(mesh.indices).reshape(-1), dtype=wp.int32, device=model.device),
         support_winding_number=True,
     )
-
-
-def _to_srgb(linear: float) -> float:
-    if linear <= 0.0031308:
-        return 12.92 * linear
-    return 1.055 * math.pow(linear, 1.0 / 2.4) - 0.055

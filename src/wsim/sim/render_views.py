@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from wsim.geometry.rotations import line_of_sight
+from wsim.geometry.shapes import kind_of
 from wsim.scene.world import Camera
 
 if TYPE_CHECKING:
@@ -22,20 +24,12 @@ GROUND_EDGE = 20.0  # [m]: a box at least this long in x and y is taken for grou
 
 def camera_pose(camera: Camera) -> tuple[float, ...]:
     """Position and quaternion (xyzw) of a frame that looks along its -Z from eye to target, +Y up."""
-    eye = np.asarray(camera.eye)
-    forward = np.asarray(camera.target) - eye
-    distance = float(np.linalg.norm(forward))
-    if distance < 1e-9:
+    if math.dist(camera.eye, camera.target) < 1e-9:
         raise ValueError(f"camera {camera.prim}: eye and target are the same point, {camera.eye}")
-    forward = forward / distance
-    right = np.cross(forward, np.asarray(camera.up))
-    if np.linalg.norm(right) < 1e-6:
-        # The camera looks along its up vector: any other axis serves as well.
-        right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
-    right = right / np.linalg.norm(right)
+    right, forward = line_of_sight(camera.eye, camera.target, camera.up)
     up = np.cross(right, forward)
     rotation = Rotation.from_matrix(np.column_stack((right, up, -forward)))
-    return (*map(float, eye), *map(float, rotation.as_quat()))
+    return (*map(float, camera.eye), *map(float, rotation.as_quat()))
 
 
 def vertical_fov(camera: Camera) -> float:
@@ -114,13 +108,7 @@ def _outline(shape: Shape) -> np.ndarray:
     """Points whose hull encloses a shape, in its own frame [m]."""
     if shape.vertices:
         return np.asarray(shape.vertices)
-    if shape.kind == "sphere":
-        return _box(np.full(3, shape.size[0]))
-    if shape.kind in ("cylinder", "capsule"):
-        radius, height = shape.size
-        cap = radius if shape.kind == "capsule" else 0.0
-        return _box(np.array((radius, radius, 0.5 * height + cap)))
-    return _box(0.5 * np.asarray(shape.size)) if len(shape.size) == 3 else np.zeros((1, 3))
+    return _box(0.5 * np.asarray(kind_of(shape).edges)) if shape.kind != "plane" else np.zeros((1, 3))
 
 
 def _box(half: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsim.geometry.shapes import kind_of
 from wsim.scene.world import Body, World
 
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
@@ -58,14 +59,5 @@ def _crossing_time(world: World) -> float | None:
 
 def thickness(body: Body) -> float:
     """Smallest extent of a body's smallest shape that collides [m]."""
-    extents = []
-    for shape in body.shapes:
-        if not shape.collides:
-            continue
-        if shape.kind in ("sphere", "cylinder", "capsule"):
-            extents.append(2.0 * shape.size[0])
-        if shape.kind == "cylinder":
-            extents.append(shape.size[1])
-        if shape.kind in ("box", "mesh"):
-            extents.append(min(shape.size))
-    return max(min(extents, default=0.1), 1e-3)
+    thinnest = [kind_of(shape).thinnest for shape in body.shapes if shape.collides and shape.kind != "plane"]
+    return max(min(thinnest, default=0.1), 1e-3)

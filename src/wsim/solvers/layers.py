@@ -11,11 +11,9 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
-import trimesh
-import warp as wp
 from scipy.spatial import cKDTree
 
-from wsim.kernels.inside import depth_inside
+from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.sampling import Samples, box_lattice, lattice_axis
 
 Array = np.ndarray
@@ -97,12 +95,11 @@ def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool)
         spacing: Between particles [m].
         convex: Fill the convex hull.
     """
-    mesh = trimesh.Trimesh(vertices, triangles, process=False)
-    solid = mesh.convex_hull if convex or not mesh.is_watertight else mesh
+    solid = solid_of(vertices, triangles, convex)
     low, high = solid.bounds
     cells = box_lattice(high - low, spacing).position + 0.5 * (low + high)
     edge = np.array([length / lattice_axis(float(length), spacing)[0] for length in high - low])
-    depth_of = _depth_of(np.asarray(solid.vertices), np.asarray(solid.faces))
+    depth_of = depth_in(solid)
     depth = depth_of(cells)
     deep = depth >= RELAXED * spacing
     near = ~deep & (depth > -float(np.linalg.norm(edge)))
@@ -165,21 +162,3 @@ def _to_mid_depth(points: Array, spacing: float, depth_of: Callable[[Array], Arr
     moved = points + (middle - depth)[:, None] * np.stack(slope, axis=1)
     nearer = np.abs(depth_of(moved) - middle) < np.abs(depth - middle)
     return np.where(nearer[:, None], moved, points)
-
-
-def _depth_of(vertices: Array, triangles: Array) -> Callable[[Array], Array]:
-    """How deep points are inside a closed mesh [m]; negative outside."""
-    mesh = wp.Mesh(
-        wp.array(vertices, dtype=wp.vec3, device="cpu"),
-        wp.array(triangles.reshape(-1), dtype=wp.int32, device="cpu"),
-        support_winding_number=True,
-    )
-    reach = float(np.linalg.norm(vertices.max(axis=0) - vertices.min(axis=0)))
-
-    def depth_of(points: Array) -> Array:
-        depth = wp.zeros(len(points), dtype=float, device="cpu")
-        inputs = [mesh.id, wp.array(points, dtype=wp.vec3, device="cpu"), reach]
-        wp.launch(depth_inside, dim=len(points), inputs=inputs, outputs=[depth], device="cpu")
-        return depth.numpy().astype(float)
-
-    return depth_of

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from newton import GeoType, ShapeFlags
 
+from wsim.geometry.rotations import rotate
 from wsim.solvers.layers import capsule_layers, cylinder_layers, mesh_layers, sphere_layers
 from wsim.solvers.sampling import (
     Samples,
@@ -56,13 +57,6 @@ class Boundary:
     owner: Array  # (n,) body, or -1
     world: Array  # (n,)
     body_first: Array  # (body_count + 1,)
-
-
-def rotate(quaternion: Array, vectors: Array) -> Array:
-    """Rotate vectors, shape (n, 3), by a quaternion xyzw."""
-    axis, w = np.asarray(quaternion[:3]), quaternion[3]
-    cross = 2.0 * np.cross(np.broadcast_to(axis, vectors.shape), vectors)
-    return vectors + w * cross + np.cross(np.broadcast_to(axis, vectors.shape), cross)
 
 
 def sample_shape(kind: int, scale: Array, source: Any, spacing: float, plane: bool = False) -> Samples | None:

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from wsim.errors import UserError
+from wsim.geometry.rotations import tilt
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.tools.text import name_of, prim_of
 
@@ -133,14 +133,6 @@ def _rotation(evidence: Evidence, i: int) -> Values:
     return np.asarray(Rotation.from_quat(evidence.body_q[:, i, 3:]).as_euler("xyz", degrees=True))
 
 
-def _tilt(evidence: Evidence, i: int) -> Values:
-    """The angle between what pointed up at the start and up."""
-    up = np.array([0.0, 0.0, 1.0])
-    q = evidence.body_q[:, i, 3:]
-    own = rotate(conjugate(q[0]), up)
-    return np.degrees(np.arccos(np.clip(rotate(q, np.broadcast_to(own, (len(q), 3))) @ up, -1.0, 1.0)))
-
-
 def _draft(evidence: Evidence, i: int) -> Values:
     """How deep its lowest point is under the still surface of the nearest fluid that has one."""
     levels = []
@@ -167,7 +159,7 @@ BODY = {
     "velocity": _Kind("m/s", lambda e, i: e.body_qd[:, i, :3], XYZ),
     "speed": _Kind("m/s", lambda e, i: np.linalg.norm(e.body_qd[:, i, :3], axis=1)),
     "rotation": _Kind("deg", _rotation, ("roll", "pitch", "yaw")),
-    "tilt": _Kind("deg", _tilt),
+    "tilt": _Kind("deg", lambda e, i: tilt(e.body_q[:, i, 3:])),
     "angular_velocity": _Kind("rad/s", lambda e, i: e.body_qd[:, i, 3:], XYZ),
     "kinetic_energy": _Kind("J", lambda e, i: e.motion.kinetic[:, i]),
     "contact_force": _Kind("N", lambda e, i: np.asarray(e.recording.contact_force[:, i], np.float64), XYZ),

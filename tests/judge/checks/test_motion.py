@@ -23,9 +23,9 @@ from tests.judge.theory import (
     times,
     with_world,
 )
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
-from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 from wsim.rules.planner import plan as make_plan
 
 SOUND = [thrown, resting, lambda: bouncing(0.8), lambda: sliding(0.5 * G), swinging]

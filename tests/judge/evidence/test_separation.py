@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wsim.judge.evidence.contact import probe_points
-from wsim.judge.evidence.geometry import depth_inside, radius_about, rotate
+from wsim.geometry.rotations import rotate
+from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.placed import Placed
 from wsim.judge.evidence.separation import separation
 from wsim.scene.world import Shape
@@ -19,7 +19,7 @@ KINDS = {"box": (0.3, 0.2, 0.1), "sphere": (0.1,), "cylinder": (0.1, 0.4), "caps
 def placed(kind, position=(0.0, 0.0, 0.0), rotation=UPRIGHT, size=None):
     shape = Shape(prim=f"/World/{kind}", kind=kind, size=KINDS[kind] if size is None else size)
     position, rotation = np.atleast_2d(np.array(position)), np.atleast_2d(np.array(rotation))
-    return Placed(shape.prim, 0, shape, position, rotation, radius_about(shape))
+    return Placed(shape.prim, 0, shape, position, rotation)
 
 
 @pytest.mark.parametrize(
@@ -51,10 +51,10 @@ def test_it_is_never_more_than_the_distance_of_any_point(one, other):
     turns /= np.linalg.norm(turns, axis=2, keepdims=True)
     a = placed(one, random.uniform(-0.5, 0.5, (300, 3)), turns[0])
     b = placed(other, np.zeros((300, 3)), turns[1])
-    points, margin = probe_points(a.shape)
+    points, margin = kind_of(a.shape).probes()
     world = rotate(a.rotation[:, None], points[None]) + a.position[:, None]
     local = rotate(b.rotation[:, None] * [-1.0, -1.0, -1.0, 1.0], world - b.position[:, None])
-    distance = -depth_inside(b.shape, local).max(axis=1) - margin
+    distance = -kind_of(b.shape).depth(local).max(axis=1) - margin
     gap = separation(a, b, np.arange(300))
     assert np.all(gap <= distance + 1e-9) and (gap > 0.0).any()
 

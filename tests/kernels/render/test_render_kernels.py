@@ -108,17 +108,3 @@ def test_fit_container_brings_the_rim_to_the_wall_and_leaves_the_rest() -> None:
     assert moved[45:47] == pytest.approx(np.array(rows[45:47]))  # outside, and over the rim
     assert moved[47, 2] == pytest.approx(-half - overlap)  # the floor is met
     assert moved[48, 2] == pytest.approx(0.48)  # the top is open
-
-
-def test_depth_in_mesh() -> None:
-    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float32)
-    faces = [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3]
-    mesh = wp.Mesh(
-        points=wp.array(corners, dtype=wp.vec3f, device="cpu"),
-        indices=wp.array(faces, dtype=wp.int32, device="cpu"),
-        support_winding_number=True,
-    )
-    points = wp.array([(0.8, 0.0, 0.0), (0.0, 0.0, 0.5), (1.5, 0.0, 0.0)], dtype=wp.vec3f, device="cpu")
-    out = wp.zeros(3, dtype=float, device="cpu")
-    wp.launch(surface.depth_in_mesh, dim=3, inputs=[mesh.id, points, 2.0], outputs=[out], device="cpu")
-    assert out.numpy() == pytest.approx((0.2, 0.5, -0.5), abs=1e-5)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.checks.check import Check, Checks
-from wsim.judge.evidence.geometry import conjugate, rotate, smallest_extent
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
 from wsim.judge.verdict import RepairTarget
@@ -43,7 +43,7 @@ class CheckTunnelling(Check):
             if shape.shape.kind in ("plane", "mesh"):
                 continue  # a plane has no other side, and a mesh no known thickness
             far = moved + (moved[:, [shape.body]] if shape.body >= 0 else 0.0)
-            k, bodies = np.nonzero(far > self.travel * smallest_extent(shape.shape))
+            k, bodies = np.nonzero(far > self.travel * shape.kind.thinnest)
             apart = np.linalg.norm(motion.com[k, bodies] - shape.position[k], axis=1)
             reaches = apart < shape.radius + far[k, bodies]
             k, bodies = k[reaches], bodies[reaches]
@@ -81,7 +81,7 @@ class CheckTunnelling(Check):
     def _finding(self, evidence: Evidence, i: int, shape: Placed, k: int) -> Finding:
         body = evidence.world.bodies[i]
         start, end = float(evidence.time[k]), float(evidence.time[k + 1])
-        thick = smallest_extent(shape.shape)
+        thick = shape.kind.thinnest
         return self.failed(
             f"{body.prim} passes through {shape.owner}, {thick * 1e3:.3g} mm thick, from {start:.3f} to {end:.3f} s",
             prim=body.prim, time=end, span=(start, end),

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.shapes import reach
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.contact import overlaps
-from wsim.judge.evidence.geometry import reach, smallest_extent
 from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class CheckPenetration(Check):
             return []
         worst: Finding | None = None
         for pair in overlaps(evidence):
-            size = min(smallest_extent(p.shape) for p in (pair.a, pair.b) if p.body >= 0)
+            size = min(p.kind.thinnest for p in (pair.a, pair.b) if p.body >= 0)
             finding = self._judge(evidence, pair.depth, size, f"{pair.a.owner} in {pair.b.owner}", pair.a.owner)
             if worst is None or _share(finding) > _share(worst):
                 worst = finding

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.kinds import PRIMITIVES
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.checks.check import Check, Checks, listed, share_about
-from wsim.judge.evidence.geometry import conjugate, multiply, rotate
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from wsim.scene.world import Body, Shape, Static
 
     Floats = NDArray[np.float64]
-
-SOLIDS = ("box", "sphere", "cylinder", "capsule")
 
 
 @dataclass
@@ -41,7 +40,7 @@ class CheckPlanSizes(Check):
         return found or ([self.passed("Objects have the plan's sizes")] if evidence.plan is not None else [])
 
     def _solid(self, made: Body | Static, item: PlanObject) -> list[Finding]:
-        if item.primitive not in SOLIDS or len(made.shapes) != 1:
+        if item.primitive not in PRIMITIVES or len(made.shapes) != 1:
             return []  # an assembly stands for it
         shape = made.shapes[0]
         if not shape.collides and item.registration.collision != "none":
@@ -51,7 +50,7 @@ class CheckPlanSizes(Check):
         # Of another shape only the bounding box can be compared.
         sizes = (item.size, shape.size)
         if shape.kind != item.primitive or shape.kind == "box":
-            sizes = (tuple(sorted(_extent_of(item))), tuple(sorted(_extent(shape))))
+            sizes = (tuple(sorted(_edges(item.primitive, item.size))), tuple(sorted(_edges(shape.kind, shape.size))))
         return self._compare(made.prim, *sizes)
 
     def _hollows(self, evidence: Evidence) -> list[Finding]:
@@ -94,7 +93,7 @@ class CheckPlanPlaces(Check):
         return found or ([self.passed("Objects start where the plan has them")] if evidence.plan is not None else [])
 
     def _start(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
-        if item.pose is None or item.primitive not in SOLIDS or len(made.shapes) != 1:
+        if item.pose is None or item.primitive not in PRIMITIVES or len(made.shapes) != 1:
             return
         shape = made.shapes[0]
         place, turn = np.array(shape.position), np.array(shape.rotation)
@@ -104,7 +103,7 @@ class CheckPlanPlaces(Check):
             place, turn = q[:3], multiply(q[3:], turn)
             yield from self._velocity(evidence, i, item)
         far = float(np.linalg.norm(place - np.array(item.pose.position)))
-        limit = self.share * max(_extent_of(item))
+        limit = self.share * max(_edges(item.primitive, item.size))
         if far > limit:
             where = listed(tuple(float(x) for x in place))
             target = RepairTarget(kind="geometry", prim=made.prim, parameter="position", direction="change", unit="m")
@@ -153,7 +152,7 @@ class CheckPlanLooks(Check):
 
     def _look(self, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
         material = item.material
-        if material is None or item.primitive not in SOLIDS or not made.shapes:
+        if material is None or item.primitive not in PRIMITIVES or not made.shapes:
             return
         shape = made.shapes[0]
         for what, value, planned, limit in (
@@ -239,23 +238,9 @@ def _quaternion(rotation_deg: tuple[float, float, float]) -> Floats:
     return q
 
 
-def _extent_of(item: PlanObject) -> tuple[float, ...]:
-    return _extents(item.primitive, item.size)
-
-
-def _extent(shape: Shape) -> tuple[float, ...]:
-    return _extents(shape.kind, shape.size)
-
-
-def _extents(kind: str, size: tuple[float, ...]) -> tuple[float, ...]:
-    """Edges of a shape's bounding box in its own frame [m]."""
-    if kind == "sphere":
-        return (2 * size[0],) * 3
-    if kind == "cylinder":
-        return (2 * size[0], 2 * size[0], size[1])
-    if kind == "capsule":
-        return (2 * size[0], 2 * size[0], size[1] + 2 * size[0])
-    return size
+def _edges(kind: str, size: tuple[float, ...]) -> tuple[float, ...]:
+    """Edges of a shape's bounding box in its own frame [m]; of a mesh, its size."""
+    return PRIMITIVES[kind](*size).edges if kind in PRIMITIVES else size
 
 
 CHECKS: Checks = (CheckPlanSizes, CheckPlanPlaces, CheckPlanLooks)

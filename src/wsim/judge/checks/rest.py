@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import rotate
 from wsim.judge.checks.check import Check, Checks, worst
-from wsim.judge.evidence.geometry import rotate
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 

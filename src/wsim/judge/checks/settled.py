@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.kinds import ROUND
 from wsim.judge.checks.check import Check, Checks
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-
-ROUND = ("sphere", "cylinder", "capsule")
 
 
 @dataclass

@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, depth_inside, matrices, multiply, rotate
+from wsim.geometry.rotations import conjugate, matrices, multiply, rotate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.placed import Placed
     from wsim.judge.evidence.recorded import Recorded
-    from wsim.scene.world import Shape
 
     Floats = NDArray[np.float64]
 
-MOST_VERTICES = 200  # of a mesh that are probed
 CHUNK = 2048  # frames probed at once
 
 
@@ -83,7 +81,7 @@ def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
     """How deep the points of a are in b, (n,) [m]."""
     if a.shape.kind == "plane":
         return np.full(int(near.sum()), -np.inf)
-    points, margin = probe_points(a.shape)
+    points, margin = a.kind.probes()
     frames = np.flatnonzero(near)
     depth = np.empty(len(frames))
     for start in range(0, len(frames), CHUNK):  # so many frames at once as the processor's cache holds
@@ -92,25 +90,5 @@ def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
         local = rotate(back, a.position[part] - b.position[part])[:, :, None]
         if points.any():  # else it is the middle of a ball, however turned
             local = local + matrices(multiply(back, a.rotation[part])) @ points.T
-        depth[start : start + CHUNK] = depth_inside(b.shape, np.moveaxis(local, 1, -1)).max(axis=1)
+        depth[start : start + CHUNK] = b.kind.depth(np.moveaxis(local, 1, -1)).max(axis=1)
     return depth + margin
-
-
-def probe_points(shape: Shape) -> tuple[Floats, float]:
-    """Points (P, 3) in a shape's frame, and the radius of the ball that each stands for [m]."""
-    if shape.kind == "sphere":
-        return np.zeros((1, 3)), shape.size[0]
-    if shape.kind == "capsule":
-        z = np.linspace(-0.5, 0.5, 9) * shape.size[1]
-        return np.column_stack([np.zeros((9, 2)), z]), shape.size[0]
-    if shape.kind == "cylinder":
-        angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-        ring = np.column_stack([np.cos(angle), np.sin(angle)]) * shape.size[0]
-        ends = [np.column_stack([r, np.full(len(r), z * shape.size[1])]) for z in (-0.5, 0.0, 0.5) for r in (ring,)]
-        return np.concatenate([*ends, [[0.0, 0.0, -0.5 * shape.size[1]], [0.0, 0.0, 0.5 * shape.size[1]]]]), 0.0
-    if shape.kind == "mesh" and shape.vertices:
-        vertices = np.array(shape.vertices, dtype=np.float64)
-        return vertices[:: max(1, len(vertices) // MOST_VERTICES)], 0.0
-    ticks = (-0.5, 0.0, 0.5)
-    grid = np.array([[x, y, z] for x in ticks for y in ticks for z in ticks if (x, y, z) != (0.0, 0.0, 0.0)])
-    return grid * np.array(shape.size), 0.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import rotate
+from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.joints import JointTrack, track_of
 from wsim.judge.evidence.motion import Motion
 from wsim.judge.evidence.recorded import MissingError, Recorded
@@ -72,7 +72,7 @@ class Evidence(Recorded):
         floor = container.inner_center[2] - container.inner_size[2] / 2
         # A particle stands for its cell of the lattice that fills the fluid's box at the start.
         cells = math.prod(max(1, round(length / fluid.spacing)) for length in fluid.size)
-        inside = 1.0 - float(np.mean([self.strayed(container, fluid, track.position[f]).mean() for f in chosen]))
+        inside = 1.0 - float(np.mean(self.containment(container, fluid).outside[chosen]))
         volume = math.prod(fluid.size) / cells * track.position.shape[1] * inside
         height = self._level_of_volume(container, floor, volume)
         return Level(height, self._level_seen(fluid, container, track, chosen, height), floor)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, multiply, rotate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

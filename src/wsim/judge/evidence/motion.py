@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, depth_inside, radius_about, rotate
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +54,7 @@ class Motion:
         found = []
         for i, body in enumerate(self._recorded.world.bodies):
             reaches = [
-                float(np.linalg.norm(np.subtract(shape.position, body.com))) + radius_about(shape)
+                float(np.linalg.norm(np.subtract(shape.position, body.com))) + kind_of(shape).radius_about
                 for shape in self._recorded.solid(i).shapes
             ]
             found.append(max(reaches, default=0.0))
@@ -172,7 +173,7 @@ class Motion:
                 if shape.shape.kind == "mesh":
                     gap = np.linalg.norm(local, axis=1) - shape.radius
                 else:
-                    gap = -depth_inside(shape.shape, local)
+                    gap = -shape.kind.depth(local)
                 near |= gap <= self.radius[i] + reach
         return near
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import multiply, radius_about, rotate
+from wsim.geometry.rotations import multiply, rotate
+from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.geometry.kinds import Kind
     from wsim.scene.world import Shape, World
 
     Floats = NDArray[np.float64]
@@ -26,7 +29,16 @@ class Placed:
     shape: Shape
     position: Floats  # (T, 3)
     rotation: Floats  # (T, 4)
-    radius: float  # of a ball about it [m]
+
+    @cached_property
+    def kind(self) -> Kind:
+        """The shape in its own frame."""
+        return kind_of(self.shape)
+
+    @property
+    def radius(self) -> float:
+        """Of a ball about it [m]."""
+        return self.kind.radius_about
 
 
 def placed_shapes(world: World, body_q: Floats) -> list[Placed]:
@@ -42,11 +54,11 @@ def placed_shapes(world: World, body_q: Floats) -> list[Placed]:
                     position = position + rotate(q, np.array(shape.position, dtype=np.float64))
                 if any(shape.rotation[:3]):
                     turned = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
-                placed.append(Placed(body.prim, i, shape, position, turned, radius_about(shape)))
+                placed.append(Placed(body.prim, i, shape, position, turned))
     for static in world.statics:
         for shape in static.shapes:
             if shape.collides:
                 fixed = np.broadcast_to(np.array(shape.position, dtype=np.float64), (frames, 3))
                 turned = np.broadcast_to(np.array(shape.rotation, dtype=np.float64), (frames, 4))
-                placed.append(Placed(static.prim, -1, shape, fixed, turned, radius_about(shape)))
+                placed.append(Placed(static.prim, -1, shape, fixed, turned))
     return placed

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import Solid, conjugate, mean_rotation, rotate
+from wsim.geometry.rotations import mean_rotation
+from wsim.geometry.shapes import Solid
+from wsim.judge.evidence.containment import Containment, local
 from wsim.judge.evidence.placed import placed_shapes
 
 if TYPE_CHECKING:
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.placed import Placed
     from wsim.plan.schema import Plan, PlanObject
     from wsim.recording.recording import FluidTrack, Recording
-    from wsim.scene.world import Body, Container, Fluid, Static
+    from wsim.scene.world import Body, Container, Fluid, Shape, Static
 
     Floats = NDArray[np.float64]
 
@@ -40,7 +42,8 @@ class Recorded:
         self.time: Floats = np.asarray(recording.time, dtype=np.float64)
         self.body_q: Floats = np.asarray(recording.body_q, dtype=np.float64)
         self.body_qd: Floats = np.asarray(recording.body_qd, dtype=np.float64)
-        self._solids: dict[int, Solid] = {}
+        self._solids: dict[int, Solid[Shape]] = {}
+        self._containments: dict[tuple[str, str], Containment] = {}
         self._ends: dict[int, tuple[Floats, Floats]] = {}
 
     # ---- time
@@ -138,10 +141,10 @@ class Recorded:
         return ", ".join(prims) if prims else "none"
 
     # ---- bodies
-    def solid(self, i: int) -> Solid:
+    def solid(self, i: int) -> Solid[Shape]:
         """A body's shapes."""
         if i not in self._solids:
-            self._solids[i] = Solid(self.world.bodies[i])
+            self._solids[i] = Solid(self.world.bodies[i].shapes)
         return self._solids[i]
 
     def ends(self, i: int) -> tuple[Floats, Floats]:
@@ -171,14 +174,14 @@ class Recorded:
         """The container that a fluid fills."""
         return self.container(fluid.container) if fluid.container is not None else None
 
-    @staticmethod
-    def local(container: Container, points: Floats) -> Floats:
-        """Points (..., 3) in a container's frame, its inner box centred on the origin [m]."""
-        q = np.array(container.rotation, dtype=np.float64)
-        shifted = points - np.array(container.inner_center)
-        if np.array_equal(q, [0.0, 0.0, 0.0, 1.0]):
-            return shifted
-        return rotate(conjugate(q), shifted)
+    local = staticmethod(local)
+
+    def containment(self, container: Container, fluid: Fluid) -> Containment:
+        """Which particles a container holds, to a spacing; worked out once. MissingError."""
+        key = container.prim, fluid.prim
+        if key not in self._containments:
+            self._containments[key] = Containment.of(container, self.track(fluid).position, fluid.spacing)
+        return self._containments[key]
 
     def outside(self, fluid: Fluid) -> Floats:
         """Share of a fluid's particles more than a spacing outside its container, at each of its frames, (T,).
@@ -186,14 +189,6 @@ class Recorded:
         Above the open rim a particle is still inside as long as it is over the container.
         """
         container = self.container_of(fluid)
-        track = self.track(fluid)
         if container is None:
-            return np.zeros(len(track.time))
-        return np.array([self.strayed(container, fluid, frame).mean() for frame in track.position])
-
-    def strayed(self, container: Container, fluid: Fluid, points: Floats) -> NDArray[np.bool_]:
-        """Which of a fluid's particles (N, 3) are more than a spacing outside a container, (N,)."""
-        p = self.local(container, points)
-        half = np.array(container.inner_size) / 2 + fluid.spacing
-        strayed: NDArray[np.bool_] = (np.abs(p[:, 0]) > half[0]) | (np.abs(p[:, 1]) > half[1]) | (p[:, 2] < -half[2])
-        return strayed
+            return np.zeros(len(self.track(fluid).time))
+        return self.containment(container, fluid).outside

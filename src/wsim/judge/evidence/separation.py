@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, matrices, rotate
+from wsim.geometry.rotations import conjugate, matrices, rotate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.placed import Placed
-    from wsim.scene.world import Shape
 
     Floats = NDArray[np.float64]
 
@@ -46,22 +45,4 @@ def separation(a: Placed, b: Placed, frames: NDArray[np.intp]) -> Floats:
 
 def _extent(placed: Placed, frames: NDArray[np.intp], axes: Floats) -> tuple[Floats, Floats]:
     """How far a shape reaches from its own place along unit axes (n, A, 3), backwards and forwards, (n, A) each [m]."""
-    shape = placed.shape
-    local = rotate(conjugate(placed.rotation[frames])[:, None], axes)
-    if shape.kind == "mesh" and shape.vertices:
-        reached = local @ np.array(shape.vertices, dtype=np.float64).T
-        return reached.min(axis=2), reached.max(axis=2)
-    half = _half(shape, local)
-    return -half, half
-
-
-def _half(shape: Shape, axes: Floats) -> Floats:
-    """Half a primitive's width along unit axes (..., 3) in its own frame [m]."""
-    x, y, z = np.abs(np.moveaxis(axes, -1, 0))
-    if shape.kind == "sphere":
-        return np.full(x.shape, shape.size[0])
-    if shape.kind == "capsule":
-        return np.asarray(shape.size[0] + shape.size[1] / 2 * z)
-    if shape.kind == "cylinder":
-        return np.asarray(shape.size[0] * np.hypot(x, y) + shape.size[1] / 2 * z)
-    return np.asarray((x * shape.size[0] + y * shape.size[1] + z * shape.size[2]) / 2)
+    return placed.kind.ends(rotate(conjugate(placed.rotation[frames])[:, None], axes))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import rotate
+from wsim.geometry.kinds import ROUND
+from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import gap, moving_size, touch_reach
@@ -109,7 +110,7 @@ def _settles(asked: Settles, signals: Signals) -> list[Measure]:
 @measures(RollsWithoutSlip)
 def _rolls(asked: RollsWithoutSlip, signals: Signals) -> list[Measure]:
     prim, body = signals.prim(asked.object), signals.body(asked.object)
-    round_ = [s for s in body.shapes if s.collides and s.kind in ("sphere", "cylinder", "capsule")]
+    round_ = [s for s in body.shapes if s.collides and s.kind in ROUND]
     if not round_:
         raise MissingError("it is not round: only a sphere, a cylinder or a capsule rolls")
     radius = max(shape.size[0] for shape in round_)

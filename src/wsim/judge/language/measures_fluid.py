@@ -59,13 +59,7 @@ def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array,
     level, container, track = evidence.level(fluid), evidence.container_of(fluid), evidence.track(fluid)
     if container is None:
         raise MissingError(f"{fluid.prim} has no container: it has no level")
-    rim = container.inner_size[2] / 2 + fluid.spacing
-    inside = np.array(
-        [
-            1.0 - float((evidence.strayed(container, fluid, p) | (evidence.local(container, p)[:, 2] > rim)).mean())
-            for p in track.position.astype(np.float64)
-        ]
-    )
+    inside = evidence.containment(container, fluid).inside()
     end = float(inside[track.time >= evidence.window_start - 1e-9].mean())
     area = container.inner_size[0] * container.inner_size[1]
     missing = (end - inside) * math.prod(fluid.size) / area

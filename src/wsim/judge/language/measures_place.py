@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.shapes import reach
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import conjugate, multiply, reach, rotate
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import gap, touch_reach
@@ -110,8 +111,7 @@ def _stays_inside(asked: StaysInside, signals: Signals) -> list[Measure]:
 def _fluid_inside(asked: StaysInside, signals: Signals, container: Container) -> Measure:
     evidence, fluid = signals.fluid(asked.object)
     track = evidence.track(fluid)
-    outside = np.array([evidence.strayed(container, fluid, points).mean() for points in track.position])
-    value = outside[latest(track.time, signals.time)][None]
+    value = evidence.containment(container, fluid).outside[latest(track.time, signals.time)][None]
     source = f"{asked.share:g} of the particles, farther out than a spacing of {fluid.spacing:g} m"
     return Measure(f"part outside {container.prim}", fluid.prim, value, asked.share, "1", asked.share, source)
 

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import conjugate, rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.recording.recording import Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.geometry import Solid
+    from wsim.geometry.shapes import Solid
     from wsim.plan.schema import Plan
-    from wsim.scene.world import Body, Container, Fluid, World
+    from wsim.scene.world import Body, Container, Fluid, Shape, World
 
     Floats = NDArray[np.float64]
 
@@ -235,7 +235,7 @@ class Signals:
         """Answers (W * T, ...) with their world axis, (W, T, ...)."""
         return flat.reshape(self.count, len(self.time), *flat.shape[1:])
 
-    def solid(self, name: str) -> Solid:
+    def solid(self, name: str) -> Solid[Shape]:
         """A body's shapes."""
         return self.frames(name).solid(0)
 

@@ -198,13 +198,8 @@ class ObjectiveFills(ObjectiveCheck):
         if container is None:
             raise MissingError(f"the world has no container {evidence.prim(self.ref())}")
         track = evidence.track(fluid)
-        rim = container.inner_size[2] / 2 + fluid.spacing
-        shares = []
-        for points in track.position[track.time >= evidence.window_start - 1e-9]:
-            world = np.asarray(points, dtype=np.float64)
-            above = evidence.local(container, world)[:, 2] > rim
-            shares.append(1.0 - float((evidence.strayed(container, fluid, world) | above).mean()))
-        if not shares:
+        shares = evidence.containment(container, fluid).inside()[track.time >= evidence.window_start - 1e-9]
+        if not len(shares):
             raise MissingError(f"the recording has no particles of {fluid.prim} in the last second")
         value = float(np.mean(shares))
         return [

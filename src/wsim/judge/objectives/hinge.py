@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.evidence.pendulum import swing_stretch
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives

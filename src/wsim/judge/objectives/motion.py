@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.contact import distance
-from wsim.judge.evidence.geometry import rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import rotate
 from wsim.judge.checks.check import Check
-from wsim.judge.evidence.geometry import rotate
 from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:

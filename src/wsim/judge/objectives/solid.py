@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import conjugate, rotate
+from wsim.geometry.rotations import tilt
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives, Support, support_of
 
 if TYPE_CHECKING:
@@ -148,17 +148,15 @@ class ObjectiveTopples(ObjectiveCheck):
         body = evidence.world.bodies[i]
         low, high = evidence.ends(i)
         height = float((high - low)[0])
-        up = rotate(conjugate(evidence.body_q[0, i, 3:]), np.array([0.0, 0.0, 1.0]))
-        cosine = rotate(evidence.body_q[:, i, 3:], np.broadcast_to(up, (len(evidence.time), 3)))[:, 2]
-        tilt = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+        tilts = tilt(evidence.body_q[:, i, 3:])
         if all(shape.kind == "sphere" for shape in evidence.solid(i).shapes):
-            tilt = np.zeros_like(tilt)  # a ball has no upright
+            tilts = np.zeros_like(tilts)  # a ball has no upright
         fall = low[0] - low
-        share = np.maximum(tilt / self.tilt, fall / (self.drop * height))
+        share = np.maximum(tilts / self.tilt, fall / (self.drop * height))
         fallen = share >= 1.0
         end = float(share[evidence.window].mean())
         time = float(evidence.time[np.argmax(fallen)]) if fallen.any() else float(evidence.time[-1])
-        tilted = float(tilt[evidence.window].mean())
+        tilted = float(tilts[evidence.window].mean())
         fell = float(fall[evidence.window].mean())
         word = "has toppled" if end >= 1.0 else "still stands"
         message = f"{body.prim} {word}: tilted by {tilted:.3g} degrees, {fell:.3g} m lower than at the start"

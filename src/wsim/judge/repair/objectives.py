@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import rotate, smallest_extent
+from wsim.geometry.rotations import rotate
+from wsim.geometry.shapes import kind_of
 from wsim.judge.repair.asked import ref_of
 from wsim.judge.repair.rule import (
     Rule,
@@ -140,7 +141,7 @@ def tunnelled(finding: Finding, evidence: Evidence, prim: str, ref: str) -> Repa
     if start is not None:
         return start
     shapes = [shape for owner in (prim, ref) for shape in shapes_of(evidence, owner)]
-    sizes = [smallest_extent(shape) for shape in shapes if shape.kind != "plane"]
+    sizes = [kind_of(shape).thinnest for shape in shapes if shape.kind != "plane"]
     speed = float(np.linalg.norm(evidence.body_qd[:, evidence.index(prim), :3], axis=1).max())
     now = time_step(evidence)
     if not sizes or not now or speed <= 0.0 or not math.isfinite(speed):

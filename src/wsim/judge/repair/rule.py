@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.evidence.geometry import smallest_extent
 from wsim.judge.verdict import Finding, RepairTarget
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ def overlapping_start(evidence: Evidence, prim: str | None) -> RepairTarget | No
     if deepest is None:
         return None
     depth = float(deepest.depth[0])
-    size = min(smallest_extent(part.shape) for part in (deepest.a, deepest.b) if part.body >= 0)
+    size = min(part.kind.thinnest for part in (deepest.a, deepest.b) if part.body >= 0)
     if depth <= 1e-3 * size:  # touching
         return None
     why = f"it starts {depth:.3g} m inside {deepest.b.owner}: move them apart by that"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.evidence.geometry import smallest_extent
+from wsim.geometry.shapes import kind_of
 from wsim.judge.repair.rule import (
     Rule,
     add_collision,
@@ -131,7 +131,7 @@ def leak(finding: Finding, evidence: Evidence) -> RepairTarget:
         return add_collision(container.prim)
     static = evidence.static(container.prim)
     wall = (
-        min((smallest_extent(shape) for shape in static.shapes), default=math.inf) if static is not None else math.inf
+        min((kind_of(shape).thinnest for shape in static.shapes), default=math.inf) if static is not None else math.inf
     )
     if wall < fluid.spacing:
         return RepairTarget(
@@ -144,7 +144,7 @@ def leak(finding: Finding, evidence: Evidence) -> RepairTarget:
 def _exits(evidence: Evidence, container: Container, fluid: Fluid) -> Floats:
     """Height above the inner floor at which each particle that gets out did so, (n,) [m]."""
     track = evidence.track(fluid)
-    out = np.array([evidence.strayed(container, fluid, frame) for frame in track.position])
+    out = evidence.containment(container, fluid).strayed
     gone = np.flatnonzero(out.any(axis=0))
     first = np.argmax(out[:, gone], axis=0)
     # Between two frames one may fall below the rim that it came over: it was above it at the frame before.

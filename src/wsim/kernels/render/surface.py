@@ -66,24 +66,6 @@ def fit_container(
 
 
 @wp.kernel(enable_backward=False)
-def depth_in_mesh(
-    # Data in:
-    mesh: wp.uint64,
-    points: wp.array(dtype=wp.vec3f),
-    farthest: float,  # [m]
-    # Data out:
-    out_depth: wp.array(dtype=float),  # [m], how deep a point lies inside; negative outside
-):
-    """Distance of points to a closed mesh, positive within."""
-    i = wp.tid()
-    out_depth[i] = -farthest
-    query = wp.mesh_query_point_sign_winding_number(mesh, points[i], farthest)
-    if query.result:
-        nearest = wp.mesh_eval_position(mesh, query.face, query.u, query.v)
-        out_depth[i] = -query.sign * wp.length(points[i] - nearest)
-
-
-@wp.kernel(enable_backward=False)
 def place_points(
     # Data in:
     points: wp.array(dtype=wp.vec3f),  # in their shapes' frames

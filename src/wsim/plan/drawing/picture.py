@@ -10,6 +10,7 @@ from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
 
+from wsim.geometry.colour import srgb_of
 from wsim.plan.drawing.labels import Rect, Wanted, place, together
 from wsim.plan.drawing.silhouettes import Point, Scene, Silhouette, View, scene_of
 from wsim.plan.drawing.text import nice
@@ -228,9 +229,8 @@ def _nearest(rect: Rect, x: float, y: float) -> tuple[float, float]:
 
 
 def _shown(color: Vec3) -> tuple[int, int, int]:
-    """Linear RGB as a screen has it (sRGB's transfer curve, IEC 61966-2-1)."""
-    curve = [12.92 * c if c <= 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055 for c in color]
-    red, green, blue = (round(255 * value) for value in curve)
+    """Linear RGB as bytes of sRGB."""
+    red, green, blue = (round(255 * value) for value in srgb_of(color).tolist())
     return red, green, blue
 
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from wsim.judge.evidence.geometry import Solid, depth_inside, mean_rotation, multiply, rotate
-from wsim.scene.world import Body, Shape
+from wsim.geometry.kinds import KINDS
+from wsim.geometry.rotations import multiply, rotate
+from wsim.geometry.shapes import Solid, kind_of
+from wsim.scene.world import Shape
 
 UPRIGHT = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -19,18 +21,7 @@ def about_x(degrees: float) -> np.ndarray:
 
 def solid(kind: str, size: tuple[float, ...], **fields) -> Solid:
     shape = Shape(prim="/World/a/geometry", kind=kind, size=size, **fields)
-    ones = (1.0,) * 9
-    return Solid(
-        Body(
-            prim="/World/a",
-            mass=1.0,
-            volume=1.0,
-            inertia=ones,
-            position=(0, 0, 0),
-            rotation=(0, 0, 0, 1),
-            shapes=[shape],
-        )
-    )
+    return Solid([shape])
 
 
 @pytest.mark.parametrize(
@@ -106,14 +97,27 @@ def test_reach_is_the_surface_s(kind):
 def test_depth_inside_has_the_right_sign_and_size():
     box = Shape(prim="/a", kind="box", size=(2.0, 2.0, 2.0))
     points = np.array([[0.0, 0.0, 0.9], [0.0, 0.0, 1.5], [2.0, 2.0, 0.0]])
-    assert depth_inside(box, points) == pytest.approx([0.1, -0.5, -math.sqrt(2.0)])
+    assert kind_of(box).depth(points) == pytest.approx([0.1, -0.5, -math.sqrt(2.0)])
     rod = Shape(prim="/a", kind="cylinder", size=(1.0, 4.0))
-    assert depth_inside(rod, np.array([[0.8, 0.0, 0.0], [0.0, 0.0, 2.3]])) == pytest.approx([0.2, -0.3])
+    assert kind_of(rod).depth(np.array([[0.8, 0.0, 0.0], [0.0, 0.0, 2.3]])) == pytest.approx([0.2, -0.3])
     pill = Shape(prim="/a", kind="capsule", size=(1.0, 4.0))
-    assert depth_inside(pill, np.array([[0.0, 0.0, 2.5], [1.5, 0.0, 0.0]])) == pytest.approx([0.5, -0.5])
+    assert kind_of(pill).depth(np.array([[0.0, 0.0, 2.5], [1.5, 0.0, 0.0]])) == pytest.approx([0.5, -0.5])
 
 
-def test_mean_rotation_ignores_sign():
-    q = np.stack([about_x(10.0), -about_x(14.0)])
-    mean = mean_rotation(q)
-    assert abs(mean @ about_x(12.0)) == pytest.approx(1.0, abs=1e-6)
+@pytest.mark.parametrize("kind", ["box", "sphere", "cylinder", "capsule"])
+def test_a_kind_tells_one_story(kind):
+    """Its width, its ball, its depth and its surface, each worked out in another way, are those of one solid."""
+    shape = KINDS[kind](*{"box": (0.2, 0.3, 0.1), "sphere": (0.1,)}.get(kind, (0.1, 0.3)))
+    points = shape.surface().vertices
+    assert np.abs(shape.depth(points)).max() < 2e-3
+    assert np.linalg.norm(points, axis=1).max() == pytest.approx(shape.radius_about, abs=2e-3)
+    assert np.ptp(points, axis=0) == pytest.approx(shape.edges, abs=4e-3)
+    assert shape.thinnest == pytest.approx(min(shape.edges))
+    axes = rotate(about_x(33.0), np.eye(3))
+    low, high = shape.ends(axes)
+    assert low == pytest.approx((points @ axes.T).min(axis=0), abs=2e-3)
+    assert high == pytest.approx((points @ axes.T).max(axis=0), abs=2e-3)
+    assert shape.heights(axes) == pytest.approx(np.array([low, high]))
+    assert shape.volume == pytest.approx(shape.surface().volume)
+    probes, margin = shape.probes()
+    assert shape.depth(probes) == pytest.approx(np.full(len(probes), margin))

@@ -1,0 +1,1 @@
+"""Geometry, with NumPy alone: rotations, the kinds of shape, solids, colour."""

@@ -1,0 +1,207 @@
+"""The kinds of shape: what each is in its own frame, centred on its origin, round ones about Z.
+
+A kind is one function of the numbers of `wsim.scene.world.Shape.size` [m], and a line in `KINDS`.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wsim.geometry.surfaces import Surface, arc, box_surface, revolved
+
+Floats = NDArray[np.float64]
+Ends = tuple[Floats, Floats]
+
+MOST_PROBES = 200  # vertices of a mesh that are probed
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A shape, by what is asked of it."""
+
+    edges: tuple[float, ...]
+    """Of its bounding box [m]; none where it has no end."""
+    radius_about: float
+    """Radius of a ball about its origin that holds it [m]."""
+    thinnest: float
+    """Its smallest extent [m]."""
+    beyond: Callable[[Floats], list[Floats]]
+    """How far points (..., 3) are beyond each of its sides, which stand at right angles, (...) each [m]."""
+    ends: Callable[[Floats], Ends]
+    """Where it begins and ends along unit axes (..., 3), from its origin, (...) each [m]."""
+    heights: Callable[[Floats], Ends]
+    """Its ends along the world's Z, (T, 3) in its frame: another order of operations, which verdicts are bound to."""
+    surface: Callable[[], Surface]
+    """A closed mesh of it, of its volume."""
+    probes: Callable[[], tuple[Floats, float]]
+    """Points (P, 3), and how deep inside they are: what balls of that radius about them meet, it meets."""
+    volume: float = math.nan
+    """[m^3]; not a number where only the surface tells."""
+    has_depth: bool = True
+
+    def depth(self, points: Floats) -> Floats:
+        """How deep points (..., 3) are inside [m], negative outside; -inf for a mesh, which NumPy has no tree for."""
+        if not self.has_depth:
+            return np.full(points.shape[:-1], -np.inf)
+        sides = self.beyond(points)
+        if len(sides) == 1:
+            return -sides[0]
+        outside = np.sqrt(sum(np.square(np.maximum(side, 0.0)) for side in sides))
+        depth: Floats = -(outside + np.minimum(functools.reduce(np.maximum, sides), 0.0))
+        return depth
+
+
+def _both(half: Floats) -> Ends:
+    return -half, half
+
+
+def box(*edges: float) -> Kind:
+    """By its full edges."""
+
+    def ends(axes: Floats) -> Ends:
+        x, y, z = np.abs(np.moveaxis(axes, -1, 0))
+        return _both(np.asarray((x * edges[0] + y * edges[1] + z * edges[2]) / 2))
+
+    def probes() -> tuple[Floats, float]:
+        ticks = (-0.5, 0.0, 0.5)
+        grid = np.array([[x, y, z] for x in ticks for y in ticks for z in ticks if (x, y, z) != (0.0, 0.0, 0.0)])
+        return grid * np.array(edges), 0.0
+
+    return Kind(
+        edges=edges,
+        radius_about=math.hypot(*edges) / 2,
+        thinnest=min(edges),
+        beyond=lambda points: [np.abs(points[..., k]) - edge / 2 for k, edge in enumerate(edges)],
+        ends=ends,
+        heights=lambda up: _both(np.abs(up) @ (np.array(edges) / 2)),
+        surface=lambda: box_surface(edges),
+        probes=probes,
+        volume=math.prod(edges),
+    )
+
+
+def sphere(radius: float) -> Kind:
+    """By its radius."""
+    volume = 4 / 3 * math.pi * radius**3
+
+    def ends(axes: Floats) -> Ends:
+        return _both(np.full(axes.shape[:-1], radius))
+
+    return Kind(
+        edges=(2 * radius,) * 3,
+        radius_about=radius,
+        thinnest=2 * radius,
+        beyond=lambda points: [np.linalg.norm(points, axis=-1) - radius],
+        ends=ends,
+        heights=ends,
+        surface=lambda: revolved(*arc(radius, 0.0), volume=volume),
+        probes=lambda: (np.zeros((1, 3)), radius),
+        volume=volume,
+    )
+
+
+def cylinder(radius: float, height: float) -> Kind:
+    """Along Z."""
+    volume = math.pi * radius**2 * height
+
+    def ends(axes: Floats) -> Ends:
+        x, y, z = np.abs(np.moveaxis(axes, -1, 0))
+        return _both(np.asarray(radius * np.hypot(x, y) + height / 2 * z))
+
+    def heights(up: Floats) -> Ends:
+        return _both(np.abs(up[:, 2]) * height / 2 + radius * np.sqrt(np.maximum(0.0, 1.0 - up[:, 2] ** 2)))
+
+    def probes() -> tuple[Floats, float]:
+        angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+        ring = np.column_stack([np.cos(angle), np.sin(angle)]) * radius
+        rings = [np.column_stack([ring, np.full(len(ring), z * height)]) for z in (-0.5, 0.0, 0.5)]
+        return np.concatenate([*rings, [[0.0, 0.0, -0.5 * height], [0.0, 0.0, 0.5 * height]]]), 0.0
+
+    profile = (np.array([0.0, radius, radius, 0.0]), np.array([-1.0, -1.0, 1.0, 1.0]) * height / 2)
+    return Kind(
+        edges=(2 * radius, 2 * radius, height),
+        radius_about=math.hypot(radius, height / 2),
+        thinnest=min(2 * radius, height),
+        beyond=lambda p: [np.hypot(p[..., 0], p[..., 1]) - radius, np.abs(p[..., 2]) - height / 2],
+        ends=ends,
+        heights=heights,
+        surface=lambda: revolved(*profile, volume=volume, radial=True),
+        probes=probes,
+        volume=volume,
+    )
+
+
+def capsule(radius: float, height: float) -> Kind:
+    """Along Z; the height is without the caps."""
+    volume = math.pi * radius**2 * (height + 4 / 3 * radius)
+
+    def beyond(points: Floats) -> list[Floats]:
+        x, y, z = points[..., 0], points[..., 1], points[..., 2]
+        along = np.maximum(np.abs(z) - height / 2, 0.0)
+        return [np.sqrt(x * x + y * y + along * along) - radius]
+
+    def ends(axes: Floats) -> Ends:
+        return _both(np.asarray(radius + height / 2 * np.abs(axes[..., 2])))
+
+    return Kind(
+        edges=(2 * radius, 2 * radius, height + 2 * radius),
+        radius_about=radius + height / 2,
+        thinnest=2 * radius,
+        beyond=beyond,
+        ends=ends,
+        heights=ends,
+        surface=lambda: revolved(*arc(radius, height), volume=volume),
+        probes=lambda: (np.column_stack([np.zeros((9, 2)), np.linspace(-0.5, 0.5, 9) * height]), radius),
+        volume=volume,
+    )
+
+
+def plane() -> Kind:
+    """All that is below z = 0."""
+
+    def endless(*_: Floats) -> NoReturn:
+        raise ValueError("a plane has no end")
+
+    return Kind(
+        edges=(),
+        radius_about=math.inf,
+        thinnest=math.inf,
+        beyond=lambda points: [points[..., 2]],
+        ends=endless,
+        heights=endless,
+        surface=endless,
+        probes=endless,
+    )
+
+
+def mesh(edges: tuple[float, ...], points: Sequence[Sequence[float]], faces: Sequence[Sequence[int]]) -> Kind:
+    """By its bounding box, vertices [m] and triangles; without vertices its box stands for it."""
+    hull = replace(box(*edges), volume=math.nan, has_depth=False)
+    if not points:
+        return hull
+    vertices = np.array(points, dtype=np.float64)
+
+    def ends(axes: Floats) -> Ends:
+        along = axes @ vertices.T
+        return along.min(axis=-1), along.max(axis=-1)
+
+    return replace(
+        hull,
+        radius_about=float(np.linalg.norm(vertices, axis=1).max()),
+        ends=ends,
+        heights=ends,
+        surface=(lambda: Surface(vertices, np.array(faces, dtype=np.intp))) if faces else hull.surface,
+        probes=lambda: (vertices[:: max(1, len(vertices) // MOST_PROBES)], 0.0),
+    )
+
+
+PRIMITIVES: dict[str, Callable[..., Kind]] = {"box": box, "sphere": sphere, "cylinder": cylinder, "capsule": capsule}
+KINDS: dict[str, Callable[..., Kind]] = {**PRIMITIVES, "plane": plane, "mesh": mesh}
+ROUND = frozenset({"sphere", "cylinder", "capsule"})

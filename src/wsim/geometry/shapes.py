@@ -1,0 +1,122 @@
+"""Shapes where they stand in their bodies: surface, reach, and the solid that a body's shapes make."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wsim.geometry.kinds import KINDS, Kind, mesh
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.surfaces import Surface
+
+Floats = NDArray[np.float64]
+
+
+class Described(Protocol):
+    """What is read of a `wsim.scene.world.Shape`."""
+
+    prim: str
+    size: tuple[float, ...]
+    position: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
+    collides: bool
+    vertices: list[tuple[float, float, float]]
+    triangles: list[tuple[int, int, int]]
+
+    @property
+    def kind(self) -> str:
+        """One of `KINDS`."""
+
+
+S = TypeVar("S", bound=Described)
+
+
+def kind_of(shape: Described) -> Kind:
+    """The shape in its own frame."""
+    if shape.kind == "mesh":
+        return mesh(shape.size, shape.vertices, shape.triangles)
+    return KINDS[shape.kind](*shape.size)
+
+
+def surface_of(shape: Described) -> Surface:
+    """A shape as a mesh in its body's frame; round ones keep their volume.
+
+    Raises:
+        ValueError: a plane has no volume.
+    """
+    if shape.kind == "plane":
+        raise ValueError(f"{shape.prim}: a {shape.kind} has no volume")
+    place = np.array(shape.rotation, dtype=np.float64), np.array(shape.position, dtype=np.float64)
+    return kind_of(shape).surface().turned(*place)
+
+
+def into(shape: Described, points: Floats) -> Floats:
+    """Points (N, 3) of its body's frame in the shape's own [m]."""
+    return rotate(conjugate(np.array(shape.rotation)), points - np.array(shape.position))
+
+
+def reach(shape: Described, q: Floats) -> tuple[Floats, Floats]:
+    """How far a shape reaches below and above its body's origin along the world's Z [m].
+
+    Args:
+        shape: In its body's frame.
+        q: The body's rotations (T, 4).
+
+    Returns:
+        Lowest and highest z relative to the origin, (T,) each.
+    """
+    centre = rotate(q, np.array(shape.position, dtype=np.float64))[:, 2]
+    full = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
+    # Row 2 of the rotation matrix: the world's Z in the shape's frame.
+    up = rotate(conjugate(full), np.broadcast_to(np.array([0.0, 0.0, 1.0]), (len(q), 3)))
+    low, high = kind_of(shape).heights(up)
+    return centre + low, centre + high
+
+
+class Solid(Generic[S]):
+    """A body's colliding shapes: what displaces fluid and touches others."""
+
+    def __init__(self, shapes: Sequence[S]) -> None:
+        self.shapes = [s for s in shapes if s.collides and s.kind != "plane"] or list(shapes)
+        self.surfaces = [surface_of(shape) for shape in self.shapes]
+        self.volume = sum(surface.volume for surface in self.surfaces)
+
+    def reach(self, q: Floats) -> tuple[Floats, Floats]:
+        """Lowest and highest z relative to the body's origin, (T,) each [m]."""
+        ends = [reach(shape, q) for shape in self.shapes]
+        return np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)
+
+    def volume_below(self, q: Floats, z: float, height: float) -> float:
+        """Volume under a level plane [m^3], the body's origin at height z, turned by q (4,)."""
+        return sum(surface.turned(q).volume_below(height - z) for surface in self.surfaces)
+
+    def draft(self, q: Floats, displaced: float) -> float:
+        """Depth of the lowest point below the surface when `displaced` [m^3] is under it, at rotation q (4,) [m].
+
+        Archimedes: a body of mass m floats where it displaces m / fluid density. Found by bisection.
+
+        Raises:
+            ValueError: the body has less volume than that.
+        """
+        if displaced > self.volume:
+            raise ValueError(f"a body of {self.volume:g} m^3 cannot displace {displaced:g} m^3")
+        lows, highs = self.reach(q[None])
+        low, high = float(lows[0]), float(highs[0])
+        bottom = low
+        meshes = [surface.turned(q) for surface in self.surfaces]
+        for _ in range(40):
+            middle = (low + high) / 2
+            if sum(mesh.volume_below(middle) for mesh in meshes) < displaced:
+                low = middle
+            else:
+                high = middle
+        return (low + high) / 2 - bottom
+
+    @cached_property
+    def smallest(self) -> float:
+        """The smallest extent of its largest shape [m]."""
+        return max(kind_of(shape).thinnest for shape in self.shapes)

@@ -1,0 +1,52 @@
+"""Which of a fluid's particles a container holds, frame by frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, rotate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Container
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Containment:
+    """Where particles are, seen from a container."""
+
+    strayed: Bools  # (T, N): more than `slack` beyond its walls or under its floor; over the open rim is not
+    above: Bools  # (T, N): more than `slack` over its rim
+    outside: Floats  # (T,): share that strayed
+
+    @classmethod
+    def of(cls, container: Container, position: NDArray[np.float32], slack: float) -> Containment:
+        """Of particles at positions (T, N, 3), `slack` beside the container's inner faces [m]."""
+        strayed = np.empty(position.shape[:2], dtype=bool)
+        above = np.empty_like(strayed)
+        half = np.array(container.inner_size) / 2 + slack
+        for t, points in enumerate(position):  # one frame at a time: a recording may be larger than a cache
+            x, y, z = np.moveaxis(local(container, points), -1, 0)
+            strayed[t] = (np.abs(x) > half[0]) | (np.abs(y) > half[1]) | (z < -half[2])
+            above[t] = z > half[2]
+        return cls(strayed, above, strayed.mean(axis=1))
+
+    def inside(self) -> Floats:
+        """Share that is inside, below the rim, at each frame (T,)."""
+        return 1.0 - (self.strayed | self.above).mean(axis=1)
+
+
+def local(container: Container, points: Floats) -> Floats:
+    """Points (..., 3) in a container's frame, its inner box centred on the origin [m]."""
+    q = np.array(container.rotation, dtype=np.float64)
+    shifted = points - np.array(container.inner_center)
+    if np.array_equal(q, [0.0, 0.0, 0.0, 1.0]):
+        return shifted
+    return rotate(conjugate(q), shifted)

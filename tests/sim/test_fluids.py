@@ -1,0 +1,87 @@
+"""Where fluid stands at the start: not where bodies are, and everywhere else."""
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+
+from wsim.scene import Scene
+from wsim.scene.describe import describe
+from wsim.scene.world import Body, Fluid, Shape, World
+from wsim.sim.fluids import expected_speed
+from wsim.sim.model import build_model
+
+SPACING = 0.025
+CLEAR = 0.4 * SPACING  # [m], that fluid keeps from a body
+
+
+@pytest.fixture
+def filled(tmp_path):
+    """Particles of a tank of 1 x 1 x 0.5 m of water about a body, their positions (n, 3) [m]."""
+
+    def make(place) -> np.ndarray:
+        scene = Scene()
+        tank = scene.tank("tank", inner_size=(1.0, 1.0, 0.6))
+        scene.fluid("water", fills=tank, level=0.5, spacing=SPACING)
+        place(scene)
+        scene.save(stage := tmp_path / "stage.usda")
+        return build_model(stage, describe(stage), "cpu").model.particle_q.numpy()
+
+    return make
+
+
+def left_out(position: np.ndarray) -> float:
+    return 0.5 - len(position) * SPACING**3
+
+
+def test_water_stands_around_a_mesh_and_not_its_bounding_box(filled, tmp_path) -> None:
+    """A cone fills a third of a cylinder, and a quarter of its box: water comes up to its slope."""
+    radius, height = 0.15, 0.3
+    trimesh.creation.cone(radius, height).export(tmp_path / "cone.obj")
+    position = filled(lambda scene: scene.mesh("cone", file=tmp_path / "cone.obj", position=(0.0, 0.0, 0.1)))
+    # Grown by what fluid keeps clear of: Steiner's formula, without the edges' share.
+    skin = math.pi * radius * (radius + math.hypot(radius, height))
+    assert left_out(position) == pytest.approx(math.pi * radius**2 * height / 3 + skin * CLEAR, rel=0.1)
+    beside = (np.hypot(position[:, 0], position[:, 1]) < 0.75 * radius) & (np.abs(position[:, 2] - 0.3) < 0.05)
+    assert beside.any()
+
+
+def test_water_stands_around_what_is_fixed(filled, tmp_path) -> None:
+    """A post and a cone that are screwed to the floor are no fuller of water than those that float."""
+    trimesh.creation.cone(0.15, 0.3).export(tmp_path / "cone.obj")
+
+    def place(static: bool):
+        def fill(scene: Scene) -> None:
+            scene.mesh("cone", file=tmp_path / "cone.obj", position=(0.2, 0.0, 0.1), static=static)
+            scene.box("post", size=(0.2, 0.2, 0.4), position=(-0.2, 0.0, 0.25), rotation_deg=(0, 0, 30), static=static)
+
+        return fill
+
+    fixed, loose = filled(place(static=True)), filled(place(static=False))
+    assert len(fixed) == pytest.approx(len(loose), abs=0.002 * len(loose))
+    assert left_out(fixed) > 0.2 * 0.2 * 0.4 + math.pi * 0.15**2 * 0.3 / 3
+
+
+def test_water_stands_around_a_cylinder(filled) -> None:
+    position = filled(lambda scene: scene.cylinder("can", radius=0.15, height=0.3, position=(0.0, 0.0, 0.25)))
+    grown = math.pi * (0.15 + CLEAR) ** 2 * (0.3 + 2 * CLEAR)
+    assert left_out(position) == pytest.approx(grown, rel=0.05)
+
+
+def test_a_lying_can_falls_from_its_lower_side() -> None:
+    """A can of radius 0.3 m and height 2 m reaches 0.3 m down at least; half its radius was taken before."""
+    shape = Shape(prim="/World/can/geometry", kind="cylinder", size=(0.3, 2.0))
+    can = Body(
+        prim="/World/can",
+        mass=1.0,
+        volume=1.0,
+        inertia=(1.0,) * 9,
+        position=(0.0, 0.0, 3.3),
+        rotation=(0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5)),
+        shapes=[shape],
+    )
+    water = Fluid(
+        prim="/World/water", density=1000.0, viscosity=1e-3, spacing=0.05, size=(1.0, 1.0, 0.5), center=(0, 0, 0.25)
+    )
+    assert expected_speed(World(bodies=[can], fluids=[water])) == pytest.approx(math.sqrt(2 * 9.81 * (3.0 - 0.5)))
