@@ -46,6 +46,7 @@ def world_of(path: Path) -> World:
             if shape is not None:
                 statics.append((shape.prim if b == 0 else _prim(body_name(model, b)), shape))
     return World(
+        combine="larger",
         name=_clean(path.stem),
         gravity=tuple(model.opt.gravity.tolist()),
         time_step=float(model.opt.timestep),

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
 
-from wsim.defaults import FRICTION
 from wsim.scene.authoring import LOOKS, Author, Handle, note_line
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
@@ -21,16 +20,19 @@ _PALETTE: tuple[Vec3, ...] = (
     (0.67, 0.11, 0.0),
     (0.6, 0.19, 0.39),
 )
-RESTITUTION = 0.0
 
 
 @dataclass(frozen=True)
 class Material(Handle):
-    """A material by name. `density` [kg/m^3] is None where the material leaves it to the object."""
+    """A material by name.
+
+    `density` [kg/m^3] is None where it is left to the object, `friction` and `restitution` where they are left to what
+    it touches.
+    """
 
     density: float | None
-    friction: float
-    restitution: float
+    friction: float | None
+    restitution: float | None
     color: Vec3
     opacity: float
 
@@ -57,8 +59,8 @@ class Materials(Author):
         name: str,
         *,
         density: float | None = None,
-        friction: float = FRICTION,
-        restitution: float = RESTITUTION,
+        friction: float | None = None,
+        restitution: float | None = None,
         color: Sequence[float] = (0.7, 0.7, 0.7),
         opacity: float = 1.0,
     ) -> Material:
@@ -67,8 +69,9 @@ class Materials(Author):
         Args:
             name: Name of the prim, under /World/Looks.
             density: [kg/m^3]; what an object made of it weighs unless the object says otherwise.
-            friction: Coefficient of friction, 0 to 10.
-            restitution: 0 (dead) to 1 (elastic).
+            friction: Coefficient of friction, 0 to 10. Of two surfaces the smaller counts; not given, the other's,
+                and 0.5 if neither states one.
+            restitution: 0 (dead) to 1 (elastic); likewise, and 0 if neither states one.
             color: Linear red, green, blue, 0 to 1.
             opacity: 0 (clear) to 1.
 
@@ -82,8 +85,8 @@ class Materials(Author):
             path=path,
             kind="material",
             density=None if density is None else call.density(density),
-            friction=call.friction(friction),
-            restitution=call.fraction("restitution", restitution),
+            friction=None if friction is None else call.friction(friction),
+            restitution=None if restitution is None else call.fraction("restitution", restitution),
             color=call.color("color", color),
             opacity=call.fraction("opacity", opacity),
         )
@@ -103,9 +106,11 @@ class Materials(Author):
         output = shader.CreateOutput("surface", Sdf.ValueTypeNames.Token)
         usd.CreateSurfaceOutput().ConnectToSource(output)
         physics = UsdPhysics.MaterialAPI.Apply(usd.GetPrim())
-        physics.CreateStaticFrictionAttr(material.friction)
-        physics.CreateDynamicFrictionAttr(material.friction)
-        physics.CreateRestitutionAttr(material.restitution)
+        if material.friction is not None:
+            physics.CreateStaticFrictionAttr(material.friction)
+            physics.CreateDynamicFrictionAttr(material.friction)
+        if material.restitution is not None:
+            physics.CreateRestitutionAttr(material.restitution)
         if material.density is not None:
             physics.CreateDensityAttr(material.density)
         note_line(usd.GetPrim())
@@ -135,8 +140,14 @@ class Materials(Author):
             path=f"{LOOKS}/{name}",
             kind="material",
             density=base.density if base else None,
-            friction=call.friction(_given(friction, base.friction if base else FRICTION)),
-            restitution=call.fraction("restitution", _given(restitution, base.restitution if base else RESTITUTION)),
+            friction=call.friction(friction) if friction is not None else base.friction if base else None,
+            restitution=(
+                call.fraction("restitution", restitution)
+                if restitution is not None
+                else base.restitution
+                if base
+                else None
+            ),
             color=call.color("color", color) if color is not None else base.color if base else self._next_color(),
             opacity=base.opacity if base else opacity,
         )
@@ -155,10 +166,6 @@ class Materials(Author):
     def _next_color(self) -> Vec3:
         self._colors_used += 1
         return _PALETTE[(self._colors_used - 1) % len(_PALETTE)]
-
-
-def _given(value: float | None, default: float) -> float:
-    return default if value is None else value
 
 
 def bind(prim: Usd.Prim, material: Material) -> None:

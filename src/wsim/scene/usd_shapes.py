@@ -200,13 +200,17 @@ def _look(prim: Usd.Prim) -> tuple[Vec3, float]:
     return color, opacity
 
 
-def _surface(prim: Usd.Prim) -> tuple[float, float]:
-    """Friction and restitution of the bound physics material, or the defaults of `Shape`."""
+def _surface(prim: Usd.Prim) -> tuple[float | None, float | None]:
+    """Friction and restitution of the bound physics material; None where it states none."""
     material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
     if not material or not material.GetPrim().HasAPI(UsdPhysics.MaterialAPI):
-        return 0.5, 0.0
+        return None, None
     api = UsdPhysics.MaterialAPI(material.GetPrim())
-    return float(api.GetDynamicFrictionAttr().Get()), float(api.GetRestitutionAttr().Get())
+    friction, restitution = (
+        float(attribute.Get()) if attribute.HasAuthoredValue() else None
+        for attribute in (api.GetDynamicFrictionAttr(), api.GetRestitutionAttr())
+    )
+    return friction, restitution
 
 
 def to_vec3(vector: Gf.Vec3d) -> Vec3:

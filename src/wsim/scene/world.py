@@ -37,8 +37,8 @@ class Shape(_Model):
     color: Vec3 = (0.7, 0.7, 0.7)  # linear RGB in 0..1
     opacity: float = 1.0
     collides: bool = True
-    friction: float = 0.5
-    restitution: float = 0.0
+    friction: float | None = None  # None leaves it to what it touches (`wsim.scene.contact`)
+    restitution: float | None = None
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
 
@@ -167,6 +167,7 @@ class World(_Model):
     frame_rate: float = FRAME_RATE  # recorded frames a second
     time_step: float = 0.0  # [s]; 0: chosen by the simulator
     seed: int = 0
+    combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
     bodies: list[Body] = Field(default_factory=list)
     statics: list[Static] = Field(default_factory=list)
     containers: list[Container] = Field(default_factory=list)

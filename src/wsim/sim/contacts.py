@@ -1,52 +1,58 @@
-"""Contacts as hard as the time step allows, that bounce as their materials say."""
+"""What the contact law needs of a stage: the law of each pair of surfaces, and MuJoCo's rows made hard."""
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-HARD_STEPS = 2.5  # 1 / (natural frequency x time step); MuJoCo keeps a contact's time constant above two steps
-BOUNCY_STEPS = 6.0  # a body that is found x deep after its first step in contact gains x^2 of the spring's energy
-RAW_SOLREF = 1  # Newton's mode for a time constant and a damping ratio that are taken as they are
-SMALLEST_DAMPING = 0.02  # a restitution of 0.94; below, the contact's spring rings for longer than it should
+import numpy as np
+
+from wsim.scene.contact import pair_law
+from wsim.scene.world import Shape, World
+from wsim.solvers.contact_law import ContactConfig
+
+Array = np.ndarray
 
 
-def rebound(ratio: float) -> float:
-    """Share of its speed with which a body leaves a spring and damper of a damping ratio in 0..1.
-
-    It leaves when the force vanishes, not when the spring is relaxed: with sin(phi) = zeta,
-    e = exp(-tan(phi) (pi - 2 phi)), which is exp(-2) at critical damping.
-    """
-    phi = math.asin(min(ratio, 1.0 - 1e-9))
-    return math.exp(-math.tan(phi) * (math.pi - 2.0 * phi))
-
-
-def damping_ratio(restitution: float) -> float:
-    """Damping ratio whose rebound is `restitution`; critical damping where that is below exp(-2)."""
-    low, high = SMALLEST_DAMPING, 1.0
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if rebound(middle) > restitution else (low, middle)
-    return 0.5 * (low + high)
-
-
-def harden_contacts(builder: Any, dt: float) -> None:
-    """Set MuJoCo's contact spring of every shape from the time step and the shape's restitution.
-
-    MuJoCo's default time constant of 20 ms lets a steel ball that lands at 2 m/s sink 13 mm into a tank's floor. The
-    natural frequency here is 1 / (2.5 dt), or 1 / (6 dt) for shapes that bounce. Two shapes in contact share the mean
-    of their time constants and damping ratios, so a restitution holds between shapes of the same one,
-    to about 0.04: the time step falls anywhere into the contact.
+def harden_contacts(builder: Any, config: ContactConfig) -> None:
+    """Make contacts and stops hard, and stops known before they are reached.
 
     Args:
         builder: The `newton.ModelBuilder`, with MuJoCo's custom attributes registered.
-        dt: Time step [s].
+        config: The law's.
     """
-    solref, mode = {}, {}
-    for shape, restitution in enumerate(builder.shape_material_restitution):
-        ratio = damping_ratio(float(restitution))
-        steps = HARD_STEPS if ratio > 0.999 else BOUNCY_STEPS
-        solref[shape] = (steps * dt / ratio, ratio)
-        mode[shape] = RAW_SOLREF
-    builder.custom_attributes["mujoco:solref"].values = solref
-    builder.custom_attributes["mujoco:solref_mode"].values = mode
+    impedance = (config.impedance, config.impedance, 0.001, 0.5, 2.0)
+    shapes, dofs = range(builder.shape_count), range(builder.joint_dof_count)
+    builder.shape_gap = [0.0] * builder.shape_count
+    builder.custom_attributes["mujoco:geom_solimp"].values = dict.fromkeys(shapes, impedance)
+    builder.custom_attributes["mujoco:solimplimit"].values = dict.fromkeys(dofs, impedance)
+    builder.custom_attributes["mujoco:limit_margin"].values = dict.fromkeys(dofs, config.limit_reach)
+
+
+def contact_law(model: Any, world: World) -> tuple[Array, Array]:
+    """The class of each shape of the model's first world, (shapes,), and the law of two classes, (classes, classes, 4).
+
+    A law is friction, restitution, spinning and rolling friction [m].
+    """
+    bodies = [shape for body in world.bodies for shape in body.shapes]
+    known = {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
+    count = model.shape_count // max(1, model.world_count)
+    surfaces: dict[tuple[Any, ...], Shape] = {}
+    classes = np.zeros(count, dtype=np.int64)
+    for k, label in enumerate(model.shape_label[:count]):
+        shape = _of_label(str(label), known)
+        key = (shape.friction, shape.restitution)
+        surfaces.setdefault(key, shape)
+        classes[k] = list(surfaces).index(key)
+    law = np.zeros((len(surfaces), len(surfaces), 4))
+    for i, a in enumerate(surfaces.values()):
+        for j, b in enumerate(surfaces.values()):
+            pair = pair_law(world, a, b)
+            law[i, j, :2] = pair.friction, pair.restitution
+    return classes, law
+
+
+def _of_label(label: str, known: dict[str, Shape]) -> Shape:
+    """The stage's shape behind one of the model's, which may be a part of it (a mesh in convex pieces)."""
+    while label not in known and "/" in label:
+        label = label.rsplit("/", 1)[0]
+    return known[label]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 import warp as wp
 
@@ -27,6 +28,11 @@ def start_warp() -> None:
         finally:
             os.dup2(kept, 2)
             os.close(kept)
+
+
+def steps_in_c(device: Any, world_count: int) -> bool:
+    """Whether MuJoCo's own C code steps the bodies: one world on a CPU."""
+    return world_count <= 1 and not wp.get_device(device).is_cuda
 
 
 def pick_device(name: str) -> str:

@@ -15,6 +15,7 @@ from wsim.sim.articulations import complete_articulations
 from wsim.sim.contacts import harden_contacts
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
+from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -60,7 +61,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     config = _sph_config(world)
     fluids = _add_fluids(single, world, config) if config else {}
     step = choose_time_step(world, config.max_time_step if config else None, time_step or world.time_step or None)
-    harden_contacts(single, step.dt)
+    harden_contacts(single, ContactConfig())
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)

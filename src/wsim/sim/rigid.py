@@ -7,14 +7,23 @@ from typing import Any
 import newton
 import numpy as np
 import warp as wp
+from mujoco_warp import OverflowType
 from newton import JointType, ShapeFlags
 
+from wsim.kernels.kinematic import carry
 from wsim.kernels.overflow import accumulate_overflow
+from wsim.scene.world import World
+from wsim.sim.contacts import contact_law
+from wsim.sim.devices import steps_in_c
 from wsim.sim.ledger import Ledger
+from wsim.solvers.solver_rigid import SolverRigid
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
-ROWS_A_CONTACT = 6  # pyramidal friction: four, elliptic and torsional up to six
+ROWS_A_CONTACT = 3  # push and friction
 SMALLEST_CONTACTS = 64
+# A line search that single precision cannot make any better is no overflow.
+STAGNATED = int(OverflowType.LS_ITERATIONS)
+FAR = 1e8  # a joint's limit beyond this is none [rad or m]
 
 
 def contact_capacity(model: Any) -> int:
@@ -36,6 +45,13 @@ def _is_mechanism(model: Any) -> bool:
     return model.joint_count > 0 and bool((model.joint_type.numpy() != int(JointType.FREE)).any())
 
 
+def _may_touch(model: Any) -> bool:
+    """Whether any contact or stop can come up."""
+    limits = (model.joint_limit_lower, model.joint_limit_upper)
+    stops = any(bool((np.abs(limit.numpy()) < FAR).any()) for limit in limits) if model.joint_dof_count else False
+    return stops or model.shape_contact_pair_count > 0
+
+
 def _is_driven(model: Any) -> bool:
     """Whether any joint has a motor."""
     gains = (model.joint_target_ke, model.joint_target_kd) if model.joint_dof_count else ()
@@ -47,41 +63,47 @@ class RigidBodies:
 
     Args:
         model: The Newton model.
+        world: What the stage states of its surfaces.
         controlled: Whether a controller pushes bodies or joints.
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
     """
 
-    def __init__(self, model: Any, controlled: bool = False) -> None:
+    def __init__(self, model: Any, world: World, controlled: bool = False) -> None:
         self.model = model
-        self.on_c = not model.device.is_cuda and model.world_count <= 1
+        self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        integrator = "rk4" if _is_mechanism(model) and model.particle_count == 0 else "implicitfast"
-        if self.on_c:
-            self.solver = newton.solvers.SolverMuJoCo(
-                model, use_mujoco_cpu=True, use_mujoco_contacts=True, integrator=integrator
-            )
-            kinds: set[Any] = set()
-        else:
-            self.solver = newton.solvers.SolverMuJoCo(
-                model,
-                use_mujoco_contacts=True,
-                nconmax=capacity,
-                njmax=ROWS_A_CONTACT * capacity + 64,
-                integrator=integrator,
-            )
+        smooth = _is_mechanism(model) and model.particle_count == 0 and (self.on_c or not _may_touch(model))
+        law = contact_law(model, world)
+        sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)
+        kinds: set[Any] = set()
+        if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
             self.overflow_seen = wp.zeros(max(1, model.world_count), dtype=wp.int32, device=model.device)
         driven = _is_driven(model)
         if driven:
             kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
         self.observables: Any = self.solver.observables(kinds) if kinds else None
+        self._carried, self._carried_at = self._kinematic()
         pushed = driven or controlled or model.particle_count > 0
-        self.ledger = Ledger(model, self.observables if driven else None, integrator == "rk4") if pushed else None
+        self.ledger = Ledger(model, self.observables if driven else None, self.on_c or smooth) if pushed else None
+
+    def _kinematic(self) -> tuple[Any, Any]:
+        """The kinematic bodies of all worlds, and where the pose of each stands in `joint_q`."""
+        model = self.model
+        kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
+        kinds, child = model.joint_type.numpy(), model.joint_child.numpy()
+        joints = [j for j in range(len(child)) if kinds[j] == int(JointType.FREE) and kinematic[child[j]]]
+        with wp.ScopedDevice(model.device):
+            return (
+                wp.array(child[joints], dtype=int),
+                wp.array(model.joint_q_start.numpy()[joints], dtype=int),
+            )
 
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
@@ -90,6 +112,14 @@ class RigidBodies:
         self.solver.step(state_in, state_out, control, None, dt, observables=self.observables)
         if self.ledger:
             self.ledger.after(state_in.body_f, state_out, control, dt)
+        if len(self._carried):
+            wp.launch(
+                carry,
+                dim=len(self._carried),
+                inputs=[self._carried, self._carried_at, self.model.body_com, state_out.body_qd, dt],
+                outputs=[state_out.body_q, state_out.joint_q],
+                device=self.model.device,
+            )
         if not self.on_c:
             wp.launch(
                 accumulate_overflow,
@@ -101,7 +131,7 @@ class RigidBodies:
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
-        self.solver.reset(state)
+        self.solver.reset(state, flags=0)
         if self.ledger:
             self.ledger.clear()
         if not self.on_c:
@@ -110,7 +140,7 @@ class RigidBodies:
     def problems(self) -> list[str]:
         """What the solver warned of since the start: each fails the run."""
         if not self.on_c:
-            worlds = np.flatnonzero(self.overflow_seen.numpy())
+            worlds = np.flatnonzero(self.overflow_seen.numpy() & ~STAGNATED)
             return [f"contact buffers overflowed in worlds {worlds[:8].tolist()}"] if len(worlds) else []
         mujoco = self.solver.import_mujoco()[0]
         found = []
@@ -122,7 +152,7 @@ class RigidBodies:
 
     def overflowed(self) -> np.ndarray:
         """Whether a world's contact buffers were too small at some time, (W,)."""
-        return np.zeros(1, dtype=bool) if self.on_c else self.overflow_seen.numpy() != 0
+        return np.zeros(1, dtype=bool) if self.on_c else (self.overflow_seen.numpy() & ~STAGNATED) != 0
 
     def contacts_of_first_world(self) -> tuple[np.ndarray, float]:
         """Net contact force on each body of the first world [N], shape (bodies, 3), and the deepest penetration [m]."""
@@ -154,7 +184,7 @@ class RigidBodies:
         return force, np.array([deepest])
 
     def _contacts_warp(self, worlds: int) -> tuple[np.ndarray, np.ndarray]:
-        """Forces from the rows of MuJoCo Warp's constraint solver; pyramidal edges add up to the normal force."""
+        """Forces from the rows of MuJoCo Warp's constraint solver."""
         data = self.solver.mjw_data
         count = int(data.nacon.numpy()[0])
         force, deepest = np.zeros((self.model.body_count, 3)), np.zeros(worlds)
@@ -166,10 +196,9 @@ class RigidBodies:
         held = rows[:, 0] >= 0
         world, rows = world[held], rows[held]
         frames = contact.frame.numpy()[:count][held].reshape(-1, 3, 3)
-        geoms, friction = contact.geom.numpy()[:count][held], contact.friction.numpy()[:count][held]
-        edges = data.efc.force.numpy()[world[:, None], rows[:, :4]]
-        along = [edges.sum(axis=1), *(friction[:, k] * (edges[:, 2 * k] - edges[:, 2 * k + 1]) for k in (0, 1))]
-        push = np.einsum("nji,nj->ni", frames, np.stack(along, axis=1))
+        geoms = contact.geom.numpy()[:count][held]
+        # An elliptic cone's rows are the push and the two frictions, along the axes of the contact's frame.
+        push = np.einsum("nji,nj->ni", frames, data.efc.force.numpy()[world[:, None], rows[:, :3]])
         shapes, bodies = self._geom_shapes(), self._shape_bodies()
         for side, sign in ((0, -1.0), (1, 1.0)):
             body = bodies[shapes[world, geoms[:, side]]]

@@ -24,6 +24,7 @@ from wsim.sim.model import build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
 from wsim.sim.rigid import RigidBodies
+from wsim.sim.starts import start_joints
 from wsim.solvers.solver_sph import SolverSPH
 
 
@@ -94,33 +95,18 @@ class Simulation:
         self.time, self.step_count = 0.0, 0
         self._were_inside: set[str] = set()
         progress("compiling kernels", 1, 3)
-        self.rigid = RigidBodies(self.model, controller is not None) if self.model.body_count else None
+        self.rigid = RigidBodies(self.model, self.world, controller is not None) if self.model.body_count else None
         self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
         self.state, self.control = self.model.state(), self.model.control()
         perturb(self.built, self.state, seeds)
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
-        self._give_jointed_bodies_their_velocity()
+        start_joints(self.model, self.world, self.built.bodies, self.state)
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         self._controller = controller
         self._control_every = max(1, round(control_interval / self.dt))
         self._graph: Any = None
         self._warm_up()
         progress("compiling kernels", 3, 3)
-
-    def _give_jointed_bodies_their_velocity(self) -> None:
-        """Newton's importer keeps the initial velocity of loose bodies only; joints get theirs from the bodies."""
-        if not self.world.joints:
-            return
-        twist = self.state.body_qd.numpy()
-        count = len(self.world.bodies)
-        per_world = self.model.body_count // max(1, self.model.world_count)
-        for k, index in enumerate(self.built.bodies):
-            body = self.world.bodies[k]
-            twist[index::per_world] = [*body.velocity, *body.angular_velocity]
-        if count:
-            self.state.body_qd.assign(twist)
-            newton.eval_ik(self.model, self.state, self.state.joint_q, self.state.joint_qd)
-            newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
 
     def _warm_up(self) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""

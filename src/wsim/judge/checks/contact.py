@@ -12,6 +12,7 @@ from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -219,7 +220,7 @@ class CheckFriction(Check):
         low = evidence.ends(i)[0]
         under = np.zeros(len(k), dtype=int)
         beside = np.zeros(len(k), dtype=bool)
-        friction = 0.0
+        supports = []
         for shape in evidence.placed:
             if shape.body >= 0 or shape.shape.kind not in ("plane", "box"):
                 continue
@@ -237,13 +238,12 @@ class CheckFriction(Check):
             under += stands
             beside |= near & ~stands & ((low[k] < top - 0.05 * evidence.solid(i).smallest) | (not upright))
             if stands.any():
-                friction = max(friction, shape.shape.friction)
+                supports.append(shape.shape)
         chosen = k[(under == 1) & ~beside]
         if not len(chosen):
             return None
-        # The harder rubbing of the two counts, as in MuJoCo.
-        own = max(shape.friction for shape in evidence.solid(i).shapes)
-        return chosen, max(own, friction)
+        pairs = [pair_law(evidence.world, own, support) for own in evidence.solid(i).shapes for support in supports]
+        return chosen, max(pair.friction for pair in pairs)
 
     def _finding(self, evidence: Evidence, i: int, k: Indices, mu: float, slowed: float) -> Finding:
         body, full = evidence.world.bodies[i], mu * evidence.gravity
@@ -255,7 +255,7 @@ class CheckFriction(Check):
             f"{body.prim} slides, and is slowed by {slowed:.3g} m/s^2; its friction of {mu:g} gives {full:.3g}",
             slowed, (full * self.least, full * self.most), "m/s^2", expected=full, prim=body.prim,
             time=float(evidence.time[k[0]]), span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
-            limit_from=f"{self.most if slowed > full else self.least:g} mu g, mu the greater of the two surfaces'",
+            limit_from=f"{self.most if slowed > full else self.least:g} mu g, mu the smaller of the two surfaces'",
             target=target,
         )  # fmt: skip
 

@@ -13,6 +13,7 @@ from wsim.geometry.kinds import PRIMITIVES
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import friction_of, restitution_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -156,8 +157,8 @@ class CheckPlanLooks(Check):
             return
         shape = made.shapes[0]
         for what, value, planned, limit in (
-            ("friction", shape.friction, material.friction, self.surface),
-            ("restitution", shape.restitution, material.restitution, self.surface),
+            ("friction", friction_of(shape), material.friction, self.surface),
+            ("restitution", restitution_of(shape), material.restitution, self.surface),
         ):
             if abs(value - planned) > limit:
                 target = RepairTarget(kind="physical parameter", prim=made.prim, parameter=what, suggested=planned)

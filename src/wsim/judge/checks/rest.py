@@ -12,6 +12,7 @@ from wsim.geometry.rotations import rotate
 from wsim.judge.checks.check import Check, Checks, worst
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import friction_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,7 +150,7 @@ class CheckCreep(Check):
         found = []
         for i in np.flatnonzero(~motion.jointed & ~motion.kinematic & motion.touched[here].all(axis=0)):
             shapes = evidence.solid(int(i)).shapes
-            mu = min((shape.friction for shape in shapes), default=0.0)
+            mu = min((friction_of(shape) for shape in shapes), default=0.0)
             flat = all(self._flat(evidence, int(i), shape) for shape in shapes)
             if not flat or mu <= 0.0 or self._carried(evidence, int(i)) or self._afloat(evidence, int(i)):
                 continue

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.defaults import FRICTION
 from wsim.geometry.kinds import ROUND
 from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.motion import FLOAT32
@@ -23,6 +24,7 @@ from wsim.plan.schema.formula import (
     SupportedBy,
     Touches,
 )
+from wsim.scene.contact import friction_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -183,4 +185,4 @@ def _friction(signals: Signals) -> float:
     """The largest friction in the world."""
     shapes = [shape for body in signals.world.bodies for shape in body.shapes]
     shapes += [shape for static in signals.world.statics for shape in static.shapes]
-    return max((shape.friction for shape in shapes), default=0.5)
+    return max((friction_of(shape) for shape in shapes), default=FRICTION)

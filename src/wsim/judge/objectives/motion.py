@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.defaults import FRICTION
 from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
+from wsim.scene.contact import friction_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -289,7 +291,7 @@ def _friction(evidence: Evidence) -> float:
     """The largest friction in the world, which bounds what the ground does to a body."""
     shapes = [shape for body in evidence.world.bodies for shape in body.shapes]
     shapes += [shape for static in evidence.world.statics for shape in static.shapes]
-    return max((shape.friction for shape in shapes), default=0.5)
+    return max((friction_of(shape) for shape in shapes), default=FRICTION)
 
 
 OBJECTIVES: Objectives = {

@@ -25,6 +25,7 @@ from wsim.judge.repair.rule import (
 )
 from wsim.judge.repair.run import leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
+from wsim.scene.contact import friction_of
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
@@ -169,7 +170,7 @@ def _slope(rotation: tuple[float, float, float, float]) -> float:
 def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, why: str) -> RepairTarget:
     """Another friction of the finding's body."""
     body = evidence.body(finding.prim or "")
-    now = body.shapes[0].friction if body.shapes else None
+    now = friction_of(body.shapes[0]) if body.shapes else None
     if to is not None and now is not None and (to > now) != (way == "raise"):
         to = None  # friction is on the right side of it already: it is not what is wrong, or not alone
     return RepairTarget(

@@ -63,8 +63,8 @@ def tall(item: PlanObject) -> float:
 
 
 def pair_friction(a: PlanObject, b: PlanObject) -> float:
-    """Friction between two things: the larger of the two, as MuJoCo takes it."""
-    return max((item.material.friction for item in (a, b) if item.material is not None), default=0.5)
+    """Friction between two things: the smaller of the two (`wsim.scene.contact`)."""
+    return min((item.material.friction for item in (a, b) if item.material is not None), default=0.5)
 
 
 def stopping_distance(speed: float, friction: float) -> float:

@@ -1,0 +1,224 @@
+"""The law of contact on MuJoCo Warp's constraint rows: what the solver should reach, and how the contacts slip.
+
+A row's reference acceleration is (target - velocity) / h: the velocity that the step should end with, if a force that
+the contact can exert reaches it. See `wsim.solvers.contact_law` for the law and its sources.
+"""
+
+import warp as wp
+
+ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
+FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
+LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
+LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
+
+
+@wp.func
+def settling(distance: float, h: float, settle_time: float, settle_speed: float) -> float:
+    """Speed at which a contact may close, or must open, without a bounce [m/s]."""
+    if distance > 0.0:
+        return -distance / h
+    return wp.min(-distance / settle_time, settle_speed)
+
+
+@wp.func
+def meets(distance: float, speed: float, restitution: float, h: float, threshold: float) -> bool:
+    """Whether two surfaces meet in this step, nearer to its start than to its end."""
+    after = distance + speed * h
+    return restitution > 0.0 and speed < -threshold and after < 0.0 and -after > distance
+
+
+@wp.func
+def along(
+    world: int,
+    row: int,
+    sparse: bool,
+    nv: int,
+    jacobian: wp.array3d(dtype=float),
+    row_nnz: wp.array2d(dtype=int),
+    row_start: wp.array2d(dtype=int),
+    column: wp.array3d(dtype=int),
+    vector: wp.array2d(dtype=float),
+) -> float:
+    """A row of the constraints' Jacobian times a vector over the degrees of freedom."""
+    total = float(0.0)
+    if sparse:
+        first = row_start[world, row]
+        for k in range(row_nnz[world, row]):
+            total += jacobian[world, 0, first + k] * vector[world, column[world, 0, first + k]]
+    else:
+        for k in range(nv):
+            total += jacobian[world, row, k] * vector[world, k]
+    return total
+
+
+@wp.kernel(enable_backward=False)
+def strike(
+    # Data in:
+    count: wp.array(dtype=int),
+    contact_world: wp.array(dtype=int),
+    contact_geom: wp.array(dtype=wp.vec2i),
+    contact_dist: wp.array(dtype=float),
+    contact_row: wp.array2d(dtype=int),
+    velocity: wp.array2d(dtype=float),
+    timestep: wp.array(dtype=float),
+    geom_class: wp.array(dtype=int),
+    geom_body: wp.array(dtype=int),
+    law: wp.array2d(dtype=wp.vec4),
+    threshold: float,
+    # Data out:
+    struck: wp.array2d(dtype=int),
+):
+    """Mark the bodies that something hits in this step."""
+    k = wp.tid()
+    if k >= count[0]:
+        return
+    row = contact_row[k, 0]
+    if row < 0:
+        return
+    world, geom = contact_world[k], contact_geom[k]
+    restitution = law[geom_class[geom[0]], geom_class[geom[1]]][1]
+    h = timestep[world % timestep.shape[0]]
+    if meets(contact_dist[k], velocity[world, row], restitution, h, threshold * h):
+        for side in range(2):
+            body = geom_body[geom[side]]
+            if body > 0:
+                struck[world, body] = 1
+
+
+@wp.kernel(enable_backward=False)
+def aim(
+    # Data in:
+    count: wp.array(dtype=int),
+    contact_world: wp.array(dtype=int),
+    contact_geom: wp.array(dtype=wp.vec2i),
+    contact_dist: wp.array(dtype=float),
+    contact_row: wp.array2d(dtype=int),
+    contact_dim: wp.array(dtype=int),
+    velocity: wp.array2d(dtype=float),
+    timestep: wp.array(dtype=float),
+    geom_class: wp.array(dtype=int),
+    geom_body: wp.array(dtype=int),
+    law: wp.array2d(dtype=wp.vec4),
+    struck: wp.array2d(dtype=int),
+    free: wp.array2d(dtype=float),  # acceleration without constraints
+    sparse: bool,
+    nv: int,
+    jacobian: wp.array3d(dtype=float),
+    row_nnz: wp.array2d(dtype=int),
+    row_start: wp.array2d(dtype=int),
+    column: wp.array3d(dtype=int),
+    threshold: float,
+    settle_time: float,
+    settle_speed: float,
+    smallest: float,
+    # Data out:
+    contact_friction: wp.array(dtype=wp.types.vector(length=5, dtype=float)),
+    target: wp.array(dtype=float),
+    slip: wp.array(dtype=float),
+    aref: wp.array2d(dtype=float),
+):
+    """Give each contact its pair's law, and its rows what they should reach."""
+    k = wp.tid()
+    if k >= count[0]:
+        return
+    row = contact_row[k, 0]
+    if row < 0:
+        return
+    world, geom = contact_world[k], contact_geom[k]
+    pair = law[geom_class[geom[0]], geom_class[geom[1]]]
+    h = timestep[world % timestep.shape[0]]
+    distance, speed = contact_dist[k], velocity[world, row]
+    goal = settling(distance, h, settle_time, settle_speed)
+    if pair[1] > 0.0:
+        fall = 2.0 * distance * along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
+        touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
+        if meets(distance, speed, pair[1], h, threshold * h):
+            goal = wp.sqrt(wp.max(pair[1] * pair[1] * (speed * speed - fall) + fall, 0.0))
+        elif speed < -threshold * h:
+            if distance > 0.0:
+                goal = wp.min(goal, 4.0 * speed)
+        elif touched > 0:
+            goal = -LATER
+    target[k] = goal
+
+    friction = contact_friction[k]
+    for j in range(5):
+        part = pair[0]
+        if j == 2:
+            part = pair[2]
+        elif j > 2:
+            part = pair[3]
+        friction[j] = wp.max(part, smallest)
+    contact_friction[k] = friction
+    slipped = float(0.0)
+    for j in range(contact_dim[k] - 1):
+        r = contact_row[k, j + 1]
+        v = velocity[world, r]
+        aref[world, r] = -v / h
+        slipped += friction[j] * friction[j] * v * v
+    slip[k] = wp.sqrt(slipped)
+    aref[world, row] = (goal - slip[k] - speed) / h
+
+
+@wp.kernel(enable_backward=False)
+def aim_again(
+    # Data in:
+    count: wp.array(dtype=int),
+    contact_world: wp.array(dtype=int),
+    contact_row: wp.array2d(dtype=int),
+    contact_dim: wp.array(dtype=int),
+    contact_friction: wp.array(dtype=wp.types.vector(length=5, dtype=float)),
+    velocity: wp.array2d(dtype=float),
+    timestep: wp.array(dtype=float),
+    acceleration: wp.array2d(dtype=float),
+    sparse: bool,
+    nv: int,
+    jacobian: wp.array3d(dtype=float),
+    row_nnz: wp.array2d(dtype=int),
+    row_start: wp.array2d(dtype=int),
+    column: wp.array3d(dtype=int),
+    target: wp.array(dtype=float),
+    # Data out:
+    slip: wp.array(dtype=float),
+    aref: wp.array2d(dtype=float),
+):
+    """Take the slip that the last solution leaves in place of the one that was guessed."""
+    k = wp.tid()
+    if k >= count[0]:
+        return
+    row = contact_row[k, 0]
+    if row < 0 or contact_dim[k] < 2:
+        return
+    world = contact_world[k]
+    h = timestep[world % timestep.shape[0]]
+    friction = contact_friction[k]
+    slipped = float(0.0)
+    for j in range(contact_dim[k] - 1):
+        r = contact_row[k, j + 1]
+        change = along(world, r, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
+        v = friction[j] * (velocity[world, r] + h * change)
+        slipped += v * v
+    slip[k] = wp.sqrt(slipped)
+    aref[world, row] = (target[k] - slip[k] - velocity[world, row]) / h
+
+
+@wp.kernel(enable_backward=False)
+def stop(
+    # Data in:
+    rows: wp.array(dtype=int),
+    kind: wp.array2d(dtype=int),
+    position: wp.array2d(dtype=float),
+    velocity: wp.array2d(dtype=float),
+    timestep: wp.array(dtype=float),
+    settle_time: float,
+    settle_speed: float,
+    # Data out:
+    aref: wp.array2d(dtype=float),
+):
+    """Joints end at their stops, without a bounce."""
+    world, row = wp.tid()
+    if row >= rows[world] or kind[world, row] != LIMIT:
+        return
+    h = timestep[world % timestep.shape[0]]
+    goal = settling(position[world, row], h, settle_time, settle_speed)
+    aref[world, row] = (goal - velocity[world, row]) / h

@@ -1,0 +1,196 @@
+"""The law of contact, on MuJoCo's constraint rows.
+
+A contact pushes, never pulls; its friction is at most mu times its push, against the slip where it slips (Coulomb);
+bodies part with e times the speed at which they met (Newton's law of impact). MuJoCo minimises over the friction cones,
+and there friction that may not exceed its cone buys push: a box that slides at v lifts off at mu v. What takes that
+away is the correction of de Saxcé and Feng (1998): ask for a normal speed that is lower by mu times the slip at the
+step's end. The slip is taken from the step's start, and again from each solution, until it stays.
+
+What a row should reach stands in its reference acceleration, (target - velocity) / h, with an impedance near one.
+A contact is a row before the surfaces touch: it may close its gap in the step and not more (Stewart and Trinkle 1996).
+Where the two bounce, the step that ends farther below than it starts above is the one in which they meet; the speed
+after it is that with which a body of the same acceleration comes back through the surface at e times its speed.
+A body that is hit lets go of what it touches for that step, so that a blow goes through a row of bodies one by one,
+as in Newton's cradle, and all keep their energy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray
+LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
+
+
+@dataclass(frozen=True)
+class ContactConfig:
+    """How the law is applied."""
+
+    impedance: float = 0.9999
+    """Share of what is asked for that a contact alone reaches; MuJoCo's largest."""
+    solver_tolerance: float = 1e-7
+    """MuJoCo's tolerance."""
+    solver_tolerance_warp: float = 1e-5
+    """The same where worlds are batched; less is below single precision for contacts as hard as these."""
+    reach: float = 0.01
+    """Gap at which a contact becomes a row [m]."""
+    limit_reach: float = 0.1
+    """The same of a joint's stop [rad or m]."""
+    settle_time: float = 0.02
+    """Time in which overlap fades [s]."""
+    settle_speed: float = 0.5
+    """Speed at which it fades at most [m/s]."""
+    threshold: float = 2 * 9.81
+    """A slower approach than this times the step is no blow [m/s^2]: gravity alone makes such speeds in a step."""
+    solutions: int = 3
+    """Solutions of a step at most; where worlds are batched, always."""
+    tolerance: float = 3e-4
+    """Change of the slip, times friction, below which it stays [m/s]."""
+    smallest_friction: float = 1e-5
+    """MuJoCo's least, and ours for none."""
+
+
+def settling(distance: Array, h: float, config: ContactConfig) -> Array:
+    """Speed at which contacts may close, or must open, without a bounce [m/s]."""
+    return np.where(distance > 0.0, -distance / h, np.minimum(-distance / config.settle_time, config.settle_speed))
+
+
+def targets(
+    distance: Array, speed: Array, free: Array, restitution: Array, bodies: Array, h: float, config: ContactConfig
+) -> Array:
+    """Normal speeds that contacts should end a step of `h` [s] with [m/s], (contacts,).
+
+    Args:
+        distance: Gaps, negative where shapes overlap [m].
+        speed: Normal speeds at the step's start, negative where they approach [m/s].
+        free: Normal accelerations without constraints [m/s^2].
+        restitution: Of each pair.
+        bodies: (contacts, 2), 0 for the world.
+        h: Time step [s].
+        config: How the law is applied.
+    """
+    goal = settling(distance, h, config)
+    bouncy = restitution > 0.0
+    if not bouncy.any():
+        return goal
+    after = distance + speed * h
+    fast = bouncy & (speed < -config.threshold * h)
+    meets = fast & (after < 0.0) & (-after > distance)
+    fall = 2.0 * distance * free
+    rebound = np.sqrt(np.maximum(restitution**2 * (speed**2 - fall) + fall, 0.0))
+    waits = fast & ~meets & (distance > 0.0)
+    struck = np.zeros(int(bodies.max()) + 1, dtype=bool)
+    struck[bodies[meets]] = True
+    struck[0] = False
+    later = bouncy & ~fast & struck[bodies].any(axis=1)
+    goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
+    return np.where(meets, rebound, np.where(later, -LATER, goal))
+
+
+def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
+    """Turn each cylinder by `angle` [rad] in its body.
+
+    MuJoCo takes the points of a cylinder on a plane from the direction in which its axis leans; of one that leans by no
+    more than the rounding of its pose that direction is noise, and the points come and go (mujoco 3.17).
+    """
+    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER):
+        turned = np.zeros(4)
+        lean = np.array([1.0, 0.5 * angle, 0.0, 0.0])
+        mujoco.mju_mulQuat(turned, model.geom_quat[geom], lean / np.linalg.norm(lean))
+        model.geom_quat[geom] = turned
+        model.geom_sameframe[geom] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
+
+
+class ContactLawC:
+    """The law on MuJoCo's own data, one world on the CPU.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model.
+        geom_class: Class of each geom, (geoms,).
+        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
+        config: How the law is applied.
+    """
+
+    def __init__(
+        self, mujoco: Any, model: Any, geom_class: Array, law: Array, smooth: bool, config: ContactConfig
+    ) -> None:
+        self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
+        self.geom_class, self.law = geom_class, law
+        tilt_cylinders(mujoco, model)
+
+    def step(self, data: Any) -> None:
+        """Advance `data` by the model's time step."""
+        mujoco, model = self.mujoco, self.model
+        mujoco.mj_checkPos(model, data)
+        mujoco.mj_checkVel(model, data)
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        mujoco.mj_fwdActuation(model, data)
+        mujoco.mj_fwdAcceleration(model, data)
+        touching = self._solve(data)
+        mujoco.mj_checkAcc(model, data)
+        if self.smooth and not touching:
+            mujoco.mj_RungeKutta(model, data, 4)
+        else:
+            mujoco.mj_implicit(model, data)
+        if model.nu:
+            self._tell_efforts(data)
+
+    def _tell_efforts(self, data: Any) -> None:
+        """What the drives give at the step's end, which the books need, whichever way the step was made."""
+        mujoco, model = self.mujoco, self.model
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_transmission(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        mujoco.mj_fwdActuation(model, data)
+
+    def _solve(self, data: Any) -> bool:
+        """Constraint forces; whether a contact or a stop may be among them."""
+        kinds = data.efc_type
+        stops = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
+        h = self.model.opt.timestep
+        if len(stops):
+            goal = settling(data.efc_pos[stops], h, self.config)
+            data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
+        first = data.contact.efc_address[: data.ncon]
+        chosen = np.flatnonzero(first >= 0)
+        if len(chosen):
+            self._solve_contacts(data, chosen, first[chosen], h)
+        else:
+            self.mujoco.mj_fwdConstraint(self.model, data)
+        return bool(len(stops) or len(chosen))
+
+    def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
+        mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
+        geoms = contact.geom[chosen]
+        law = self.law[self.geom_class[geoms[:, 0]], self.geom_class[geoms[:, 1]]]
+        friction = np.maximum(law[:, [0, 0, 2, 3, 3]], config.smallest_friction)
+        contact.friction[chosen] = friction
+        contact.mu[chosen] = friction[:, 0]
+        image = np.zeros(data.nefc)
+        mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
+        speed = data.efc_vel[normal]
+        goal = targets(contact.dist[chosen], speed, image[normal], law[:, 1], model.geom_bodyid[geoms], h, config)
+        # Rows of friction: as many a contact as it has dimensions, but the normal one.
+        offset = np.arange(1, 6)
+        held = offset < contact.dim[chosen][:, None]
+        rows = np.where(held, normal[:, None] + offset, normal[:, None])
+        weight = np.where(held, friction, 0.0)
+        velocity = data.efc_vel[rows]
+        data.efc_aref[rows[held]] = -velocity[held] / h
+        slip = np.linalg.norm(weight * velocity, axis=1)
+        for _ in range(config.solutions):
+            data.efc_aref[normal] = (goal - slip - speed) / h
+            mujoco.mj_fwdConstraint(model, data)
+            mujoco.mj_mulJacVec(model, data, image, data.qacc)
+            left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
+            if np.abs(left - slip).max() < config.tolerance:
+                return
+            slip = left
+            data.qacc_warmstart[:] = data.qacc
