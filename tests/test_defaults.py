@@ -6,6 +6,7 @@ import pytest
 
 from wsim import defaults
 from wsim.plan.schema import Material, SimulationPlan
+from wsim.scene.contact import pair_law
 from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.scene.world import World
@@ -24,7 +25,8 @@ def test_a_stage_that_says_nothing_has_the_defaults(tmp_path: Path) -> None:
     assert tank.floor == pytest.approx(defaults.WALL)
     assert world.fluids[0].density == defaults.FLUID_DENSITY
     assert world.bodies[0].mass / world.bodies[0].volume == pytest.approx(defaults.BODY_DENSITY, rel=1e-6)
-    assert world.bodies[0].shapes[0].friction == pytest.approx(defaults.FRICTION)
+    shape = world.bodies[0].shapes[0]
+    assert pair_law(world, shape, shape).friction == defaults.FRICTION
     assert world.cameras[0].fov == pytest.approx(defaults.FIELD_OF_VIEW, rel=1e-6)
 
 

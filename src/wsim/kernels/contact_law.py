@@ -130,7 +130,8 @@ def aim(
     distance, speed = contact_dist[k], velocity[world, row]
     goal = settling(distance, h, settle_time, settle_speed)
     if pair[1] > 0.0:
-        fall = 2.0 * distance * along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
+        within = wp.max(distance, speed * h)  # no deeper than this approach has brought it
+        fall = 2.0 * within * along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
         touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
         if meets(distance, speed, pair[1], h, threshold * h):
             goal = wp.sqrt(wp.max(pair[1] * pair[1] * (speed * speed - fall) + fall, 0.0))

@@ -16,6 +16,7 @@ from wsim.scene.world import World
 from wsim.sim.contacts import contact_law
 from wsim.sim.devices import steps_in_c
 from wsim.sim.ledger import Ledger
+from wsim.sim.time_step import is_overdamped
 from wsim.solvers.solver_rigid import SolverRigid
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
@@ -63,21 +64,23 @@ class RigidBodies:
 
     Args:
         model: The Newton model.
-        world: What the stage states of its surfaces.
+        world: What the stage states of its surfaces and drives.
+        dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
     """
 
-    def __init__(self, model: Any, world: World, controlled: bool = False) -> None:
+    def __init__(self, model: Any, world: World, dt: float, controlled: bool = False) -> None:
         self.model = model
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        smooth = _is_mechanism(model) and model.particle_count == 0 and (self.on_c or not _may_touch(model))
+        smooth = _is_mechanism(model) and model.particle_count == 0 and not is_overdamped(world, dt)
+        smooth = smooth and (self.on_c or not _may_touch(model))
         law = contact_law(model, world)
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
         self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)

@@ -95,7 +95,9 @@ class Simulation:
         self.time, self.step_count = 0.0, 0
         self._were_inside: set[str] = set()
         progress("compiling kernels", 1, 3)
-        self.rigid = RigidBodies(self.model, self.world, controller is not None) if self.model.body_count else None
+        self.rigid = (
+            RigidBodies(self.model, self.world, self.dt, controller is not None) if self.model.body_count else None
+        )
         self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
         self.state, self.control = self.model.state(), self.model.control()
         perturb(self.built, self.state, seeds)

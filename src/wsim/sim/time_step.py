@@ -7,10 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from wsim.errors import UserError
+from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
-from wsim.scene.world import Body, World
+from wsim.scene.world import Body, Joint, World
 
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
+DRIVE_SHARE = 0.25  # of 1 / omega of a drive's spring: its force is taken at the step's start
+SMALLEST_DRIVE_STEP = 1e-5  # [s]
+DAMPED_SHARE = 0.5  # of a speed, lost in a step
 SHARE_OF_SIZE = 0.25  # a body may cross this share of the thinnest thing in a step
 
 
@@ -24,12 +29,15 @@ class TimeStep:
 
 
 def choose_time_step(world: World, fluid_limit: float | None, given: float | None = None) -> TimeStep:
-    """Largest step within the limits of the fluid and of the bodies, or the one that was asked for.
+    """Largest step within the limits of the fluid, the bodies and the drives, and the one that was asked for.
 
     Args:
         world: What is simulated.
         fluid_limit: The SPH solver's acoustic limit [s], if there is a fluid.
-        given: A step from the caller or the stage [s]; taken as an upper bound, so that frames stay regular.
+        given: A step from the caller or the stage [s]: one more upper bound.
+
+    Raises:
+        UserError: If a drive is so stiff that no step of `SMALLEST_DRIVE_STEP` or more can follow it.
     """
     limits = {"rigid bodies": LARGEST_RIGID_STEP}
     crossing = _crossing_time(world)
@@ -37,13 +45,61 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
         limits["the fastest body across the thinnest shape"] = SHARE_OF_SIZE * crossing
     if fluid_limit is not None:
         limits["sound in the fluid"] = fluid_limit
+    limits |= _drive_limits(world)
+    if given:
+        limits["given"] = given
     reason = min(limits, key=limits.__getitem__)
     limit = limits[reason]
-    if given:
-        limit, reason = given, "given"
     frame = 1.0 / world.frame_rate
     substeps = max(1, math.ceil(frame / limit - 1e-9))
     return TimeStep(frame / substeps, substeps, reason)
+
+
+def _drive_limits(world: World) -> dict[str, float]:
+    """How long a step each drive with a stiffness can take: a share of its oscillation, 1 / omega [s]."""
+    limits = {}
+    for joint in world.joints:
+        if joint.drive is None or joint.drive.stiffness <= 0.0:
+            continue
+        inertia = driven_inertia(world, joint)
+        step = DRIVE_SHARE * math.sqrt(inertia / joint.drive.stiffness)
+        if step < SMALLEST_DRIVE_STEP:
+            most = inertia * (DRIVE_SHARE / SMALLEST_DRIVE_STEP) ** 2
+            unit = "N/m" if joint.kind == "prismatic" else "N m/rad"
+            raise UserError(
+                f"{joint.prim}: drive.stiffness = {joint.drive.stiffness:.4g} {unit} on what it moves would need a time "
+                f"step of {step:.1e} s; give at most {most:.2g} {unit}, or more mass"
+            )
+        limits[f"the drive of {joint.prim}"] = step
+    return limits
+
+
+def is_overdamped(world: World, dt: float) -> bool:
+    """Whether a drive's damping takes a speed away in about a step, so that only implicit integration can follow it."""
+    return any(
+        joint.drive is not None and joint.drive.damping * dt > DAMPED_SHARE * driven_inertia(world, joint)
+        for joint in world.joints
+    )
+
+
+def driven_inertia(world: World, joint: Joint) -> float:
+    """What a joint's drive moves: inertia about its axis [kg m^2], or mass [kg], of its two ends together.
+
+    What hangs on those ends adds to it, so a drive is at least as slow as that.
+    """
+    bodies = {body.prim: body for body in world.bodies}
+    ends = ((joint.child, joint.child_anchor, joint.child_turn), (joint.parent, joint.parent_anchor, joint.parent_turn))
+    yields = 0.0  # of both ends together: the sum of what each gives way
+    for prim, anchor, turn in ends:
+        body = bodies.get(prim or "")
+        if body is None or body.kinematic:
+            continue
+        axis = rotate(np.array(turn), np.eye(3)["XYZ".index(joint.axis)])
+        arm = np.array(anchor or body.com) - np.array(body.com)
+        turned = float(axis @ np.array(body.inertia).reshape(3, 3) @ axis)
+        turned += body.mass * float(arm @ arm - (arm @ axis) ** 2)
+        yields += 1.0 / max(body.mass if joint.kind == "prismatic" else turned, 1e-12)
+    return 1.0 / max(yields, 1e-12)
 
 
 def _crossing_time(world: World) -> float | None:

@@ -79,7 +79,7 @@ def targets(
     after = distance + speed * h
     fast = bouncy & (speed < -config.threshold * h)
     meets = fast & (after < 0.0) & (-after > distance)
-    fall = 2.0 * distance * free
+    fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
     rebound = np.sqrt(np.maximum(restitution**2 * (speed**2 - fall) + fall, 0.0))
     waits = fast & ~meets & (distance > 0.0)
     struck = np.zeros(int(bodies.max()) + 1, dtype=bool)

@@ -15,6 +15,17 @@ from wsim.solvers.contact_law import ContactConfig, ContactLawC
 Array = np.ndarray
 
 
+def _yielding(model: Any) -> Array:
+    """What each body yields to a push [1/kg], (bodies,), from which MuJoCo takes how hard its contacts are.
+
+    MuJoCo measures it at the centre of mass, where a seesaw does not yield at all, and its contacts would be hard
+    without bound; away from there it yields, by no less than about a tenth of what its mass would.
+    """
+    moves = model.body_weldid > 0
+    by_mass = np.where(moves, 0.1 / np.maximum(model.body_mass, 1e-12), 0.0)
+    return np.maximum(model.body_invweight0[:, 0], by_mass)
+
+
 class SolverRigid(newton.solvers.SolverMuJoCo):
     """Rigid bodies with Coulomb's friction and Newton's impacts, in C on a CPU or batched in Warp.
 
@@ -55,6 +66,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
+        self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
         if on_c:
             mujoco = self.import_mujoco()[0]
             self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
@@ -65,6 +77,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
         margin = self.mjw_model.geom_margin
+        weights = self.mjw_model.body_invweight0
+        weights.assign(np.broadcast_to(self.mj_model.body_invweight0, weights.numpy().shape).astype(np.float32))
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
             self._geom_class = wp.array(geom_class, dtype=int)

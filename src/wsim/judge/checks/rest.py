@@ -139,6 +139,7 @@ class CheckCreep(Check):
 
     share: float = 0.01  # of its smallest extent a second
     slowed: float = 0.2  # of what the least friction in the world would take in the window
+    steep: float = 0.9  # of the friction: the tangent of a slope that it slides down
     upright: float = 3.0  # [deg] from the vertical, to which a cylinder stands on its end
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
@@ -155,6 +156,8 @@ class CheckCreep(Check):
             if not flat or mu <= 0.0 or self._carried(evidence, int(i)) or self._afloat(evidence, int(i)):
                 continue
             way = motion.com[here[-1], i] - motion.com[here[0], i]
+            if -way[2] > self.steep * mu * np.linalg.norm(way[:2]):
+                continue  # it goes down a slope as steep as its friction's angle: that is sliding
             speed = float(np.linalg.norm(way)) / span
             # By the places, whose drift is what is asked: a half of the window against the other.
             middle = motion.com[here[len(here) // 2], i]
