@@ -23,7 +23,7 @@ def harden_contacts(builder: Any, config: ContactConfig) -> None:
     impedance = (config.impedance, config.impedance, 0.001, 0.5, 2.0)
     shapes, dofs = range(builder.shape_count), range(builder.joint_dof_count)
     builder.shape_gap = [0.0] * builder.shape_count
-    builder.shape_material_mu = [max(mu, config.smallest_friction) for mu in builder.shape_material_mu]
+    builder.shape_material_mu = [max(mu, 2.0 * config.smallest_friction) for mu in builder.shape_material_mu]
     builder.custom_attributes["mujoco:geom_solimp"].values = dict.fromkeys(shapes, impedance)
     builder.custom_attributes["mujoco:solimplimit"].values = dict.fromkeys(dofs, impedance)
     builder.custom_attributes["mujoco:limit_margin"].values = dict.fromkeys(dofs, config.limit_reach)

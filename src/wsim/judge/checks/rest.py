@@ -156,13 +156,13 @@ class CheckCreep(Check):
             if not flat or mu <= 0.0 or self._carried(evidence, int(i)) or self._afloat(evidence, int(i)):
                 continue
             way = motion.com[here[-1], i] - motion.com[here[0], i]
-            if -way[2] > self.steep * mu * np.linalg.norm(way[:2]):
-                continue  # it goes down a slope as steep as its friction's angle: that is sliding
             speed = float(np.linalg.norm(way)) / span
             # By the places, whose drift is what is asked: a half of the window against the other.
             middle = motion.com[here[len(here) // 2], i]
             halves = np.linalg.norm([middle - motion.com[here[0], i], motion.com[here[-1], i] - middle], axis=1)
             steady = abs(halves[1] - halves[0]) / (span / 2) < self.slowed * mu * evidence.gravity * span / 2
+            # Down a slope as steep as its friction's angle it slides: its weight pays for the friction.
+            steady &= bool(-way[2] <= self.steep * mu * np.linalg.norm(way[:2]))
             size = evidence.solid(int(i)).smallest
             limit = self.share * size + 8.0 * FLOAT32 * float(np.abs(motion.com[here, i]).max()) / span
             found.append(self._finding(evidence, int(i), speed if steady else 0.0, limit))
