@@ -36,19 +36,16 @@ def start_joints(model: Any, world: World, bodies: Array, state: Any) -> None:
         return
     worlds = max(1, model.world_count)
     dofs, count = model.joint_dof_count // worlds, model.body_count // worlds
-    kept = state.joint_qd.numpy()
     response = np.zeros((count, 6, dofs))
     for k in range(dofs):
         response[:, :, k] = _velocities(model, state, np.eye(dofs)[k], worlds)[:count]
     rows, goals = [], []
     for body, index in zip(world.bodies, bodies, strict=True):
         for part, value in ((slice(0, 3), body.velocity), (slice(3, 6), body.angular_velocity)):
-            weight = 1.0 if body in stated and any(value) else QUIET
+            weight = 1.0 if body.prim not in jointed or any(value) else QUIET
             rows.append(weight * response[index, part])
             goals.append(weight * np.array(value))
     speeds = np.linalg.lstsq(np.concatenate(rows), np.concatenate(goals), rcond=None)[0]
-    loose = _loose(model, world, bodies, dofs)
-    speeds[loose] = kept[:dofs][loose]
     reached = _velocities(model, state, speeds, worlds)
     for body in stated:
         _check(body, reached[bodies[world.bodies.index(body)]])
@@ -63,18 +60,6 @@ def _velocities(model: Any, state: Any, speeds: Array, worlds: int) -> Array:
     state.joint_qd.assign(np.tile(speeds, worlds).astype(np.float32))
     newton.eval_fk(model, state.joint_q, state.joint_qd, state)
     return state.body_qd.numpy().astype(np.float64)
-
-
-def _loose(model: Any, world: World, bodies: Array, dofs: int) -> Array:
-    """Degrees of freedom of bodies that no joint of the stage holds, (dofs,): theirs are right already."""
-    jointed = {end for joint in world.joints for end in (joint.parent, joint.child) if end}
-    free = {int(index) for body, index in zip(world.bodies, bodies, strict=True) if body.prim not in jointed}
-    child, first = model.joint_child.numpy(), model.joint_qd_start.numpy()
-    loose = np.zeros(dofs, dtype=bool)
-    for j in range(len(child)):
-        if first[j] < dofs and int(child[j]) in free:
-            loose[first[j] : first[j + 1]] = True
-    return loose
 
 
 def _check(body: Body, reached: Array) -> None:
