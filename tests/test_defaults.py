@@ -6,8 +6,8 @@ import pytest
 
 from wsim import defaults
 from wsim.plan.schema import Material, SimulationPlan
-from wsim.scene.contact import pair_law
 from wsim.scene import Scene
+from wsim.scene.contact import pair_law
 from wsim.scene.describe import describe
 from wsim.scene.world import World
 

@@ -67,8 +67,8 @@ def _drive_limits(world: World) -> dict[str, float]:
             most = inertia * (DRIVE_SHARE / SMALLEST_DRIVE_STEP) ** 2
             unit = "N/m" if joint.kind == "prismatic" else "N m/rad"
             raise UserError(
-                f"{joint.prim}: drive.stiffness = {joint.drive.stiffness:.4g} {unit} on what it moves would need a time "
-                f"step of {step:.1e} s; give at most {most:.2g} {unit}, or more mass"
+                f"{joint.prim}: drive.stiffness = {joint.drive.stiffness:.4g} {unit} on what it moves would need a "
+                f"time step of {step:.1e} s; give at most {most:.2g} {unit}, or more mass"
             )
         limits[f"the drive of {joint.prim}"] = step
     return limits
