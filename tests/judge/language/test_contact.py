@@ -9,7 +9,7 @@ from tests.judge.language.conftest import G, about_axis, moving, shape, solid, s
 from wsim.geometry.surfaces import box_surface
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
-from wsim.scene.world import Shape, World
+from wsim.scene.world import Shape, Static, World
 
 RATE = 100.0
 TIME = times(1.0, RATE)
@@ -108,6 +108,16 @@ def test_rests_on_what_is_turned_capped_or_a_mesh(tank_world, form, beside):
     assert margin("rests_on(ball, post)", ball_and_box(world, into_it)) == pytest.approx(0.05 * 0.2 - 0.05)
     off = [0.0, 1.6, top + 0.1]
     assert not evaluate(parse("rests_on(ball, post)"), ball_and_box(world, off)).satisfied[0]
+
+
+@pytest.mark.parametrize(("height", "rests"), [(0.52, True), (1.02, True), (0.1, False), (0.75, False)])
+def test_rests_on_is_the_board_that_is_below(tank_world, height, rests):
+    boards = [shape("box", 1.0, 1.0, 0.04, position=(0.0, 0.0, z)) for z in (0.5, 1.0)]
+    look = shape("box", 2.0, 2.0, 3.0, collides=False)  # what is seen of it carries nothing
+    shelf = Static(prim="/World/shelf", shapes=[look, *boards], line="program.py:1")
+    world = tank_world.model_copy(update={"statics": [shelf]})
+    found = evaluate(parse("rests_on(ball, shelf)"), ball_and_box(world, [0.3, 0.0, height + 0.1]))
+    assert found.satisfied[0] == rests
 
 
 def test_supported_by_is_the_load_of_what_it_touches(tank_world):

@@ -83,7 +83,7 @@ def support_of(evidence: Evidence, i: int, prim: str) -> Support:
         return Support(np.full(frames, container.inner_center[2] - half[2]), over, fluid, "the inner floor of " + prim)
     static = evidence.static(prim)
     if static is not None:
-        return _on_static(static, where)
+        return _on_static(static, where, evidence.ends(i)[1])
     j = evidence.index(prim)
     top = evidence.ends(j)[1]
     low, high = _footprint(evidence, j)
@@ -91,10 +91,15 @@ def support_of(evidence: Evidence, i: int, prim: str) -> Support:
     return Support(top, over, None, prim)
 
 
-def _on_static(static: Static, where: Floats) -> Support:
-    """The highest that a static object's shapes reach, straight above or below each position."""
+def _on_static(static: Static, where: Floats, high: Floats) -> Support:
+    """The highest that a static object's shapes reach at each position.
+
+    But for those that end above the body, for a shelf has boards; where all of them do, it is the highest.
+    """
     shapes = [shape for shape in static.shapes if shape.collides] or static.shapes
-    top = np.max([np.full(len(where), -np.inf), *(top_under(shape, where) for shape in shapes)], axis=0)
+    tops = np.stack([np.full(len(where), -np.inf), *(top_under(shape, where) for shape in shapes)])
+    below = np.max(np.where(tops <= high, tops, -np.inf), axis=0)
+    top = np.where(np.isfinite(below), below, np.max(tops, axis=0))
     return Support(top, np.isfinite(top), None, static.prim)
 
 
