@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdSkel, Vt
 
 from wsim.scene import Scene
+from wsim.scene.articulation import mark_articulations
 from wsim.scene.check import check_stage
 from wsim.scene.check_indices import check_indices
 
@@ -213,6 +214,7 @@ def test_what_points_into_its_array_is_taken(mesh: UsdGeom.Mesh, tmp_path: Path)
         _joint("/World/block", MESH),
     ):
         spoil(mesh)
+    mark_articulations(mesh.GetPrim().GetStage())
     assert _check(mesh, tmp_path) == []
 
 
