@@ -3,17 +3,19 @@
     __getattr__ = door(__name__, {"Simulation": "simulation"})
 
 Who imports the package (`from wsim import sim`) pays nothing; `sim.Simulation` loads `wsim.sim.simulation` (PEP 562).
+`dir(sim)` lists what is behind the door and loads none of it.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
 
 def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """A module's `__getattr__`.
+    """A module's `__getattr__`; the module is given a `__dir__`, too.
 
     Args:
         package: Its name.
@@ -25,4 +27,6 @@ def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         return getattr(import_module(f"{package}.{homes[name]}"), name)
 
+    module = sys.modules[package]
+    module.__dict__["__dir__"] = lambda: sorted({*module.__dict__, *homes})
     return load
