@@ -19,13 +19,14 @@ def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
 
     Args:
         package: Its name.
-        homes: The module inside it that has each name.
+        homes: The module inside it that has each name; "module.other" where it is called otherwise there.
     """
 
     def load(name: str) -> Any:
         if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        return getattr(import_module(f"{package}.{homes[name]}"), name)
+        home, _, other = homes[name].partition(".")
+        return getattr(import_module(f"{package}.{home}"), other or name)
 
     module = sys.modules[package]
     module.__dict__["__dir__"] = lambda: sorted({*module.__dict__, *homes})

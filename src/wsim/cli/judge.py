@@ -8,13 +8,12 @@ from typing import Annotated
 
 import typer
 
-from wsim import importers
+from wsim import importers, runs
 from wsim.cli.options import EXIT_CODES
 from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.runs.folder import RunFolder
-from wsim.runs.iteration import judge_recording
 
 
 def judge(
@@ -41,11 +40,11 @@ def judge(
     path = plan or own
     chosen = load(path) if path else None
     if json:
-        verdict = judge_recording(recording, chosen, model=model)
+        verdict = runs.judge_recording(recording, chosen, model=model)
         print(verdict.model_dump_json(indent=2))
     else:
         with ConsoleProgress() as progress:
-            verdict = judge_recording(recording, chosen, progress, model)
+            verdict = runs.judge_recording(recording, chosen, progress, model)
         show_verdict(verdict, recording.parent)
     if save:
         importers.save(importers.read_npz(recording, model), save)
