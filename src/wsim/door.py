@@ -3,26 +3,31 @@
     __getattr__ = door(__name__, {"Simulation": "simulation"})
 
 Who imports the package (`from wsim import sim`) pays nothing; `sim.Simulation` loads `wsim.sim.simulation` (PEP 562).
+`dir(sim)` lists what is behind the door and loads none of it.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
 
 def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """A module's `__getattr__`.
+    """A module's `__getattr__`; the module is given a `__dir__`, too.
 
     Args:
         package: Its name.
-        homes: The module inside it that has each name.
+        homes: The module inside it that has each name; "module.other" where it is called otherwise there.
     """
 
     def load(name: str) -> Any:
         if name not in homes:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        return getattr(import_module(f"{package}.{homes[name]}"), name)
+        home, _, other = homes[name].partition(".")
+        return getattr(import_module(f"{package}.{home}"), other or name)
 
+    module = sys.modules[package]
+    module.__dict__["__dir__"] = lambda: sorted({*module.__dict__, *homes})
     return load

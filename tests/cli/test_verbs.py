@@ -40,6 +40,35 @@ def test_unknown_words_are_named_in_one_line(wsim, tmp_path: Path, verb: tuple[s
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("left", "said"),
+    [
+        ([], "the run was stopped before its program was built; `wsim run"),
+        (["stage.usda"], "the run was stopped before it simulated; `wsim run"),
+        (["stage.usda", "recording.rrd.partial"], "the run was stopped while it simulated, and left recording.rrd.par"),
+        (["verdict.json"], "its program made no world; see"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["judge", "view"])
+def test_a_run_without_a_recording_says_what_became_of_it(
+    wsim, tmp_path: Path, verb: str, left: list[str], said: str
+) -> None:
+    folder = tmp_path / "run" / "iterations" / "01"
+    folder.mkdir(parents=True)
+    for name in left:
+        (folder / name).touch()
+    ended = wsim(verb, tmp_path / "run")
+    assert (ended.code, ended.err.count("\n")) == (2, 1)
+    assert f"{folder} has no recording: {said}" in ended.err
+
+
+def test_a_trajectory_without_a_byte_is_named(wsim, tmp_path: Path) -> None:
+    (tmp_path / "empty.npz").touch()
+    ended = wsim("judge", tmp_path / "empty.npz")
+    assert (ended.code, ended.err.count("\n")) == (2, 1)
+    assert "empty.npz cannot be read as a NumPy .npz file" in ended.err
+
+
 def test_judge_judges_the_recording_again(wsim, floating, reruns) -> None:
     before = {path: path.read_bytes() for path in floating.run.rglob("*") if path.is_file()}
     whole = wsim("judge", floating.run, "--json")

@@ -12,7 +12,8 @@ from rerun.chunk import RrdReader
 from tests.patience import STUCK
 from wsim.errors import UserError
 from wsim.recording import RecordingWriter, read
-from wsim.recording.view import has_display, open_native, rerun_binary, serve_web, view_command
+from wsim.recording.display import has_display
+from wsim.recording.view import open_native, rerun_binary, serve_web, view_command
 
 linux_only = pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="reads Linux's table of sockets")
 

@@ -18,6 +18,13 @@ def test_folders_of_the_same_second_do_not_meet(tmp_path):
     assert len(paths) == 4
 
 
+@pytest.mark.parametrize("below", ["", "deeper"])
+def test_a_link_to_nowhere_is_named(tmp_path, below):
+    (tmp_path / "runs").symlink_to(tmp_path / "gone")
+    with pytest.raises(UserError, match=r"runs is a link to .*gone, which is not there; name another with --runs"):
+        RunFolder.create(tmp_path / "runs" / below, "a")
+
+
 def test_run_json_grows(tmp_path):
     run = RunFolder.create(tmp_path, "a")
     run.record(prompt="p")

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdSkel, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, UsdSkel, Vt
 
 from wsim.scene import Scene
+from wsim.scene.articulation import mark_articulations
 from wsim.scene.check import check_stage
 from wsim.scene.check_indices import check_indices
 
@@ -113,6 +114,45 @@ def _joints_of_a_skeleton(mesh: UsdGeom.Mesh) -> None:
     binding.CreateJointIndicesPrimvar(constant=False, elementSize=1).Set([0, 1, 2, 0])
 
 
+def _later(name: str, default: object, sample: object) -> Spoil:
+    def spoil(mesh: UsdGeom.Mesh) -> None:
+        mesh.GetPrim().GetAttribute(name).Set(default)
+        mesh.GetPrim().GetAttribute(name).Set(sample, 1.0)
+
+    return spoil
+
+
+def _indices_of_no_values(mesh: UsdGeom.Mesh) -> None:
+    UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", PAIRS, "vertex").SetIndices(Vt.IntArray([0, 0, 0, 0]))
+
+
+def _connected(*targets: str) -> Spoil:
+    def spoil(mesh: UsdGeom.Mesh) -> None:
+        material = UsdShade.Material.Define(mesh.GetPrim().GetStage(), "/World/look")
+        material.CreateSurfaceOutput().GetAttr().SetConnections([Sdf.Path(target) for target in targets])
+
+    return spoil
+
+
+def _in_a_ring(mesh: UsdGeom.Mesh) -> None:
+    stage = mesh.GetPrim().GetStage()
+    for name, other in (("one", "other"), ("other", "one")):
+        node = UsdShade.NodeGraph.Define(stage, f"/World/{name}")
+        node.CreateOutput("out", Sdf.ValueTypeNames.Float).GetAttr().SetConnections([f"/World/{other}.outputs:out"])
+
+
+def _blend_shape_beyond(mesh: UsdGeom.Mesh) -> None:
+    _other("BlendShape", offsets=SQUARE[:1], pointIndices=[4])(mesh)
+    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    binding.CreateBlendShapesAttr(["smile"])
+    binding.CreateBlendShapeTargetsRel().SetTargets(["/World/other"])
+
+
+def _trimmed(**trim: object) -> Spoil:
+    values = {f"trimCurve:{name}": value for name, value in trim.items()}
+    return _other("NurbsPatch", **PATCH, **values)
+
+
 def _retyped(mesh: UsdGeom.Mesh) -> None:
     mesh.GetPrim().RemoveProperty("faceVertexIndices")
     spec = mesh.GetPrim().GetStage().GetRootLayer().GetPrimAtPath(MESH)
@@ -123,6 +163,21 @@ def _retyped(mesh: UsdGeom.Mesh) -> None:
 COLORS, PAIRS = Sdf.ValueTypeNames.Color3fArray, Sdf.ValueTypeNames.TexCoord2fArray
 VECTORS = Sdf.ValueTypeNames.Normal3fArray
 SQUARE = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+PATCH = {
+    "points": SQUARE, "uVertexCount": 2, "vVertexCount": 2, "uOrder": 2, "vOrder": 2,
+    "uKnots": [0.0, 0.0, 1.0, 1.0], "vKnots": [0.0, 0.0, 1.0, 1.0],
+}  # fmt: skip
+TRIM = {
+    "counts": [1], "vertexCounts": [3], "orders": [2], "knots": [0.0, 0.0, 1.0, 2.0, 2.0], "ranges": [(0.0, 2.0)],
+    "points": SQUARE[:3],
+}  # fmt: skip
+CURVE = {"points": SQUARE, "curveVertexCounts": [4], "order": [2], "knots": [0.0, 0.0, 1.0, 2.0, 3.0, 3.0]}
+COPIES = {"positions": SQUARE, "protoIndices": [0, 0, 0, 0], "prototypes": ["/World/block"]}
+BONES = {
+    "joints": ["hip", "hip/knee"],
+    "bindTransforms": [Gf.Matrix4d(1.0)] * 2,
+    "restTransforms": [Gf.Matrix4d(1.0)] * 2,
+}
 SPOILT: list[tuple[Spoil, str]] = [
     (_set("faceVertexIndices", [*INDICES[:-1], 4]), "faceVertexIndices: [11] = 4 must be 0 to 3; there are 4 points"),
     (_set("faceVertexIndices", [-1, *INDICES[1:]]), "faceVertexIndices: [0] = -1 must be 0 to 3; there are 4 points"),
@@ -179,6 +234,52 @@ SPOILT: list[tuple[Spoil, str]] = [
         "positions: 4 values; there are 1 protoIndices",
     ),
     (_other("BlendShape", offsets=SQUARE, pointIndices=[0]), "pointIndices: 1 values; there are 4 offsets"),
+    (_other("BlendShape", offsets=SQUARE[:1], pointIndices=[-1]), "pointIndices: [0] = -1 must be >= 0"),
+    (_blend_shape_beyond, "pointIndices: [0] = 4 must be 0 to 3; there are 4 points of </World/thing/geometry>"),
+    (_other("NurbsCurves", **{**CURVE, "order": [99]}), "order: [0] = 99 must be 2 to 4; the curve has 4 vertices"),
+    (_other("NurbsCurves", **{**CURVE, "order": [2, 2]}), "order: 2 values; there are 1 curves"),
+    (_other("NurbsCurves", **{**CURVE, "knots": [0.0, 1.0]}), "knots: 2 values; vertices and orders ask for 6"),
+    (_other("NurbsCurves", **CURVE, ranges=[(0, 1), (0, 1)]), "ranges: 2 values; there are 1 curves"),
+    (_other("NurbsPatch", **{**PATCH, "uOrder": 9}), "uOrder: 9 must be 2 to 2; there are 2 vertices"),
+    (_other("NurbsPatch", **{**PATCH, "vOrder": -1}), "vOrder: -1 must be 2 to 2"),
+    (_other("NurbsPatch", **{**PATCH, "vKnots": [0.0]}), "vKnots: 1 values; vertices and order ask for 4"),
+    (_trimmed(**{**TRIM, "counts": [2]}), "trimCurve:counts: their sum is 2; there are 1 trimCurve:vertexCounts"),
+    (_trimmed(**{**TRIM, "vertexCounts": [4]}), "trimCurve:vertexCounts: their sum is 4; there are 3 trimCurve:points"),
+    (_trimmed(**{**TRIM, "orders": [7]}), "trimCurve:orders: [0] = 7 must be 2 to 3"),
+    (_other("PointInstancer", **{**COPIES, "prototypes": ["/World/no"]}), "other.prototypes: </World/no> is not there"),
+    (
+        _other("PointInstancer", **{**COPIES, "prototypes": ["/World/other"]}),
+        "</World/other> is or holds the instancer",
+    ),
+    (_other("PointInstancer", **{**COPIES, "prototypes": ["/World"]}), "</World> is or holds the instancer"),
+    (_other("PointInstancer", **{**COPIES, "positions": []}), "positions: 0 values; there are 4 protoIndices"),
+    (
+        _other("PointInstancer", **COPIES, orientations=[Gf.Quath(1)]),
+        "orientations: 1 values; there are 4 protoIndices",
+    ),
+    (_other("PointInstancer", **COPIES, orientationsf=[Gf.Quatf(1)]), "orientationsf: 1 values; there are 4"),
+    (
+        _other("Skeleton", **{**BONES, "bindTransforms": [Gf.Matrix4d(1.0)]}),
+        "bindTransforms: 1 values; there are 2 joints",
+    ),
+    (
+        _other("Skeleton", **{**BONES, "joints": ["hip", "arm/hand"]}),
+        "joints: 'arm/hand' needs its parent 'arm' before",
+    ),
+    (
+        _other("SkelAnimation", joints=["hip"], translations=SQUARE),
+        "other.translations: 4 values; there are 1 joints",
+    ),
+    (_other("SkelAnimation", blendShapes=["smile"], blendShapeWeights=[1.0, 0.0]), "there are 1 blendShapes"),
+    (_indices_of_no_values, "st:indices: points at nothing; /World/thing/geometry.primvars:st has no values"),
+    (_later("points", POINTS, POINTS[:1]), ".points: 1 values at time 1; there are 4 before it"),
+    (_connected("/World/nowhere.outputs:surface"), "outputs:surface.connect: </World/nowhere.outputs:surface> is not"),
+    (_connected("/World/look.outputs:surface"), "/World/look.outputs:surface.connect: comes back to itself"),
+    (_in_a_ring, "/World/one.outputs:out.connect: comes back to itself"),
+    (
+        lambda mesh: mesh.CreateXformOpOrderAttr(["xformOp:translate:gone"]),
+        "geometry.xformOpOrder: 'xformOp:translate:gone' is not there",
+    ),
     (_other("PhysicsAttachment"), "/World/other: PhysicsAttachment is not supported"),
     (
         _joint("/World/block", "/World/block/geometry"),
@@ -198,6 +299,22 @@ def test_what_points_past_its_array_is_named(mesh: UsdGeom.Mesh, tmp_path: Path,
     assert any(message in problem for problem in problems), problems
 
 
+FITTING = {
+    "curves": _other("NurbsCurves", **CURVE, ranges=[(0.0, 3.0)]),
+    "patch": _trimmed(**TRIM),
+    "copies": _other("PointInstancer", **COPIES, orientationsf=[Gf.Quatf(1)] * 4),
+    "bones": _other("Skeleton", **BONES),
+    "motion": _other("SkelAnimation", joints=["hip", "hip/knee"], translations=SQUARE[:2]),
+    "points that move": _later("points", POINTS, POINTS[::-1]),
+}
+
+
+@pytest.mark.parametrize("fit", FITTING.values(), ids=FITTING.keys())
+def test_what_fits_is_taken(mesh: UsdGeom.Mesh, tmp_path: Path, fit: Spoil) -> None:
+    fit(mesh)
+    assert _check(mesh, tmp_path) == []
+
+
 def test_what_points_into_its_array_is_taken(mesh: UsdGeom.Mesh, tmp_path: Path) -> None:
     for spoil in (
         _primvar("st", PAIRS, "faceVarying", [(0, 0), (1, 1)], [0, 1] * 6),
@@ -213,6 +330,7 @@ def test_what_points_into_its_array_is_taken(mesh: UsdGeom.Mesh, tmp_path: Path)
         _joint("/World/block", MESH),
     ):
         spoil(mesh)
+    mark_articulations(mesh.GetPrim().GetStage())
     assert _check(mesh, tmp_path) == []
 
 

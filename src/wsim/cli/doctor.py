@@ -15,7 +15,7 @@ from wsim.agents.models import BUILTIN, ROLES, choose
 from wsim.cli.show import console
 from wsim.errors import UserError
 from wsim.program.sandbox import available
-from wsim.recording.view import has_display
+from wsim.recording.display import has_display
 
 PACKAGES = ("newton", "warp-lang", "mujoco", "mujoco-warp", "usd-core", "rerun-sdk", "numpy", "av")
 

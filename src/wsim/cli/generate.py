@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from wsim import loop
 from wsim.agents.budget import Budget
 from wsim.agents.models import BUILTIN, choose
 from wsim.cli.approve import approved, with_answers
@@ -31,7 +32,6 @@ from wsim.cli.options import (
 )
 from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
 from wsim.errors import UserError
-from wsim.loop.generate import generate as generate_world
 from wsim.loop.options import Options
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
@@ -125,7 +125,7 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
             return yes or typer.confirm("build it?")
 
     with progress:
-        done = generate_world(said, runs, options, approve, chosen, progress)
+        done = loop.generate_world(said, runs, options, approve, chosen, progress)
     if done.verdict is None:
         console.print("nothing was built")
         raise typer.Exit(0)
@@ -135,10 +135,8 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
 
 
 def _replay(recorded: Path, runs: Path, device: str) -> None:
-    from wsim.loop.replay import replay  # a second to load: builtin roles need none
-
     with ConsoleProgress() as progress:
-        again = replay(recorded, runs, progress, None if device == "auto" else device)
+        again = loop.replay_run(recorded, runs, progress, None if device == "auto" else device)
     done = again.generated
     assert done.verdict is not None
     show_verdict(done.verdict, done.run.path, done.report)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from wsim import importers
+from wsim import importers, runs
 from wsim.cli.options import EXIT_CODES
 from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.runs.folder import RunFolder
-from wsim.runs.iteration import judge_recording
 
 
 def judge(
@@ -40,11 +40,11 @@ def judge(
     path = plan or own
     chosen = load(path) if path else None
     if json:
-        verdict = judge_recording(recording, chosen, model=model)
+        verdict = runs.judge_recording(recording, chosen, model=model)
         print(verdict.model_dump_json(indent=2))
     else:
         with ConsoleProgress() as progress:
-            verdict = judge_recording(recording, chosen, progress, model)
+            verdict = runs.judge_recording(recording, chosen, progress, model)
         show_verdict(verdict, recording.parent)
     if save:
         importers.save(importers.read_npz(recording, model), save)
@@ -69,5 +69,18 @@ def find_recording(target: Path) -> tuple[Path, Path | None]:
     iteration = target if (target / "recording.rrd").is_file() else run.last_iteration()
     recording, plan = iteration / "recording.rrd", run.path / "plan.json"
     if not recording.is_file():
-        raise UserError(f"{iteration} has no recording: its program made no world; see {iteration / 'verdict.json'}")
+        raise UserError(f"{iteration} has no recording: {_why_not(iteration)}")
     return recording, plan if plan.is_file() else None
+
+
+def _why_not(iteration: Path) -> str:
+    """What became of an iteration that has no recording: a verdict is written at its end, a stage before it runs."""
+    program = shlex.quote(str(iteration / "program.py"))
+    again = f"`wsim run {program}` runs it again"
+    if (iteration / "recording.rrd.partial").is_file():
+        return f"the run was stopped while it simulated, and left recording.rrd.partial; {again}"
+    if (iteration / "verdict.json").is_file():
+        return f"its program made no world; see {iteration / 'verdict.json'}"
+    if (iteration / "stage.usda").is_file():
+        return f"the run was stopped before it simulated; {again}"
+    return f"the run was stopped before its program was built; {again}"

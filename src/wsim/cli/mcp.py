@@ -8,11 +8,9 @@ from typing import Annotated
 
 import typer
 
+from wsim import mcp as protocol
 from wsim.cli.options import Device, Isolation, Runs
 from wsim.errors import UserError
-from wsim.mcp.desk import Desk
-from wsim.mcp.server import make_server
-from wsim.mcp.transport import serve_http, serve_stdio, take_stdout
 from wsim.runs.settings import Settings
 
 
@@ -28,16 +26,16 @@ def mcp(
     """Serve wsim's tools to a coding agent, which starts this command and speaks over its stdin and stdout."""
     if port is not None and not http:
         raise UserError(f"--port {port}: only --http has a port; add it, or leave --port out")
-    wire = None if http else take_stdout()
+    wire = None if http else protocol.take_stdout()
     settings = Settings(device=device, isolation=isolation)
     settings.check()
-    server = make_server(Desk(runs, settings))
+    server = protocol.make_server(protocol.Desk(runs, settings))
     if wire is None:
-        serve_http(server, port or 0, lambda address: _say(f"{address} (Ctrl-C ends it)"))
+        protocol.serve_http(server, port or 0, lambda address: _say(f"{address} (Ctrl-C ends it)"))
         return
     if sys.stdin.isatty():
         _say("a coding agent starts this, and speaks over stdin and stdout; docs/mcp.md says how to add it to one")
-    serve_stdio(server, wire)
+    protocol.serve_stdio(server, wire)
 
 
 def _say(text: str) -> None:

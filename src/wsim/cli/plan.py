@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from wsim import loop
 from wsim.agents.models import BUILTIN, choose
 from wsim.cli.approve import draw, with_answers
 from wsim.cli.options import Answers, Image, Model, PlannerModel, Runs, refuse_image
 from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage
 from wsim.errors import UserError
+from wsim.loop.options import Options
 from wsim.plan.schema import Plan
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
@@ -76,14 +78,12 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
 
 def _plan_with(models: Models, prompt: str, image: Path | None, runs: Path) -> Plan:
     """A model's plan; its run's folder keeps what was asked and answered."""
-    # Simulator and judge: a plan by rules needs neither.
-    from wsim.loop.generate import generate
-    from wsim.loop.options import Options
-
     if not prompt:
         raise UserError('give a sentence, such as wsim plan "A crank drives a piston." --planner-model MODEL')
     with ConsoleProgress() as progress:
-        done = generate(prompt, runs, Options(models=models, image=image), lambda plan: False, progress=progress)
+        done = loop.generate_world(
+            prompt, runs, Options(models=models, image=image), lambda plan: False, progress=progress
+        )
     if done.plan is None:
         raise UserError(f"no plan: {done.run.facts().get('summary', '')}; {done.run.path} has what was asked")
     console.print(f"run:    {done.run.path}", soft_wrap=True)

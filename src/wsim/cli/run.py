@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
+from wsim import report
+from wsim import runs as passes
 from wsim.cli.options import EXIT_CODES, Device, Isolation, Pictures, Runs, Set, TimeStep, Verify, parse_params
 from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
-from wsim.report import write as write_report
-from wsim.runs.alone import run_in_folder
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.runs.settings import Settings
 
@@ -57,8 +57,8 @@ def run(
     if chosen:
         write_whole(folder.path / "plan.json", chosen.model_dump_json(indent=2) + "\n")
     with ConsoleProgress() as progress:
-        verdict = run_in_folder(folder, program, chosen, settings, progress)
-    show_verdict(verdict, folder.path, write_report(folder.path))
+        verdict = passes.run_in_folder(folder, program, chosen, settings, progress)
+    show_verdict(verdict, folder.path, report.write(folder.path))
     raise typer.Exit(EXIT_CODES[verdict.status])
 
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from wsim import tools
 from wsim.cli.options import Device, Isolation
 from wsim.cli.show import ConsoleProgress
 from wsim.errors import UserError
 from wsim.progress import silent
 from wsim.runs.folder import RunFolder
 from wsim.runs.settings import Settings
-from wsim.tools import TOOLS, Workspace
 
 if TYPE_CHECKING:
     from wsim.tools import Tool
@@ -42,21 +42,21 @@ def tool(
     Exit code: 0 where the tool did what was asked, 1 where it says why not, 2 for a mistake in the command.
     """
     if not name:
-        print("\n".join(_listed(list(TOOLS.values()))))
+        print("\n".join(_listed(list(tools.TOOLS.values()))))
         return
-    if name not in TOOLS:
-        near = get_close_matches(name, TOOLS, n=3)
+    if name not in tools.TOOLS:
+        near = get_close_matches(name, tools.TOOLS, n=3)
         raise UserError(
             f"no tool {name!r}; " + (f"did you mean {' or '.join(near)}?" if near else "`wsim tool` lists them")
         )
-    chosen = TOOLS[name]
+    chosen = tools.TOOLS[name]
     given = _parsed(chosen, arguments or [])
     required = any(field.is_required() for field in chosen.arguments.model_fields.values())
     if not given and (required or (chosen.needs_run and run is None)):
         print("\n".join(_usage(chosen)))
         return
     with ConsoleProgress() if sys.stdout.isatty() else nullcontext(silent) as progress:
-        workspace = Workspace(_folder(chosen, run), Settings(device=device, isolation=isolation), progress)
+        workspace = tools.Workspace(_folder(chosen, run), Settings(device=device, isolation=isolation), progress)
         result = chosen(workspace, **given)
     print(result.text)
     if not result.ok:
@@ -109,9 +109,9 @@ def _value(chosen: Tool, key: str, text: str) -> Any:
         return text
 
 
-def _listed(tools: list[Tool]) -> list[str]:
-    width = max(len(each.name) for each in tools)
-    return [f"{each.name:<{width}}  {each.description}" for each in tools]
+def _listed(known: list[Tool]) -> list[str]:
+    width = max(len(each.name) for each in known)
+    return [f"{each.name:<{width}}  {each.description}" for each in known]
 
 
 def _usage(chosen: Tool) -> list[str]:

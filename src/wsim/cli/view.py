@@ -9,11 +9,11 @@ from typing import Annotated
 
 import typer
 
+from wsim import recording as recordings
 from wsim.cli.judge import find_recording
 from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
-from wsim.recording.reader import read_world
-from wsim.recording.view import has_display, open_native, serve_web
+from wsim.recording.display import has_display
 
 
 def view(
@@ -28,13 +28,13 @@ def view(
     recording, _ = find_recording(target)
     time, prim = _moment(recording, finding) if finding is not None else (None, None)
     if web:
-        with serve_web(recording, port, time=time, entity=prim) as server:
+        with recordings.serve_web(recording, port, time=time, entity=prim) as server:
             print(f"serving {recording} on 127.0.0.1 only; Ctrl-C stops\n{server.url}", flush=True)
             with contextlib.suppress(KeyboardInterrupt):  # the way it is meant to end
                 server.process.wait()
         return
     if has_display():
-        open_native(recording, time, prim)
+        recordings.open_native(recording, time, prim)
         print(f"opened {recording}")
         return
     chosen = f" --finding {finding}" if finding is not None else ""
@@ -55,7 +55,7 @@ def _moment(recording: Path, number: int) -> tuple[float | None, str | None]:
     if number > len(findings):
         raise UserError(f"--finding {number}: the verdict has {len(findings)} findings")
     finding = findings[number - 1]
-    world = read_world(recording)
+    world = recordings.read_world(recording)
     # A missing object has a prim that nothing was recorded of; a joint is seen where its child is.
     seen = {item.prim for group in (world.bodies, world.statics, world.fluids, world.cameras) for item in group}
     seen_as = {joint.prim: joint.child for joint in world.joints}

@@ -14,6 +14,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from wsim.geometry.lines import between, leaves, leaves_triangles, within
 from wsim.geometry.surfaces import Surface, arc, box_surface, revolved
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,8 @@ class Kind:
     """Where it begins and ends along unit axes (..., 3), from its origin, (...) each [m]."""
     heights: Callable[[Floats], Ends]
     """Its ends along the world's Z, (T, 3) in its frame: another order of operations, which verdicts are bound to."""
+    leaves: Callable[[Floats, Floats], Floats]
+    """How far along a unit way (3,) lines from points (N, 3) last leave it, (N,) [m]; -inf where they never do."""
     surface: Callable[[], Surface]
     """A closed mesh of it, of its volume."""
     probes: Callable[[], tuple[Floats, float]]
@@ -81,6 +84,7 @@ def box(*edges: float) -> Kind:
         beyond=lambda points: [np.abs(points[..., k]) - edge / 2 for k, edge in enumerate(edges)],
         ends=ends,
         heights=lambda up: _both(np.abs(up) @ (np.array(edges) / 2)),
+        leaves=lambda start, way: leaves(*(between(start[:, k], way[k], edge / 2) for k, edge in enumerate(edges))),
         surface=lambda: box_surface(edges),
         probes=probes,
         volume=math.prod(edges),
@@ -101,6 +105,7 @@ def sphere(radius: float) -> Kind:
         beyond=lambda points: [np.linalg.norm(points, axis=-1) - radius],
         ends=ends,
         heights=ends,
+        leaves=lambda start, way: leaves(within(start, way, radius)),
         surface=lambda: revolved(*arc(radius, 0.0), volume=volume),
         probes=lambda: (np.zeros((1, 3)), radius),
         volume=volume,
@@ -132,6 +137,7 @@ def cylinder(radius: float, height: float) -> Kind:
         beyond=lambda p: [np.hypot(p[..., 0], p[..., 1]) - radius, np.abs(p[..., 2]) - height / 2],
         ends=ends,
         heights=heights,
+        leaves=lambda p, way: leaves(within(p[:, :2], way[:2], radius), between(p[:, 2], way[2], height / 2)),
         surface=lambda: revolved(*profile, volume=volume, radial=True),
         probes=probes,
         volume=volume,
@@ -150,6 +156,10 @@ def capsule(radius: float, height: float) -> Kind:
     def ends(axes: Floats) -> Ends:
         return _both(np.asarray(radius + height / 2 * np.abs(axes[..., 2])))
 
+    def last(start: Floats, way: Floats) -> Floats:
+        tops = [within(start - np.array([0.0, 0.0, z]), way, radius) for z in (-height / 2, height / 2)]
+        return np.max([cylinder(radius, height).leaves(start, way), *(leaves(top) for top in tops)], axis=0)
+
     return Kind(
         edges=(2 * radius, 2 * radius, height + 2 * radius),
         radius_about=radius + height / 2,
@@ -157,6 +167,7 @@ def capsule(radius: float, height: float) -> Kind:
         beyond=beyond,
         ends=ends,
         heights=ends,
+        leaves=last,
         surface=lambda: revolved(*arc(radius, height), volume=volume),
         probes=lambda: (np.column_stack([np.zeros((9, 2)), np.linspace(-0.5, 0.5, 9) * height]), radius),
         volume=volume,
@@ -169,6 +180,9 @@ def plane() -> Kind:
     def endless(*_: Floats) -> NoReturn:
         raise ValueError("a plane has no end")
 
+    def last(start: Floats, way: Floats) -> Floats:
+        return between(start[:, 2], way[2], 0.0)[1] if way[2] > 0.0 else np.full(len(start), -np.inf)
+
     return Kind(
         edges=(),
         radius_about=math.inf,
@@ -176,6 +190,7 @@ def plane() -> Kind:
         beyond=lambda points: [points[..., 2]],
         ends=endless,
         heights=endless,
+        leaves=last,
         surface=endless,
         probes=endless,
     )
@@ -192,11 +207,15 @@ def mesh(edges: tuple[float, ...], points: Sequence[Sequence[float]], faces: Seq
         along = axes @ vertices.T
         return along.min(axis=-1), along.max(axis=-1)
 
+    def last(start: Floats, way: Floats) -> Floats:
+        return leaves_triangles(start, way, vertices[np.array(faces, dtype=np.intp)])
+
     return replace(
         hull,
         radius_about=float(np.linalg.norm(vertices, axis=1).max()),
         ends=ends,
         heights=ends,
+        leaves=last if faces else hull.leaves,
         surface=(lambda: Surface(vertices, np.array(faces, dtype=np.intp))) if faces else hull.surface,
         probes=lambda: (vertices[:: max(1, len(vertices) // MOST_PROBES)], 0.0),
     )

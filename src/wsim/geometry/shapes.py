@@ -77,6 +77,15 @@ def reach(shape: Described, q: Floats) -> tuple[Floats, Floats]:
     return centre + low, centre + high
 
 
+def top_under(shape: Described, points: Floats) -> Floats:
+    """The height of a shape's highest point on the vertical lines through points, (N,) [m]; -inf where none is met.
+
+    Shape and points (N, 3) are in one frame whose Z is up: the world's, of a static shape.
+    """
+    up = rotate(conjugate(np.array(shape.rotation, dtype=np.float64)), np.array([0.0, 0.0, 1.0]))
+    return points[:, 2] + kind_of(shape).leaves(into(shape, points), up)
+
+
 class Solid(Generic[S]):
     """A body's colliding shapes: what displaces fluid and touches others."""
 

@@ -53,7 +53,7 @@ def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
-    except (OSError, ValueError, TypeError, AttributeError, BadZipFile) as error:
+    except (OSError, EOFError, ValueError, TypeError, AttributeError, BadZipFile) as error:  # EOFError: no bytes
         raise UserError(f"{path} cannot be read as a NumPy .npz file: {error}") from error
     if "time" not in arrays:
         raise UserError(f"{path} has no array time (T,) [s]; it has {sorted(arrays)}")

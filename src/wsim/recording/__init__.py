@@ -7,12 +7,27 @@ from typing import TYPE_CHECKING
 from wsim.door import door
 
 if TYPE_CHECKING:
+    from wsim.recording.display import has_display
     from wsim.recording.frames import FluidFrame, Frame, LogLine
-    from wsim.recording.reader import read
+    from wsim.recording.reader import read, read_world
     from wsim.recording.recording import FluidTrack, ImageTrack, Recording
+    from wsim.recording.view import open_native, serve_web
     from wsim.recording.writer import RecordingWriter
 
-__all__ = ["FluidFrame", "FluidTrack", "Frame", "ImageTrack", "LogLine", "Recording", "RecordingWriter", "read"]
+__all__ = [
+    "FluidFrame",
+    "FluidTrack",
+    "Frame",
+    "ImageTrack",
+    "LogLine",
+    "Recording",
+    "RecordingWriter",
+    "has_display",
+    "open_native",
+    "read",
+    "read_world",
+    "serve_web",
+]
 
 __getattr__ = door(
     __name__,
@@ -23,7 +38,11 @@ __getattr__ = door(
         "FluidTrack": "recording",
         "ImageTrack": "recording",
         "Recording": "recording",
+        "has_display": "display",
+        "open_native": "view",
         "read": "reader",
+        "read_world": "reader",
+        "serve_web": "view",
         "RecordingWriter": "writer",
     },
 )

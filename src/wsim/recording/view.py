@@ -18,6 +18,7 @@ from pathlib import Path
 from types import TracebackType
 
 from wsim.errors import UserError
+from wsim.recording.display import has_display
 from wsim.recording.excerpt import write_excerpt
 
 LOCALHOST = "127.0.0.1"
@@ -44,13 +45,6 @@ def rerun_binary() -> str:
     if not binary.exists():
         raise UserError(f"Rerun's viewer is not at {binary}; reinstall rerun-sdk")
     return str(binary)
-
-
-def has_display() -> bool:
-    """Whether a window can be opened here."""
-    if sys.platform in ("win32", "darwin"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def view_command(path: str | Path, time: float | None = None, entity: str | None = None) -> list[str]:

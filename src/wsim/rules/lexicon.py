@@ -11,10 +11,18 @@ from typing import Any, Literal
 
 from wsim.assets import Asset, load_catalogue
 from wsim.defaults import WALL
+from wsim.errors import UserError
 from wsim.plan.schema import Material
 
 Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw"]
 Words = tuple[str, ...]
+_KEYS = {
+    "noun": ("words", "plurals", "filled", "class", "primitive", "asset", "size", "top", "afloat", "length", "material",
+             "lies"),
+    "verb": ("forms", "particles", "object"),
+    "side": ("words", "predicate", "assume"),
+    "group": ("words", "axis"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -128,8 +136,19 @@ def grammar_text() -> str:
     return (files("wsim.rules") / "language" / "english.lark").read_text(encoding="utf-8")
 
 
+def _entries(file: str, table: str, data: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """A table's entries; a key that nobody reads is a mistake that would change nothing, and so never be seen."""
+    for name, fields in data[table].items():
+        for key in fields:
+            if key not in _KEYS[table]:
+                raise UserError(
+                    f"{file}.toml: {table} {name!r} has no key {key!r}; it may have {', '.join(_KEYS[table])}"
+                )
+        yield name, fields
+
+
 def _relations(made: Lexicon, data: dict[str, Any]) -> None:
-    for key, side in data["side"].items():
+    for key, side in _entries("relations", "side", data):
         for words in side["words"]:
             made.add(words, "SIDE", Side(key, side["predicate"], side.get("assume", "")))
     for key, all_words in data["preposition"].items():
@@ -173,7 +192,7 @@ def _materials(made: Lexicon, data: dict[str, Any]) -> None:
 
 
 def _verbs(made: Lexicon, data: dict[str, Any]) -> None:
-    for verb, fields in data["verb"].items():
+    for verb, fields in _entries("verbs", "verb", data):
         made.particles[verb] = tuple(fields.get("particles", ("",)))
         if fields.get("object"):
             made.objects.add(verb)
@@ -182,7 +201,7 @@ def _verbs(made: Lexicon, data: dict[str, Any]) -> None:
 
 
 def _groups(made: Lexicon, data: dict[str, Any]) -> None:
-    for arrangement, fields in data["group"].items():
+    for arrangement, fields in _entries("nouns", "group", data):
         made.groups[arrangement] = fields["axis"]
         for word in fields["words"]:
             made.add(word, "GROUP", arrangement)
@@ -195,7 +214,7 @@ def _groups(made: Lexicon, data: dict[str, Any]) -> None:
 def _nouns(made: Lexicon, data: dict[str, Any]) -> None:
     catalogue = load_catalogue()
     taken = made.vocabulary
-    for key, fields in data["noun"].items():
+    for key, fields in _entries("nouns", "noun", data):
         asset = catalogue[fields["asset"]] if "asset" in fields else None
         noun = made.nouns[key] = _noun(key, fields, asset)
         words = [*fields.get("words", ()), *(_names(asset, made, taken) if asset is not None else ())]
@@ -211,7 +230,7 @@ def _noun(key: str, fields: dict[str, Any], asset: Asset | None) -> Noun:
     elif asset is not None:
         size, mass = _built(asset, fields["primitive"], fields.get("top")), asset.mass
     else:
-        raise ValueError(f"nouns.toml: {key} has neither an asset nor a size")
+        raise UserError(f"nouns.toml: noun {key!r} has neither an asset nor a size; give it one")
     return Noun(
         key=key,
         family=fields["class"],

@@ -37,6 +37,11 @@ def slug(text: str) -> str:
     return words or "run"
 
 
+def _dangling(path: Path) -> Path | None:
+    """The link at or above a path that leads nowhere; None if there is none."""
+    return next((each for each in (path, *path.parents) if each.is_symlink() and not each.exists()), None)
+
+
 class RunFolder:
     """runs/<time>-<slug>/ with run.json, plan.json, transcript.jsonl, report.html, iterations/NN/ and accepted/.
 
@@ -51,6 +56,10 @@ class RunFolder:
     def create(cls, base: str | Path, title: str) -> RunFolder:
         """Make a new folder under `base`; never one that exists."""
         stem = f"{datetime.now():%Y%m%d-%H%M%S}-{slug(title)}"
+        if (dangling := _dangling(Path(base))) is not None:
+            raise UserError(
+                f"{dangling} is a link to {dangling.readlink()}, which is not there; name another with --runs"
+            )
         for k in range(1, 1000):
             path = Path(base) / (stem if k == 1 else f"{stem}-{k}")
             try:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,9 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
+from wsim.scene.check_colliders import check_solid
 from wsim.scene.check_indices import check_indices
+from wsim.scene.check_joints import joint_problems
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.limits import (
@@ -95,8 +97,18 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
         if len(prims) > MAX_PRIMS:
             yield f"{stage.GetRootLayer().GetDisplayName()}: more than {MAX_PRIMS} prims"
             return
-    yield from _metadata(stage)
-    yield from _validators(stage)
+    sound = True
+    for problem in chain(_metadata(stage), _validators(stage), _values(stage, prims)):
+        sound = False
+        yield problem
+    if sound:  # what follows reads shapes, and follows indices and paths
+        for prim in prims:
+            yield from check_solid(prim)
+        yield from joint_problems(stage)
+
+
+def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
+    """Numbers, indices and paths."""
     points = 0
     for prim in prims:
         yield from _numbers(prim)

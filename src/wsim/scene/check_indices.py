@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-from numpy.typing import NDArray
 from pxr import Usd, UsdGeom, UsdSkel
 
+from wsim.scene.check_arrays import as_many, first_value, sizes, steady, within
+from wsim.scene.check_nurbs import curves_problems, patch_problems
+from wsim.scene.check_skeletons import skeleton_problems
 from wsim.scene.limits import MAX_CORNERS
 
-Indices = NDArray[np.int64]
-
 _SUBSETS = ("face", "point", "tetrahedron")
+_PER_COPY = (
+    "positions", "orientations", "orientationsf", "scales", "velocities", "angularVelocities", "accelerations", "ids"
+)  # fmt: skip
 _EACH = {"uniform": "faces", "vertex": "points", "varying": "points", "faceVarying": "corners"}
 
 
@@ -27,20 +29,18 @@ def check_indices(prim: Usd.Prim) -> Iterator[str]:
     elif prim.IsA(UsdGeom.TetMesh):
         yield from _tets(UsdGeom.TetMesh(prim))
     elif prim.IsA(UsdGeom.Curves):
-        yield from _curves(UsdGeom.Curves(prim))
+        yield from curves_problems(UsdGeom.Curves(prim))
     elif prim.IsA(UsdGeom.NurbsPatch):
-        yield from _patch(UsdGeom.NurbsPatch(prim))
+        yield from patch_problems(UsdGeom.NurbsPatch(prim))
     elif prim.IsA(UsdGeom.Points):
         points = UsdGeom.Points(prim)
-        yield from _as_many(points.GetIdsAttr(), len(points.GetPointsAttr().Get() or ()), "points")
+        yield from as_many(points.GetIdsAttr(), len(points.GetPointsAttr().Get() or ()), "points")
     elif prim.IsA(UsdGeom.PointInstancer):
         yield from _instancer(UsdGeom.PointInstancer(prim))
     elif prim.IsA(UsdGeom.Subset):
         yield from _subset(UsdGeom.Subset(prim))
-    elif prim.IsA(UsdSkel.BlendShape):
-        shape = UsdSkel.BlendShape(prim)
-        offsets = len(shape.GetOffsetsAttr().Get() or ())
-        yield from _as_many(shape.GetPointIndicesAttr(), offsets, "offsets")
+    yield from skeleton_problems(prim)
+    yield from steady(prim)
     if prim.IsA(UsdGeom.Imageable):
         yield from _primvars(prim)
 
@@ -52,22 +52,22 @@ def _mesh(mesh: UsdGeom.Mesh) -> Iterator[str]:
             yield f"{attribute.GetPath()}: not given; a mesh needs points, faceVertexCounts and faceVertexIndices"
             return
     points, faces = len(topology[0].Get()), len(topology[1].Get())
-    yield from _sizes(topology[1], 3, len(topology[2].Get()), "faceVertexIndices")
+    yield from sizes(topology[1], 3, len(topology[2].Get()), "faceVertexIndices")
     largest = max(topology[1].Get(), default=0)
     if largest > MAX_CORNERS:
         yield f"{topology[1].GetPath()}: a face of {largest} corners must have <= {MAX_CORNERS}"
-    yield from _within(topology[2], points, "points")
-    yield from _within(mesh.GetHoleIndicesAttr(), faces, "faces")
-    yield from _within(mesh.GetCornerIndicesAttr(), points, "points")
+    yield from within(topology[2], points, "points")
+    yield from within(mesh.GetHoleIndicesAttr(), faces, "faces")
+    yield from within(mesh.GetCornerIndicesAttr(), points, "points")
     corners = len(mesh.GetCornerIndicesAttr().Get() or ())
-    yield from _as_many(mesh.GetCornerSharpnessesAttr(), corners, "cornerIndices")
-    yield from _within(mesh.GetCreaseIndicesAttr(), points, "points")
+    yield from as_many(mesh.GetCornerSharpnessesAttr(), corners, "cornerIndices")
+    yield from within(mesh.GetCreaseIndicesAttr(), points, "points")
     creases = mesh.GetCreaseIndicesAttr().Get() or ()
-    yield from _sizes(mesh.GetCreaseLengthsAttr(), 2, len(creases), "creaseIndices")
+    yield from sizes(mesh.GetCreaseLengthsAttr(), 2, len(creases), "creaseIndices")
     lengths = len(mesh.GetCreaseLengthsAttr().Get() or ())
     sharpnesses = mesh.GetCreaseSharpnessesAttr()
     if len(sharpnesses.Get() or ()) != len(creases) - lengths:  # one for each edge of a crease, or for each crease
-        yield from _as_many(sharpnesses, lengths, "creaseLengths")
+        yield from as_many(sharpnesses, lengths, "creaseLengths")
     yield from _normals(mesh)
 
 
@@ -76,32 +76,24 @@ def _normals(mesh: UsdGeom.Mesh) -> Iterator[str]:
     if normals.HasAuthoredValue():
         interpolation = mesh.GetNormalsInterpolation()
         count, what = _elements(mesh.GetPrim(), interpolation)
-        yield from _as_many(normals, 1 if interpolation == "constant" else count, what)
+        yield from as_many(normals, 1 if interpolation == "constant" else count, what)
 
 
 def _tets(mesh: UsdGeom.TetMesh) -> Iterator[str]:
     points = len(mesh.GetPointsAttr().Get() or ())
-    yield from _within(mesh.GetTetVertexIndicesAttr(), points, "points")
-    yield from _within(mesh.GetSurfaceFaceVertexIndicesAttr(), points, "points")
-
-
-def _curves(curves: UsdGeom.Curves) -> Iterator[str]:
-    yield from _sizes(curves.GetCurveVertexCountsAttr(), 2, len(curves.GetPointsAttr().Get() or ()), "points")
-
-
-def _patch(patch: UsdGeom.NurbsPatch) -> Iterator[str]:
-    across, along = (attribute.Get() or 0 for attribute in (patch.GetUVertexCountAttr(), patch.GetVVertexCountAttr()))
-    points = len(patch.GetPointsAttr().Get() or ())
-    if min(across, along) < 0 or across * along != points:
-        yield f"{patch.GetUVertexCountAttr().GetPath()}: {across} by {along} vertices; there are {points} points"
+    yield from within(mesh.GetTetVertexIndicesAttr(), points, "points")
+    yield from within(mesh.GetSurfaceFaceVertexIndicesAttr(), points, "points")
 
 
 def _instancer(instancer: UsdGeom.PointInstancer) -> Iterator[str]:
     prototypes = instancer.GetPrototypesRel().GetTargets()
-    yield from _within(instancer.GetProtoIndicesAttr(), len(prototypes), "prototypes")
+    yield from within(instancer.GetProtoIndicesAttr(), len(prototypes), "prototypes")
     copies = len(instancer.GetProtoIndicesAttr().Get() or ())
-    for name in ("positions", "orientations", "scales", "velocities", "angularVelocities", "accelerations", "ids"):
-        yield from _as_many(instancer.GetPrim().GetAttribute(name), copies, "protoIndices")
+    for name in _PER_COPY:
+        yield from as_many(instancer.GetPrim().GetAttribute(name), copies, "protoIndices")
+    positions = instancer.GetPositionsAttr()
+    if copies and not first_value(positions):
+        yield f"{positions.GetPath()}: 0 values; there are {copies} protoIndices"
 
 
 def _subset(subset: UsdGeom.Subset) -> Iterator[str]:
@@ -110,20 +102,24 @@ def _subset(subset: UsdGeom.Subset) -> Iterator[str]:
     if kind not in _SUBSETS:  # edges and segments come in pairs; either number is below that of the points
         kind = "point"
     if kind == "face" and parent.IsA(UsdGeom.Mesh):
-        yield from _within(indices, len(UsdGeom.Mesh(parent).GetFaceVertexCountsAttr().Get() or ()), "faces")
+        yield from within(indices, len(UsdGeom.Mesh(parent).GetFaceVertexCountsAttr().Get() or ()), "faces")
     elif kind == "face" and parent.IsA(UsdGeom.TetMesh):
         faces = UsdGeom.TetMesh(parent).GetSurfaceFaceVertexIndicesAttr().Get() or ()
-        yield from _within(indices, len(faces), "faces")
+        yield from within(indices, len(faces), "faces")
     elif kind == "tetrahedron" and parent.IsA(UsdGeom.TetMesh):
         tets = UsdGeom.TetMesh(parent).GetTetVertexIndicesAttr().Get() or ()
-        yield from _within(indices, len(tets), "tetrahedra")
+        yield from within(indices, len(tets), "tetrahedra")
     elif kind == "point" and parent.IsA(UsdGeom.PointBased):
-        yield from _within(indices, len(UsdGeom.PointBased(parent).GetPointsAttr().Get() or ()), "points")
+        yield from within(indices, len(UsdGeom.PointBased(parent).GetPointsAttr().Get() or ()), "points")
     elif indices.Get():
         yield f"{indices.GetPath()}: {parent.GetPath()} has no elements of the kind {kind}"
 
 
 def _primvars(prim: Usd.Prim) -> Iterator[str]:
+    for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvars():
+        indices = primvar.GetIndicesAttr()
+        if indices and indices.HasAuthoredValue() and not primvar.HasAuthoredValue():
+            yield f"{indices.GetPath()}: points at nothing; {primvar.GetAttr().GetPath()} has no values"
     for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithAuthoredValues():
         attribute = primvar.GetAttr()
         size = primvar.GetElementSize()
@@ -136,7 +132,7 @@ def _primvars(prim: Usd.Prim) -> Iterator[str]:
         given, stands = len(values) // size, attribute
         indices = primvar.GetIndicesAttr()
         if indices and indices.HasAuthoredValue():
-            yield from _within(indices, given, "values")
+            yield from within(indices, given, "values")
             given, stands = len(indices.Get() or ()), indices
         interpolation = primvar.GetInterpolation()
         if prim.IsA(UsdGeom.Mesh) and interpolation in _EACH:
@@ -146,7 +142,7 @@ def _primvars(prim: Usd.Prim) -> Iterator[str]:
         elif prim.IsA(UsdGeom.Mesh) and primvar.GetPrimvarName() == "normals" and given != 1:
             yield f"{stands.GetPath()}: {given} values; {interpolation} is one for all"
         if primvar.GetPrimvarName() == "skel:jointIndices":
-            yield from _within(attribute, _joints(prim), "joints")
+            yield from within(attribute, _joints(prim), "joints")
 
 
 def _joints(prim: Usd.Prim) -> int:
@@ -168,48 +164,3 @@ def _elements(prim: Usd.Prim, interpolation: str) -> tuple[int, str]:
         "corners": mesh.GetFaceVertexIndicesAttr(),
     }[what]
     return len(attribute.Get() or ()), what
-
-
-def _integers(attribute: Usd.Attribute) -> Indices | str:
-    """The whole numbers of an attribute in one row, none if it is not given; or what is wrong with them."""
-    if attribute.GetNumTimeSamples():
-        return f"{attribute.GetPath()}: must not change over time"
-    value = attribute.Get()
-    if value is None or len(value) == 0:
-        return np.zeros(0, dtype=np.int64)
-    numbers = np.asarray(value)
-    if numbers.dtype.kind not in "iu":
-        return f"{attribute.GetPath()}: {numbers.dtype.name} numbers; they must be whole"
-    return numbers.reshape(-1).astype(np.int64)
-
-
-def _within(attribute: Usd.Attribute, count: int, what: str) -> Iterator[str]:
-    """Indices that do not point at one of `count`."""
-    numbers = _integers(attribute)
-    if isinstance(numbers, str):
-        yield numbers
-        return
-    bad = np.flatnonzero((numbers < 0) | (numbers >= count))
-    if bad.size:
-        limit = f"must be 0 to {count - 1}" if count else "points at nothing"
-        yield f"{attribute.GetPath()}: [{bad[0]}] = {numbers[bad[0]]} {limit}; there are {count} {what}"
-
-
-def _sizes(attribute: Usd.Attribute, least: int, total: int, what: str) -> Iterator[str]:
-    """Sizes of consecutive parts of an array that are too small, or that do not add up to all of it."""
-    numbers = _integers(attribute)
-    if isinstance(numbers, str):
-        yield numbers
-        return
-    bad = np.flatnonzero(numbers < least)
-    if bad.size:
-        yield f"{attribute.GetPath()}: [{bad[0]}] = {numbers[bad[0]]} must be >= {least}"
-    elif int(numbers.sum()) != total:
-        yield f"{attribute.GetPath()}: their sum is {int(numbers.sum())}; there are {total} {what}"
-
-
-def _as_many(attribute: Usd.Attribute, count: int, what: str) -> Iterator[str]:
-    """An array, if it is given, that has not one value for each of `count`."""
-    value = attribute.Get() if attribute else None
-    if value is not None and len(value) not in (0, count):
-        yield f"{attribute.GetPath()}: {len(value)} values; there are {count} {what}"

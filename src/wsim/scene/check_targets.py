@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from pxr import Usd, UsdPhysics
+from pxr import Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
 
@@ -28,6 +28,48 @@ def check_targets(prim: Usd.Prim) -> Iterator[str]:
                 yield f"{relation.GetPath()}: <{path}> is a {target.GetTypeName() or 'prim'}; it must be {kind}"
     if prim.IsA(UsdPhysics.Joint):
         yield from _joint(UsdPhysics.Joint(prim))
+    if prim.IsA(UsdGeom.PointInstancer):
+        yield from _prototypes(UsdGeom.PointInstancer(prim))
+    if prim.IsA(UsdGeom.Xformable):
+        yield from _order(UsdGeom.Xformable(prim))
+    for attribute in prim.GetAuthoredAttributes():
+        yield from _connections(attribute)
+
+
+def _prototypes(instancer: UsdGeom.PointInstancer) -> Iterator[str]:
+    """What is copied must be there, and not hold the copies."""
+    own = instancer.GetPath()
+    for path in instancer.GetPrototypesRel().GetTargets():
+        if not instancer.GetPrim().GetStage().GetPrimAtPath(path):
+            yield f"{own}.prototypes: <{path}> is not there"
+        elif own.HasPrefix(path):
+            yield f"{own}.prototypes: <{path}> is or holds the instancer; name what is to be copied"
+
+
+def _order(xformable: UsdGeom.Xformable) -> Iterator[str]:
+    """An order of transforms that names one that is not there."""
+    order = xformable.GetXformOpOrderAttr()
+    for name in order.Get() or ():
+        if name != "!resetXformStack!" and not xformable.GetPrim().GetAttribute(name.removeprefix("!invert!")):
+            yield f"{order.GetPath()}: {name!r} is not there"
+
+
+def _connections(attribute: Usd.Attribute) -> Iterator[str]:
+    """A connection to nothing, or one that comes back to where it starts."""
+    stage = attribute.GetPrim().GetStage()
+    seen, waiting = {attribute.GetPath()}, list(attribute.GetConnections())
+    for path in waiting:
+        if not stage.GetPropertyAtPath(path):
+            yield f"{attribute.GetPath()}.connect: <{path}> is not there"
+            return
+    while waiting:
+        path = waiting.pop()
+        if path == attribute.GetPath():
+            yield f"{attribute.GetPath()}.connect: comes back to itself"
+            return
+        source = stage.GetAttributeAtPath(path) if path not in seen else None
+        seen.add(path)
+        waiting += source.GetConnections() if source else []
 
 
 def _joint(joint: UsdPhysics.Joint) -> Iterator[str]:

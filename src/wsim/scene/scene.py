@@ -10,8 +10,10 @@ from pxr import Gf, Sdf, UsdGeom, UsdPhysics
 
 from wsim.defaults import DURATION, FRAME_RATE, GRAVITY
 from wsim.scene import schema
+from wsim.scene.articulation import mark_articulations
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
 from wsim.scene.catalogued import Catalogued
+from wsim.scene.check_joints import joint_problems
 from wsim.scene.errors import SceneError
 from wsim.scene.fluids import Fluids
 from wsim.scene.joints import Joints
@@ -154,6 +156,8 @@ class Scene(Fluids, Joints, Views, Catalogued):
             call.fail(f"{shown(target.name)} must end in .usda, .usdc or .usd")
         target.parent.mkdir(parents=True, exist_ok=True)
         side = target.with_name(f".{target.stem}.part{target.suffix}")
+        if any(joint_problems(self._stage)):
+            mark_articulations(self._stage)  # joints that the program made through USD alone
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)
         return target

@@ -9,13 +9,16 @@ Each takes checked arguments and answers in a few lines. docs/tools.md shows wha
 
 from __future__ import annotations
 
-from wsim.tools import acceptance, catalogue, plan, program, query, reference, run, stills, verdict
-from wsim.tools.base import Arguments, Result, Tool, Workspace
+from typing import TYPE_CHECKING
+
+from wsim.door import door
+
+if TYPE_CHECKING:
+    from wsim.tools.base import Arguments, Result, Tool, Workspace
+    from wsim.tools.registry import TOOLS
 
 __all__ = ["TOOLS", "Arguments", "Result", "Tool", "Workspace"]
 
-TOOLS: dict[str, Tool] = {
-    tool.name: tool
-    for module in (catalogue, reference, plan, program, run, query, stills, verdict, acceptance)
-    for tool in module.TOOLS
-}
+__getattr__ = door(
+    __name__, {"TOOLS": "registry", "Arguments": "base", "Result": "base", "Tool": "base", "Workspace": "base"}
+)

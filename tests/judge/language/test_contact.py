@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
+from wsim.geometry.surfaces import box_surface
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
-from wsim.scene.world import Shape, World
+from wsim.scene.world import Shape, Static, World
 
 RATE = 100.0
 TIME = times(1.0, RATE)
@@ -83,6 +84,40 @@ def test_rests_on_wants_it_over_the_other_and_still(tank_world):
         assert found.satisfied[0] == holds
         if not holds:
             assert found.units == ["m/s"] and found.margin[0] == pytest.approx(0.05 * math.sqrt(0.2 * G) - slip)
+
+
+def post(form: str) -> tuple[Shape, float]:
+    """What stands still, and how high it is at its origin: a bar laid on its side, a pill, a slab off its origin."""
+    if form == "bar":  # upright it is 1 m high
+        q = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
+        return shape("box", 0.3, 0.3, 1.0, position=(0.0, 0.0, 0.15), rotation=q), 0.3
+    if form == "pill":
+        return shape("capsule", 0.2, 0.6, position=(0.0, 0.0, 0.5)), 1.0
+    slab = box_surface((1.0, 3.0, 0.2))
+    corners = (slab.vertices + np.array([0.0, 0.0, 0.1])).tolist()
+    return shape("mesh", 1.0, 3.0, 0.2, vertices=corners, triangles=slab.triangles.tolist()), 0.2
+
+
+@pytest.mark.parametrize(("form", "beside"), [("bar", 0.4), ("pill", 0.0), ("slab", 1.4)])
+def test_rests_on_what_is_turned_capped_or_a_mesh(tank_world, form, beside):
+    still_shape, top = post(form)
+    world = tank_world.model_copy(update={"statics": [still("post", still_shape)]})
+    on, into_it = ([0.0, beside, top + 0.1 - sunk] for sunk in (0.0, 0.05))
+    found = evaluate(parse("rests_on(ball, post)"), ball_and_box(world, on))
+    assert found.robustness[0] == pytest.approx(1.0)  # the whole of its limit is left
+    assert margin("rests_on(ball, post)", ball_and_box(world, into_it)) == pytest.approx(0.05 * 0.2 - 0.05)
+    off = [0.0, 1.6, top + 0.1]
+    assert not evaluate(parse("rests_on(ball, post)"), ball_and_box(world, off)).satisfied[0]
+
+
+@pytest.mark.parametrize(("height", "rests"), [(0.52, True), (1.02, True), (0.1, False), (0.75, False)])
+def test_rests_on_is_the_board_that_is_below(tank_world, height, rests):
+    boards = [shape("box", 1.0, 1.0, 0.04, position=(0.0, 0.0, z)) for z in (0.5, 1.0)]
+    look = shape("box", 2.0, 2.0, 3.0, collides=False)  # what is seen of it carries nothing
+    shelf = Static(prim="/World/shelf", shapes=[look, *boards], line="program.py:1")
+    world = tank_world.model_copy(update={"statics": [shelf]})
+    found = evaluate(parse("rests_on(ball, shelf)"), ball_and_box(world, [0.3, 0.0, height + 0.1]))
+    assert found.satisfied[0] == rests
 
 
 def test_supported_by_is_the_load_of_what_it_touches(tank_world):

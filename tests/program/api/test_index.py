@@ -37,6 +37,16 @@ def test_finds_by_words_and_by_meaning(api: Index, words: str, name: str) -> Non
     assert name in [hit.entry.name for hit in api.search(words, 5)]
 
 
+@pytest.mark.parametrize("noun", ["chair", "mug", "table", "crate", "kitchen chair", "put a desk in the room"])
+def test_a_thing_of_the_catalogue_leads_to_the_call_that_places_it(api: Index, noun: str) -> None:
+    assert "wsim.scene.Scene.asset" in [hit.entry.name for hit in api.search(noun, 8)]
+
+
+def test_half_a_character_finds_nothing(api: Index) -> None:
+    assert api.search("\ud800") == []
+    assert api.search("hinge \ud800")[0].entry.name == "wsim.scene.Scene.joint_revolute"
+
+
 def test_how_heavy_finds_density_or_mass(api: Index) -> None:
     best = api.search("how heavy", 3)
     assert any(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import rotate
+from wsim.geometry.shapes import top_under
 from wsim.judge.checks.check import Check
 from wsim.judge.evidence.recorded import MissingError
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
     from wsim.plan.schema import Objective
-    from wsim.scene.world import Fluid
+    from wsim.scene.world import Fluid, Static
 
     Floats = NDArray[np.float64]
 
@@ -82,7 +83,7 @@ def support_of(evidence: Evidence, i: int, prim: str) -> Support:
         return Support(np.full(frames, container.inner_center[2] - half[2]), over, fluid, "the inner floor of " + prim)
     static = evidence.static(prim)
     if static is not None:
-        return _on_static(evidence, where, prim)
+        return _on_static(static, where, evidence.ends(i)[1])
     j = evidence.index(prim)
     top = evidence.ends(j)[1]
     low, high = _footprint(evidence, j)
@@ -90,26 +91,16 @@ def support_of(evidence: Evidence, i: int, prim: str) -> Support:
     return Support(top, over, None, prim)
 
 
-def _on_static(evidence: Evidence, where: Floats, prim: str) -> Support:
-    """The highest of a static object's shapes under each position."""
-    static = evidence.static(prim)
-    frames = len(where)
-    top = np.full(frames, -np.inf)
-    for shape in static.shapes if static is not None else []:
-        q = np.array(shape.rotation, dtype=np.float64)
-        if shape.kind == "plane":
-            normal = rotate(q, np.array([0.0, 0.0, 1.0]))
-            offset = where[:, :2] - np.array(shape.position[:2])
-            top = np.maximum(top, shape.position[2] - (offset @ normal[:2]) / normal[2])
-            continue
-        half = np.array([shape.size[0]] * 2 if shape.kind != "box" else shape.size[:2]) / (
-            2 if shape.kind == "box" else 1
-        )
-        height = shape.size[2] / 2 if shape.kind == "box" else shape.size[-1] / (1 if shape.kind == "sphere" else 2)
-        local = rotate(q * np.array([-1.0, -1.0, -1.0, 1.0]), where - np.array(shape.position))
-        over = np.all(np.abs(local[:, :2]) <= half, axis=1)
-        top = np.where(over, np.maximum(top, shape.position[2] + height), top)
-    return Support(top, np.isfinite(top), None, prim)
+def _on_static(static: Static, where: Floats, high: Floats) -> Support:
+    """The highest that a static object's shapes reach at each position.
+
+    But for those that end above the body, for a shelf has boards; where all of them do, it is the highest.
+    """
+    shapes = [shape for shape in static.shapes if shape.collides] or static.shapes
+    tops = np.stack([np.full(len(where), -np.inf), *(top_under(shape, where) for shape in shapes)])
+    below = np.max(np.where(tops <= high, tops, -np.inf), axis=0)
+    top = np.where(np.isfinite(below), below, np.max(tops, axis=0))
+    return Support(top, np.isfinite(top), None, static.prim)
 
 
 def _footprint(evidence: Evidence, j: int) -> tuple[Floats, Floats]:

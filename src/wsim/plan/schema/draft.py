@@ -126,13 +126,17 @@ class Step(_Sparse):
         return "control" in f"{self.title} {self.shows}".lower() if self.controls is None else self.controls
 
 
+# The kinds of objective that the judge knows: those that need another object, `ref`, and those that do not.
+KindOfTwo = Literal[
+    "floats", "rests_on", "submerged", "stays_on", "stays_inside", "rolls_down", "collides_with", "tilts", "fills",
+]  # fmt: skip
+KindOfOne = Literal["topples", "settles", "swings", "slides", "moves", "flies"]
+
+
 class Objective(Strict):
     """What must happen. `kind` is a name of the judge's closed list, or "formula", which says it in full."""
 
-    kind: Literal[
-        "floats", "rests_on", "submerged", "stays_on", "topples", "stays_inside", "settles", "swings", "slides",
-        "rolls_down", "moves", "flies", "collides_with", "tilts", "fills", "formula",
-    ]  # fmt: skip
+    kind: Literal[KindOfTwo, KindOfOne, "formula"]
     object: Name
     ref: Name | None = None
     tolerance: NotNegative | None = None

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
+from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.supports import support_problems
 
 if TYPE_CHECKING:
@@ -13,9 +14,6 @@ if TYPE_CHECKING:
     from wsim.plan.schema.relations import Relation
 
 SHOWN = 12  # names in a message
-_NEEDS_OBJECTIVE_REF = {
-    "floats", "rests_on", "submerged", "stays_on", "stays_inside", "rolls_down", "collides_with", "tilts", "fills",
-}  # fmt: skip
 
 
 def problems(plan: Draft) -> list[str]:
@@ -150,7 +148,7 @@ def _others(plan: Draft) -> Iterator[str]:
     for i, objective in enumerate(plan.objectives):
         if objective.object not in names:
             yield f"objectives.{i}.object: no object {objective.object!r}; the plan has {_known(plan)}"
-        if objective.ref is None and objective.kind in _NEEDS_OBJECTIVE_REF:
+        if objective.ref is None and objective.kind in get_args(KindOfTwo):
             yield f'objectives.{i}.ref: "{objective.kind}" needs "ref", the name of the other object'
         if objective.ref is not None and objective.ref not in names:
             yield f"objectives.{i}.ref: no object {objective.ref!r}; the plan has {_known(plan)}"

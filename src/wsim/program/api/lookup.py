@@ -8,6 +8,7 @@ from collections.abc import Callable
 from difflib import get_close_matches
 from pathlib import Path
 
+from wsim.assets.search import search as search_assets
 from wsim.errors import UserError
 from wsim.program.api.entry import Entry
 from wsim.program.api.search import Hit, Searcher
@@ -15,6 +16,7 @@ from wsim.program.api.sources import all as sources
 from wsim.program.api.store import Store
 from wsim.program.api.vocabulary import vocabulary
 from wsim.search.ranking import meant
+from wsim.search.words import stem
 
 _KEPT = 4  # files of a part in the cache
 Progress = Callable[[str], None]
@@ -45,11 +47,14 @@ class Index:
             words: What is wanted, in a person's words or a name's: "hinge", "how heavy", "GetPrimAtPath".
             limit: At most so many.
         """
+        words = words.encode("utf-8", "replace").decode("utf-8")  # half a character is in no index, and has no bytes
         stores = (self.programs, self._lower())
         asked = [
             meant(word, vocabulary(), *(store.ranking for store in stores))
             for word in dict.fromkeys(vocabulary().stems(words))
         ]
+        if _is_an_asset(words):
+            asked.append({stem("asset"): 1.3})
         found = [hit for store in stores for hit in self._searcher(store).search(words, asked, limit)]
         return sorted(found, key=lambda hit: -hit.score)[:limit]
 
@@ -88,6 +93,11 @@ class Index:
             if ending:
                 return store.find(min(ending, key=rank))
         return None
+
+
+def _is_an_asset(words: str) -> bool:
+    """Whether a thing of the catalogue is meant: it is placed by `Scene.asset`, whose text names few of them."""
+    return any(hit.score > 0.5 for hit in search_assets(words, 1))  # above a half the noun is what it is called
 
 
 @functools.cache
