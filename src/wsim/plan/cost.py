@@ -63,7 +63,7 @@ def cost_of(plan: Plan) -> Cost:
     fluids = [item for item in plan.objects if item.primitive == "fluid" and item.name in boxes]
     wet = [(boxes[item.name], spacing_of(plan, item, boxes[item.name])) for item in fluids]
     spacing = min((apart for _, apart in wet), default=0.0)  # of walls and bodies, and what the step must resolve
-    step = plan.simulation.time_step or LARGEST_STEP
+    step = min(plan.simulation.time_step or LARGEST_STEP, LARGEST_STEP)
     if wet:
         speed = max(math.sqrt(GRAVITY * max(box[2] for box, _ in wet)), _fall(plan))
         step = min(step, COURANT * SMOOTHING * spacing / (SOUND_OVER_SPEED * speed))

@@ -22,7 +22,8 @@ class Drive:
 
     A revolute joint: `position` [deg], `velocity` [deg/s], `stiffness` [N m/rad], `damping` [N m s/rad],
     `max_force` [N m]. A prismatic joint: [m], [m/s], [N/m], [N s/m], [N]. Zero is where the joint starts.
-    With a `velocity` alone give `damping` alone; with a `position` give both.
+    With a `velocity` alone give `damping` alone; with a `position` give both. A stiffness shortens the time step, and
+    one that would need less than 10 microseconds is refused.
     """
 
     position: float = 0.0

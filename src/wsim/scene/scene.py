@@ -116,7 +116,7 @@ class Scene(Fluids, Joints, Views, Catalogued):
         Args:
             duration: Simulated time [s]; 5 if never given.
             frame_rate: Recorded frames a second; 30.
-            time_step: [s]; 0, the simulator's choice.
+            time_step: Upper bound [s]; the simulator takes a shorter one where the world needs it. 0: none.
             seed: 0.
             gravity: (x, y, z) [m/s^2]; (0, 0, -9.81).
 

@@ -25,8 +25,10 @@ class Shapes(Bodies):
         density, mass: [kg/m^3] or [kg]; give one. Neither: the material's density, else 1000 kg/m^3.
         velocity, angular_velocity_deg: At time 0, in the world's axes [m/s], [deg/s].
         static: Never moves.
-        kinematic: Moves at its velocity whatever pushes on it.
+        kinematic: Moves and turns by its velocity whatever it meets, and carries and pushes what it meets.
         material: What `scene.material` returned, or its name; friction, restitution and color override it.
+        friction, restitution: Of two surfaces the smaller counts; one that states none leaves it to the other, and
+            it is 0.5 and 0 if neither does.
     A call raises `SceneError`, naming the argument and its value, for what cannot be built.
     """
 
@@ -262,7 +264,7 @@ class Shapes(Bodies):
             velocity: [m/s].
             angular_velocity_deg: [deg/s].
             static: Never moves.
-            kinematic: Moves whatever pushes on it.
+            kinematic: Moves by its velocity whatever it meets.
             material: Handle or name.
             friction: Overrides the material's.
             restitution: Overrides the material's.

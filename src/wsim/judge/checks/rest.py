@@ -149,9 +149,10 @@ class CheckCreep(Check):
             return []
         span = float(evidence.time[here[-1]] - evidence.time[here[0]])
         found = []
+        # What it stands on may be more slippery than it is.
+        mu = min(friction_of(each.shape) for each in evidence.placed) if evidence.placed else 0.0
         for i in np.flatnonzero(~motion.jointed & ~motion.kinematic & motion.touched[here].all(axis=0)):
             shapes = evidence.solid(int(i)).shapes
-            mu = min((friction_of(shape) for shape in shapes), default=0.0)
             flat = all(self._flat(evidence, int(i), shape) for shape in shapes)
             if not flat or mu <= 0.0 or self._carried(evidence, int(i)) or self._afloat(evidence, int(i)):
                 continue

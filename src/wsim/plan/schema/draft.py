@@ -157,7 +157,7 @@ class SimulationPlan(Strict):
     """How long, how fine, where."""
 
     duration: Positive = DURATION  # [s]
-    time_step: NotNegative = 0.0  # [s]; 0 = chosen by the simulator
+    time_step: NotNegative = 0.0  # upper bound [s]; 0 = none
     spacing: NotNegative = 0.0  # SPH particle spacing [m]
     frame_rate: Positive = FRAME_RATE
     device: Word = "auto"
