@@ -324,3 +324,15 @@ def test_a_seesaw_on_its_stone_does_not_explode(simulate):
 
     run = simulate(build, 2.2)
     assert np.abs(run.v["box"][-100:]).max() < 0.01
+
+
+@pytest.mark.parametrize("e", [0.1, 0.6])
+def test_a_stack_that_bounces_comes_to_rest(simulate, e):
+    def build(scene):
+        scene.ground()
+        for k in range(5):
+            scene.box(f"box_{k}", size=(0.2,) * 3, density=600.0, position=(0, 0, 0.101 + 0.201 * k), restitution=e)
+
+    run = simulate(build, 2.0)
+    assert [run.q[f"box_{k}"][-1, 2] for k in range(5)] == pytest.approx([0.1 + 0.2 * k for k in range(5)], abs=1e-4)
+    assert max(np.abs(run.v[name][-1]).max() for name in run.v) < 1e-3

@@ -138,7 +138,8 @@ def aim(
         elif speed < -threshold * h:
             if distance > 0.0:
                 goal = wp.min(goal, 4.0 * speed)
-        elif touched > 0:
+        # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
+        elif touched > 0 and distance > -threshold * h * h:
             goal = -LATER
     target[k] = goal
 
