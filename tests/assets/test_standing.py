@@ -133,7 +133,8 @@ def test_seesaw_tilts_about_its_hinge_to_its_limit(tmp_path: Path) -> None:
     for _ in range(75):
         simulation.advance_frame()
         poses = World._poses(simulation)
-        most = max(most, tilt(poses["/World/seesaw/plank"]))
+        # A blow on the stop rocks the stand: the hinge has turned by what the plank leans more than it.
+        most = max(most, tilt(poses["/World/seesaw/plank"]) - tilt(poses["/World/seesaw/stand"]))
     assert simulation.problems() == []
     assert limit - 1.0 < most < limit + 2.0
     assert tilt(poses["/World/seesaw/stand"]) < 1.0

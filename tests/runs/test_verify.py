@@ -22,7 +22,7 @@ from wsim.scene import Scene
 from wsim.sim import Simulation
 from wsim.sim.perturb import PLACE
 
-G, SPEED, FRICTION, STEP = 9.81, 1.0, 0.1, 0.02
+G, SPEED, FRICTION, STEP = 9.81, 1.0, 0.1, 1.25e-3
 # Velocity first, then position: in steps of dt a block comes to rest v dt / 2 short of v^2 / (2 mu g).
 STOP = SPEED**2 / (2.0 * FRICTION * G)
 EDGE = STOP - 0.375 * SPEED * STEP  # between where it stops in steps of STEP, and in steps of half of it
@@ -104,7 +104,7 @@ def test_a_verdict_that_hangs_on_the_time_step_is_not_accepted(tmp_path: Path) -
     finer = first / "verify" / "half-the-time-step"
     end, finer_end = (read(path / "recording.rrd").position("/World/block")[-1, 0] for path in (first, finer))
     assert end < EDGE < finer_end
-    assert end == pytest.approx(STOP - SPEED * STEP / 2, abs=5e-4)
+    assert end == pytest.approx(STOP - SPEED * STEP / 2, abs=1e-4)
     assert Verdict.model_validate_json((finer / "verdict.json").read_text()).status == "rejected"
     assert not (run.path / "accepted").exists()
     checks = json.loads((first / "checks.json").read_text())
