@@ -76,9 +76,9 @@ def find_cases(wanted: list[str] | None = None) -> list[Case]:
     return [cases[name] for name in wanted] if wanted else list(cases.values())
 
 
-def run_case(case: Case, device: str) -> Run:
+def run_case(case: Case, device: str, worlds: int) -> Run:
     """Run one case; what it raises becomes its result."""
-    run, bench, started = Run(case), Bench(device), time.perf_counter()
+    run, bench, started = Run(case), Bench(device, worlds), time.perf_counter()
     try:
         run.value, run.expected = case.run(bench)
     except Exception as problem:  # noqa: BLE001 - the other cases still run; it is reported and sets the exit code
@@ -138,11 +138,9 @@ def print_row(run: Run) -> None:
         print(f"{run.case.name:28} failed: {run.failure}", flush=True)
         return
     ratio = f"{run.value / run.expected:.5f}" if run.expected else ""
-    print(
-        f"{run.case.name:28} {run.value:12.6g} of {run.expected:10.5g} {run.case.unit:8} {ratio:9} reach {reach_of(run):12}"
-        f" {1e3 * run.step:5.3g} ms {'reached' if run.reached else 'MISSED':8} {run.seconds:4.1f} s",
-        flush=True,
-    )
+    found = f"{run.value:12.6g} of {run.expected:10.5g} {run.case.unit:8} {ratio:9} reach {reach_of(run):12}"
+    result = "reached" if run.reached else "MISSED"
+    print(f"{run.case.name:28} {found} {1e3 * run.step:5.3g} ms {result:8} {run.seconds:4.1f} s", flush=True)
 
 
 def plot(runs: list[Run], device: str) -> None:
@@ -177,13 +175,16 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the cases, print the table; 1 if a case raised."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--device", default="auto", help="cpu, cuda:0, … or auto: CUDA if there is one")
+    parser.add_argument(
+        "--worlds", type=int, default=1, help="copies at once; two or more take the batched code on a CPU"
+    )
     parser.add_argument("--cases", nargs="+", metavar="NAME", help="all, if left out")
     parser.add_argument("--write", action="store_true", help="put the table into docs/rigid.md")
     parser.add_argument("--plot", action="store_true", help="draw docs/images/rigid.png; needs matplotlib")
     args = parser.parse_args(arguments)
     device, runs = pick_device(args.device), []
     for case in find_cases(args.cases):
-        runs.append(run_case(case, device))
+        runs.append(run_case(case, device, args.worlds))
         print_row(runs[-1])
     missed = [run.case.name for run in runs if not run.reached]
     total = sum(run.seconds for run in runs)

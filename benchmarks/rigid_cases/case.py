@@ -70,10 +70,10 @@ class Track:
 
 
 class Bench:
-    """Runs worlds on one device, and keeps the longest time step that they took [s]."""
+    """Runs worlds on one device, of several copies the first, and keeps the longest time step that they took [s]."""
 
-    def __init__(self, device: str) -> None:
-        self.device, self.step = device, 0.0
+    def __init__(self, device: str, worlds: int = 1) -> None:
+        self.device, self.worlds, self.step = device, worlds, 0.0
 
     def run(
         self, build: Build, seconds: float, *, rate: float = 100.0, step: float | None = None, exactly: bool = False
@@ -91,7 +91,8 @@ class Bench:
         scene.simulation(frame_rate=rate)
         build(scene)
         with tempfile.TemporaryDirectory() as folder:
-            simulation = Simulation(scene.save(Path(folder) / "case.usda"), device=self.device, time_step=step)
+            stage = scene.save(Path(folder) / "case.usda")
+            simulation = Simulation(stage, device=self.device, world_count=self.worlds, time_step=step)
         if exactly and step:
             simulation.substeps = round(1.0 / rate / step)
             simulation.dt = 1.0 / rate / simulation.substeps
