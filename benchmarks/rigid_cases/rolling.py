@@ -70,12 +70,6 @@ def slip_to_roll(bench: Bench) -> tuple[float, float]:
     return _ball(bench, 3.0, 0.0, 0.2, 1.0)[0], 15 / 7
 
 
-@case("rad/s")
-def slip_to_roll_spin(bench: Bench) -> tuple[float, float]:
-    """It then spins at 5/7 v / R."""
-    return _ball(bench, 3.0, 0.0, 0.2, 1.0)[1], 15 / 7 / 0.1
-
-
 @case("m/s")
 def backspin(bench: Bench) -> tuple[float, float]:
     """A ball at 2 m/s with 80 rad/s of backspin comes back at (5 v - 2 R ω) / 7."""

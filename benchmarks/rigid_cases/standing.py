@@ -65,14 +65,6 @@ def slides_before_it_tips(bench: Bench) -> tuple[float, float]:
     return _lean(on_ramp(bench, 17.0, 0.2, TALL, 1.5), "box"), 0.0
 
 
-@case("m")
-def slides_as_if_low(bench: Bench) -> tuple[float, float]:
-    """It slides g (sin α - μ cos α) t² / 2 like a low one."""
-    lean = math.radians(17.0)
-    moved = on_ramp(bench, 17.0, 0.2, TALL, 1.5).moved()
-    return moved, 0.5 * G * (math.sin(lean) - 0.2 * math.cos(lean)) * 1.5**2
-
-
 def _plank(bench: Bench, beyond: float, seconds: float) -> Track:
     """A plank of 2 m on a table's edge at x = 0, its middle `beyond` it [m]."""
 
