@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 TEST_JOBS ?= 2
 
-.PHONY: install demo test lint format bench bench-sph-validation lock clean help
+.PHONY: install demo test lint format bench bench-sph-validation bench-rigid-validation lock clean help
 
 help:  ## Say what can be made
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
@@ -41,6 +41,9 @@ bench: install  ## Measure what the README claims
 bench-sph-validation: install  ## Hold the fluid against flows whose answer is known
 	$(BIN)/python benchmarks/sph_validation.py --device auto --json build/sph_validation/results.json \
 		--markdown build/sph_validation/table.md --plots build/sph_validation/plots
+
+bench-rigid-validation: install  ## Hold rigid bodies against motions whose answer is known
+	$(BIN)/python benchmarks/rigid_validation.py --device auto --write --plot
 
 lock:  ## Pin the versions of pyproject.toml (needs uv)
 	uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \

@@ -1,0 +1,1 @@
+"""Rigid motions with a known answer, one file a family."""

@@ -1,0 +1,116 @@
+"""Flight and spin without contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from benchmarks.rigid_cases.case import EXACT, Bench, G, Track, case
+from wsim.scene import Scene
+
+Array = np.ndarray
+SIZE = np.array([0.4, 0.2, 0.1])  # a box whose middle axis is its second
+MOMENTS = np.array([SIZE[[1, 2]] @ SIZE[[1, 2]], SIZE[[0, 2]] @ SIZE[[0, 2]], SIZE[[0, 1]] @ SIZE[[0, 1]]]) / 12
+START = np.array([0.01, 5.0, 0.0])  # [rad/s]
+
+
+@case("m")
+def free_fall(bench: Bench) -> tuple[float, float]:
+    """A ball falls g t² / 2 in 1 s."""
+    track = bench.run(lambda scene: _ball(scene, (0, 0, 0)), 1.0)
+    return -float(track.position("ball")[-1, 2]), 0.5 * G
+
+
+@case("m")
+def projectile(bench: Bench) -> tuple[float, float]:
+    """Thrown at 5 m/s up and 3 m/s along, a ball is at the height it left after 2 v / g; it has come 6 v / g."""
+    track = bench.run(lambda scene: _ball(scene, (3, 0, 5)), 1.2)
+    x, z = track.position("ball")[:, 0], track.position("ball")[:, 2]
+    k = int(np.flatnonzero((z[:-1] > 0) & (z[1:] <= 0))[-1])
+    return float(x[k] + (x[k + 1] - x[k]) * z[k] / (z[k] - z[k + 1])), 3 * 10 / G
+
+
+def _ball(scene: Scene, velocity: Iterable[float]) -> None:
+    scene.sphere("ball", radius=0.1, density=600, velocity=tuple(velocity))
+
+
+def _box(bench: Bench, spin: Array, seconds: float) -> Track:
+    def build(scene: Scene) -> None:
+        scene.simulation(gravity=(0, 0, 0))
+        degrees = tuple(float(x) for x in np.degrees(spin))
+        scene.box("box", size=tuple(SIZE), mass=1.0, angular_velocity_deg=degrees)
+
+    return bench.run(build, seconds)
+
+
+def _kept(track: Track) -> tuple[Array, Array]:
+    """Angular momentum [kg m²/s] and energy [J] of the box of 1 kg, a row a frame."""
+    axes, spin = track.axes("box"), track.spin("box")
+    own = np.einsum("tji,tj->ti", axes, spin)
+    return np.einsum("tij,tj->ti", axes, MOMENTS * own), 0.5 * (MOMENTS * own**2).sum(axis=1)
+
+
+@case("rad/s", 1e-4, EXACT)
+def free_spin(bench: Bench) -> tuple[float, float]:
+    """A box that spins about its third axis at 5 rad/s still does after 2 s."""
+    return float(_box(bench, np.array([0.0, 0.0, 5.0]), 2.0).spin("box")[-1, 2]), 5.0
+
+
+@case("s")
+def dzhanibekov_flip(bench: Bench) -> tuple[float, float]:
+    """Spun about its middle axis a box flips when Euler's equations do (integrated by Runge and Kutta)."""
+    track = _box(bench, START, 5.0)
+    own = np.einsum("tji,tj->ti", track.axes("box"), track.spin("box"))[:, 1]
+    k = int(np.flatnonzero(own < 0)[0])
+    found = track.time[k] - own[k] * (track.time[k] - track.time[k - 1]) / (own[k] - own[k - 1])
+    return float(found), _flip()
+
+
+def _flip() -> float:
+    """When the spin about the middle axis first passes zero [s]."""
+
+    def change(w: Array) -> Array:
+        return np.cross(MOMENTS * w, w) / MOMENTS
+
+    w, t, h = START.copy(), 0.0, 1e-3
+    while w[1] > 0:
+        before = w[1]
+        a = change(w)
+        b = change(w + 0.5 * h * a)
+        c = change(w + 0.5 * h * b)
+        w = w + h / 6 * (a + 2 * b + 2 * c + change(w + h * c))
+        t += h
+    return t + h * w[1] / (before - w[1])
+
+
+@case("of L", 0.01, "the step is of the first order")
+def dzhanibekov_momentum(bench: Bench) -> tuple[float, float]:
+    """Its angular momentum changes by 0 in 5 s."""
+    momentum = _kept(_box(bench, START, 5.0))[0]
+    change = np.linalg.norm(momentum - momentum[0], axis=1).max()
+    return float(change / np.linalg.norm(momentum[0])), 0.0
+
+
+@case("of E", 0.01, "the step is of the first order")
+def dzhanibekov_energy(bench: Bench) -> tuple[float, float]:
+    """Its energy changes by 0 in 5 s."""
+    energy = _kept(_box(bench, START, 5.0))[1]
+    return float(np.abs(energy / energy[0] - 1).max()), 0.0
+
+
+@case("rad")
+def gyroscope(bench: Bench) -> tuple[float, float]:
+    """A wheel on a ball joint, its axle level, precesses by m g l / (I ω) a second (steady: exact)."""
+    radius, arm, spin = 0.1, 0.2, 100.0
+    rate = G * arm / (0.5 * radius**2 * spin)
+
+    def build(scene: Scene) -> None:
+        scene.cylinder("wheel", radius=radius, height=0.02, axis="X", mass=1.0, position=(arm, 0, 0),
+                       velocity=(0, rate * arm, 0),
+                       angular_velocity_deg=(math.degrees(spin), 0, math.degrees(rate)))  # fmt: skip
+        scene.joint_spherical("pivot", None, "wheel", anchor=(0, 0, 0))
+
+    place = bench.run(build, 1.0).position("wheel")
+    return float(np.unwrap(np.arctan2(place[:, 1], place[:, 0]))[-1]), rate

@@ -1,0 +1,153 @@
+"""Newton's law of impact: bounces, pairs of surfaces, collisions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from benchmarks.rigid_cases.case import EXACT, Bench, Case, Track, case
+from wsim.scene import Scene
+
+STEPS = (0.0005, 0.00125, 0.004)  # [s]; the last is longer than the simulator would take
+
+
+def _first_apex(bench: Bench, ball: float | None, ground: float | None, step: float | None = None) -> float:
+    """How high a ball comes that falls by 1 m [m]."""
+
+    def build(scene: Scene) -> None:
+        scene.ground(restitution=ground)
+        scene.sphere("ball", radius=0.1, density=600, position=(0, 0, 1.1), restitution=ball)
+
+    track = bench.run(build, 1.6, rate=250.0, step=step, exactly=step is not None)
+    rising = np.flatnonzero(track.velocity("ball")[:, 2] > 0.0)
+    falling = np.flatnonzero(track.velocity("ball")[:, 2] < 0.0)
+    first = rising[0] if len(rising) else len(track.time) - 1
+    later = falling[falling > first]
+    last = later[0] if len(later) else len(track.time) - 1
+    return float(track.position("ball")[first : last + 1, 2].max() - 0.1)
+
+
+def _bounce(restitution: float) -> Case:
+    def run(bench: Bench) -> tuple[float, float]:
+        expected = restitution**2
+        found = [(_first_apex(bench, restitution, restitution, step), step) for step in STEPS]
+        value, bench.step = max(found, key=lambda pair: abs(pair[0] - expected))
+        return value, expected
+
+    run.__doc__ = (
+        f"""A ball that falls 1 m rises e² · 1 m, e = {restitution:g}: the worst of steps of 0.5, 1.25, 4 ms."""
+    )
+    if restitution:
+        return case("m", name=f"bounce_{restitution:g}")(run)
+    return case("m", 1e-3, "it does not bounce", name="bounce_0")(run)
+
+
+BOUNCES = tuple(_bounce(e) for e in (0.0, 0.3, 0.5, 0.8, 1.0))
+
+
+@case("m")
+def smaller_restitution_counts(bench: Bench) -> tuple[float, float]:
+    """A ball of e = 0.8 rises 0.5² · 1 m from ground of 0.5."""
+    return _first_apex(bench, 0.8, 0.5), 0.25
+
+
+@case("m")
+def unstated_restitution(bench: Bench) -> tuple[float, float]:
+    """Ground that states none leaves it to the ball: 0.8² · 1 m."""
+    return _first_apex(bench, 0.8, None), 0.64
+
+
+def _collide(bench: Bench, masses: tuple[float, float], restitution: float, off: float = 0.0) -> Track:
+    """A ball at 2 m/s meets one at rest, both of radius 0.1 m, smooth, `off` [m] beside the line of centres."""
+
+    def build(scene: Scene) -> None:
+        scene.simulation(gravity=(0, 0, 0))
+        for name, mass, place, speed in (("a", masses[0], (-0.5, off, 0), 2.0), ("b", masses[1], (0, 0, 0), 0.0)):
+            scene.sphere(name, radius=0.1, mass=mass, position=place, velocity=(speed, 0, 0), friction=0.0,
+                         restitution=restitution)  # fmt: skip
+
+    return bench.run(build, 0.6)
+
+
+@case("m/s")
+def head_on_equal(bench: Bench) -> tuple[float, float]:
+    """Elastic balls of one mass exchange their speeds: the second leaves at v = 2 m/s."""
+    return float(_collide(bench, (1, 1), 1.0).velocity("b")[-1, 0]), 2.0
+
+
+@case("m/s")
+def head_on_unequal(bench: Bench) -> tuple[float, float]:
+    """1 kg meets 3 kg at e = 0.5: it comes back at v (m - e M) / (m + M)."""
+    return float(_collide(bench, (1, 3), 0.5).velocity("a")[-1, 0]), 2.0 * (1 - 1.5) / 4
+
+
+@case("m/s")
+def head_on_dead(bench: Bench) -> tuple[float, float]:
+    """At e = 0 both go on at v / 2."""
+    return float(_collide(bench, (1, 1), 0.0).velocity("a")[-1, 0]), 1.0
+
+
+@case("m/s")
+def off_centre(bench: Bench) -> tuple[float, float]:
+    """Struck at half a diameter aside the second leaves at v cos 30°."""
+    return float(np.linalg.norm(_collide(bench, (1, 1), 1.0, 0.1).velocity("b")[-1])), 2.0 * math.cos(math.pi / 6)
+
+
+@case("kg m/s", 1e-5, EXACT)
+def off_centre_momentum(bench: Bench) -> tuple[float, float]:
+    """The momentum of both is the first's, m v = 2 kg m/s."""
+    track = _collide(bench, (1, 1), 1.0, 0.1)
+    return float(np.linalg.norm(track.velocity("a")[-1] + track.velocity("b")[-1])), 2.0
+
+
+@case("J")
+def off_centre_energy(bench: Bench) -> tuple[float, float]:
+    """The energy of both is the first's, m v² / 2 = 2 J."""
+    track = _collide(bench, (1, 1), 1.0, 0.1)
+    return 0.5 * sum(float((track.velocity(name)[-1] ** 2).sum()) for name in "ab"), 2.0
+
+
+def _glance(bench: Bench, velocity: tuple[float, float], friction: float) -> Track:
+    """A ball that does not spin meets a floor at (along, down), e = 0.5, without gravity."""
+
+    def build(scene: Scene) -> None:
+        scene.simulation(gravity=(0, 0, 0))
+        scene.ground()
+        scene.sphere("ball", radius=0.1, mass=1.0, position=(0, 0, 0.3), velocity=(velocity[0], 0, -velocity[1]),
+                     friction=friction, restitution=0.5)  # fmt: skip
+
+    return bench.run(build, 0.3)
+
+
+@case("m/s")
+def glancing_loss(bench: Bench) -> tuple[float, float]:
+    """A ball that slides through its bounce loses μ (1 + e) v_z along the floor."""
+    return 3.0 - float(_glance(bench, (3.0, 2.0), 0.1).velocity("ball")[-1, 0]), 0.1 * 1.5 * 2.0
+
+
+@case("rad/s")
+def glancing_spin(bench: Bench) -> tuple[float, float]:
+    """It spins up to 5 μ (1 + e) v_z / (2 R)."""
+    return float(_glance(bench, (3.0, 2.0), 0.1).spin("ball")[-1, 1]), 2.5 * 0.1 * 1.5 * 2.0 / 0.1
+
+
+@case("m/s")
+def glancing_grip(bench: Bench) -> tuple[float, float]:
+    """A ball that grips leaves rolling, at 5/7 of its speed along the floor."""
+    return float(_glance(bench, (1.0, 2.0), 1.0).velocity("ball")[-1, 0]), 5 / 7
+
+
+@case("m", 0.02, "five joints at e = 1, and the strike falls within a step")
+def cradle(bench: Bench) -> tuple[float, float]:
+    """The last ball of a cradle of five rises as high as the first was let go, L (1 - cos 0.5)."""
+
+    def build(scene: Scene) -> None:
+        for k in range(5):
+            x = 0.2 * k
+            place = (x - math.sin(0.5), 0, 2 - math.cos(0.5)) if k == 0 else (x, 0, 1.0)
+            scene.sphere(f"b{k}", radius=0.1, density=7800, position=place, restitution=1.0, friction=0.0)
+            scene.joint_revolute(f"j{k}", None, f"b{k}", anchor=(x, 0, 2.0), axis="Y")
+
+    track = bench.run(build, 1.3)
+    return float(track.position("b4")[:, 2].max() - 1.0), 1.0 - math.cos(0.5)
