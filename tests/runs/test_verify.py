@@ -22,16 +22,17 @@ from wsim.scene import Scene
 from wsim.sim import Simulation
 from wsim.sim.perturb import PLACE
 
-G, SPEED, FRICTION, STEP = 9.81, 1.0, 0.1, 1.25e-3
+G, SPEED, FRICTION, STEP = 9.81, 1.0, 0.03, 1.25e-3
+# A thin and slippery block, so that its brakes do not tip it over the edge.
 # Velocity first, then position: in steps of dt a block comes to rest v dt / 2 short of v^2 / (2 mu g).
 STOP = SPEED**2 / (2.0 * FRICTION * G)
 EDGE = STOP - 0.375 * SPEED * STEP  # between where it stops in steps of STEP, and in steps of half of it
 PROGRAM = f"""\
 def build(scene):
     wood = {{"friction": {FRICTION}, "color": (0.5, 0.3, 0.1)}}
-    scene.simulation(duration=1.3, frame_rate=50.0)
-    scene.box("table", size=(2.0, 1.0, 0.2), position=(%s - 1.0, 0.0, 0.1), static=True, **wood)
-    scene.box("block", size=(0.2, 0.2, 0.1), mass=2.0, **wood, position=(0.0, 0.0, 0.25),
+    scene.simulation(duration=3.7, frame_rate=50.0)
+    scene.box("table", size=(12.0, 1.0, 0.2), position=(%s - 6.0, 0.0, -0.1), static=True, **wood)
+    scene.box("block", size=(0.2, 0.2, 0.006), mass=0.12, **wood, position=(0.0, 0.0, 0.003),
               velocity=({SPEED}, 0, 0))
 """
 
@@ -45,8 +46,8 @@ def slide_plan(edge: float) -> Plan:
         about = {"role": "rigid_body", "material": wood, "construction": construction, "pose": pose}
         return {"name": name, "state": state, **about}
 
-    table = box("table", "static", (2.0, 1.0, 0.2), (edge - 1.0, 0.0, 0.1))
-    block = box("block", "dynamic", (0.2, 0.2, 0.1), (0.0, 0.0, 0.25)) | {"velocity": (SPEED, 0.0, 0.0)}
+    table = box("table", "static", (12.0, 1.0, 0.2), (edge - 6.0, 0.0, -0.1))
+    block = box("block", "dynamic", (0.2, 0.2, 0.006), (0.0, 0.0, 0.003)) | {"velocity": (SPEED, 0.0, 0.0)}
 
     return Plan.model_validate(
         {
@@ -54,7 +55,7 @@ def slide_plan(edge: float) -> Plan:
             "prompt": "A block slides on a table, and stops before its edge.",
             "objects": [table, block],
             "objectives": [{"kind": "stays_on", "object": "block", "ref": "table"}],
-            "simulation": {"duration": 1.3, "frame_rate": 50.0},
+            "simulation": {"duration": 3.7, "frame_rate": 50.0},
         }
     )
 

@@ -34,7 +34,7 @@ class ContactConfig:
     solver_tolerance: float = 1e-7
     """MuJoCo's tolerance."""
     solver_tolerance_warp: float = 1e-3
-    """The same where worlds are batched: an error of 0.03 m/s^2. Less is below single precision for contacts so hard."""
+    """The same where worlds are batched: an error of 0.03 m/s^2. Less is below single precision."""
     reach: float = 0.01
     """Gap at which a contact becomes a row [m]."""
     limit_reach: float = 0.1
@@ -123,6 +123,7 @@ class ContactLawC:
     ) -> None:
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law = geom_class, law
+        self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -137,7 +138,10 @@ class ContactLawC:
         touching = self._solve(data)
         mujoco.mj_checkAcc(model, data)
         if self.smooth and not touching:
+            # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
+            model.opt.disableflags |= self.unilateral
             mujoco.mj_RungeKutta(model, data, 4)
+            model.opt.disableflags &= ~self.unilateral
         else:
             mujoco.mj_implicit(model, data)
         if model.nu:

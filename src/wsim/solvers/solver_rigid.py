@@ -67,11 +67,22 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
+        self._harden_loops()
         if on_c:
             mujoco = self.import_mujoco()[0]
             self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
         elif not smooth:
             self._prepare_warp(geom_class, law)
+
+    def _harden_loops(self) -> None:
+        """Loops that joints close are as hard as contacts; the welds of kinematic bodies stay as they are."""
+        welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else ()
+        loops = [k for k in range(self.mj_model.neq) if k not in welds]
+        self.mj_model.eq_solimp[loops, :2] = self.contact_config.impedance
+        if not self.use_mujoco_cpu and loops:
+            impedances = self.mjw_model.eq_solimp
+            values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
+            impedances.assign(values.astype(np.float32))
 
     def _prepare_warp(self, geom_class: Array, law: Array) -> None:
         device, data = self.model.device, self.mjw_data
