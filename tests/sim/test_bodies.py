@@ -336,3 +336,24 @@ def test_a_stack_that_bounces_comes_to_rest(simulate, e):
     run = simulate(build, 2.0)
     assert [run.q[f"box_{k}"][-1, 2] for k in range(5)] == pytest.approx([0.1 + 0.2 * k for k in range(5)], abs=1e-4)
     assert max(np.abs(run.v[name][-1]).max() for name in run.v) < 1e-3
+
+
+def test_a_body_hinged_to_a_static_one_does_not_touch_it(simulate):
+    def build(scene):
+        post = scene.box("post", size=(0.1, 0.1, 2.0), position=(0, 0, 1), static=True)
+        bob = scene.box("bob", size=(0.05, 0.05, 1.0), density=600.0, position=(0.5, 0, 1.5), rotation_deg=(0, 90, 0))
+        scene.joint_revolute("hinge", post, bob, anchor=(0, 0, 1.5), axis="Y")
+
+    run = simulate(build, 1.0)
+    assert run.q["bob"][:, 2].min() == pytest.approx(1.0, abs=2e-3)  # it swings through the post
+    assert run.q["bob"][:, 0].min() < -0.3
+
+
+def test_a_heavy_belt_does_not_shake_its_load(simulate):
+    def build(scene):
+        scene.ground()
+        scene.box("belt", size=(8, 1, 0.2), position=(0, 0, 0.1), kinematic=True, velocity=(1, 0, 0))
+        scene.box("crate", size=(0.3,) * 3, density=300.0, position=(0, 0, 0.35), velocity=(1, 0, 0))
+
+    run = simulate(build, 1.0)
+    assert np.abs(run.v["crate"] - (1, 0, 0)).max() < 5e-4

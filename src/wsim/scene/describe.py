@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
 
 from wsim.defaults import DURATION, FLUID_DENSITY, FRAME_RATE, GRAVITY
 from wsim.errors import UserError
@@ -195,9 +195,10 @@ def _joints(prims: list[Usd.Prim]) -> Iterator[Joint]:
             if not prim.IsA(usd):
                 continue
             stage = prim.GetStage()
-            parent, child = (_body_at(stage, path) for path in joint_ends(UsdPhysics.Joint(prim)))
+            paths = joint_ends(UsdPhysics.Joint(prim))
+            parent, child = (_body_at(stage, path) for path in paths)
             if child is None:
-                parent, child = child, parent
+                parent, child, paths = child, parent, paths[::-1]
             if child is None:
                 continue  # holds nothing that moves
             axis = prim.GetAttribute("physics:axis").Get() if kind != "fixed" else "X"
@@ -207,12 +208,20 @@ def _joints(prims: list[Usd.Prim]) -> Iterator[Joint]:
                     "kind": kind,
                     "parent": parent,
                     "child": child,
+                    "fixture": _fixture(prim, paths[0]) if parent is None else None,
                     "axis": axis,
                     **_anchors(UsdPhysics.Joint(prim), parent, child),
                     **_motion(prim, kind),
                     "line": _line(prim),
                 }
             )
+
+
+def _fixture(joint: Usd.Prim, end: Sdf.Path) -> str | None:
+    """The static object that stands for the world at a joint's end: the joint's target, or noted beside it."""
+    noted = joint.GetRelationship("wsim:fixture")
+    path = next(iter(noted.GetTargets() if noted else []), end)
+    return None if path == WORLD_END else _object_path(joint.GetStage().GetPrimAtPath(path), joint.GetStage())
 
 
 def _anchors(joint: UsdPhysics.Joint, parent: str | None, child: str) -> dict[str, Any]:

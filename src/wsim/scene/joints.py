@@ -124,11 +124,13 @@ class Joints(Author):
         child_prim = self._body(call, "child", child)
         if not child_prim.HasAPI(UsdPhysics.RigidBodyAPI):
             call.fail(f"child = {shown(child_prim.GetName())} is static; a joint's child must be a body that moves")
-        parent_prim = None if parent is None else self._body(call, "parent", parent)
+        parent_prim = fixture = None if parent is None else self._body(call, "parent", parent)
         if parent_prim == child_prim:
             call.fail(f"parent = child = {shown(child_prim.GetName())}: a joint needs two bodies, or parent=None")
         if parent_prim is not None and not parent_prim.HasAPI(UsdPhysics.RigidBodyAPI):
             parent_prim = None  # what never moves is the world
+        else:
+            fixture = None
         self._check_one_parent(call, parent_prim, child_prim)
         self._check_closing(call, parent_prim, child_prim, kind, driven)
         position, turn = world_pose(child_prim)
@@ -145,6 +147,8 @@ class Joints(Author):
             back = rotation.GetInverse()
             getattr(joint, f"CreateLocalPos{suffix}Attr")(Gf.Vec3f(back.Transform(point - origin)))
             getattr(joint, f"CreateLocalRot{suffix}Attr")(Gf.Quatf(back * frame))
+        if fixture is not None:
+            joint.GetPrim().CreateRelationship("wsim:fixture", custom=False).SetTargets([fixture.GetPath()])
         if axis is not None:
             joint.CreateAxisAttr(token)
         mark_articulations(self._stage)

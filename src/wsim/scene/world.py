@@ -112,6 +112,7 @@ class Joint(_Model):
     kind: Literal["fixed", "revolute", "prismatic", "spherical"]
     parent: str | None
     child: str
+    fixture: str | None = None  # prim of the static object that stands for the world at its other end
     axis: Literal["X", "Y", "Z"] = "X"  # of the anchors
     parent_anchor: Vec3 | None = None  # [m], in the parent's frame, or the world's; None: not known
     parent_turn: Quat = (0.0, 0.0, 0.0, 1.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import newton
 import numpy as np
 
 from wsim.scene.contact import pair_law
@@ -27,6 +28,32 @@ def harden_contacts(builder: Any, config: ContactConfig) -> None:
     builder.custom_attributes["mujoco:geom_solimp"].values = dict.fromkeys(shapes, impedance)
     builder.custom_attributes["mujoco:solimplimit"].values = dict.fromkeys(dofs, impedance)
     builder.custom_attributes["mujoco:limit_margin"].values = dict.fromkeys(dofs, config.limit_reach)
+
+
+def spare_kinematic(builder: Any) -> None:
+    """Let no kinematic body touch what never yields, a static or another: neither gives way, and solvers shake."""
+    kinematic = [bool(flags & int(newton.BodyFlags.KINEMATIC)) for flags in builder.body_flags]
+    fixed = [body < 0 or kinematic[body] for body in builder.shape_body]
+    driven = [k for k, body in enumerate(builder.shape_body) if body >= 0 and kinematic[body]]
+    for k in driven:
+        for other in range(builder.shape_count):
+            if fixed[other] and builder.shape_body[other] != builder.shape_body[k]:
+                builder.add_shape_collision_filter_pair(k, other)
+
+
+def spare_tied(builder: Any, world: World) -> None:
+    """Let no body touch the static object that a joint ties it to, as two bodies that a joint ties do not."""
+    for joint in world.joints:
+        if joint.fixture is not None:
+            tied, held = (_shapes_of(builder, prim) for prim in (joint.fixture, joint.child))
+            for k in held:
+                for other in tied:
+                    builder.add_shape_collision_filter_pair(k, other)
+
+
+def _shapes_of(builder: Any, prim: str) -> list[int]:
+    labels = [str(label) for label in builder.shape_label]
+    return [k for k, label in enumerate(labels) if label == prim or label.startswith(prim + "/")]
 
 
 def contact_law(model: Any, world: World) -> tuple[Array, Array]:

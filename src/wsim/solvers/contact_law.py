@@ -31,6 +31,8 @@ class ContactConfig:
 
     impedance: float = 0.9999
     """Share of what is asked for that a contact alone reaches; MuJoCo's largest."""
+    kinematic_impedance: float = 0.99
+    """The same of the weld that holds a kinematic body to its way; nearer to one it shakes what rides on it."""
     solver_tolerance: float = 1e-7
     """MuJoCo's tolerance."""
     solver_tolerance_warp: float = 1e-3

@@ -75,11 +75,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._prepare_warp(geom_class, law)
 
     def _harden_loops(self) -> None:
-        """Loops that joints close are as hard as contacts; the welds of kinematic bodies stay as they are."""
+        """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
         welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else ()
-        loops = [k for k in range(self.mj_model.neq) if k not in welds]
-        self.mj_model.eq_solimp[loops, :2] = self.contact_config.impedance
-        if not self.use_mujoco_cpu and loops:
+        for k in range(self.mj_model.neq):
+            config = self.contact_config
+            self.mj_model.eq_solimp[k, :2] = config.kinematic_impedance if k in welds else config.impedance
+        if not self.use_mujoco_cpu and self.mj_model.neq:
             impedances = self.mjw_model.eq_solimp
             values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
             impedances.assign(values.astype(np.float32))

@@ -37,7 +37,7 @@ class CheckTunnelling(Check):
         motion = evidence.motion
         if len(motion.h) == 0:
             return []
-        jointed = {frozenset((joint.parent, joint.child)) for joint in evidence.world.joints}
+        jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
         moved = np.linalg.norm(np.diff(motion.com, axis=0), axis=2)
         found: dict[tuple[str, str], Finding] = {}
         for shape in evidence.placed:

@@ -36,7 +36,7 @@ def overlaps(evidence: Recorded) -> list[Overlap]:
     edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
     """
     shapes = evidence.placed
-    jointed = {frozenset((joint.parent, joint.child)) for joint in evidence.world.joints}
+    jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
     # Two can only meet if the boxes about all the places that each is ever in do.
     low = np.array([shape.position.min(axis=0) - shape.radius for shape in shapes]).reshape(-1, 3)
     high = np.array([shape.position.max(axis=0) + shape.radius for shape in shapes]).reshape(-1, 3)
