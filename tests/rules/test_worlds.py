@@ -10,6 +10,8 @@ from wsim.runs.settings import Settings
 PROMPTS = [
     "A steel ball rolls down a wooden ramp for 1.4 seconds",
     "An oak cube slides down a 35 degree ramp",
+    "An ice block slides down a ramp of 20 degrees",
+    "A concrete block slides across the floor at 3 m/s and hits a wall",
     "A 0.4 m pendulum swings from 30 degrees",
     "A red ball and a blue ball collide for 1 second",
     "A ball is thrown at 5 m/s at an angle of 30 degrees for 1.2 seconds",
