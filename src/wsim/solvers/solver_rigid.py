@@ -32,7 +32,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     Args:
         model: The Newton model.
         classes: Class of each shape of the first world, (shapes,).
-        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
+        curvature: Of each shape's round side [1/m], (shapes,); 0 for a flat one.
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
         config: How the law is applied.
@@ -44,6 +45,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         model: Any,
         classes: Array,
         law: Array,
+        curvature: Array,
         on_c: bool,
         smooth: bool,
         config: ContactConfig | None = None,
@@ -62,7 +64,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             **options,
         )
         shapes = self.mjc_geom_to_newton_shape.numpy()[0]
-        geom_class = np.where(shapes >= 0, classes[np.maximum(shapes, 0) % len(classes)], 0)
+        geom_class, bends = (
+            np.where(shapes >= 0, of[np.maximum(shapes, 0) % len(of)], 0) for of in (classes, curvature)
+        )
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
@@ -70,9 +74,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._harden_loops()
         if on_c:
             mujoco = self.import_mujoco()[0]
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
+            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, bends, smooth, self.contact_config)
         elif not smooth:
-            self._prepare_warp(geom_class, law)
+            self._prepare_warp(geom_class, law, bends)
 
     def _harden_loops(self) -> None:
         """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
@@ -85,7 +89,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
             impedances.assign(values.astype(np.float32))
 
-    def _prepare_warp(self, geom_class: Array, law: Array) -> None:
+    def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
         margin = self.mjw_model.geom_margin
@@ -94,7 +98,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
             self._geom_class = wp.array(geom_class, dtype=int)
-            self._law = wp.array(law, dtype=wp.vec4)
+            self._law = wp.array(law, dtype=wp.vec3)
+            self._curvature = wp.array(curvature, dtype=float)
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._slip = wp.zeros(data.naconmax, dtype=float)
@@ -151,11 +156,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law, self._struck,
+                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law,
+                model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
                 data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._slip, efc.aref],
+            outputs=[contact.friction, self._target, self._slip, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
