@@ -250,5 +250,8 @@ class ContactLawC:
         wide = dim > 3
         first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
         for k in range(2, 5):
-            data.efc_D[first + k] = data.efc_D[first] * share[:, k]
-            data.efc_R[first + k] = 1.0 / data.efc_D[first + k]
+            row, weight = first + k, data.efc_D[first] * share[:, k]
+            data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
+            if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+                row = data.map_efc2iefc[row]
+                data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight
