@@ -17,6 +17,7 @@ from wsim.judge.checks import (
     motion,
     physics,
     plan,
+    plan_contacts,
     plan_joints,
     rest,
     run,
@@ -27,7 +28,21 @@ if TYPE_CHECKING:
     from wsim.judge.checks.check import Check
 
 RUN = (run,)
-PHYSICS = (physics, settled, motion, energy, contact, rest, joint, mass, plan, plan_joints, fluid, camera)
+PHYSICS = (
+    physics,
+    settled,
+    motion,
+    energy,
+    contact,
+    rest,
+    joint,
+    mass,
+    plan,
+    plan_joints,
+    plan_contacts,
+    fluid,
+    camera,
+)
 
 
 def run_checks() -> list[Check]:
