@@ -24,6 +24,7 @@ _JOINT: dict[str, Any] = {"parent": None}
 _NEEDS: dict[str, dict[str, Any]] = {
     "ground": {}, "box": _SHAPE, "sphere": {"radius": 0.1}, "cylinder": _ROUND, "capsule": _ROUND,
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
+    "contact": {"friction": 0.5, "restitution": 0.5},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
 }  # fmt: skip
@@ -31,7 +32,21 @@ BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
 OBJECTS = (*BODIES, "ground", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
-_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high")
+_TIED = (
+    "name",
+    "a",
+    "b",
+    "parent",
+    "child",
+    "fills",
+    "container",
+    "material",
+    "level",
+    "spacing",
+    "file",
+    "low",
+    "high",
+)
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
@@ -101,7 +116,7 @@ class World:
 
     def note(self, method: str, name: object, *, certain: bool) -> None:
         """Remember the prim that a call makes."""
-        if method in ("simulation", "save"):
+        if method in ("simulation", "save", "contact"):
             return
         if not isinstance(name, str):
             self.open = self.open or method not in ("material", "param")
@@ -189,7 +204,7 @@ class World:
     def _attempt(self, method: str, given: dict[str, Any], *, alone: bool) -> str:
         number = next(self._numbers)
         needs: dict[str, Any] = dict(_NEEDS[method])
-        if method != "simulation":
+        if method not in ("simulation", "contact"):
             needs["name"] = f"probe_{number}"
         if method.startswith("joint_"):
             needs["child"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
@@ -209,6 +224,8 @@ class World:
             scene = Scene()
             if method.startswith("joint_"):
                 needs["child"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
+        if method == "contact":
+            needs |= {end: scene.box(f"probe_{end}_{number}", size=(1.0, 1.0, 1.0)) for end in ("a", "b")}
         try:
             getattr(scene, method)(**(needs | given))
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
