@@ -8,7 +8,6 @@ from wsim.program.compose import compose
 from wsim.scene import Scene
 from wsim.scene.describe import describe
 
-
 _GROUND, _POSE = Pose(position=(0.0, 0.0, 0.0)), Pose(position=(0.0, 0.0, 0.1))
 
 
