@@ -11,6 +11,7 @@ from mujoco_warp import OverflowType
 
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.smooth_steps import SmoothStepsWarp
 
 Array = np.ndarray
 
@@ -34,7 +35,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         classes: Class of each shape of the first world, (shapes,).
         law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
         on_c: Whether MuJoCo in C steps the first world alone.
-        smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
+        smooth: Whether steps that touch nothing are of the fourth order.
+        may_touch: Whether any contact or stop can come up.
         config: How the law is applied.
         options: For `newton.solvers.SolverMuJoCo`.
     """
@@ -46,6 +48,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         law: Array,
         on_c: bool,
         smooth: bool,
+        may_touch: bool,
         config: ContactConfig | None = None,
         **options: Any,
     ) -> None:
@@ -54,7 +57,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             model,
             use_mujoco_cpu=on_c,
             use_mujoco_contacts=True,
-            integrator="rk4" if smooth and not on_c else "implicitfast",
+            integrator="rk4" if smooth and not on_c and not may_touch else "implicitfast",
             cone="elliptic",
             enable_multiccd=True,  # a cylinder stands on four points, not on one that wanders
             impratio=1.0,
@@ -71,8 +74,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if on_c:
             mujoco = self.import_mujoco()[0]
             self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
-        elif not smooth:
+        elif may_touch or not smooth:
             self._prepare_warp(geom_class, law)
+        self._smooth_steps: Any = None
+        if smooth and may_touch and not on_c:
+            self._smooth_steps = SmoothStepsWarp(self._mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data)
 
     def _harden_loops(self) -> None:
         """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
@@ -88,6 +94,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _prepare_warp(self, geom_class: Array, law: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
+        # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
+        # the contacts of a box that slides, on an H200 in one step of some 300.
+        self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         margin = self.mjw_model.geom_margin
         weights = self.mjw_model.body_invweight0
         weights.assign(np.broadcast_to(self.mj_model.body_invweight0, weights.numpy().shape).astype(np.float32))
@@ -123,6 +132,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             super()._mujoco_warp_step()
             return
         warp = self._mujoco_warp
+        if self._smooth_steps:
+            self._smooth_steps.before(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         warp.fwd_actuation(model, data)
@@ -133,6 +144,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 self._aim_again(model, data)
             warp.solve(model, data)
         warp.implicit(model, data)
+        if self._smooth_steps:
+            self._smooth_steps.after(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
         config, efc, contact = self.contact_config, data.efc, data.contact
