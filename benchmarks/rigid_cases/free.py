@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import EXACT, Bench, G, Track, case
+from benchmarks.rigid_cases.case import Bench, G, Track, case
 from wsim.scene import Scene
 
 Array = np.ndarray
