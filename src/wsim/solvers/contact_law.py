@@ -115,7 +115,7 @@ def targets(
     struck[0] = False
     # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
     light = distance > -config.threshold * h * h
-    later = bouncy & ~fast & light & struck[bodies].any(axis=1)
+    later = bouncy & (waits | (~fast & light)) & struck[bodies].any(axis=1)
     goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
     return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
@@ -215,9 +215,7 @@ class ContactLawC:
         speed = data.efc_vel[normal]
         free = image[normal]
         smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
-        goal, blow = targets(
-            contact.dist[chosen], speed, free, law[:, 1], model.geom_bodyid[geoms], h, config, smooth
-        )
+        goal, blow = targets(contact.dist[chosen], speed, free, law[:, 1], model.geom_bodyid[geoms], h, config, smooth)
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
         offset = np.arange(1, 6)
         held = offset < contact.dim[chosen][:, None]
