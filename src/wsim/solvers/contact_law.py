@@ -9,7 +9,8 @@ step's end. The slip is taken from the step's start, and again from each solutio
 What a row should reach stands in its reference acceleration, (target - velocity) / h, with an impedance near one.
 A contact is a row before the surfaces touch: it may close its gap in the step and not more (Stewart and Trinkle 1996).
 Where the two bounce, the step that ends farther below than it starts above is the one in which they meet; the speed
-after it is that with which a body of the same acceleration comes back through the surface at e times its speed.
+after it is that with which a body of the same acceleration comes back through the surface at e times its speed. What
+MuJoCo's regularisation gives way under a blow is added to what is asked for, or each would lose 1e-4 of its speed.
 A body that is hit lets go of what it touches for that step, so that a blow goes through a row of bodies one by one,
 as in Newton's cradle, and all keep their energy.
 """
@@ -60,10 +61,35 @@ def settling(distance: Array, h: float, config: ContactConfig) -> Array:
     return np.where(distance > 0.0, -distance / h, np.minimum(-distance / config.settle_time, config.settle_speed))
 
 
+def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: float, smooth: Array) -> Array:
+    """Speeds after the step in which surfaces meet, for which the energy of the fall comes back e² times [m/s].
+
+    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2 (v² + a h v - 2 a z
+    stays), others that of v. The step of the blow itself goes on by h times the speed after it.
+
+    Args:
+        distance: Gaps [m]; speed: normal speeds [m/s]; free: accelerations [m/s^2]; restitution: of each pair.
+        h: Time step [s].
+        smooth: Whether the bodies fly by steps of a higher order, (contacts,).
+    """
+    half = np.where(smooth, 0.0, 0.5 * free * h)
+    fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
+    own = np.where(smooth, free * h, half)
+    squared = restitution**2 * ((speed + half) ** 2 - fall) + fall + np.where(smooth, own**2, 0.0)
+    return np.maximum(np.sqrt(np.maximum(squared, 0.0)) + own, 0.0)
+
+
 def targets(
-    distance: Array, speed: Array, free: Array, restitution: Array, bodies: Array, h: float, config: ContactConfig
-) -> Array:
-    """Normal speeds that contacts should end a step of `h` [s] with [m/s], (contacts,).
+    distance: Array,
+    speed: Array,
+    free: Array,
+    restitution: Array,
+    bodies: Array,
+    h: float,
+    config: ContactConfig,
+    smooth: Array | bool = False,
+) -> tuple[Array, Array]:
+    """Normal speeds that contacts should end a step of `h` [s] with [m/s], and which of them are blows, (contacts,).
 
     Args:
         distance: Gaps, negative where shapes overlap [m].
@@ -73,25 +99,25 @@ def targets(
         bodies: (contacts, 2), 0 for the world.
         h: Time step [s].
         config: How the law is applied.
+        smooth: Whether bodies fly by steps of a higher order.
     """
     goal = settling(distance, h, config)
     bouncy = restitution > 0.0
     if not bouncy.any():
-        return goal
+        return goal, bouncy
     after = distance + speed * h
     fast = bouncy & (speed < -config.threshold * h)
     meets = fast & (after < 0.0) & (-after > distance)
-    fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
-    rebound = np.sqrt(np.maximum(restitution**2 * (speed**2 - fall) + fall, 0.0))
+    rebound = rebounds(distance, speed, free, restitution, h, np.broadcast_to(smooth, speed.shape))
     waits = fast & ~meets & (distance > 0.0)
     struck = np.zeros(int(bodies.max()) + 1, dtype=bool)
     struck[bodies[meets]] = True
     struck[0] = False
     # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
     light = distance > -config.threshold * h * h
-    later = bouncy & ~fast & light & struck[bodies].any(axis=1)
+    later = bouncy & (waits | (~fast & light)) & struck[bodies].any(axis=1)
     goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
-    return np.where(meets, rebound, np.where(later, -LATER, goal))
+    return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
 
 def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
@@ -125,6 +151,7 @@ class ContactLawC:
     ) -> None:
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law = geom_class, law
+        self.touched = 0  # steps of the first order since the last smooth one
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         tilt_cylinders(mujoco, model)
 
@@ -144,8 +171,10 @@ class ContactLawC:
             model.opt.disableflags |= self.unilateral
             mujoco.mj_RungeKutta(model, data, 4)
             model.opt.disableflags &= ~self.unilateral
+            self.touched = 0
         else:
             mujoco.mj_implicit(model, data)
+            self.touched += 1
         if model.nu:
             self._tell_efforts(data)
 
@@ -184,7 +213,9 @@ class ContactLawC:
         image = np.zeros(data.nefc)
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
         speed = data.efc_vel[normal]
-        goal = targets(contact.dist[chosen], speed, image[normal], law[:, 1], model.geom_bodyid[geoms], h, config)
+        free = image[normal]
+        smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
+        goal, blow = targets(contact.dist[chosen], speed, free, law[:, 1], model.geom_bodyid[geoms], h, config, smooth)
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
         offset = np.arange(1, 6)
         held = offset < contact.dim[chosen][:, None]
@@ -193,12 +224,14 @@ class ContactLawC:
         velocity = data.efc_vel[rows]
         data.efc_aref[rows[held]] = -velocity[held] / h
         slip = np.linalg.norm(weight * velocity, axis=1)
-        for _ in range(config.solutions):
-            data.efc_aref[normal] = (goal - slip - speed) / h
+        given = np.zeros(len(normal))  # by the regularisation under a blow [m/s^2]
+        for k in range(config.solutions):
+            data.efc_aref[normal] = (goal - slip - speed) / h + given
             mujoco.mj_fwdConstraint(model, data)
             mujoco.mj_mulJacVec(model, data, image, data.qacc)
             left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
-            if np.abs(left - slip).max() < config.tolerance:
+            if np.abs(left - slip).max() < config.tolerance and (k or not blow.any()):
                 return
             slip = left
+            given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc

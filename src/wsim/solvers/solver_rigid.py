@@ -106,6 +106,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._law = wp.array(law, dtype=wp.vec4)
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
+            self._blow = wp.zeros(data.naconmax, dtype=float)
             self._slip = wp.zeros(data.naconmax, dtype=float)
 
     def step(
@@ -168,7 +169,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._slip, efc.aref],
+            outputs=[contact.friction, self._target, self._blow, self._slip, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
@@ -186,6 +187,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 data.nacon, contact.worldid, contact.efc_address, contact.dim, contact.friction, efc.vel,
                 model.opt.timestep, data.qacc, *self._jacobian(model, efc), self._target,
+                self._blow, efc.D, efc.force,
             ],
             outputs=[self._slip, efc.aref],
         )  # fmt: skip
