@@ -9,6 +9,8 @@ import warp as wp
 ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
 FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
 LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
+CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
+ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 
 
@@ -64,6 +66,14 @@ def along(
     return total
 
 
+@wp.func
+def bent(turn: wp.mat33, frame: wp.mat33, curvature: float, kind: int) -> float:
+    """Curvature of a surface where it touches [1/m]: none of a cylinder that stands on its end."""
+    if kind == CYLINDER and wp.abs(wp.dot(wp.vec3(turn[0, 2], turn[1, 2], turn[2, 2]), frame[0])) > ON_END:
+        return 0.0
+    return curvature
+
+
 @wp.kernel(enable_backward=False)
 def strike(
     # Data in:
@@ -76,7 +86,7 @@ def strike(
     timestep: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec4),
+    law: wp.array2d(dtype=wp.vec3),
     threshold: float,
     # Data out:
     struck: wp.array2d(dtype=int),
@@ -111,7 +121,11 @@ def aim(
     timestep: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec4),
+    law: wp.array2d(dtype=wp.vec3),
+    geom_kind: wp.array(dtype=int),
+    curvature: wp.array(dtype=float),
+    geom_turn: wp.array2d(dtype=wp.mat33),
+    contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
     sparse: bool,
@@ -129,6 +143,7 @@ def aim(
     target: wp.array(dtype=float),
     blow: wp.array(dtype=float),  # 1 where surfaces meet
     slip: wp.array(dtype=float),
+    weight: wp.array2d(dtype=float),
     aref: wp.array2d(dtype=float),
 ):
     """Give each contact its pair's law, and its rows what they should reach."""
@@ -158,15 +173,25 @@ def aim(
             goal = -LATER
     target[k] = goal
 
+    roll = float(0.0)
+    if pair[2] > 0.0:
+        bend = float(0.0)
+        for side in range(2):
+            bend += bent(geom_turn[world, geom[side]], contact_frame[k], curvature[geom[side]], geom_kind[geom[side]])
+        if bend > 0.0:
+            roll = pair[2] / bend
     friction = contact_friction[k]
     for j in range(5):
         part = pair[0]
         if j == 2:
-            part = pair[2]
+            part = wp.pi * pair[0] * roll
         elif j > 2:
-            part = pair[3]
+            part = roll
         friction[j] = wp.max(part, smallest)
     contact_friction[k] = friction
+    for j in range(2, contact_dim[k] - 1):
+        share = friction[j] / friction[0]
+        weight[world, contact_row[k, j + 1]] = weight[world, contact_row[k, 1]] * share * share
     slipped = float(0.0)
     for j in range(contact_dim[k] - 1):
         r = contact_row[k, j + 1]

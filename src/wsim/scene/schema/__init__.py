@@ -11,6 +11,8 @@ FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
+MATERIAL = "WsimMaterialAPI"
+CONTACT = "WsimContactAPI"
 
 
 def register() -> None:
