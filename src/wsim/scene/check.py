@@ -31,6 +31,7 @@ from wsim.scene.limits import (
     MAX_POSITION,
     MAX_PRIMS,
     MAX_SIZE,
+    MAX_SPEED,
 )
 
 _NOW = Usd.TimeCode.Default()
@@ -253,6 +254,8 @@ def _wsim(prim: Usd.Prim) -> Iterator[str]:
         yield from _bounded(prim.GetAttribute("wsim:timeStep"), 1.0, "s", zero=True)
     if schema.has(prim, schema.FLUID):
         yield from _fluid(prim)
+    if schema.has(prim, schema.SURFACE_VELOCITY):
+        yield from _within(prim.GetAttribute("wsim:surfaceVelocity"), MAX_SPEED, "m/s")
     if schema.has(prim, schema.CONTAINER):
         yield from _bounded(prim.GetAttribute("wsim:innerSize"), MAX_SIZE, "m")
 
@@ -287,3 +290,11 @@ def _bounded(attribute: Usd.Attribute, high: float, unit: str, *, zero: bool = F
             yield f"{attribute.GetPath()}: {number:g} must be {'>=' if zero else '>'} 0 {unit}"
         elif number > high:
             yield f"{attribute.GetPath()}: {number:g} must be <= {high:g} {unit}"
+
+
+def _within(attribute: Usd.Attribute, limit: float, unit: str) -> Iterator[str]:
+    """Problems of the numbers of an authored vector, each of which must lie in -limit..limit."""
+    numbers = _as_array(attribute.Get()) if attribute and attribute.HasAuthoredValue() else None
+    for number in () if numbers is None else numbers[np.isfinite(numbers)]:
+        if abs(number) > limit:
+            yield f"{attribute.GetPath()}: {number:g} must be within {limit:g} {unit} of 0"

@@ -18,6 +18,7 @@ from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
 from wsim.scene.errors import one_line
 from wsim.scene.usd_mass import mass_of
+from wsim.scene.usd_motion import with_surface_velocity
 from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
 from wsim.scene.world import (
     Body,
@@ -121,9 +122,11 @@ def _solids(prims: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[S
         if not prim.IsA(UsdGeom.Gprim) or not _shown(prim) or _in_fluid(prim):
             continue
         owner = _owner(prim)
-        shape = read_shape(prim, frames[owner] if owner else Gf.Matrix4d(1.0))
+        base = frames[owner] if owner else Gf.Matrix4d(1.0)
+        shape = read_shape(prim, base)
         if shape is None:
             continue
+        shape = with_surface_velocity(shape, prim, base)
         if owner:
             of_body[owner].append(shape)
         else:

@@ -61,8 +61,7 @@ def contact_law(model: Any, world: World) -> tuple[Array, Array]:
 
     A law is friction, restitution, spinning and rolling friction [m].
     """
-    bodies = [shape for body in world.bodies for shape in body.shapes]
-    known = {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
+    known = _shapes(world)
     count = model.shape_count // max(1, model.world_count)
     surfaces: dict[tuple[Any, ...], Shape] = {}
     classes = np.zeros(count, dtype=np.int64)
@@ -77,6 +76,19 @@ def contact_law(model: Any, world: World) -> tuple[Array, Array]:
             pair = pair_law(world, a, b)
             law[i, j, :2] = pair.friction, pair.restitution
     return classes, law
+
+
+def surface_velocities(model: Any, world: World) -> Array:
+    """How each shape of the model's first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
+    known = _shapes(world)
+    count = model.shape_count // max(1, model.world_count)
+    labels = [str(label) for label in model.shape_label[:count]]
+    return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
+
+
+def _shapes(world: World) -> dict[str, Shape]:
+    solids = [*world.bodies, *world.statics]
+    return {shape.prim: shape for solid in solids for shape in solid.shapes}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:

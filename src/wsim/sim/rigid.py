@@ -13,7 +13,7 @@ from newton import JointType, ShapeFlags
 from wsim.kernels.kinematic import carry
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
-from wsim.sim.contacts import contact_law
+from wsim.sim.contacts import contact_law, surface_velocities
 from wsim.sim.devices import steps_in_c
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
@@ -84,6 +84,7 @@ class RigidBodies:
         law = contact_law(model, world)
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
         self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)
+        self.solver.move_surfaces(surface_velocities(model, world))
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}

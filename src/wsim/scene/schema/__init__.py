@@ -11,6 +11,7 @@ FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
+SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 
 
 def register() -> None:

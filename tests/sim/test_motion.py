@@ -1,0 +1,67 @@
+"""Motion that a world states: moving surfaces, rolling starts, kinematic paths; each against theory."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.sim.test_bodies import Run
+
+G = 9.81
+BOTH = pytest.mark.parametrize("worlds", [1, 2])  # MuJoCo in C, and in Warp
+
+
+@pytest.fixture(params=["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
+def simulate(request, tmp_path):
+    """A run of what a function builds, on each device."""
+    return partial(Run, tmp_path, request.param)
+
+
+@BOTH
+def test_a_conveyor_speeds_a_crate_up_and_carries_it(simulate, worlds):
+    """By mu g t, and then at its own speed; the belt itself stays, and is turned, so that its own X is the world's Y."""
+
+    def build(scene):
+        belt = scene.box("belt", size=(6, 1, 0.2), position=(0, 0, 0.1), rotation_deg=(0, 0, 90), static=True)
+        scene.surface_velocity(belt, velocity=(1, 0, 3))  # what points out of it does nothing
+        scene.box("crate", size=(0.3, 0.3, 0.3), density=300, position=(0, -2, 0.35), friction=0.2)
+
+    run = simulate(build, 0.8, worlds)
+    speed = run.v["crate"][:, 1]
+    early = round(0.25 / run.dt) - 1
+    assert speed[early] == pytest.approx(0.2 * G * 0.25, rel=0.005)
+    assert speed[-1] == pytest.approx(1.0, rel=1e-4)
+    assert np.abs(run.q["crate"][:, 2] - 0.35).max() < 1e-4 and np.abs(run.v["crate"][:, 0]).max() < 1e-4
+
+
+@BOTH
+def test_a_ball_on_a_treadmill(simulate, worlds):
+    """Set down at rest it comes to 2/7 of the belt's speed; rolling against the belt at its speed it stays."""
+
+    def build(scene):
+        belt = scene.box("belt", size=(6, 2, 0.2), position=(0, 0, 0.1), static=True)
+        scene.surface_velocity(belt, velocity=(2, 0, 0))
+        scene.sphere("set_down", radius=0.1, density=600, position=(-2, -0.5, 0.3), friction=0.3)
+        scene.sphere("runner", radius=0.1, density=600, position=(1, 0.5, 0.3), friction=0.3,
+                     angular_velocity_deg=(0, -math.degrees(20), 0))  # fmt: skip
+
+    run = simulate(build, 0.6, worlds)
+    assert run.v["set_down"][-1, 0] == pytest.approx(4 / 7, rel=0.005)
+    assert np.abs(run.q["runner"][:, 0] - 1.0).max() < 1e-3
+
+
+@BOTH
+def test_a_belt_on_a_body_pushes_it_along(simulate, worlds):
+    """A crawler of m on ice pushes a slab of M off backwards: their momenta are opposite, their slip is the belt's."""
+
+    def build(scene):
+        scene.ground(friction=0.0)
+        slab = scene.box("slab", size=(4, 1, 0.2), mass=30, position=(0, 0, 0.1), friction=0.5)
+        crawler = scene.box("crawler", size=(0.4, 0.4, 0.2), mass=10, position=(0, 0, 0.3), friction=0.5)
+        scene.surface_velocity(crawler, velocity=(-1, 0, 0))
+        assert slab.kind == "body"
+
+    run = simulate(build, 0.4, worlds)
+    assert run.v["crawler"][-1, 0] == pytest.approx(0.75, rel=0.01)
+    assert run.v["slab"][-1, 0] == pytest.approx(-0.25, rel=0.01)
