@@ -65,3 +65,26 @@ def test_a_belt_on_a_body_pushes_it_along(simulate, worlds):
     run = simulate(build, 0.4, worlds)
     assert run.v["crawler"][-1, 0] == pytest.approx(0.75, rel=0.01)
     assert run.v["slab"][-1, 0] == pytest.approx(-0.25, rel=0.01)
+
+
+@pytest.mark.parametrize(("kind", "k"), [("sphere", 7 / 5), ("cylinder", 3 / 2), ("capsule", None)])
+def test_what_starts_rolling_keeps_its_speed(simulate, kind, k):
+    """On the level it goes on at v; up a ramp it is slowed by g sin(a) / k from the start."""
+    angle = math.radians(10.0)
+
+    def build(scene):
+        scene.ground()
+        scene.box("ramp", size=(6, 4, 0.2), position=(0, 5, 1), rotation_deg=(0, -10, 0), static=True)
+        up = np.array((math.cos(angle), 0.0, math.sin(angle)))
+        on = np.array((0, 5, 1)) + 0.2 * np.array((-math.sin(angle), 0.0, math.cos(angle)))
+        size = {"radius": 0.1} if kind == "sphere" else {"radius": 0.1, "height": 0.3, "axis": "Y"}
+        make = getattr(scene, kind)
+        make("flat", position=(0, 0, 0.1), velocity=(3, 0, 0), rolling=True, **size)
+        make("climbs", position=on, velocity=2 * up, rolling=True, **size)
+
+    run = simulate(build, 0.4)
+    assert run.v["flat"][-1, 0] == pytest.approx(3.0, rel=1e-4)
+    assert run.w["flat"][-1, 1] == pytest.approx(30.0, rel=1e-4)
+    if k:
+        slowed = 2.0 - np.linalg.norm(run.v["climbs"][-1])
+        assert slowed == pytest.approx(G * math.sin(angle) / k * run.simulation.time, rel=0.01)
