@@ -58,7 +58,7 @@ def plan(prompt: str) -> Plan:
         {
             **whole.model_dump(),
             "objectives": scene.objectives,
-            "cameras": cameras(whole, above=scene.surface),
+            "cameras": cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
             "assumptions": cast.assumptions,
         }

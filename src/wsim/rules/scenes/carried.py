@@ -83,6 +83,9 @@ def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[s
         _load(thing, item, (x - across / 2 * (not runs), 0.0, HEIGHT), speed, part)
         x -= across + GAP
         _belt_objectives(thing, item, slab, 0.0 if runs else way, part)
+        if "drop" in thing.does:  # tumbling takes it on by about its size
+            gone = way + speed * fall_time(HEIGHT) + 1.5 * across
+            part.goes[item.name] = (round(gone, 3), 0.0, -HEIGHT)
         part.names.setdefault(id(thing), []).append(item.name)
 
 
@@ -105,7 +108,7 @@ def _ride(speed: float, falls: bool, runs: bool, cast: Cast) -> tuple[float, flo
     if runs:
         return cast.duration or RIDE, 0.0
     if falls:
-        return round(DROP_WAY / speed + fall_time(HEIGHT) + 1.7, 1), DROP_WAY
+        return round(DROP_WAY / speed + fall_time(HEIGHT) + 2.2, 1), DROP_WAY
     time = cast.duration or max(0.6, round(min(RIDE, MOST_WAY / speed), 1))
     return time, speed * time
 
