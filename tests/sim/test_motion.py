@@ -88,3 +88,53 @@ def test_what_starts_rolling_keeps_its_speed(simulate, kind, k):
     if k:
         slowed = 2.0 - np.linalg.norm(run.v["climbs"][-1])
         assert slowed == pytest.approx(G * math.sin(angle) / k * run.simulation.time, rel=0.01)
+
+
+@BOTH
+def test_a_lift_goes_through_its_keys_and_carries(simulate, worlds):
+    """Up, a wait, and back: its load stays on it at any acceleration below g, and its place is exact at the keys."""
+
+    def build(scene):
+        lift = scene.box("lift", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+        scene.path(lift, times=(0, 0.5, 0.7, 1.2), positions=((0, 0, 0.5), (0, 0, 0.8), (0, 0, 0.8), (0, 0, 0.5)))
+        scene.box("load", size=(0.3,) * 3, density=600, position=(0, 0, 0.7))
+
+    run = simulate(build, 1.3, worlds)
+    for time, height in ((0.5, 0.8), (0.6, 0.8), (0.7, 0.8), (1.2, 0.5), (1.3, 0.5)):
+        assert run.q["lift"][round(time / run.dt) - 1, 2] == pytest.approx(height, abs=2e-6)
+    apart = run.q["load"][:, 2] - run.q["lift"][:, 2]
+    assert np.abs(apart - 0.2).max() < 2e-4
+    early = round(0.25 / run.dt) - 1  # halfway up: 3/2 of the mean speed
+    assert run.v["load"][early, 2] == pytest.approx(0.9, rel=0.005)
+
+
+@BOTH
+def test_a_turning_plate_carries_round(simulate, worlds):
+    """A plate that swings to and fro about the vertical takes its load along; the path repeats."""
+
+    def build(scene):
+        plate = scene.box("plate", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+        scene.path(plate, times=(0, 0.5, 1), rotations_deg=((0, 0, 0), (0, 0, 40), (0, 0, 0)), repeat=True)
+        scene.box("load", size=(0.2,) * 3, density=600, position=(0.2, 0, 0.65), friction=0.8)
+
+    run = simulate(build, 1.5, worlds)
+    end = run.q["load"][-1]
+    assert math.degrees(math.atan2(end[1], end[0])) == pytest.approx(40.0, abs=0.5)
+    assert np.linalg.norm(end[:2]) == pytest.approx(0.2, abs=2e-3)
+
+
+@BOTH
+def test_a_piston_pushes_and_leaves(simulate, worlds):
+    """It gives what it hits its own speed, e = 0, slows, and what slides without friction goes on at that."""
+
+    def build(scene):
+        scene.ground(friction=0.0)
+        piston = scene.box("piston", size=(0.2, 0.4, 0.2), position=(0, 0, 0.11), kinematic=True)
+        times = (0, 0.2, 0.4, 0.6, 0.8)
+        scene.path(piston, times=times, positions=[(x, 0, 0.11) for x in (0, 0.1, 0.3, 0.5, 0.6)])
+        scene.box("puck", size=(0.2,) * 3, density=600, position=(0.4, 0, 0.1))
+
+    run = simulate(build, 1.2, worlds)
+    assert run.v["piston"][round(0.5 / run.dt) - 1, 0] == pytest.approx(1.0 + 1 / 12, rel=0.02)
+    assert run.v["puck"][-1, 0] == pytest.approx(run.v["piston"][:, 0].max(), rel=0.01)
+    assert np.abs(run.v["piston"][-1]).max() == 0.0 and run.q["piston"][-1, 0] == pytest.approx(0.6, abs=1e-6)

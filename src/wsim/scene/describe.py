@@ -18,7 +18,7 @@ from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
 from wsim.scene.errors import one_line
 from wsim.scene.usd_mass import mass_of
-from wsim.scene.usd_motion import with_surface_velocity
+from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
 from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
 from wsim.scene.world import (
     Body,
@@ -143,17 +143,22 @@ def _body(prim: Usd.Prim, frame: Gf.Matrix4d, shapes: list[Shape]) -> Body:
     mass = mass_of(prim, shapes)
     velocity = frame.TransformDir(Gf.Vec3d(api.GetVelocityAttr().Get()))
     spin = frame.TransformDir(Gf.Vec3d(api.GetAngularVelocityAttr().Get())) * (math.pi / 180.0)
+    path = path_of(prim)
+    place, turn = to_vec3(frame.ExtractTranslation()), to_quat(frame.ExtractRotationQuat())
+    if path is not None:
+        place, turn = (tuple(part.tolist()) for part in curve_of(path).pose(0.0))
     return Body(
         prim=str(prim.GetPath()),
         mass=mass.mass,
         volume=mass.volume,
         com=to_vec3(mass.com),
         inertia=tuple(mass.inertia.reshape(-1).tolist()),
-        position=to_vec3(frame.ExtractTranslation()),
-        rotation=to_quat(frame.ExtractRotationQuat()),
+        position=place,
+        rotation=turn,
         velocity=to_vec3(velocity),
         angular_velocity=to_vec3(spin),
         kinematic=bool(api.GetKinematicEnabledAttr().Get()),
+        path=path,
         shapes=shapes,
         line=_line(prim),
     )

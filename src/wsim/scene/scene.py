@@ -159,6 +159,7 @@ class Scene(Fluids, Joints, Motions, Views, Catalogued):
         side = target.with_name(f".{target.stem}.part{target.suffix}")
         if any(joint_problems(self._stage)):
             mark_articulations(self._stage)  # joints that the program made through USD alone
+        self._bake_paths(self._duration, self._frame_rate)
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)
         return target
