@@ -20,7 +20,7 @@ def simulate(request, tmp_path):
 
 @BOTH
 def test_a_conveyor_speeds_a_crate_up_and_carries_it(simulate, worlds):
-    """By mu g t, and then at its own speed; the belt itself stays, and is turned, so that its own X is the world's Y."""
+    """By mu g t, and then at its own speed; the belt stays, and is turned: its own X is the world's Y."""
 
     def build(scene):
         belt = scene.box("belt", size=(6, 1, 0.2), position=(0, 0, 0.1), rotation_deg=(0, 0, 90), static=True)

@@ -129,5 +129,3 @@ def _right_jacobian(vector: Floats) -> Floats:
         return np.eye(3) - 0.5 * cross + cross @ cross / 6.0
     first, second = (1.0 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
     return np.eye(3) - first * cross + second * cross @ cross
-
-

@@ -123,9 +123,7 @@ def lead(
     here = place_at(path[k], now, start, repeats, times, place, base, turn)
     there = place_at(path[k], now + dt, start, repeats, times, place, base, turn)
     q0, q1 = wp.transform_get_rotation(here), wp.transform_get_rotation(there)
-    com = wp.vec3d(
-        wp.float64(body_com[index][0]), wp.float64(body_com[index][1]), wp.float64(body_com[index][2])
-    )
+    com = wp.vec3d(wp.float64(body_com[index][0]), wp.float64(body_com[index][1]), wp.float64(body_com[index][2]))
     way = (wp.transform_point(there, com) - wp.transform_point(here, com)) / dt
     between = q1 * wp.quat_inverse(q0)
     if between[3] < wp.float64(0.0):

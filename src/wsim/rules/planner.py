@@ -73,7 +73,9 @@ def _scene(cast: Cast) -> Part:
     for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw):
         made = build(cast, taken)
         if made.objects and cast.wet:
-            raise UserError("the builtin planner builds ramps, belts, hinges and what is poured without a tank of water")
+            raise UserError(
+                "the builtin planner builds ramps, belts, hinges and what is poured without a tank of water"
+            )
         scene.add(made)
     if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
         fixed = Part(objects=scene.objects[1:] if not cast.wet else [], names=scene.names)

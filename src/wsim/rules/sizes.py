@@ -142,8 +142,13 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
         cast.assume(thing.words, f"a {noun.primitive} stands for it", "the builtin planner builds with plain shapes")
     made = PlanObject(
         name="thing",
-        role={"furniture": "background", "vessel": "container", "ramp": "terrain", "belt": "background",
-              "turntable": "background"}.get(noun.family, "rigid_body"),
+        role={
+            "furniture": "background",
+            "vessel": "container",
+            "ramp": "terrain",
+            "belt": "background",
+            "turntable": "background",
+        }.get(noun.family, "rigid_body"),
         construction=proxy if noun.asset is None else External(candidate=noun.asset, stand_in=proxy),
         material=None if noun.family == "vessel" else material,
         state="static" if static else "dynamic",

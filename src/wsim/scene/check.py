@@ -18,6 +18,7 @@ from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
 from wsim.scene.check_colliders import check_solid
 from wsim.scene.check_indices import check_indices
 from wsim.scene.check_joints import joint_problems
+from wsim.scene.check_motion import motion_problems
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.limits import (
@@ -106,6 +107,7 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
         for prim in prims:
             yield from check_solid(prim)
         yield from joint_problems(stage)
+        yield from motion_problems(stage)
 
 
 def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:

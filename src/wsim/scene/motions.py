@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -14,6 +15,7 @@ from wsim.scene.limits import MAX_DURATION, MAX_KEYS, MAX_PATH_SPEED, MAX_PATH_S
 from wsim.scene.usd_motion import curve_of, path_of
 from wsim.scene.validate import Call, Vec3, shown
 
+_MOST_SAMPLES = 5000  # of a path, for other tools
 _LARGEST_TURN = 170.0  # [deg], from key to key: of more than half a turn the way round could not be told
 
 
@@ -59,7 +61,7 @@ class Motions(Author):
             body: Made with kinematic=True and no velocity; a handle or a name.
             times: Of the keys, rising [s]; two or more.
             positions: (x, y, z) at each, in the world [m]; by default where it stands.
-            rotations_deg: Roll, pitch, yaw at each [deg], by less than half a turn from key to key; by default as it is.
+            rotations_deg: Roll, pitch, yaw at each [deg], less than half a turn from key to key; by default as it is.
             repeat: Start anew after the last key, which must then equal the first; else it holds there.
 
         Raises:
@@ -117,11 +119,10 @@ def _bake(prim: Usd.Prim, curve: Curve, frames: int, rate: float) -> None:
     move = ops.get(UsdGeom.XformOp.TypeTranslate) or xform.AddTranslateOp()
     turn = ops.get(UsdGeom.XformOp.TypeOrient) or xform.AddOrientOp(UsdGeom.XformOp.PrecisionDouble)
     xform.SetXformOpOrder([move, turn])
-    start, q = curve.pose(0.0)
-    for time in (Usd.TimeCode.Default(), *(Usd.TimeCode(frame) for frame in range(frames + 1))):
-        if not time.IsDefault():
-            start, q = curve.pose(time.GetValue() / rate)
-        move.Set(Gf.Vec3d(*start), time)
+    codes = range(0, frames + 1, max(1, math.ceil(frames / _MOST_SAMPLES)))
+    for time in (Usd.TimeCode.Default(), *(Usd.TimeCode(code) for code in codes)):
+        place, q = curve.pose(0.0 if time.IsDefault() else time.GetValue() / rate)
+        move.Set(Gf.Vec3d(*place), time)
         turn.Set(Gf.Quatd(q[3], Gf.Vec3d(*q[:3])), time)
 
 

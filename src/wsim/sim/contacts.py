@@ -79,7 +79,7 @@ def contact_law(model: Any, world: World) -> tuple[Array, Array]:
 
 
 def surface_velocities(model: Any, world: World) -> Array:
-    """How each shape of the model's first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
+    """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
     known = _shapes(world)
     count = model.shape_count // max(1, model.world_count)
     labels = [str(label) for label in model.shape_label[:count]]
@@ -87,8 +87,8 @@ def surface_velocities(model: Any, world: World) -> Array:
 
 
 def _shapes(world: World) -> dict[str, Shape]:
-    solids = [*world.bodies, *world.statics]
-    return {shape.prim: shape for solid in solids for shape in solid.shapes}
+    bodies = [shape for body in world.bodies for shape in body.shapes]
+    return {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:

@@ -13,8 +13,8 @@ from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
 from wsim.sim.contacts import contact_law, surface_velocities
 from wsim.sim.devices import steps_in_c
-
-from wsim.sim.kinematicger import Ledger
+from wsim.sim.kinematic import Kinematic
+from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.solver_rigid import SolverRigid
 

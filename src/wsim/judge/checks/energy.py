@@ -63,7 +63,9 @@ class CheckEnergy(Check):
         pushed = bool(world.fluids) or bool(recording.metadata.get("controlled"))
         driven = any(joint.drive for joint in world.joints)
         held = {end for joint in world.joints for end in (joint.parent, joint.child)}
-        led = any(body.kinematic and body.prim in held for body in world.bodies)  # by joints, whose forces are not known
+        led = any(
+            body.kinematic and body.prim in held for body in world.bodies
+        )  # by joints, whose forces are not known
         return (
             len(world.bodies) == 0
             or led

@@ -26,7 +26,11 @@ def carriers(evidence: Evidence) -> list[Placed]:
     """The colliding shapes that move, and are moved by nothing that they touch."""
     motion = evidence.motion
     goes = motion.kinematic & (motion.speed.any(axis=0) | motion.w.any(axis=(0, 2)))
-    return [shape for shape in evidence.placed if any(shape.shape.surface_velocity) or (shape.body >= 0 and goes[shape.body])]
+    return [
+        shape
+        for shape in evidence.placed
+        if any(shape.shape.surface_velocity) or (shape.body >= 0 and goes[shape.body])
+    ]
 
 
 def surface_speed(evidence: Evidence) -> float:

@@ -124,8 +124,14 @@ def _legs(slab: PlanObject, taken: set[str]) -> list[PlanObject]:
         pose = Pose(position=(tidy(sign * (length / 2 - 2 * LEG)), 0.0, tidy(tall_ / 2)))
         stands.append(
             PlanObject.proxy(
-                name=name, role="background", primitive="box", size=(LEG, round(0.8 * width, 3), round(tall_, 4)),
-                material=material_named("steel"), state="static", pose=pose, words=slab.words,
+                name=name,
+                role="background",
+                primitive="box",
+                size=(LEG, round(0.8 * width, 3), round(tall_, 4)),
+                material=material_named("steel"),
+                state="static",
+                pose=pose,
+                words=slab.words,
             )  # fmt: skip
         )
     return stands
@@ -153,9 +159,7 @@ def _belt_objectives(thing: Thing, item: PlanObject, slab: PlanObject, way: floa
     if way:
         least = round(SHARE * way, 3)
         sentence = f"{name} is carried {least:g} m or more."
-        part.objectives.append(
-            Objective(kind="moves", object=name, value=least, direction="front", sentence=sentence)
-        )
+        part.objectives.append(Objective(kind="moves", object=name, value=least, direction="front", sentence=sentence))
     if "drop" in thing.does:
         sentence = f"{name} falls onto the ground."
         part.objectives.append(Objective(kind="collides_with", object=name, ref="ground", sentence=sentence))
@@ -197,7 +201,7 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
     widest = max((max(item.size[:2]) if item.primitive == "box" else 2 * item.size[0] for _, item in loads), default=0)
     if any(item.primitive == "sphere" for _, item in loads):
         raise UserError(f"{table.words!r}: the builtin planner carries what does not roll on it; give no balls")
-    if loads and 2 * math.pi * ring < len(loads) * 1.5 * widest or ring + widest > 1.2 * radius:
+    if (loads and 2 * math.pi * ring < len(loads) * 1.5 * widest) or ring + widest > 1.2 * radius:
         raise UserError(f"{table.words!r}: {radius:g} m is too small for its load; give smaller things")
     disc = disc.model_copy(
         update={
@@ -220,9 +224,7 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
         _spun(thing, item, disc, ring, angle, spin, part)
 
 
-def _spun(
-    thing: Thing, item: PlanObject, disc: PlanObject, ring: float, angle: float, spin: float, part: Part
-) -> None:
+def _spun(thing: Thing, item: PlanObject, disc: PlanObject, ring: float, angle: float, spin: float, part: Part) -> None:
     """Set a load on a turntable, going round with it."""
     x, y, rate = ring * math.cos(angle), ring * math.sin(angle), math.radians(spin)
     pose = Pose(
@@ -235,7 +237,5 @@ def _spun(
     way = round(SHARE * 2 * ring, 3)
     part.objectives += [
         Objective(kind="moves", object=item.name, value=way, sentence=f"{item.name} is carried round to the far side."),
-        Objective(
-            kind="stays_on", object=item.name, ref=disc.name, sentence=f"{item.name} stays on {disc.name}."
-        ),
+        Objective(kind="stays_on", object=item.name, ref=disc.name, sentence=f"{item.name} stays on {disc.name}."),
     ]
