@@ -18,6 +18,7 @@ from wsim.judge.checks import (
     physics,
     plan,
     plan_joints,
+    plan_motion,
     rest,
     run,
     settled,
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from wsim.judge.checks.check import Check
 
 RUN = (run,)
-PHYSICS = (physics, settled, motion, energy, contact, rest, joint, mass, plan, plan_joints, fluid, camera)
+PHYSICS = (physics, settled, motion, energy, contact, rest, joint, mass, plan, plan_joints, plan_motion, fluid, camera)
 
 
 def run_checks() -> list[Check]:

@@ -13,6 +13,8 @@ CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
 MATERIAL = "WsimMaterialAPI"
 CONTACT = "WsimContactAPI"
+PATH = "WsimPathAPI"
+SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 
 
 def register() -> None:
