@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -13,10 +14,12 @@ from newton import JointType, ShapeFlags
 from wsim.kernels.kinematic import carry
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
+from wsim.sim.constraints import constraint_rows
 from wsim.sim.contacts import contact_law
 from wsim.sim.devices import steps_in_c
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
+from wsim.solvers.breaking import Breakable
 from wsim.solvers.solver_rigid import SolverRigid
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
@@ -41,11 +44,6 @@ def contact_capacity(model: Any) -> int:
     return max(SMALLEST_CONTACTS, CONTACTS_A_PAIR * min(pairs, 12 * moving))
 
 
-def _is_mechanism(model: Any) -> bool:
-    """Whether any joint is more than the free joint of a loose body."""
-    return model.joint_count > 0 and bool((model.joint_type.numpy() != int(JointType.FREE)).any())
-
-
 def _may_touch(model: Any) -> bool:
     """Whether any contact or stop can come up."""
     limits = (model.joint_limit_lower, model.joint_limit_upper)
@@ -67,23 +65,33 @@ class RigidBodies:
         world: What the stage states of its surfaces and drives.
         dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
+        breakable: The joints that may break.
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
     """
 
-    def __init__(self, model: Any, world: World, dt: float, controlled: bool = False) -> None:
+    def __init__(
+        self,
+        model: Any,
+        world: World,
+        dt: float,
+        controlled: bool = False,
+        breakable: Sequence[Breakable] = (),
+    ) -> None:
         self.model = model
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        smooth = _is_mechanism(model) and model.particle_count == 0 and not is_overdamped(world, dt)
-        smooth = smooth and (self.on_c or not _may_touch(model))
+        smooth = bool(world.joints) and model.particle_count == 0 and not is_overdamped(world, dt)
+        jumps = breakable or any(joint.friction for joint in world.joints)
+        smooth = smooth and (self.on_c or not (_may_touch(model) or jumps))
         law = contact_law(model, world)
-        sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)
+        rows = ROWS_A_CONTACT * capacity + constraint_rows(world) + 64
+        sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, breakable, **sizes)
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
@@ -135,6 +143,7 @@ class RigidBodies:
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
         self.solver.reset(state, flags=0)
+        self.solver.mend()
         if self.ledger:
             self.ledger.clear()
         if not self.on_c:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -10,6 +11,7 @@ import warp as wp
 from mujoco_warp import OverflowType
 
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
+from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 
 Array = np.ndarray
@@ -35,6 +37,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
+        breakable: The joints that may break.
         config: How the law is applied.
         options: For `newton.solvers.SolverMuJoCo`.
     """
@@ -46,6 +49,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         law: Array,
         on_c: bool,
         smooth: bool,
+        breakable: Sequence[Breakable] = (),
         config: ContactConfig | None = None,
         **options: Any,
     ) -> None:
@@ -68,9 +72,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
         self._harden_loops()
+        self.breaking = self._breaking(breakable) if breakable else None
         if on_c:
             mujoco = self.import_mujoco()[0]
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
+            config = self.contact_config
+            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, config, self.breaking)
         elif not smooth:
             self._prepare_warp(geom_class, law)
 
@@ -84,6 +90,21 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             impedances = self.mjw_model.eq_solimp
             values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
             impedances.assign(values.astype(np.float32))
+
+    def _breaking(self, breakable: Sequence[Breakable]) -> Any:
+        """What breaks joints, under MuJoCo's numbers of their constraints."""
+        rows = self.mjc_eq_to_newton_eq.numpy()[0].tolist()
+        constraints = [[rows.index(row) for row in joint.rows] for joint in breakable]
+        strength = np.array([[joint.force, joint.torque] for joint in breakable])
+        if self.use_mujoco_cpu:
+            return BreakingC(self.import_mujoco()[0], self.mj_model, constraints, strength)
+        with wp.ScopedDevice(self.model.device):
+            return BreakingWarp(self.mj_model, constraints, strength, self.mjw_data.nworld)
+
+    def mend(self) -> None:
+        """Make all joints whole that broke."""
+        if self.breaking is not None:
+            self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
     def _prepare_warp(self, geom_class: Array, law: Array) -> None:
         device, data = self.model.device, self.mjw_data
@@ -131,6 +152,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         for k in range(self.contact_config.solutions):
             if k:
                 self._aim_again(model, data)
+            warp.solve(model, data)
+        if self.breaking is not None:
+            self.breaking.give_way(model, data)
             warp.solve(model, data)
         warp.implicit(model, data)
 

@@ -11,6 +11,7 @@ FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
+GEAR = "WsimGearAPI"
 
 
 def register() -> None:
