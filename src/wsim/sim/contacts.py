@@ -43,14 +43,17 @@ def spare_kinematic(builder: Any) -> None:
 
 
 def spare_tied(builder: Any, world: World) -> None:
-    """Let no body touch what a joint ties it to, be it static, or by a joint that Newton does not know."""
-    for joint in world.joints:
-        other_end = joint.parent if joint.closing and joint.parent is not None else joint.fixture
-        if other_end is not None:
-            tied, held = (_shapes_of(builder, prim) for prim in (other_end, joint.child))
-            for k in held:
-                for other in tied:
-                    builder.add_shape_collision_filter_pair(k, other)
+    """Let no body touch what a joint ties it to, be it static, or what a gear meshes it with."""
+    joints = {joint.prim: joint for joint in world.joints}
+    pairs = [(joint.parent or joint.fixture, joint.child) for joint in world.joints]
+    pairs += [(joints[gear.first].child, joints[gear.second].child) for gear in world.gears]
+    for first, second in pairs:
+        if first is None or first == second:
+            continue
+        tied, held = (_shapes_of(builder, prim) for prim in (first, second))
+        for k in held:
+            for other in tied:
+                builder.add_shape_collision_filter_pair(k, other)
 
 
 def _shapes_of(builder: Any, prim: str) -> list[int]:

@@ -91,7 +91,7 @@ class RigidBodies:
         law = contact_law(model, world)
         rows = ROWS_A_CONTACT * capacity + constraint_rows(world) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, breakable, **sizes)
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, dt, breakable, **sizes)
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}

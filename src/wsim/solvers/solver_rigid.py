@@ -37,6 +37,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
+        time_step: Of the steps to come [s].
         breakable: The joints that may break.
         config: How the law is applied.
         options: For `newton.solvers.SolverMuJoCo`.
@@ -49,6 +50,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         law: Array,
         on_c: bool,
         smooth: bool,
+        time_step: float,
         breakable: Sequence[Breakable] = (),
         config: ContactConfig | None = None,
         **options: Any,
@@ -71,7 +73,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
-        self._harden_loops()
+        self._harden_constraints(time_step)
         self.breaking = self._breaking(breakable) if breakable else None
         if on_c:
             mujoco = self.import_mujoco()[0]
@@ -80,16 +82,25 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         elif not smooth:
             self._prepare_warp(geom_class, law)
 
-    def _harden_loops(self) -> None:
-        """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
+    def _harden_constraints(self, h: float) -> None:
+        """Loops, gears and what may break are as hard as contacts, the welds that drive kinematic bodies nearly so.
+
+        A row asks, as a contact does, that the speed at the end of a step of `h` [s] lets its gap fade in the settling
+        time: -gap / (settle_time h) - speed / h, in MuJoCo's direct form of a reference acceleration.
+        """
+        config, model = self.contact_config, self.mj_model
         welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else ()
-        for k in range(self.mj_model.neq):
-            config = self.contact_config
-            self.mj_model.eq_solimp[k, :2] = config.kinematic_impedance if k in welds else config.impedance
-        if not self.use_mujoco_cpu and self.mj_model.neq:
-            impedances = self.mjw_model.eq_solimp
-            values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
-            impedances.assign(values.astype(np.float32))
+        for k in range(model.neq):
+            if k in welds:
+                model.eq_solimp[k, :2] = config.kinematic_impedance
+            else:
+                model.eq_solimp[k, :2] = config.impedance
+                model.eq_solref[k] = -1.0 / (config.settle_time * h), -1.0 / h
+        if not self.use_mujoco_cpu and model.neq:
+            for name in ("eq_solimp", "eq_solref"):
+                array = getattr(self.mjw_model, name)
+                values = np.broadcast_to(getattr(model, name), array.numpy().shape)
+                array.assign(values.astype(np.float32))
 
     def _breaking(self, breakable: Sequence[Breakable]) -> Any:
         """What breaks joints, under MuJoCo's numbers of their constraints."""
