@@ -162,9 +162,7 @@ class Joints(Author):
         else:
             fixture = None
         if all(prim is None or is_kinematic(prim) for prim in (parent_prim, child_prim)):
-            call.fail(
-                f"{shown(child_prim.GetName())} is kinematic and goes its own way; a joint needs a body to move"
-            )
+            call.fail(f"{shown(child_prim.GetName())} is kinematic and goes its own way; a joint needs a body to move")
         position, turn = world_pose(child_prim)
         point = position if anchor is None else Gf.Vec3d(*call.position("anchor", anchor))
         token, frame = _axis(call, axis)

@@ -114,9 +114,9 @@ def _between(links: list[Link], closing: Link, ground: set[Sdf.Path]) -> list[Sd
                 waiting.append(there)
     found: list[Sdf.Path] = []
     here = end
-    while (link := came.get(here)) is not None:
-        found.append(link.joint)
-        first, second = node(link.parent), node(link.child)
+    while (back := came.get(here)) is not None:
+        found.append(back.joint)
+        first, second = node(back.parent), node(back.child)
         here = first if here == second else second
     return found[::-1]
 

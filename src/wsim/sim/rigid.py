@@ -79,7 +79,7 @@ class RigidBodies:
         controlled: bool = False,
         breakable: Sequence[Breakable] = (),
     ) -> None:
-        self.model = model
+        self.model, self.breakable = model, breakable
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
@@ -148,6 +148,21 @@ class RigidBodies:
             self.ledger.clear()
         if not self.on_c:
             self.overflow_seen.zero_()
+
+    def breakage(self) -> dict[str, np.ndarray]:
+        """Of each joint that may break: whether it is broken, and the most that it bore since the last call, (W,).
+
+        Names are `broken`, `force` [N] and `torque` [N m] before the joint's path below /World.
+        """
+        if self.solver.breaking is None:
+            return {}
+        broken, load = self.solver.breaking.take()
+        found: dict[str, np.ndarray] = {}
+        for k, joint in enumerate(self.breakable):
+            name = joint.prim.removeprefix("/World")
+            found |= {f"broken{name}": broken[:, k].astype(np.float64)}
+            found |= {f"force{name}": load[:, k, 0], f"torque{name}": load[:, k, 1]}
+        return found
 
     def problems(self) -> list[str]:
         """What the solver warned of since the start: each fails the run."""
