@@ -8,6 +8,7 @@ import warp as wp
 
 ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
 FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
+RUBBING = wp.constant(1)  # mjCNSTR_FRICTION_DOF
 LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
 CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
 ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
@@ -263,10 +264,12 @@ def stop(
     # Data out:
     aref: wp.array2d(dtype=float),
 ):
-    """Joints end at their stops, without a bounce."""
+    """Joints end at their stops, without a bounce; dry friction would end their motion."""
     world, row = wp.tid()
-    if row >= rows[world] or kind[world, row] != LIMIT:
+    if row >= rows[world] or (kind[world, row] != LIMIT and kind[world, row] != RUBBING):
         return
     h = timestep[world % timestep.shape[0]]
-    goal = settling(position[world, row], h, settle_time, settle_speed)
+    goal = float(0.0)
+    if kind[world, row] == LIMIT:
+        goal = settling(position[world, row], h, settle_time, settle_speed)
     aref[world, row] = (goal - velocity[world, row]) / h

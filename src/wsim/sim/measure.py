@@ -32,6 +32,8 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         force = force[built.bodies]
         scalars["contact/penetration"] = deepest
         scalars.update(_body_energy(built, body_q, body_qd))
+        if rigid:
+            scalars.update({name: float(value[0]) for name, value in rigid.breakage().items()})
         if rigid and rigid.ledger:
             pushed, worked = _from_outside(built, rigid.ledger, scalars)
     scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
