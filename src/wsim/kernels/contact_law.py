@@ -9,6 +9,7 @@ import warp as wp
 ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
 FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
 LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
+TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 
 
@@ -217,9 +218,9 @@ def stop(
     # Data out:
     aref: wp.array2d(dtype=float),
 ):
-    """Joints end at their stops, without a bounce."""
+    """Joints end at their stops, ropes where they are taut, without a bounce."""
     world, row = wp.tid()
-    if row >= rows[world] or kind[world, row] != LIMIT:
+    if row >= rows[world] or (kind[world, row] != LIMIT and kind[world, row] != TAUT):
         return
     h = timestep[world % timestep.shape[0]]
     goal = settling(position[world, row], h, settle_time, settle_speed)

@@ -16,6 +16,7 @@ from wsim.defaults import DURATION, FLUID_DENSITY, FRAME_RATE, GRAVITY
 from wsim.errors import UserError
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
+from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.errors import one_line
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
@@ -67,6 +68,8 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         containers=[_container(prim) for prim in prims if schema.has(prim, schema.CONTAINER)],
         fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
         joints=list(_joints(prims)),
+        springs=springs(prims),
+        ropes=ropes(prims),
         cameras=[_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
         lights=list(_lights(prims)),
         parameters=[_parameter(prim) for prim in prims if schema.has(prim, schema.PARAMETER)],

@@ -66,7 +66,10 @@ def contact_law(model: Any, world: World) -> tuple[Array, Array]:
     count = model.shape_count // max(1, model.world_count)
     surfaces: dict[tuple[Any, ...], Shape] = {}
     classes = np.zeros(count, dtype=np.int64)
+    collides = (model.shape_flags.numpy() & int(newton.ShapeFlags.COLLIDE_SHAPES)) != 0
     for k, label in enumerate(model.shape_label[:count]):
+        if not collides[k]:
+            continue
         shape = _of_label(str(label), known)
         key = (shape.friction, shape.restitution)
         surfaces.setdefault(key, shape)

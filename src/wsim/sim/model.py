@@ -13,6 +13,7 @@ from wsim.errors import UserError
 from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations
 from wsim.sim.contacts import harden_contacts, spare_kinematic, spare_tied
+from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.contact_law import ContactConfig
@@ -64,6 +65,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     harden_contacts(single, ContactConfig())
     spare_kinematic(single)
     spare_tied(single, world)
+    add_cords(single, world, ContactConfig())
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)

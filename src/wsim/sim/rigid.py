@@ -79,8 +79,9 @@ class RigidBodies:
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        smooth = _is_mechanism(model) and model.particle_count == 0 and not is_overdamped(world, dt)
-        smooth = smooth and (self.on_c or not _may_touch(model))
+        swings = _is_mechanism(model) or bool(world.springs)
+        smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
+        smooth = smooth and (self.on_c or not (_may_touch(model) or world.ropes))
         law = contact_law(model, world)
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
         self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)

@@ -126,6 +126,8 @@ class ContactLawC:
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law = geom_class, law
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        rows = mujoco.mjtConstraint
+        self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -161,7 +163,7 @@ class ContactLawC:
     def _solve(self, data: Any) -> bool:
         """Constraint forces; whether a contact or a stop may be among them."""
         kinds = data.efc_type
-        stops = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
+        stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)

@@ -11,6 +11,8 @@ FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
+SPRING = "WsimSpringAPI"
+ROPE = "WsimRopeAPI"
 
 
 def register() -> None:
