@@ -74,25 +74,22 @@ def _add_tendon(builder: Any, cord: Spring | Rope, wraps: list[tuple[int, int, i
                 "mujoco:tendon_wrap_sidesite": side,
             }
         )
+    is_spring = isinstance(cord, Spring)
+    rest, longest = (cord.rest_length, 0.0) if isinstance(cord, Spring) else (-1.0, cord.length)
     values: dict[str, Any] = {
         "world": builder.current_world,
         "label": cord.prim,
         "type": SPATIAL,
         "wrap_adr": first,
         "wrap_num": len(wraps),
+        "joint_adr": 0,
+        "joint_num": 0,
+        "stiffness": cord.stiffness if isinstance(cord, Spring) else 0.0,
+        "damping": cord.damping if isinstance(cord, Spring) else 0.0,
+        "springlength": wp.vec2(rest, rest),
+        "limited": int(not is_spring),
+        "range": wp.vec2(SHORTEST, longest),
+        "margin": 0.0 if is_spring else config.limit_reach,
+        "solimp_limit": (config.impedance, config.impedance, 0.001, 0.5, 2.0),
     }
-    if isinstance(cord, Spring):
-        values |= {
-            "stiffness": cord.stiffness,
-            "damping": cord.damping,
-            "springlength": wp.vec2(cord.rest_length, cord.rest_length),
-            "limited": 0,
-        }
-    else:
-        values |= {
-            "limited": 1,
-            "range": wp.vec2(SHORTEST, cord.length),
-            "margin": config.limit_reach,
-            "solimp_limit": (config.impedance, config.impedance, 0.001, 0.5, 2.0),
-        }
     builder.add_custom_values(**{f"mujoco:tendon_{name}": value for name, value in values.items()})

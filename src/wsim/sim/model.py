@@ -13,6 +13,7 @@ from wsim.errors import UserError
 from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations
 from wsim.sim.contacts import harden_contacts, spare_kinematic, spare_tied
+from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -66,6 +67,8 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     spare_kinematic(single)
     spare_tied(single, world)
     add_cords(single, world, ContactConfig())
+    if world_count == 1:
+        add_cord_shapes(single, world)
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)

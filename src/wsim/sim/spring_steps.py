@@ -16,8 +16,8 @@ SMALLEST_DRIVE_STEP = 1e-5  # [s]
 def spring_limits(world: World) -> dict[str, float]:
     """How long a step each spring can take: a share of its fastest oscillation, 1 / omega [s].
 
-    With K = sum k u uᵀ, u each spring's row over the bodies divided by the roots of their masses, omega² is at most the
-    largest sum over a body's springs of k |u there| (|u there| + |u at the other end|): Gershgorin's circles, by blocks.
+    With K = sum k u uᵀ, u each spring's row over the bodies divided by the roots of their masses, omega² is at most
+    the largest sum over a body's springs of k |u there| (|u there| + |u at the other end|): Gershgorin's circles.
 
     Raises:
         UserError: If a spring is so stiff that no step of `SMALLEST_DRIVE_STEP` or more can follow it.

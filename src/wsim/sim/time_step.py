@@ -75,7 +75,7 @@ def _drive_limits(world: World) -> dict[str, float]:
 
 
 def is_overdamped(world: World, dt: float) -> bool:
-    """Whether a drive's or a spring's damping takes a speed away in about a step, so that only implicit integration can follow it."""
+    """Whether damping takes a speed away in about a step, so that only implicit integration can follow it."""
     return is_overdamped_spring(world, dt, DAMPED_SHARE) or any(
         joint.drive is not None and joint.drive.damping * dt > DAMPED_SHARE * driven_inertia(world, joint)
         for joint in world.joints

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from wsim.judge.checks import (
     camera,
     contact,
+    cord,
     energy,
     fluid,
     joint,
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from wsim.judge.checks.check import Check
 
 RUN = (run,)
-PHYSICS = (physics, settled, motion, energy, contact, rest, joint, mass, plan, plan_joints, fluid, camera)
+PHYSICS = (physics, settled, motion, energy, contact, rest, joint, cord, mass, plan, plan_joints, fluid, camera)
 
 
 def run_checks() -> list[Check]:
