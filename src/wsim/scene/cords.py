@@ -17,7 +17,8 @@ from wsim.scene.limits import MAX_SIZE
 from wsim.scene.validate import Call, Vec3, shown
 
 Around = Sequence[Handle | str | tuple[Handle | str, str | Sequence[float]]]
-_STEEL, _HEMP = (0.45, 0.47, 0.5), (0.55, 0.4, 0.2)
+HEMP = (0.55, 0.4, 0.2)  # linear RGB
+_STEEL = (0.45, 0.47, 0.5)
 _SIDES = {"over": (0.0, 0.0, 1.0), "under": (0.0, 0.0, -1.0)}
 _Values = dict[str, tuple[Sdf.ValueTypeName, object]]
 
@@ -121,7 +122,7 @@ class Cords(Joints):
         path = self._path(call)
         ends = self._ends(call, a, b, anchor_a, anchor_b)
         drawn = call.size("radius", radius)
-        look = _HEMP if color is None else call.color("color", color)
+        look = HEMP if color is None else call.color("color", color)
         rounds = [self._round_of(call, k, item) for k, item in enumerate(around)]
         paths = [prim.GetPath() for prim, _ in rounds]
         if len(set(paths)) < len(paths):
@@ -157,7 +158,10 @@ class Cords(Joints):
         b: Handle | str | None,
         anchor_a: Sequence[float] | None,
         anchor_b: Sequence[float] | None,
+        *,
+        still: bool = False,
     ) -> tuple[_End, _End]:
+        """What both ends are fixed to and where; `still` lets neither of them be a body that moves."""
         ends = []
         for field, what, anchor in (("a", a, anchor_a), ("b", b, anchor_b)):
             prim = None if what is None else self._body(call, field, what)
@@ -170,7 +174,7 @@ class Cords(Joints):
         one, other = ends
         if one.prim is not None and one.prim == other.prim:
             call.fail(f"a = b = {shown(one.prim.GetName())}: its ends need two bodies, or one and the world")
-        if not any(end.prim is not None and end.prim.HasAPI(UsdPhysics.RigidBodyAPI) for end in ends):
+        if not still and not any(end.prim is not None and end.prim.HasAPI(UsdPhysics.RigidBodyAPI) for end in ends):
             call.fail("neither a nor b is a body that moves; it would do nothing")
         if (one.point - other.point).GetLength() < TAUT:
             call.fail(f"both its ends are at {_shown(one.point)} m: it has no length; give anchor_a or anchor_b")

@@ -104,15 +104,20 @@ def _coil(start: Array, end: Array, radius: float, turns: int) -> Array:
 
 
 def _slackened(points: Array, length: float) -> Array:
-    """A rope's way drawn out to its length: what is slack hangs in its last straight part, in pieces of one length."""
+    """A rope's way drawn out to its length, in a fixed number of pieces: what is slack hangs in its last part."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     slack = length - float(steps.sum())
     if slack > 1e-3 * length:
-        points = np.concatenate([points[:-2], hanging(points[-2], points[-1], float(steps[-1]) + slack, ROPE_PIECES)])
+        left = max(ROPE_PIECES + 2 - len(points), 8)
+        points = np.concatenate([points[:-2], hanging(points[-2], points[-1], float(steps[-1]) + slack, left)])
         steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     way = np.concatenate([[0.0], np.cumsum(steps)])
-    even = np.linspace(0.0, way[-1], ROPE_PIECES + 1)
-    return np.stack([np.interp(even, way, points[:, axis]) for axis in range(3)], axis=1)
+    if len(way) > ROPE_PIECES + 1:
+        kept = np.linspace(0.0, way[-1], ROPE_PIECES + 1)
+    else:  # its corners stay where they are
+        kept = np.concatenate([way, np.linspace(0.0, way[-1], ROPE_PIECES + 3 - len(way))[1:-1]])
+    kept.sort()
+    return np.stack([np.interp(kept, way, points[:, axis]) for axis in range(3)], axis=1)
 
 
 def _capsules(ends: Array, radii: Array) -> tuple[Array, Array]:
