@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from pxr import Gf, Usd, UsdPhysics
+from pxr import Gf, UsdPhysics
 
 from wsim.geometry.catenary import hanging
-from wsim.scene.authoring import Handle
+from wsim.scene.authoring import WORLD, Handle
 from wsim.scene.cords import HEMP, Cords
 from wsim.scene.fluids import Fluids
 from wsim.scene.limits import MAX_MASS
@@ -135,5 +135,4 @@ class Cables(Fluids, Cords):
         self.joint_spherical(f"{name}_joint_{len(links)}", parent, child, anchor=points[-1].tolist())
 
     def _moves(self, end: str | None) -> bool:
-        prim: Usd.Prim | None = self._stage.GetPrimAtPath(f"/World/{end}") if end else None
-        return bool(prim) and prim.HasAPI(UsdPhysics.RigidBodyAPI)
+        return end is not None and bool(self._stage.GetPrimAtPath(f"{WORLD}/{end}").HasAPI(UsdPhysics.RigidBodyAPI))

@@ -184,17 +184,17 @@ class Cords(Joints):
         self, call: Call, k: int, item: Handle | str | tuple[Handle | str, str | Sequence[float]]
     ) -> tuple[Usd.Prim, Vec3]:
         """What a rope runs round, and the direction in which it passes it."""
-        field, pair = f"around[{k}]", isinstance(item, (tuple, list))
-        if pair and len(item) != 2:  # type: ignore[arg-type]
+        field = f"around[{k}]"
+        if isinstance(item, (tuple, list)) and len(item) != 2:
             call.fail(f'{field} = {shown(item)} must be an object, or (object, side) with side "over" or "under"')
-        what, side = item if pair else (item, "over")  # type: ignore[misc]
+        what, side = item if isinstance(item, (tuple, list)) else (item, "over")
         if isinstance(side, str):
             if side not in _SIDES:
                 call.fail(f'{field}: side = {shown(side)} must be "over", "under" or a direction (x, y, z)')
             way: Vec3 = _SIDES[side]
         else:
             way = call.vector(f"{field}: side", side, 1e6, "")
-        prim = self._body(call, field, what)  # type: ignore[arg-type]
+        prim = self._body(call, field, what)
         pulley = read_pulley(prim)
         if pulley is None:
             call.fail(f"{field} = {shown(prim.GetName())} has no cylinder that collides; a rope runs round cylinders")

@@ -215,6 +215,11 @@ class World(_Model):
     lights: list[Light] = Field(default_factory=list)
     parameters: list[Parameter] = Field(default_factory=list)
 
+    @property
+    def cords(self) -> list[Spring | Rope]:
+        """The springs, then the ropes."""
+        return [*self.springs, *self.ropes]
+
     def body(self, prim: str) -> Body:
         """The body at a prim path; KeyError naming the known ones."""
         for body in self.bodies:

@@ -23,7 +23,7 @@ MARK = "drawn_"
 def add_cord_shapes(builder: Any, world: World) -> None:
     """Give a builder the capsules that draw a world's springs and ropes; nothing collides with them or weighs them."""
     config = newton.ModelBuilder.ShapeConfig(density=0.0, has_shape_collision=False, has_particle_collision=False)
-    for cord in (*world.springs, *world.ropes):
+    for cord in world.cords:
         for k in range(_pieces(cord)):
             builder.add_shape_capsule(
                 -1, radius=cord.radius, half_height=0.01, cfg=config, label=f"{cord.prim}/{MARK}{k}"
@@ -52,7 +52,7 @@ class CordShapes:
     def __init__(self, model: Any, world: World) -> None:
         self.model = model
         labels = {str(label): k for k, label in enumerate(model.shape_label)}
-        cords = [cord for cord in (*world.springs, *world.ropes) if f"{cord.prim}/{MARK}0" in labels]
+        cords = [cord for cord in world.cords if f"{cord.prim}/{MARK}0" in labels]
         self.cords = {cord.prim: (cord, labels[f"{cord.prim}/{MARK}0"]) for cord in cords}
         self._bodies = {str(label): k for k, label in reversed(list(enumerate(model.body_label)))}
 

@@ -25,7 +25,7 @@ def add_cords(builder: Any, world: World, config: ContactConfig) -> None:
     """
     bodies = {str(label): k for k, label in enumerate(builder.body_label)}
     shapes = {str(label): k for k, label in enumerate(builder.shape_label)}
-    for cord in (*world.springs, *world.ropes):
+    for cord in world.cords:
         wraps = []
         for k, guide in enumerate(cord.path):
             body = -1 if guide.body is None else bodies[guide.body]

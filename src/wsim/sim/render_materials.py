@@ -112,7 +112,7 @@ def shapes_by_label(model: Any, world: World) -> Iterator[tuple[int, Shape, bool
     """Index in the model, the world's description, and whether it is ground, of each shape that the world knows."""
     described = {shape.prim: (shape, is_ground(shape)) for static in world.statics for shape in static.shapes}
     described |= {shape.prim: (shape, False) for body in world.bodies for shape in body.shapes}
-    for cord in (*world.springs, *world.ropes):
+    for cord in world.cords:
         drawn = Shape(prim=cord.prim, kind="capsule", size=(cord.radius, 0.0), color=cord.color, collides=False)
         described[cord.prim] = (drawn, False)
     for index, label in enumerate(model.shape_label):

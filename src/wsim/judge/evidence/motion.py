@@ -133,7 +133,7 @@ class Motion:
     def _tied(self) -> list[list[str]]:
         """The bodies that each spring and rope is fixed to or runs round."""
         world = self._recorded.world
-        return [[guide.body for guide in cord.path if guide.body] for cord in (*world.springs, *world.ropes)]
+        return [[guide.body for guide in cord.path if guide.body] for cord in world.cords]
 
     @cached_property
     def elastic(self) -> Floats:
