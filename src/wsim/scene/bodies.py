@@ -29,6 +29,7 @@ class BodyOptions:
     friction: float | None
     restitution: float | None
     color: Sequence[float] | None
+    rolling_friction: float | None = None
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,14 @@ class Bodies(Materials):
         spin = call.spin(options.angular_velocity_deg)
         mass, density = self._mass_or_density(call, options)
         moving = self._moving(call, options, velocity, spin)
-        material = self._surface(call, options.material, options.friction, options.restitution, options.color)
+        material = self._surface(
+            call,
+            options.material,
+            options.friction,
+            options.restitution,
+            options.color,
+            rolling=options.rolling_friction,
+        )
         if mass is None and density is None:
             density = material.density or BODY_DENSITY
 

@@ -16,6 +16,7 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
 from wsim.scene.check_colliders import check_solid
+from wsim.scene.check_contacts import contact_problems, surface_problems
 from wsim.scene.check_cords import cord_problems
 from wsim.scene.check_indices import check_indices
 from wsim.scene.check_joints import joint_problems
@@ -107,6 +108,7 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
             yield from check_solid(prim)
             yield from cord_problems(prim)
         yield from joint_problems(stage)
+        yield from contact_problems(prims)
 
 
 def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
@@ -119,6 +121,7 @@ def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
         yield from _pose(prim)
         yield from _mass(prim)
         yield from _wsim(prim)
+        yield from surface_problems(prim)
         if prim.IsA(UsdGeom.Gprim):
             yield from _geometry(prim)
         if prim.IsA(UsdGeom.PointBased):

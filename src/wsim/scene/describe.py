@@ -18,6 +18,7 @@ from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
 from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.errors import one_line
+from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
 from wsim.scene.world import (
@@ -70,6 +71,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         joints=list(_joints(prims)),
         springs=springs(prims),
         ropes=ropes(prims),
+        contacts=read_contacts(prims),
         cameras=[_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
         lights=list(_lights(prims)),
         parameters=[_parameter(prim) for prim in prims if schema.has(prim, schema.PARAMETER)],

@@ -15,6 +15,7 @@ from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
 from wsim.scene.cables import Cables
 from wsim.scene.catalogued import Catalogued
 from wsim.scene.check_joints import joint_problems
+from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
 from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE
 from wsim.scene.validate import Call, shown, suggestion
@@ -23,7 +24,7 @@ from wsim.scene.views import Views
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Cables, Views, Catalogued):
+class Scene(Cables, Contacts, Views, Catalogued):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

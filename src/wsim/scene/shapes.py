@@ -26,9 +26,12 @@ class Shapes(Bodies):
         velocity, angular_velocity_deg: At time 0, in the world's axes [m/s], [deg/s].
         static: Never moves.
         kinematic: Moves and turns by its velocity whatever it meets, and carries and pushes what it meets.
-        material: What `scene.material` returned, or its name; friction, restitution and color override it.
+        material: What `scene.material` returned, or its name; friction, restitution, rolling_friction and color
+            override it.
         friction, restitution: Of two surfaces the smaller counts; one that states none leaves it to the other, and
             it is 0.5 and 0 if neither does.
+        rolling_friction: The material's `rolling`: what slows a ball that rolls. Of two surfaces the larger counts,
+            and it is 0 if neither states one.
     A call raises `SceneError`, naming the argument and its value, for what cannot be built.
     """
 
@@ -41,6 +44,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a level plane without end, at z = `height` [m]."""
         call = Call("ground", name)
@@ -48,7 +52,7 @@ class Shapes(Bodies):
         z = call.position("position", (0.0, 0.0, call.number("height", height, "m")))[2]
         if material is None and color is None:
             color = (0.35, 0.36, 0.38)
-        surface = self._surface(call, material, friction, restitution, color)
+        surface = self._surface(call, material, friction, restitution, color, rolling=rolling_friction)
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
         set_pose(prim, (0.0, 0.0, z))
@@ -77,6 +81,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a box with full edge lengths `size` = (x, y, z) [m]. For the other options see `Shapes`."""
         call = Call("box", name)
@@ -101,6 +106,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry)
 
@@ -121,6 +127,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a ball of `radius` [m]. For the other options see `Shapes`."""
         call = Call("sphere", name)
@@ -144,6 +151,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry)
 
@@ -166,6 +174,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a cylinder of `radius` and `height` [m] along its own `axis` X, Y or Z. For the rest see `Shapes`."""
         call = Call("cylinder", name)
@@ -183,6 +192,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry)
 
@@ -205,6 +215,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a capsule: a cylinder of `radius` and `height` [m], caps not counted. For the rest see `Shapes`."""
         call = Call("capsule", name)
@@ -222,6 +233,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry)
 
@@ -245,6 +257,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a solid from a triangle mesh. For the other options see `Shapes`.
 
@@ -269,6 +282,7 @@ class Shapes(Bodies):
             friction: Overrides the material's.
             restitution: Overrides the material's.
             color: Overrides the material's.
+            rolling_friction: Overrides the material's rolling.
 
         Raises:
             SceneError: If the file cannot be read, or as all shapes do.
@@ -293,6 +307,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry, source.mass_properties)
 

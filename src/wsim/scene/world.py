@@ -39,6 +39,7 @@ class Shape(_Model):
     collides: bool = True
     friction: float | None = None  # None leaves it to what it touches (`wsim.scene.contact`)
     restitution: float | None = None
+    rolling: float | None = None  # torque that resists rolling, of radius times push
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
 
@@ -121,6 +122,18 @@ class Joint(_Model):
     low: float | None = None  # [rad] or [m]; None: free
     high: float | None = None
     drive: Motor | None = None
+    line: str | None = None
+
+
+class Contact(_Model):
+    """The law of one pair of objects, before what their surfaces combine to; None leaves a coefficient to them."""
+
+    prim: str
+    first: str  # prim of a body or a static object
+    second: str
+    friction: float | None = None
+    restitution: float | None = None
+    rolling: float | None = None
     line: str | None = None
 
 
@@ -209,6 +222,7 @@ class World(_Model):
     containers: list[Container] = Field(default_factory=list)
     fluids: list[Fluid] = Field(default_factory=list)
     joints: list[Joint] = Field(default_factory=list)
+    contacts: list[Contact] = Field(default_factory=list)
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)

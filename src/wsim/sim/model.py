@@ -12,7 +12,7 @@ import numpy as np
 from wsim.errors import UserError
 from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations
-from wsim.sim.contacts import harden_contacts, spare_kinematic, spare_tied
+from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
@@ -64,6 +64,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     fluids = _add_fluids(single, world, config) if config else {}
     step = choose_time_step(world, config.max_time_step if config else None, time_step or world.time_step or None)
     harden_contacts(single, ContactConfig())
+    let_roll(single, world)
     spare_kinematic(single)
     spare_tied(single, world)
     add_cords(single, world, ContactConfig())

@@ -20,7 +20,7 @@ from wsim.sim.time_step import is_overdamped
 from wsim.solvers.solver_rigid import SolverRigid
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
-ROWS_A_CONTACT = 3  # push and friction
+ROWS_A_CONTACT = 3  # push and friction; where rolling is resisted, 6
 SMALLEST_CONTACTS = 64
 # A line search that single precision cannot make any better is no overflow.
 STAGNATED = int(OverflowType.LS_ITERATIONS)
@@ -81,10 +81,13 @@ class RigidBodies:
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
         swings = _is_mechanism(model) or bool(world.springs)
         smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
-        smooth = smooth and (self.on_c or not (_may_touch(model) or world.ropes))
+        may_touch = _may_touch(model) or bool(world.ropes)
         law = contact_law(model, world)
-        sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)
+        rows = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
+        sizes: dict[str, Any] = (
+            {} if self.on_c else {"nconmax": capacity, "njmax": rows * capacity + 64 + len(world.ropes)}
+        )
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, **sizes)
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}

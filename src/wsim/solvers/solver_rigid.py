@@ -11,6 +11,7 @@ from mujoco_warp import OverflowType
 
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.smooth_steps import SmoothStepsWarp
 
 Array = np.ndarray
 
@@ -32,9 +33,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     Args:
         model: The Newton model.
         classes: Class of each shape of the first world, (shapes,).
-        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
+        curvature: Of each shape's round side [1/m], (shapes,); 0 for a flat one.
         on_c: Whether MuJoCo in C steps the first world alone.
-        smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
+        smooth: Whether steps that touch nothing are of the fourth order.
+        may_touch: Whether any contact or stop can come up.
         config: How the law is applied.
         options: For `newton.solvers.SolverMuJoCo`.
     """
@@ -44,8 +47,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         model: Any,
         classes: Array,
         law: Array,
+        curvature: Array,
         on_c: bool,
         smooth: bool,
+        may_touch: bool,
         config: ContactConfig | None = None,
         **options: Any,
     ) -> None:
@@ -54,7 +59,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             model,
             use_mujoco_cpu=on_c,
             use_mujoco_contacts=True,
-            integrator="rk4" if smooth and not on_c else "implicitfast",
+            integrator="rk4" if smooth and not on_c and not may_touch else "implicitfast",
             cone="elliptic",
             enable_multiccd=True,  # a cylinder stands on four points, not on one that wanders
             impratio=1.0,
@@ -62,7 +67,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             **options,
         )
         shapes = self.mjc_geom_to_newton_shape.numpy()[0]
-        geom_class = np.where(shapes >= 0, classes[np.maximum(shapes, 0) % len(classes)], 0)
+        geom_class, bends = (
+            np.where(shapes >= 0, of[np.maximum(shapes, 0) % len(of)], 0) for of in (classes, curvature)
+        )
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
@@ -70,9 +77,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._harden_loops()
         if on_c:
             mujoco = self.import_mujoco()[0]
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
-        elif not smooth:
-            self._prepare_warp(geom_class, law)
+            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, bends, smooth, self.contact_config)
+        elif may_touch or not smooth:
+            self._prepare_warp(geom_class, law, bends)
+        self._smooth_steps: Any = None
+        if smooth and may_touch and not on_c:
+            self._smooth_steps = SmoothStepsWarp(self._mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data)
 
     def _harden_loops(self) -> None:
         """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
@@ -85,18 +95,23 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
             impedances.assign(values.astype(np.float32))
 
-    def _prepare_warp(self, geom_class: Array, law: Array) -> None:
+    def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
+        # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
+        # the contacts of a box that slides, on an H200 in one step of some 300.
+        self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         margin = self.mjw_model.geom_margin
         weights = self.mjw_model.body_invweight0
         weights.assign(np.broadcast_to(self.mj_model.body_invweight0, weights.numpy().shape).astype(np.float32))
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
             self._geom_class = wp.array(geom_class, dtype=int)
-            self._law = wp.array(law, dtype=wp.vec4)
+            self._law = wp.array(law, dtype=wp.vec3)
+            self._curvature = wp.array(curvature, dtype=float)
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
+            self._blow = wp.zeros(data.naconmax, dtype=float)
             self._slip = wp.zeros(data.naconmax, dtype=float)
 
     def step(
@@ -123,6 +138,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             super()._mujoco_warp_step()
             return
         warp = self._mujoco_warp
+        if self._smooth_steps:
+            self._smooth_steps.before(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         warp.fwd_actuation(model, data)
@@ -133,6 +150,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 self._aim_again(model, data)
             warp.solve(model, data)
         warp.implicit(model, data)
+        if self._smooth_steps:
+            self._smooth_steps.after(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
         config, efc, contact = self.contact_config, data.efc, data.contact
@@ -151,11 +170,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law, self._struck,
+                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law,
+                model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
                 data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._slip, efc.aref],
+            outputs=[contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
@@ -173,6 +193,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 data.nacon, contact.worldid, contact.efc_address, contact.dim, contact.friction, efc.vel,
                 model.opt.timestep, data.qacc, *self._jacobian(model, efc), self._target,
+                self._blow, efc.D, efc.force,
             ],
             outputs=[self._slip, efc.aref],
         )  # fmt: skip

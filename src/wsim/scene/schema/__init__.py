@@ -13,6 +13,8 @@ CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
 SPRING = "WsimSpringAPI"
 ROPE = "WsimRopeAPI"
+MATERIAL = "WsimMaterialAPI"
+CONTACT = "WsimContactAPI"
 
 
 def register() -> None:
