@@ -8,7 +8,7 @@ import pytest
 
 from tests.sim.cord_runs import period, run
 from wsim.geometry.catenary import hanging
-from wsim.geometry.paths import Stop, path_length
+from wsim.geometry.ropes import Stop, path_length
 from wsim.judge import judge
 from wsim.recording import read
 from wsim.scene import Scene

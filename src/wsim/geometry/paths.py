@@ -1,170 +1,131 @@
-"""The way of a taut rope through points and round cylinders, as long as it is: straight lines, arcs and helices."""
+"""Smooth motion through key frames: exact at the keys, with a velocity that never jumps and a place that never overshoots.
+
+Between two keys the place is a cubic of time, with slopes at the keys that keep it monotone in each coordinate (Fritsch
+and Butland 1984, the harmonic mean of the slopes on both sides): what waits between two equal keys stands still. The
+rotation is that of the earlier key times the exponential of such a cubic, whose slopes are chosen so that the angular
+velocity is the same from both sides (the end's by the inverse of the exponential's right Jacobian, Chirikjian 2011).
+Before the first key and after the last it holds, and comes there with no speed, unless it repeats.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-Array = np.ndarray
-ARC_STEP = 0.2  # [rad] between the points that draw an arc
+from wsim.geometry.rotations import conjugate, multiply
 
-
-@dataclass(frozen=True)
-class Stop:
-    """What a rope runs through or round, at T moments.
-
-    `position` (T, 3) [m] is a point, or the centre of a cylinder of `radius` [m] along the unit vectors `axis` (T, 3),
-    which the rope passes on the side that `side` (T, 3) points to. With a `groove` it is a pulley that swivels: the
-    rope stays in the plane of the cylinder's centre and the points before and after.
-    """
-
-    position: Array
-    radius: float = 0.0
-    axis: Array | None = None
-    side: Array | None = None
-    groove: bool = False
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class _Wrap:
-    """Where the way from one point to another meets a cylinder between them, in the plane across its axis."""
+class Curve:
+    """A motion in pieces, one from each key to the next; K keys.
 
-    length: Array  # (T,) [m]
-    first: Array  # (T, 2), where it comes to the cylinder, in radii; the points themselves where it passes by
-    angle: Array  # (T,) that it turns through, signed [rad]; 0 where it passes by
-    before: Array  # (T,), length of the straight part before it, in the plane [m]
-    climb: Array  # (T,), along the axis, a metre of way in the plane
-    frame: tuple[Array, Array, Array]  # (T, 3) axes of the plane, and the cylinder's own
-
-
-def path_length(stops: list[Stop]) -> Array:
-    """Length of a taut rope [m], (T,). The first and last stops are points, and so is one of any two in a row."""
-    total = np.zeros(len(stops[0].position))
-    for before, stop, after in _legs(stops):
-        if stop is None:
-            total += np.linalg.norm(after.position - before.position, axis=1)
-        else:
-            total += _wrap(before.position, after.position, stop).length
-    return total
-
-
-def path_points(stops: list[Stop]) -> Array:
-    """Points that draw a taut rope at the first moment, (P, 3) [m]."""
-    points = [stops[0].position[:1]]
-    for before, stop, after in _legs(stops):
-        if stop is not None:
-            points.append(_arc(before, stop, _wrap(before.position[:1], after.position[:1], stop)))
-        points.append(after.position[:1])
-    return np.concatenate(points)
-
-
-def common_tangent(before: Array, one: Stop, other: Stop, after: Array) -> Array:
-    """The point midway on the straight rope between two cylinders of parallel axes in a row, at the first moment.
-
-    A rope that goes round a cylinder in the sense w about the axis n, in direction u where it leaves, leaves it at
-    c - w r n x u from its centre; the line between two cylinders follows from that.
-
-    Args:
-        before: Where the rope comes from, (3,) [m].
-        one: The cylinder that it leaves.
-        other: The one that it comes to.
-        after: Where it goes on to, (3,) [m].
+    Attributes:
+        times: Of the keys [s], (K,).
+        place: Coefficients of 1, s, s^2, s^3 with s the time since the piece's key, (K - 1, 4, 3) [m].
+        base: Rotation at the piece's key, xyzw, (K - 1, 4).
+        turn: The same of the rotation vector that follows `base`, in its axes, (K - 1, 4, 3) [rad].
+        repeat: Whether it starts anew after the last key.
     """
-    axis = _frame(one)[2][0]
-    senses = [_sense(stop, axis, way) for stop, way in ((one, other.position[0] - before),
-                                                        (other, after - one.position[0]))]  # fmt: skip
-    apart = other.position[0] - one.position[0]
-    flat = apart - (apart @ axis) * axis
-    offset = senses[1] * other.radius - senses[0] * one.radius
-    reach = float(flat @ flat)
-    length = np.sqrt(max(reach - offset**2, 0.0))
-    along = (length * flat - offset * np.cross(axis, flat)) / max(reach, 1e-12)
-    across = np.cross(axis, along)
-    ends = [stop.position[0] - w * stop.radius * across for stop, w in zip((one, other), senses, strict=True)]
-    middle: Array = 0.5 * (ends[0] + ends[1])
-    return middle
+
+    times: Floats
+    place: Floats
+    base: Floats
+    turn: Floats
+    repeat: bool
+
+    @classmethod
+    def through(cls, times: ArrayLike, places: ArrayLike, rotations: ArrayLike, repeat: bool = False) -> Curve:
+        """The motion through keys: times (K,) [s] that rise, places (K, 3) [m], rotations (K, 4) xyzw; K of 2 or more.
+
+        One that repeats ends as it begins.
+        """
+        t = np.asarray(times, dtype=np.float64)
+        x = np.asarray(places, dtype=np.float64).reshape(-1, 3)
+        q = np.asarray(rotations, dtype=np.float64).reshape(-1, 4)
+        q = q / np.linalg.norm(q, axis=1, keepdims=True)
+        h = np.diff(t)[:, None]
+        step = np.diff(x, axis=0)
+        slope = _slopes(step / h, h, repeat)
+        vector = logarithm(multiply(conjugate(q[:-1]), q[1:]))
+        rate = _slopes(vector / h, h, repeat)
+        ends = np.array([np.linalg.solve(_right_jacobian(v), w) for v, w in zip(vector, rate[1:], strict=True)])
+        return cls(
+            t,
+            np.concatenate([x[:-1, None], _cubic(step, slope[:-1], slope[1:], h)], axis=1),
+            q[:-1],
+            np.concatenate([np.zeros((len(h), 1, 3)), _cubic(vector, rate[:-1], ends, h)], axis=1),
+            repeat,
+        )
+
+    def pose(self, time: float) -> tuple[Floats, Floats]:
+        """Place (3,) [m] and rotation (4,) xyzw at a time [s]."""
+        t = self._within(time)
+        k = int(np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.base) - 1))
+        powers = (t - self.times[k]) ** np.arange(4.0)
+        return powers @ self.place[k], multiply(self.base[k], exponential(powers @ self.turn[k]))
+
+    def _within(self, time: float) -> float:
+        first, last = float(self.times[0]), float(self.times[-1])
+        if self.repeat and time > last:
+            return first + (time - first) % (last - first)
+        return min(max(time, first), last)
+
+    def speeds(self) -> tuple[Floats, Floats]:
+        """Greatest speed [m/s] and rate of turning [rad/s] within each piece, (K - 1,) each, of a sample of it."""
+        found = []
+        for coefficients in (self.place, self.turn):
+            s = np.linspace(0.0, 1.0, 17)[None, :, None] * np.diff(self.times)[:, None, None]
+            c1, c2, c3 = (coefficients[:, n, None, :] for n in (1, 2, 3))
+            found.append(np.linalg.norm(c1 + 2.0 * c2 * s + 3.0 * c3 * s**2, axis=2).max(axis=1))
+        return found[0], found[1]
 
 
-def _sense(stop: Stop, axis: Array, way: Array) -> float:
-    """Whether a rope on its side of a cylinder, going a way, turns with (1) or against (-1) the axis."""
-    return 1.0 if np.cross(axis, _frame(stop)[0][0]) @ way >= 0.0 else -1.0
+def _slopes(secants: Floats, h: Floats, repeat: bool) -> Floats:
+    """Slopes at the keys, (K, 3), from those between them, (K - 1, 3)."""
+    before, after = secants, np.roll(secants, -1, axis=0)
+    width, next_width = h, np.roll(h, -1, axis=0)
+    share = (width + 2.0 * next_width) / (3.0 * (width + next_width))
+    same = before * after > 0.0
+    mean = share * after + (1.0 - share) * before
+    inner = np.divide(before * after, mean, out=np.zeros_like(before), where=same)
+    inner = np.where(same, inner, 0.0)
+    if repeat:
+        return np.concatenate([inner[-1:], inner])
+    inner[-1] = 0.0
+    return np.concatenate([np.zeros((1, 3)), inner])
 
 
-def _legs(stops: list[Stop]) -> list[tuple[Stop, Stop | None, Stop]]:
-    """The parts of a way between points, each with the cylinder that is on it."""
-    legs: list[tuple[Stop, Stop | None, Stop]] = []
-    before, between = stops[0], None
-    for stop in stops[1:]:
-        if stop.radius > 0.0:
-            between = stop
-        else:
-            legs.append((before, between, stop))
-            before, between = stop, None
-    return legs
+def _cubic(step: Floats, start: Floats, end: Floats, h: Floats) -> Floats:
+    """Coefficients of s, s^2, s^3, (n, 3, 3), of what goes by `step` in `h` with these slopes at its ends."""
+    square = (3.0 * step / h - 2.0 * start - end) / h
+    cube = (start + end - 2.0 * step / h) / h**2
+    return np.stack([start, square, cube], axis=1)
 
 
-def _frame(stop: Stop, start: Array | None = None, end: Array | None = None) -> tuple[Array, Array, Array]:
-    """Axes of the plane across a cylinder, the first towards the side that the rope passes on, and its own axis."""
-    assert stop.axis is not None and stop.side is not None
-    axis, side = stop.axis, stop.side
-    if stop.groove and start is not None and end is not None:
-        axis, side, centre = (x[: len(start)] for x in (axis, side, stop.position))
-        normal = np.cross(start - centre, end - centre)
-        size = np.linalg.norm(normal, axis=1, keepdims=True)
-        axis = np.where(size > 1e-9, normal / np.maximum(size, 1e-12), axis)
-    across = side - (side * axis).sum(axis=1, keepdims=True) * axis
-    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
-    return across, np.cross(axis, across), axis
+def logarithm(q: Floats) -> Floats:
+    """Rotation vectors (..., 3) of quaternions (..., 4), of half a turn at most [rad]."""
+    q = np.where(q[..., 3:] < 0.0, -q, q)
+    sine = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, q[..., 3:])
+    return q[..., :3] * np.divide(angle, sine, out=np.full_like(sine, 2.0), where=sine > 1e-12)
 
 
-def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
-    """The way between two points round a cylinder, on its side; straight where the cylinder is not in the way."""
-    u, v, w = _frame(stop, start, end)
-    frame = (u[: len(start)], v[: len(start)], w[: len(start)])
-    p, q = (np.stack([((x - stop.position[: len(x)]) * axis).sum(axis=1) for axis in frame], axis=1)
-            for x in (start, end))  # fmt: skip
-    r, rise = stop.radius, q[:, 2] - p[:, 2]
-    p, q = p[:, :2], q[:, :2]
-    straight = np.linalg.norm(q - p, axis=1)
-    far = [np.linalg.norm(x, axis=1) for x in (p, q)]
-    lines = [np.sqrt(np.maximum(x * x - r * r, 0.0)) for x in far]
-    # The rope comes to the cylinder a quarter turn, less what it sees of it, before or after the point's own direction.
-    bearing = [np.arctan2(x[:, 1], x[:, 0]) for x in (p, q)]
-    open_ = [np.arccos(np.clip(r / np.maximum(x, 1e-12), -1.0, 1.0)) for x in far]
-    best = np.full(len(p), np.inf)
-    angle, first = np.zeros(len(p)), np.zeros(len(p))
-    for turn in (1.0, -1.0):
-        t0, t1 = bearing[0] + turn * open_[0], bearing[1] - turn * open_[1]
-        # From side to side over the cylinder's own side, direction 0, not over the opposite one.
-        swept = np.mod(turn * (t1 - t0), 2.0 * np.pi)
-        middle = t0 + turn * 0.5 * swept
-        off = np.abs(np.mod(middle + np.pi, 2.0 * np.pi) - np.pi)
-        better = off < best
-        best = np.where(better, off, best)
-        angle, first = np.where(better, turn * swept, angle), np.where(better, t0, first)
-    share = np.clip(-((q - p) * p).sum(axis=1) / np.maximum(straight**2, 1e-24), 0.0, 1.0)
-    nearest = p + share[:, None] * (q - p)
-    past = (np.linalg.norm(nearest, axis=1) > r) & (nearest[:, 0] >= 0.0)
-    past |= (far[0] < r) | (far[1] < r)
-    flat = np.where(past, straight, lines[0] + r * np.abs(angle) + lines[1])
-    touch = np.where(past[:, None], p, r * np.stack([np.cos(first), np.sin(first)], axis=1))
-    climb = rise / np.maximum(flat, 1e-12)
-    return _Wrap(np.hypot(flat, rise), touch, np.where(past, 0.0, angle), lines[0], climb, frame)
+def exponential(vector: Floats) -> Floats:
+    """Quaternions (..., 4) of rotation vectors (..., 3) [rad]."""
+    angle = np.linalg.norm(vector, axis=-1, keepdims=True)
+    return np.concatenate([vector * 0.5 * np.sinc(angle / (2.0 * np.pi)), np.cos(0.5 * angle)], axis=-1)
 
 
-def _arc(before: Stop, stop: Stop, wrap: _Wrap) -> Array:
-    """Points of the rope on a cylinder, (P, 3); none where it passes by."""
-    angle = float(wrap.angle[0])
-    if angle == 0.0:
-        return np.zeros((0, 3))
-    turned = np.linspace(0.0, angle, 2 + int(abs(angle) / ARC_STEP))
-    start = np.arctan2(wrap.first[0, 1], wrap.first[0, 0])
-    across, along, axis = (vector[0] for vector in wrap.frame)
-    # The rope climbs evenly along its way, as a straight line does on the cylinder rolled out.
-    way_there = wrap.before[0] + stop.radius * np.abs(turned)
-    heights = float((before.position[0] - stop.position[0]) @ axis) + wrap.climb[0] * way_there
-    way = start + turned
-    flat_points = stop.radius * (np.cos(way)[:, None] * across + np.sin(way)[:, None] * along)
-    points: Array = stop.position[0] + flat_points + heights[:, None] * axis
-    return points
+def _right_jacobian(vector: Floats) -> Floats:
+    """What turns the rate of a rotation vector into the angular velocity in the turned axes, (3, 3)."""
+    angle = float(np.linalg.norm(vector))
+    x, y, z = vector
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    if angle < 1e-4:
+        return np.eye(3) - 0.5 * cross + cross @ cross / 6.0
+    first, second = (1.0 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
+    return np.eye(3) - first * cross + second * cross @ cross

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from pxr import Usd
 
-from wsim.geometry.paths import path_length
+from wsim.geometry.ropes import path_length
 from wsim.scene import schema
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
 from wsim.scene.limits import MAX_SIZE

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wsim.geometry.paths import Stop
+from wsim.geometry.ropes import Stop
 from wsim.geometry.rotations import rotate
 from wsim.scene.world import Body, Guide, Spring
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
-from wsim.geometry.paths import path_length
+from wsim.geometry.ropes import path_length
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, world_pose
 from wsim.scene.check_cords import FARTHEST, MAX_DAMPING, MAX_STIFFNESS, MOST_STRETCH, TAUT, cord_problems

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
-from wsim.geometry.paths import Stop, common_tangent
+from wsim.geometry.ropes import Stop, common_tangent
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, body_above
 from wsim.scene.usd_shapes import read_shape, to_vec3

@@ -40,8 +40,18 @@ class Shape(_Model):
     friction: float | None = None  # None leaves it to what it touches (`wsim.scene.contact`)
     restitution: float | None = None
     rolling: float | None = None  # torque that resists rolling, of radius times push
+    surface_velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], in the frame of `position`: the surface moves as a belt does
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
+
+
+class Path(_Model):
+    """Key frames of a kinematic body; `wsim.geometry.paths` says how it goes from one to the next."""
+
+    times: list[float]  # [s], rising
+    positions: list[Vec3]  # [m], of the body's origin, world
+    rotations: list[Quat]  # world
+    repeat: bool = False  # starts anew after the last key, or holds there
 
 
 class Body(_Model):
@@ -57,6 +67,7 @@ class Body(_Model):
     velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial, of the centre of mass
     angular_velocity: Vec3 = (0.0, 0.0, 0.0)  # [rad/s], initial, world
     kinematic: bool = False
+    path: Path | None = None  # of a kinematic body; None: it goes by its velocity
     shapes: list[Shape]
     line: str | None = None  # "program.py:12": who made it
 

@@ -58,8 +58,7 @@ def _shapes_of(builder: Any, prim: str) -> list[int]:
 
 def let_roll(builder: Any, world: World) -> None:
     """Give contacts rows for spinning and rolling where a shape rolls against friction; others keep three rows."""
-    shapes = [shape for solid in [*world.bodies, *world.statics] for shape in solid.shapes]
-    if not any(stated.rolling for stated in [*shapes, *world.contacts]):
+    if not any(shape.rolling for shape in _shapes(world).values()) and not any(pair.rolling for pair in world.contacts):
         return
     classes, law, bends = _law([str(label) for label in builder.shape_label], world)
     kinds = np.column_stack([classes, bends > 0.0, np.array(builder.shape_body) >= 0])
@@ -87,7 +86,7 @@ def contact_law(model: Any, world: World) -> tuple[Array, Array, Array]:
 
 def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     moving = {shape.prim for body in world.bodies for shape in body.shapes}
-    known = {shape.prim: shape for solid in [*world.bodies, *world.statics] for shape in solid.shapes}
+    known = _shapes(world)
     named = {prim for contact in world.contacts for prim in (contact.first, contact.second)}
     surfaces: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
@@ -108,6 +107,19 @@ def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
             pair = pair_law(world, a, b)
             law[i, j] = pair.friction, pair.restitution, pair.rolling
     return classes, law, bends
+
+
+def surface_velocities(model: Any, world: World) -> Array:
+    """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
+    known = _shapes(world)
+    count = model.shape_count // max(1, model.world_count)
+    labels = [str(label) for label in model.shape_label[:count]]
+    return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
+
+
+def _shapes(world: World) -> dict[str, Shape]:
+    bodies = [shape for body in world.bodies for shape in body.shapes]
+    return {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:

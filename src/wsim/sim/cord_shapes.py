@@ -8,7 +8,7 @@ import newton
 import numpy as np
 
 from wsim.geometry.catenary import hanging
-from wsim.geometry.paths import path_points
+from wsim.geometry.ropes import path_points
 from wsim.scene.cord_paths import moving_stops
 from wsim.scene.world import Rope, Spring, World
 

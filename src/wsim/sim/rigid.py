@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-import newton
 import numpy as np
 import warp as wp
 from mujoco_warp import OverflowType
 from newton import JointType, ShapeFlags
 
-from wsim.kernels.kinematic import carry
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
-from wsim.sim.contacts import contact_law
+from wsim.sim.contacts import contact_law, surface_velocities
 from wsim.sim.devices import steps_in_c
+from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.solver_rigid import SolverRigid
@@ -84,10 +83,11 @@ class RigidBodies:
         may_touch = _may_touch(model) or bool(world.ropes)
         law = contact_law(model, world)
         rows = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
-        sizes: dict[str, Any] = (
-            {} if self.on_c else {"nconmax": capacity, "njmax": rows * capacity + 64 + len(world.ropes)}
-        )
+        sizes: dict[str, Any] = {}
+        if not self.on_c:
+            sizes = {"nconmax": capacity, "njmax": rows * capacity + len(world.ropes) + 64}
         self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, **sizes)
+        self.solver.move_surfaces(surface_velocities(model, world))
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
@@ -96,37 +96,19 @@ class RigidBodies:
         if driven:
             kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
         self.observables: Any = self.solver.observables(kinds) if kinds else None
-        self._carried, self._carried_at = self._kinematic()
+        self._kinematic = Kinematic(model, world, dt)
         pushed = driven or controlled or model.particle_count > 0
         self.ledger = Ledger(model, self.observables if driven else None, self.on_c or smooth) if pushed else None
 
-    def _kinematic(self) -> tuple[Any, Any]:
-        """The kinematic bodies of all worlds, and where the pose of each stands in `joint_q`."""
-        model = self.model
-        kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
-        kinds, child = model.joint_type.numpy(), model.joint_child.numpy()
-        joints = [j for j in range(len(child)) if kinds[j] == int(JointType.FREE) and kinematic[child[j]]]
-        with wp.ScopedDevice(model.device):
-            return (
-                wp.array(child[joints], dtype=int),
-                wp.array(model.joint_q_start.numpy()[joints], dtype=int),
-            )
-
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
+        self._kinematic.before(state_in)
         if self.ledger:
             self.ledger.before(state_in)
         self.solver.step(state_in, state_out, control, None, dt, observables=self.observables)
         if self.ledger:
             self.ledger.after(state_in.body_f, state_out, control, dt)
-        if len(self._carried):
-            wp.launch(
-                carry,
-                dim=len(self._carried),
-                inputs=[self._carried, self._carried_at, self.model.body_com, state_out.body_qd, dt],
-                outputs=[state_out.body_q, state_out.joint_q],
-                device=self.model.device,
-            )
+        self._kinematic.after(state_out)
         if not self.on_c:
             wp.launch(
                 accumulate_overflow,
@@ -138,6 +120,7 @@ class RigidBodies:
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
+        self._kinematic.reset(state)
         self.solver.reset(state, flags=0)
         if self.ledger:
             self.ledger.clear()

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.errors import UserError
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
+from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import Body, Joint, World
 from wsim.sim.spring_steps import DRIVE_SHARE, SMALLEST_DRIVE_STEP, is_overdamped_spring, spring_limits
 
@@ -109,8 +110,15 @@ def _crossing_time(world: World) -> float | None:
         return None
     g = float(np.linalg.norm(world.gravity))
     fall = max(max(body.position[2] for body in world.bodies) - min(0.0, *(b.position[2] for b in world.bodies)), 0.0)
-    start = max(float(np.linalg.norm(body.velocity)) for body in world.bodies)
+    start = max(_fastest(body) for body in world.bodies)
     return min(extents) / max(math.sqrt(start**2 + 2.0 * g * fall), 1e-3)
+
+
+def _fastest(body: Body) -> float:
+    """Speed of a body at its start, or anywhere on its path [m/s]."""
+    if body.path is not None:
+        return float(curve_of(body.path).speeds()[0].max())
+    return float(np.linalg.norm(body.velocity))
 
 
 def thickness(body: Body) -> float:

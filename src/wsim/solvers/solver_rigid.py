@@ -9,6 +9,7 @@ import numpy as np
 import warp as wp
 from mujoco_warp import OverflowType
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.smooth_steps import SmoothStepsWarp
@@ -83,6 +84,28 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
             self._smooth_steps = SmoothStepsWarp(self._mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data)
+
+    def move_surfaces(self, velocity: Array) -> None:
+        """Let surfaces move as belts do: what touches them slips against that velocity.
+
+        MuJoCo adds a geom's `surfacevel` to what its contacts' friction rows have for velocity, in C and in Warp.
+
+        Args:
+            velocity: Of each shape of the first world [m/s], in its body's axes, or the world's, (shapes, 3).
+        """
+        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
+        stated = np.where(shapes[:, None] >= 0, velocity[np.maximum(shapes, 0) % max(1, len(velocity))], 0.0)
+        if not stated.any():
+            return
+        for geom in np.flatnonzero(stated.any(axis=1)):
+            x, y, z, w = self.mj_model.geom_quat[geom][[1, 2, 3, 0]]
+            self.mj_model.geom_surfacevel[geom, :3] = rotate(conjugate(np.array([x, y, z, w])), stated[geom])
+        self.mj_model.flg_surfacevel = 1
+        if not self.use_mujoco_cpu:
+            moving = self.mjw_model.geom_surfacevel
+            values = np.broadcast_to(self.mj_model.geom_surfacevel, (moving.shape[0], self.mj_model.ngeom, 6))
+            moving.assign(values.astype(np.float32))
+            self.mjw_model.flg_surfacevel = True
 
     def _harden_loops(self) -> None:
         """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""

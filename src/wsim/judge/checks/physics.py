@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.geometry.shapes import reach
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.carriers import surface_speed
 from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.recorded import MissingError
 
@@ -52,7 +53,7 @@ class CheckExplosion(Check):
             lows += [float(evidence.track(fluid).position[:, :, 2].min()) for fluid in world.fluids]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
         start = max((float(np.linalg.norm(body.velocity)) for body in world.bodies), default=0.0)
-        return math.sqrt(start**2 + 2 * evidence.gravity * fall)
+        return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:
         reported = np.linalg.norm(evidence.body_qd[:, :, :3], axis=2)

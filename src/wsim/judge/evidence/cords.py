@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.paths import path_length
+from wsim.geometry.ropes import path_length
 from wsim.scene.cord_paths import SpringTrack, moving_stops, spring_track
 
 if TYPE_CHECKING:

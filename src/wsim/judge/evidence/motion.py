@@ -17,6 +17,7 @@ from wsim.judge.evidence.cords import spring_energy
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.placed import Placed
     from wsim.judge.evidence.recorded import Recorded
 
     Floats = NDArray[np.float64]
@@ -181,16 +182,21 @@ class Motion:
         """
         near = np.zeros(len(intervals), dtype=bool)
         for shape in self._recorded.placed:
-            if shape.body == i:
-                continue
-            reach = self.reach[intervals, i] + (self.reach[intervals, shape.body] if shape.body >= 0 else 0.0)
-            for frames in (intervals, intervals + 1):
-                local = rotate(conjugate(shape.rotation[frames]), self.com[frames, i] - shape.position[frames])
-                if shape.shape.kind == "mesh":
-                    gap = np.linalg.norm(local, axis=1) - shape.radius
-                else:
-                    gap = -shape.kind.depth(local)
-                near |= gap <= self.radius[i] + reach
+            if shape.body != i:
+                near |= self.approaches(shape, i, intervals)
+        return near
+
+    def approaches(self, shape: Placed, i: int, intervals: NDArray[np.intp]) -> Bools:
+        """Whether body i and a shape may touch within the intervals, (len(intervals),)."""
+        near = np.zeros(len(intervals), dtype=bool)
+        reach = self.reach[intervals, i] + (self.reach[intervals, shape.body] if shape.body >= 0 else 0.0)
+        for frames in (intervals, intervals + 1):
+            local = rotate(conjugate(shape.rotation[frames]), self.com[frames, i] - shape.position[frames])
+            if shape.shape.kind == "mesh":
+                gap = np.linalg.norm(local, axis=1) - shape.radius
+            else:
+                gap = -shape.kind.depth(local)
+            near |= gap <= self.radius[i] + reach
         return near
 
     def wet(self, i: int, intervals: NDArray[np.intp]) -> Bools:

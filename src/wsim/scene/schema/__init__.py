@@ -15,6 +15,8 @@ SPRING = "WsimSpringAPI"
 ROPE = "WsimRopeAPI"
 MATERIAL = "WsimMaterialAPI"
 CONTACT = "WsimContactAPI"
+PATH = "WsimPathAPI"
+SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 
 
 def register() -> None:
