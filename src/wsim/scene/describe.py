@@ -15,6 +15,7 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
 from wsim.defaults import DURATION, FLUID_DENSITY, FRAME_RATE, GRAVITY
 from wsim.errors import UserError
 from wsim.scene import schema
+from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.describe_joints import read_gears, read_joints
 from wsim.scene.errors import one_line
 from wsim.scene.usd_contacts import read_contacts
@@ -61,6 +62,8 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
         joints=list(read_joints(prims)),
         gears=list(read_gears(prims)),
+        springs=springs(prims),
+        ropes=ropes(prims),
         contacts=read_contacts(prims),
         cameras=[_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
         lights=list(_lights(prims)),

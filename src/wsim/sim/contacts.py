@@ -96,7 +96,10 @@ def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     surfaces: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
+    drawn = tuple(f"{cord.prim}/" for cord in world.cords)  # and their points: nothing touches them
     for k, label in enumerate(labels):
+        if label.startswith(drawn):
+            continue
         shape = _of_label(label, known)
         owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
         key = (shape.friction, shape.restitution, shape.rolling, owners)

@@ -14,6 +14,8 @@ from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations, importable
 from wsim.sim.constraints import add_constraints
 from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
+from wsim.sim.cord_shapes import add_cord_shapes
+from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -69,6 +71,9 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     let_roll(single, world)
     spare_kinematic(single)
     spare_tied(single, world)
+    add_cords(single, world, ContactConfig())
+    if world_count == 1:
+        add_cord_shapes(single, world)
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)

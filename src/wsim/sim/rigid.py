@@ -84,12 +84,13 @@ class RigidBodies:
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        smooth = bool(world.joints) and model.particle_count == 0 and not is_overdamped(world, dt)
+        swings = bool(world.joints or world.springs)
+        smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
         smooth = smooth and (self.on_c or not breakable)
-        may_touch = _may_touch(model) or any(joint.friction for joint in world.joints)
+        may_touch = _may_touch(model) or bool(world.ropes) or any(joint.friction for joint in world.joints)
         law = contact_law(model, world)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
-        rows = rows_a_contact * capacity + constraint_rows(world) + 64
+        rows = rows_a_contact * capacity + constraint_rows(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
         self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, **sizes)
         self.solver.move_surfaces(surface_velocities(model, world))

@@ -184,6 +184,8 @@ class ContactLawC:
             model.opt.tolerance = config.rolling_tolerance
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        rows = mujoco.mjtConstraint
+        self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -223,7 +225,7 @@ class ContactLawC:
     def _solve(self, data: Any) -> bool:
         """Constraint forces; whether a contact, a stop or dry friction may be among them."""
         kinds = data.efc_type
-        stops = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
+        stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)
