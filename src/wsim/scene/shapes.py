@@ -10,6 +10,7 @@ from pxr import UsdGeom
 from wsim.scene.authoring import Handle, calling_folder, note_line, set_pose
 from wsim.scene.bodies import Bodies, BodyOptions, finish_collider
 from wsim.scene.mesh_file import MeshFile
+from wsim.scene.rolling import Round
 from wsim.scene.validate import Call
 
 _HERE = (0.0, 0.0, 0.0)
@@ -24,6 +25,8 @@ class Shapes(Bodies):
         rotation_deg: Roll, pitch, yaw about the world's X, Y, Z, in this order [deg].
         density, mass: [kg/m^3] or [kg]; give one. Neither: the material's density, else 1000 kg/m^3.
         velocity, angular_velocity_deg: At time 0, in the world's axes [m/s], [deg/s].
+        rolling: Of what is round: it starts with the spin that fits its velocity, v / r, so that it rolls and does not
+            slip, on the level or straight up or down a slope; a cylinder or a capsule across its axis.
         static: Never moves.
         kinematic: Moves and turns by its velocity whatever it meets, and carries and pushes what it meets.
         material: What `scene.material` returned, or its name; friction, restitution, rolling_friction and color
@@ -121,6 +124,7 @@ class Shapes(Bodies):
         mass: float | None = None,
         velocity: Sequence[float] = _HERE,
         angular_velocity_deg: Sequence[float] = _HERE,
+        rolling: bool = False,
         static: bool = False,
         kinematic: bool = False,
         material: Handle | str | None = None,
@@ -152,8 +156,9 @@ class Shapes(Bodies):
             restitution,
             color,
             rolling_friction,
+            rolling,
         )
-        return self._solid(call, options, geometry)
+        return self._solid(call, options, geometry, rolls=Round(r))
 
     def cylinder(
         self,
@@ -168,6 +173,7 @@ class Shapes(Bodies):
         mass: float | None = None,
         velocity: Sequence[float] = _HERE,
         angular_velocity_deg: Sequence[float] = _HERE,
+        rolling: bool = False,
         static: bool = False,
         kinematic: bool = False,
         material: Handle | str | None = None,
@@ -193,8 +199,9 @@ class Shapes(Bodies):
             restitution,
             color,
             rolling_friction,
+            rolling,
         )
-        return self._solid(call, options, geometry)
+        return self._solid(call, options, geometry, rolls=Round(radius, call.axis(axis)))
 
     def capsule(
         self,
@@ -209,6 +216,7 @@ class Shapes(Bodies):
         mass: float | None = None,
         velocity: Sequence[float] = _HERE,
         angular_velocity_deg: Sequence[float] = _HERE,
+        rolling: bool = False,
         static: bool = False,
         kinematic: bool = False,
         material: Handle | str | None = None,
@@ -234,8 +242,9 @@ class Shapes(Bodies):
             restitution,
             color,
             rolling_friction,
+            rolling,
         )
-        return self._solid(call, options, geometry)
+        return self._solid(call, options, geometry, rolls=Round(radius, call.axis(axis)))
 
     def mesh(
         self,

@@ -27,6 +27,7 @@ def harden_contacts(builder: Any, config: ContactConfig) -> None:
     builder.shape_material_mu = [max(mu, 2.0 * config.smallest_friction) for mu in builder.shape_material_mu]
     builder.custom_attributes["mujoco:geom_solimp"].values = dict.fromkeys(shapes, impedance)
     builder.custom_attributes["mujoco:solimplimit"].values = dict.fromkeys(dofs, impedance)
+    builder.custom_attributes["mujoco:solimpfriction"].values = dict.fromkeys(dofs, impedance)
     builder.custom_attributes["mujoco:limit_margin"].values = dict.fromkeys(dofs, config.limit_reach)
 
 
@@ -42,13 +43,17 @@ def spare_kinematic(builder: Any) -> None:
 
 
 def spare_tied(builder: Any, world: World) -> None:
-    """Let no body touch the static object that a joint ties it to, as two bodies that a joint ties do not."""
-    for joint in world.joints:
-        if joint.fixture is not None:
-            tied, held = (_shapes_of(builder, prim) for prim in (joint.fixture, joint.child))
-            for k in held:
-                for other in tied:
-                    builder.add_shape_collision_filter_pair(k, other)
+    """Let no body touch what a joint ties it to, be it static, or what a gear meshes it with."""
+    joints = {joint.prim: joint for joint in world.joints}
+    pairs = [(joint.parent or joint.fixture, joint.child) for joint in world.joints]
+    pairs += [(joints[gear.first].child, joints[gear.second].child) for gear in world.gears]
+    for first, second in pairs:
+        if first is None or first == second:
+            continue
+        tied, held = (_shapes_of(builder, prim) for prim in (first, second))
+        for k in held:
+            for other in tied:
+                builder.add_shape_collision_filter_pair(k, other)
 
 
 def _shapes_of(builder: Any, prim: str) -> list[int]:
@@ -58,7 +63,7 @@ def _shapes_of(builder: Any, prim: str) -> list[int]:
 
 def let_roll(builder: Any, world: World) -> None:
     """Give contacts rows for spinning and rolling where a shape rolls against friction; others keep three rows."""
-    if not any(shape.rolling for shape in _shapes(world)) and not any(pair.rolling for pair in world.contacts):
+    if not any(shape.rolling for shape in _shapes(world).values()) and not any(pair.rolling for pair in world.contacts):
         return
     classes, law, bends = _law([str(label) for label in builder.shape_label], world)
     kinds = np.column_stack([classes, bends > 0.0, np.array(builder.shape_body) >= 0])
@@ -86,12 +91,15 @@ def contact_law(model: Any, world: World) -> tuple[Array, Array, Array]:
 
 def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     moving = {shape.prim for body in world.bodies for shape in body.shapes}
-    known = {shape.prim: shape for shape in _shapes(world)}
+    known = _shapes(world)
     named = {prim for contact in world.contacts for prim in (contact.first, contact.second)}
     surfaces: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
+    drawn = _drawn(world)
     for k, label in enumerate(labels):
+        if label.startswith(drawn):
+            continue
         shape = _of_label(label, known)
         owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
         key = (shape.friction, shape.restitution, shape.rolling, owners)
@@ -106,10 +114,24 @@ def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     return classes, law, bends
 
 
-def _shapes(world: World) -> list[Shape]:
-    return [shape for body in world.bodies for shape in body.shapes] + [
-        shape for static in world.statics for shape in static.shapes
-    ]
+def surface_velocities(model: Any, world: World) -> Array:
+    """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
+    known = _shapes(world)
+    count = model.shape_count // max(1, model.world_count)
+    labels, drawn = [str(label) for label in model.shape_label[:count]], _drawn(world)
+    still = (0.0, 0.0, 0.0)
+    moves = [still if label.startswith(drawn) else _of_label(label, known).surface_velocity for label in labels]
+    return np.array(moves).reshape(-1, 3)
+
+
+def _drawn(world: World) -> tuple[str, ...]:
+    """How the labels of what draws springs and ropes start: nothing touches it."""
+    return tuple(f"{cord.prim}/" for cord in world.cords)
+
+
+def _shapes(world: World) -> dict[str, Shape]:
+    bodies = [shape for body in world.bodies for shape in body.shapes]
+    return {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from wsim.judge.checks import (
     camera,
     contact,
+    cord,
     energy,
     fluid,
     joint,
@@ -19,6 +20,7 @@ from wsim.judge.checks import (
     plan,
     plan_contacts,
     plan_joints,
+    plan_motion,
     rest,
     run,
     settled,
@@ -29,20 +31,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics,
-    settled,
-    motion,
-    energy,
-    contact,
-    rest,
-    joint,
-    mass,
-    plan,
-    plan_joints,
-    plan_contacts,
-    fluid,
-    camera,
-)
+    physics, settled, motion, energy, contact, rest, joint, cord, mass, plan, plan_joints, plan_contacts, plan_motion,
+    fluid, camera,
+)  # fmt: skip
 
 
 def run_checks() -> list[Check]:
