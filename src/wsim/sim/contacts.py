@@ -91,10 +91,7 @@ def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     surfaces: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
-    drawn = tuple(f"{cord.prim}/" for cord in world.cords)  # and their points: nothing touches them
     for k, label in enumerate(labels):
-        if label.startswith(drawn):
-            continue
         shape = _of_label(label, known)
         owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
         key = (shape.friction, shape.restitution, shape.rolling, owners)
@@ -119,7 +116,10 @@ def surface_velocities(model: Any, world: World) -> Array:
 
 def _shapes(world: World) -> dict[str, Shape]:
     bodies = [shape for body in world.bodies for shape in body.shapes]
-    return {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
+    still = [shape for static in world.statics for shape in static.shapes]
+    # What draws springs and ropes and marks their points: nothing touches it.
+    drawn = [Shape(prim=cord.prim, kind="sphere", size=(cord.radius,), collides=False) for cord in world.cords]
+    return {shape.prim: shape for shape in [*bodies, *still, *drawn]}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:
