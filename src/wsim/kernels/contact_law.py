@@ -8,6 +8,7 @@ import warp as wp
 
 ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
 FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
+RUBBING = wp.constant(1)  # mjCNSTR_FRICTION_DOF
 LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
 TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
 CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
@@ -264,10 +265,13 @@ def stop(
     # Data out:
     aref: wp.array2d(dtype=float),
 ):
-    """Joints end at their stops, ropes where they are taut, without a bounce."""
+    """Joints end at their stops, ropes where they are taut, without a bounce; dry friction would end motion."""
     world, row = wp.tid()
-    if row >= rows[world] or (kind[world, row] != LIMIT and kind[world, row] != TAUT):
+    what = kind[world, row]
+    if row >= rows[world] or (what != LIMIT and what != TAUT and what != RUBBING):
         return
     h = timestep[world % timestep.shape[0]]
-    goal = settling(position[world, row], h, settle_time, settle_speed)
+    goal = float(0.0)
+    if what != RUBBING:
+        goal = settling(position[world, row], h, settle_time, settle_speed)
     aref[world, row] = (goal - velocity[world, row]) / h

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-FIRST_UNILATERAL = wp.constant(3)  # mjtConstraint: mjCNSTR_LIMIT_JOINT; stops of tendons and contacts come after it
+FIRST_THAT_JUMPS = wp.constant(1)  # mjtConstraint: after equalities come dry friction, stops and contacts
 
 
 @wp.kernel(enable_backward=False)
@@ -13,9 +13,9 @@ def find_touching(
     # Data out:
     touches: wp.array(dtype=int),
 ):
-    """Mark the worlds with a stop or a contact among their constraint rows."""
+    """Mark the worlds with dry friction, a stop or a contact among their constraint rows."""
     world, row = wp.tid()
-    if row < rows[world] and kind[world, row] >= FIRST_UNILATERAL:
+    if row < rows[world] and kind[world, row] >= FIRST_THAT_JUMPS:
         touches[world] = 1
 
 

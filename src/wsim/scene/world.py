@@ -133,6 +133,26 @@ class Joint(_Model):
     low: float | None = None  # [rad] or [m]; None: free
     high: float | None = None
     drive: Motor | None = None
+    friction: float = 0.0  # dry, of a hinge [N m] or a slider [N]
+    closing: bool = False  # it closes a loop, or may break: a constraint, and none of the trees' joints
+    break_force: float | None = None  # [N]; None: it holds any
+    break_torque: float | None = None  # [N m]
+    line: str | None = None
+
+    @property
+    def may_break(self) -> bool:
+        """Whether there is a load at which it breaks."""
+        return self.break_force is not None or self.break_torque is not None
+
+
+class Gear(_Model):
+    """Two joints coupled without play: the second goes `ratio` times as far as the first."""
+
+    prim: str
+    first: str  # prim of a joint
+    second: str
+    ratio: float  # [rad/rad], [m/rad], [rad/m] or [m/m]
+    offset: float = 0.0  # [rad] or [m], of the second where the first is at 0
     line: str | None = None
 
 
@@ -234,6 +254,7 @@ class World(_Model):
     fluids: list[Fluid] = Field(default_factory=list)
     joints: list[Joint] = Field(default_factory=list)
     contacts: list[Contact] = Field(default_factory=list)
+    gears: list[Gear] = Field(default_factory=list)
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)

@@ -27,6 +27,7 @@ def harden_contacts(builder: Any, config: ContactConfig) -> None:
     builder.shape_material_mu = [max(mu, 2.0 * config.smallest_friction) for mu in builder.shape_material_mu]
     builder.custom_attributes["mujoco:geom_solimp"].values = dict.fromkeys(shapes, impedance)
     builder.custom_attributes["mujoco:solimplimit"].values = dict.fromkeys(dofs, impedance)
+    builder.custom_attributes["mujoco:solimpfriction"].values = dict.fromkeys(dofs, impedance)
     builder.custom_attributes["mujoco:limit_margin"].values = dict.fromkeys(dofs, config.limit_reach)
 
 
@@ -42,13 +43,17 @@ def spare_kinematic(builder: Any) -> None:
 
 
 def spare_tied(builder: Any, world: World) -> None:
-    """Let no body touch the static object that a joint ties it to, as two bodies that a joint ties do not."""
-    for joint in world.joints:
-        if joint.fixture is not None:
-            tied, held = (_shapes_of(builder, prim) for prim in (joint.fixture, joint.child))
-            for k in held:
-                for other in tied:
-                    builder.add_shape_collision_filter_pair(k, other)
+    """Let no body touch what a joint ties it to, be it static, or what a gear meshes it with."""
+    joints = {joint.prim: joint for joint in world.joints}
+    pairs = [(joint.parent or joint.fixture, joint.child) for joint in world.joints]
+    pairs += [(joints[gear.first].child, joints[gear.second].child) for gear in world.gears]
+    for first, second in pairs:
+        if first is None or first == second:
+            continue
+        tied, held = (_shapes_of(builder, prim) for prim in (first, second))
+        for k in held:
+            for other in tied:
+                builder.add_shape_collision_filter_pair(k, other)
 
 
 def _shapes_of(builder: Any, prim: str) -> list[int]:

@@ -33,6 +33,8 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         force = force[built.bodies]
         scalars["contact/penetration"] = deepest
         scalars.update(_body_energy(built, body_q, body_qd))
+        if rigid:
+            scalars.update({name: float(value[0]) for name, value in rigid.breakage().items()})
         if built.world.springs:
             scalars["energy/potential_springs"] = _spring_energy(built, body_q, body_qd)
         if rigid and rigid.ledger:

@@ -33,6 +33,8 @@ from typing import Any
 
 import numpy as np
 
+from wsim.solvers.breaking import BreakingC
+
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
 ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
@@ -159,6 +161,7 @@ class ContactLawC:
         curvature: Of each geom's round side [1/m], (geoms,); 0 for a flat one.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
+        breaking: What breaks joints, if any may break.
     """
 
     def __init__(
@@ -170,7 +173,9 @@ class ContactLawC:
         curvature: Array,
         smooth: bool,
         config: ContactConfig,
+        breaking: BreakingC | None = None,
     ) -> None:
+        self.breaking = breaking
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law, self.curvature = geom_class, law, curvature
         self.touched = 0  # steps of the first order since the last smooth one
@@ -193,6 +198,8 @@ class ContactLawC:
         mujoco.mj_fwdActuation(model, data)
         mujoco.mj_fwdAcceleration(model, data)
         touching = self._solve(data)
+        while self.breaking is not None and self.breaking.give_way(data):
+            self._solve(data)
         mujoco.mj_checkAcc(model, data)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
@@ -216,20 +223,22 @@ class ContactLawC:
         mujoco.mj_fwdActuation(model, data)
 
     def _solve(self, data: Any) -> bool:
-        """Constraint forces; whether a contact or a stop may be among them."""
+        """Constraint forces; whether a contact, a stop or dry friction may be among them."""
         kinds = data.efc_type
         stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
+        rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
+        data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
         first = data.contact.efc_address[: data.ncon]
         chosen = np.flatnonzero(first >= 0)
         if len(chosen):
             self._solve_contacts(data, chosen, first[chosen], h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
-        return bool(len(stops) or len(chosen))
+        return bool(len(stops) or len(rubbing) or len(chosen))
 
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -11,6 +12,7 @@ from mujoco_warp import OverflowType
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
+from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 
@@ -38,7 +40,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         curvature: Of each shape's round side [1/m], (shapes,); 0 for a flat one.
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order.
-        may_touch: Whether any contact or stop can come up.
+        may_touch: Whether any contact, stop or dry friction can come up.
+        time_step: Of the steps to come [s].
+        breakable: The joints that may break.
         config: How the law is applied.
         options: For `newton.solvers.SolverMuJoCo`.
     """
@@ -52,6 +56,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         on_c: bool,
         smooth: bool,
         may_touch: bool,
+        time_step: float,
+        breakable: Sequence[Breakable] = (),
         config: ContactConfig | None = None,
         **options: Any,
     ) -> None:
@@ -75,10 +81,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
-        self._harden_loops()
+        self._harden_constraints(time_step)
+        self.breaking = self._breaking(breakable) if breakable else None
         if on_c:
             mujoco = self.import_mujoco()[0]
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, bends, smooth, self.contact_config)
+            config = self.contact_config
+            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking)
         elif may_touch or not smooth:
             self._prepare_warp(geom_class, law, bends)
         self._smooth_steps: Any = None
@@ -107,16 +115,40 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             moving.assign(values.astype(np.float32))
             self.mjw_model.flg_surfacevel = True
 
-    def _harden_loops(self) -> None:
-        """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
+    def _harden_constraints(self, h: float) -> None:
+        """Loops, gears and what may break are as hard as contacts, the welds that drive kinematic bodies nearly so.
+
+        A row asks, as a contact does, that the speed at the end of a step of `h` [s] lets its gap fade in the settling
+        time: -gap / (settle_time h) - speed / h, in MuJoCo's direct form of a reference acceleration.
+        """
+        config, model = self.contact_config, self.mj_model
         welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else ()
-        for k in range(self.mj_model.neq):
-            config = self.contact_config
-            self.mj_model.eq_solimp[k, :2] = config.kinematic_impedance if k in welds else config.impedance
-        if not self.use_mujoco_cpu and self.mj_model.neq:
-            impedances = self.mjw_model.eq_solimp
-            values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
-            impedances.assign(values.astype(np.float32))
+        for k in range(model.neq):
+            if k in welds:
+                model.eq_solimp[k, :2] = config.kinematic_impedance
+            else:
+                model.eq_solimp[k, :2] = config.impedance
+                model.eq_solref[k] = -1.0 / (config.settle_time * h), -1.0 / h
+        if not self.use_mujoco_cpu and model.neq:
+            for name in ("eq_solimp", "eq_solref"):
+                array = getattr(self.mjw_model, name)
+                values = np.broadcast_to(getattr(model, name), array.numpy().shape)
+                array.assign(values.astype(np.float32))
+
+    def _breaking(self, breakable: Sequence[Breakable]) -> Any:
+        """What breaks joints, under MuJoCo's numbers of their constraints."""
+        rows = self.mjc_eq_to_newton_eq.numpy()[0].tolist()
+        constraints = [[rows.index(row) for row in joint.rows] for joint in breakable]
+        strength = np.array([[joint.force, joint.torque] for joint in breakable])
+        if self.use_mujoco_cpu:
+            return BreakingC(self.import_mujoco()[0], self.mj_model, constraints, strength)
+        with wp.ScopedDevice(self.model.device):
+            return BreakingWarp(self.mj_model, constraints, strength, self.mjw_data.nworld)
+
+    def mend(self) -> None:
+        """Make all joints whole that broke."""
+        if self.breaking is not None:
+            self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
     def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
         device, data = self.model.device, self.mjw_data
@@ -171,6 +203,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         for k in range(self.contact_config.solutions):
             if k:
                 self._aim_again(model, data)
+            warp.solve(model, data)
+        if self.breaking is not None:
+            self.breaking.give_way(model, data)
             warp.solve(model, data)
         warp.implicit(model, data)
         if self._smooth_steps:

@@ -122,12 +122,14 @@ class Motion:
         bodies = self._recorded.world.bodies
         row = {body.prim: i for i, body in enumerate(bodies)}
         unit = np.arange(len(bodies))
-        for joint in self._recorded.world.joints:
-            if joint.parent in row and joint.child in row:
-                unit[unit == unit[row[joint.child]]] = unit[row[joint.parent]]
-        for tied in self._tied:
-            for other in tied[1:]:
-                unit[unit == unit[row[other]]] = unit[row[tied[0]]]
+        world = self._recorded.world
+        child = {joint.prim: joint.child for joint in world.joints}
+        pairs: list[tuple[str | None, str | None]] = [(joint.parent, joint.child) for joint in world.joints]
+        pairs += [(child.get(gear.first), child.get(gear.second)) for gear in world.gears]
+        pairs += [(tied[0], other) for tied in self._tied for other in tied[1:]]
+        for first, second in pairs:
+            if first in row and second in row:
+                unit[unit == unit[row[second]]] = unit[row[first]]
         return unit
 
     @property

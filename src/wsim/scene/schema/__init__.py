@@ -17,6 +17,7 @@ MATERIAL = "WsimMaterialAPI"
 CONTACT = "WsimContactAPI"
 PATH = "WsimPathAPI"
 SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
+GEAR = "WsimGearAPI"
 
 
 def register() -> None:
