@@ -30,6 +30,7 @@ class BodyOptions:
     friction: float | None
     restitution: float | None
     color: Sequence[float] | None
+    rolling_friction: float | None = None
     rolling: bool = False
 
 
@@ -72,7 +73,14 @@ class Bodies(Materials):
         moving = self._moving(call, options, velocity, spin)
         if options.rolling and rolls is not None:
             spin = _rolling(call, options, velocity, spin, turn, rolls)
-        material = self._surface(call, options.material, options.friction, options.restitution, options.color)
+        material = self._surface(
+            call,
+            options.material,
+            options.friction,
+            options.restitution,
+            options.color,
+            rolling=options.rolling_friction,
+        )
         if mass is None and density is None:
             density = material.density or BODY_DENSITY
 

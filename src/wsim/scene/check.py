@@ -16,6 +16,8 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
 from wsim.scene.check_colliders import check_solid
+from wsim.scene.check_contacts import contact_problems, surface_problems
+from wsim.scene.check_cords import cord_problems
 from wsim.scene.check_indices import check_indices
 from wsim.scene.check_joints import joint_problems
 from wsim.scene.check_motion import motion_problems
@@ -106,7 +108,9 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
     if sound:  # what follows reads shapes, and follows indices and paths
         for prim in prims:
             yield from check_solid(prim)
+            yield from cord_problems(prim)
         yield from joint_problems(stage)
+        yield from contact_problems(prims)
         yield from motion_problems(stage)
 
 
@@ -120,6 +124,7 @@ def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
         yield from _pose(prim)
         yield from _mass(prim)
         yield from _wsim(prim)
+        yield from surface_problems(prim)
         if prim.IsA(UsdGeom.Gprim):
             yield from _geometry(prim)
         if prim.IsA(UsdGeom.PointBased):

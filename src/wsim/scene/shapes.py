@@ -29,9 +29,12 @@ class Shapes(Bodies):
             slip, on the level or straight up or down a slope; a cylinder or a capsule across its axis.
         static: Never moves.
         kinematic: Moves and turns by its velocity whatever it meets, and carries and pushes what it meets.
-        material: What `scene.material` returned, or its name; friction, restitution and color override it.
+        material: What `scene.material` returned, or its name; friction, restitution, rolling_friction and color
+            override it.
         friction, restitution: Of two surfaces the smaller counts; one that states none leaves it to the other, and
             it is 0.5 and 0 if neither does.
+        rolling_friction: The material's `rolling`: what slows a ball that rolls. Of two surfaces the larger counts,
+            and it is 0 if neither states one.
     A call raises `SceneError`, naming the argument and its value, for what cannot be built.
     """
 
@@ -44,6 +47,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a level plane without end, at z = `height` [m]."""
         call = Call("ground", name)
@@ -51,7 +55,7 @@ class Shapes(Bodies):
         z = call.position("position", (0.0, 0.0, call.number("height", height, "m")))[2]
         if material is None and color is None:
             color = (0.35, 0.36, 0.38)
-        surface = self._surface(call, material, friction, restitution, color)
+        surface = self._surface(call, material, friction, restitution, color, rolling=rolling_friction)
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
         set_pose(prim, (0.0, 0.0, z))
@@ -80,6 +84,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a box with full edge lengths `size` = (x, y, z) [m]. For the other options see `Shapes`."""
         call = Call("box", name)
@@ -104,6 +109,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry)
 
@@ -125,6 +131,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a ball of `radius` [m]. For the other options see `Shapes`."""
         call = Call("sphere", name)
@@ -148,6 +155,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
             rolling,
         )
         return self._solid(call, options, geometry, rolls=Round(r))
@@ -172,6 +180,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a cylinder of `radius` and `height` [m] along its own `axis` X, Y or Z. For the rest see `Shapes`."""
         call = Call("cylinder", name)
@@ -189,6 +198,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
             rolling,
         )
         return self._solid(call, options, geometry, rolls=Round(radius, call.axis(axis)))
@@ -213,6 +223,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a capsule: a cylinder of `radius` and `height` [m], caps not counted. For the rest see `Shapes`."""
         call = Call("capsule", name)
@@ -230,6 +241,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
             rolling,
         )
         return self._solid(call, options, geometry, rolls=Round(radius, call.axis(axis)))
@@ -254,6 +266,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a solid from a triangle mesh. For the other options see `Shapes`.
 
@@ -278,6 +291,7 @@ class Shapes(Bodies):
             friction: Overrides the material's.
             restitution: Overrides the material's.
             color: Overrides the material's.
+            rolling_friction: Overrides the material's rolling.
 
         Raises:
             SceneError: If the file cannot be read, or as all shapes do.
@@ -302,6 +316,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry, source.mass_properties)
 

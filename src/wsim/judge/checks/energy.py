@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class CheckEnergy(Check):
-    """Nothing gains energy from nowhere: kinetic and potential energy, less work done on it, only fall.
+    """Nothing gains energy from nowhere: kinetic, potential and springs' energy, less work done on it, only fall.
 
     By mechanism, over the time in which it meets no other, and for all bodies together. What friction and impacts take
     is not known, so a loss is always possible; a gain never is.
@@ -38,7 +38,7 @@ class CheckEnergy(Check):
         motion = evidence.motion
         if len(motion.h) == 0 or self._unknown(evidence):
             return []
-        energy = motion.kinetic + motion.potential
+        energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
         energy = energy - self._chattered(evidence) - carried_work(evidence)
@@ -160,8 +160,8 @@ class CheckEnergy(Check):
     def _limit(self, evidence: Evidence, rows: NDArray[np.intp]) -> tuple[float, float]:
         """The gain that is no finding yet, and the energy that changes hands [J]."""
         motion, g = evidence.motion, evidence.gravity
-        kinetic, potential = motion.kinetic[:, rows].sum(axis=1), motion.potential[:, rows].sum(axis=1)
-        scale = float(max(kinetic.max(), np.ptp(potential)))
+        parts = [energy[:, rows].sum(axis=1) for energy in (motion.kinetic, motion.potential, motion.elastic)]
+        scale = float(max(parts[0].max(), np.ptp(parts[1]), np.ptp(parts[2])))
         size = np.array([evidence.solid(int(i)).smallest for i in rows])
         height = np.abs(motion.com[:, rows, 2]).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.

@@ -73,17 +73,19 @@ class CheckExplosion(Check):
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
             value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
             limit_from=f"{self.body_factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
-            "by a far heavier body, and the work of drives and control",
+            "by a far heavier body, and the work of drives, control and springs",
         )  # fmt: skip
 
     @staticmethod
     def _driven(evidence: Evidence) -> Floats:
-        """The square of the speed that the work of drives, control and fluid may have given, (T, B) [m^2/s^2]."""
+        """The square of the speed that drives, springs, control and fluid may have given, (T, B) [m^2/s^2]."""
         applied, motion = evidence.motion.applied_work, evidence.motion
         work = np.zeros(motion.speed.shape) if applied is None else applied.copy()
         drives = evidence.recording.scalars.get("work/drives")
         if drives is not None:
             work[:, motion.jointed] += np.nancumsum(drives)[:, None]
+        # What springs hold at the start may end in any of the bodies that they move.
+        work[:, motion.jointed] += motion.elastic[0].sum()
         most: Floats = 2.0 * np.maximum(np.maximum.accumulate(work, axis=0), 0.0) / motion.mass
         return most
 

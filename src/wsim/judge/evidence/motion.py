@@ -12,6 +12,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.cords import spring_energy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -121,15 +122,32 @@ class Motion:
         bodies = self._recorded.world.bodies
         row = {body.prim: i for i, body in enumerate(bodies)}
         unit = np.arange(len(bodies))
-        for joint in self._recorded.world.joints:
-            if joint.parent in row and joint.child in row:
-                unit[unit == unit[row[joint.child]]] = unit[row[joint.parent]]
+        world = self._recorded.world
+        child = {joint.prim: joint.child for joint in world.joints}
+        pairs: list[tuple[str | None, str | None]] = [(joint.parent, joint.child) for joint in world.joints]
+        pairs += [(child.get(gear.first), child.get(gear.second)) for gear in world.gears]
+        pairs += [(tied[0], other) for tied in self._tied for other in tied[1:]]
+        for first, second in pairs:
+            if first in row and second in row:
+                unit[unit == unit[row[second]]] = unit[row[first]]
         return unit
+
+    @property
+    def _tied(self) -> list[list[str]]:
+        """The bodies that each spring and rope is fixed to or runs round."""
+        world = self._recorded.world
+        return [[guide.body for guide in cord.path if guide.body] for cord in world.cords]
+
+    @cached_property
+    def elastic(self) -> Floats:
+        """Energy that springs hold, shared by the bodies at their ends, (T, B) [J]."""
+        return spring_energy(self._recorded)
 
     @cached_property
     def jointed(self) -> Bools:
-        """Whether a joint holds the body, (B,)."""
+        """Whether a joint, a spring or a rope holds the body, (B,)."""
         held = {end for joint in self._recorded.world.joints for end in (joint.parent, joint.child)}
+        held |= {prim for tied in self._tied for prim in tied}
         return np.array([body.prim in held for body in self._recorded.world.bodies], dtype=bool)
 
     # ---- whom it may meet
