@@ -45,6 +45,8 @@ def _sampled(prim: Usd.Prim) -> bool:
 
 
 def _joint(stage: Usd.Stage, joint: UsdPhysics.Joint, led: set[Sdf.Path]) -> Iterator[str]:
+    if joint.GetExcludeFromArticulationAttr().Get():
+        return  # a constraint holds on to any body
     parent, child = joint_ends(joint)
     if child != WORLD_END and _kinematic(stage.GetPrimAtPath(child)):
         yield (
