@@ -10,7 +10,9 @@ from wsim.scene.describe import describe
 from wsim.scene.world import World
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-NAMES = ("floating_blocks", "dam_break", "double_pendulum", "pulleys", "springs", "stack_and_ball")
+NAMES = (
+    "conveyor", "floating_blocks", "dam_break", "double_pendulum", "pulleys", "springs", "stack_and_ball",
+)  # fmt: skip
 
 
 def build(name: str, folder: Path) -> World:
