@@ -10,9 +10,7 @@ from wsim.scene.describe import describe
 from wsim.scene.world import World
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-NAMES = (
-    "conveyor", "floating_blocks", "dam_break", "double_pendulum", "pulleys", "springs", "stack_and_ball",
-)  # fmt: skip
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 
 
 def build(name: str, folder: Path) -> World:

@@ -25,6 +25,7 @@ _CORD: dict[str, Any] = {"b": None, "anchor_b": (0.0, 0.0, 2.0)}
 _NEEDS: dict[str, dict[str, Any]] = {
     "ground": {}, "box": _SHAPE, "sphere": {"radius": 0.1}, "cylinder": _ROUND, "capsule": _ROUND,
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
+    "contact": {"friction": 0.5, "restitution": 0.5},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
     "surface_velocity": {"velocity": (1.0, 0.0, 0.0)},
     "path": {"times": (0.0, 1.0), "positions": ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
@@ -112,7 +113,7 @@ class World:
 
     def note(self, method: str, name: object, *, certain: bool) -> None:
         """Remember the prim that a call makes."""
-        if method in ("simulation", "save", *ABOUT):
+        if method in ("simulation", "save", "contact", *ABOUT):
             return
         if not isinstance(name, str):
             self.open = self.open or method not in ("material", "param")
@@ -202,7 +203,7 @@ class World:
         needs: dict[str, Any] = dict(_NEEDS[method])
         if method in ABOUT:
             needs["body"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0), kinematic=True)
-        elif method != "simulation":
+        elif method not in ("simulation", "contact"):
             needs["name"] = f"probe_{number}"
         if method in CORDS:
             needs["a"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
@@ -226,6 +227,8 @@ class World:
                 needs["child"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
             if method in CORDS:
                 needs["a"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
+        if method == "contact":
+            needs |= {end: scene.box(f"probe_{end}_{number}", size=(1.0, 1.0, 1.0)) for end in ("a", "b")}
         try:
             getattr(scene, method)(**(needs | given))
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
