@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import EXACT, Bench, G, Track, case, period
+from benchmarks.rigid_cases.case import Bench, G, Track, case, period
 from wsim.scene import Scene
 
 Array = np.ndarray
@@ -54,7 +54,7 @@ def _kept(track: Track) -> tuple[Array, Array]:
     return np.einsum("tij,tj->ti", axes, MOMENTS * own), 0.5 * (MOMENTS * own**2).sum(axis=1)
 
 
-@case("rad/s", 1e-4, EXACT)
+@case("rad/s", 1e-3, "in single precision a turn into the body's axes and back adds 3e-7 to a spin, step after step")
 def free_spin(bench: Bench) -> tuple[float, float]:
     """A box that spins about its third axis at 5 rad/s still does after 2 s."""
     track = _box(bench, np.array([0.0, 0.0, 5.0]), 2.0)

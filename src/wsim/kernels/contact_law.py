@@ -8,7 +8,11 @@ import warp as wp
 
 ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
 FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
+RUBBING = wp.constant(1)  # mjCNSTR_FRICTION_DOF
 LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
+TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
+CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
+ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 
 
@@ -28,16 +32,20 @@ def meets(distance: float, speed: float, restitution: float, h: float, threshold
 
 
 @wp.func
-def rebound(distance: float, speed: float, free: float, restitution: float, h: float) -> float:
+def rebound(distance: float, speed: float, free: float, restitution: float, h: float, smooth: bool) -> float:
     """Speed after the step in which surfaces meet, for which the energy of the fall comes back e^2 times [m/s].
 
-    Steps of the first order follow the parabola on which the speed is v + a h / 2: see `wsim.solvers.contact_law`.
+    Steps of the first order follow the parabola on which the speed is v + a h / 2, others that of v: see `rebounds` of
+    `wsim.solvers.contact_law`.
     """
-    half = 0.5 * free * h
+    half = wp.where(smooth, 0.0, 0.5 * free * h)
+    own = wp.where(smooth, free * h, half)
     fall = 2.0 * wp.max(distance, speed * h) * free  # no deeper than this approach has brought it
     before = speed + half
     squared = restitution * restitution * (before * before - fall) + fall
-    return wp.max(wp.sqrt(wp.max(squared, 0.0)) + half, 0.0)
+    if smooth:
+        squared += own * own
+    return wp.max(wp.sqrt(wp.max(squared, 0.0)) + own, 0.0)
 
 
 @wp.func
@@ -64,6 +72,14 @@ def along(
     return total
 
 
+@wp.func
+def bent(turn: wp.mat33, frame: wp.mat33, curvature: float, kind: int) -> float:
+    """Curvature of a surface where it touches [1/m]: none of a cylinder that stands on its end."""
+    if kind == CYLINDER and wp.abs(wp.dot(wp.vec3(turn[0, 2], turn[1, 2], turn[2, 2]), frame[0])) > ON_END:
+        return 0.0
+    return curvature
+
+
 @wp.kernel(enable_backward=False)
 def strike(
     # Data in:
@@ -76,7 +92,7 @@ def strike(
     timestep: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec4),
+    law: wp.array2d(dtype=wp.vec3),
     threshold: float,
     # Data out:
     struck: wp.array2d(dtype=int),
@@ -111,9 +127,14 @@ def aim(
     timestep: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec4),
+    law: wp.array2d(dtype=wp.vec3),
+    geom_kind: wp.array(dtype=int),
+    curvature: wp.array(dtype=float),
+    geom_turn: wp.array2d(dtype=wp.mat33),
+    contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
+    touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
     sparse: bool,
     nv: int,
     jacobian: wp.array3d(dtype=float),
@@ -129,6 +150,7 @@ def aim(
     target: wp.array(dtype=float),
     blow: wp.array(dtype=float),  # 1 where surfaces meet
     slip: wp.array(dtype=float),
+    weight: wp.array2d(dtype=float),
     aref: wp.array2d(dtype=float),
 ):
     """Give each contact its pair's law, and its rows what they should reach."""
@@ -148,7 +170,8 @@ def aim(
         touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
-            goal = rebound(distance, speed, pull, pair[1], h)
+            smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
+            goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         elif speed < -threshold * h:
             if distance > 0.0:
@@ -158,15 +181,25 @@ def aim(
             goal = -LATER
     target[k] = goal
 
+    roll = float(0.0)
+    if pair[2] > 0.0:
+        bend = float(0.0)
+        for side in range(2):
+            bend += bent(geom_turn[world, geom[side]], contact_frame[k], curvature[geom[side]], geom_kind[geom[side]])
+        if bend > 0.0:
+            roll = pair[2] / bend
     friction = contact_friction[k]
     for j in range(5):
         part = pair[0]
         if j == 2:
-            part = pair[2]
+            part = wp.pi * pair[0] * roll
         elif j > 2:
-            part = pair[3]
+            part = roll
         friction[j] = wp.max(part, smallest)
     contact_friction[k] = friction
+    for j in range(2, contact_dim[k] - 1):
+        share = friction[j] / friction[0]
+        weight[world, contact_row[k, j + 1]] = weight[world, contact_row[k, 1]] * share * share
     slipped = float(0.0)
     for j in range(contact_dim[k] - 1):
         r = contact_row[k, j + 1]
@@ -238,10 +271,13 @@ def stop(
     # Data out:
     aref: wp.array2d(dtype=float),
 ):
-    """Joints end at their stops, without a bounce."""
+    """Joints end at their stops, ropes where they are taut, without a bounce; dry friction would end motion."""
     world, row = wp.tid()
-    if row >= rows[world] or kind[world, row] != LIMIT:
+    what = kind[world, row]
+    if row >= rows[world] or (what != LIMIT and what != TAUT and what != RUBBING):
         return
     h = timestep[world % timestep.shape[0]]
-    goal = settling(position[world, row], h, settle_time, settle_speed)
+    goal = float(0.0)
+    if what != RUBBING:
+        goal = settling(position[world, row], h, settle_time, settle_speed)
     aref[world, row] = (goal - velocity[world, row]) / h

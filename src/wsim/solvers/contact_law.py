@@ -13,17 +13,31 @@ after it is that with which a body of the same acceleration comes back through t
 MuJoCo's regularisation gives way under a blow is added to what is asked for, or each would lose 1e-4 of its speed.
 A body that is hit lets go of what it touches for that step, so that a blow goes through a row of bodies one by one,
 as in Newton's cradle, and all keep their energy.
+
+What rolls is resisted by a torque of rho times its push, rho = C / (1/R1 + 1/R2): C is the pair's coefficient, R the
+radii of the two surfaces where they touch, without end for a flat one (as discrete elements have it: Ai et al. 2011).
+Surfaces that lose that much are pressed flat over a patch. Rolling takes 3/16 alpha a of the push as a torque, a the
+patch's radius and alpha <= 1 the share of the work of pressing in that is lost (Johnson 1985, 9.2), and spinning about
+the normal 3 pi/16 mu a (Lubkin 1951). So spinning is resisted by pi mu rho or more, and that is what is taken.
+
+Sliding, spinning and rolling share one cone, an ellipsoid, and each is resisted in proportion to its own speed. For
+sliding and spinning that is what a patch does, nearly (Howe and Cutkosky 1996). Rolling is not weakened by a push along
+the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from wsim.solvers.breaking import BreakingC
+
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
+ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
 
 
 @dataclass(frozen=True)
@@ -36,6 +50,8 @@ class ContactConfig:
     """The same of the weld that holds a kinematic body to its way; nearer to one it shakes what rides on it."""
     solver_tolerance: float = 1e-7
     """MuJoCo's tolerance."""
+    rolling_tolerance: float = 1e-10
+    """The same where rolling is resisted: those torques are small beside the pushes."""
     solver_tolerance_warp: float = 1e-3
     """The same where worlds are batched: an error of 0.03 m/s^2. Less is below single precision."""
     reach: float = 0.01
@@ -144,18 +160,35 @@ class ContactLawC:
         mujoco: The module.
         model: MuJoCo's model.
         geom_class: Class of each geom, (geoms,).
-        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
+        curvature: Of each geom's round side [1/m], (geoms,); 0 for a flat one.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
+        breaking: What breaks joints, if any may break.
     """
 
     def __init__(
-        self, mujoco: Any, model: Any, geom_class: Array, law: Array, smooth: bool, config: ContactConfig
+        self,
+        mujoco: Any,
+        model: Any,
+        geom_class: Array,
+        law: Array,
+        curvature: Array,
+        smooth: bool,
+        config: ContactConfig,
+        breaking: BreakingC | None = None,
     ) -> None:
+        self.breaking = breaking
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.geom_class, self.law = geom_class, law
+        self.geom_class, self.law, self.curvature = geom_class, law, curvature
         self.touched = 0  # steps of the first order since the last smooth one
+        self.rolls = bool(law[..., 2].any())
+        if self.rolls:
+            model.opt.tolerance = config.rolling_tolerance
+        self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        rows = mujoco.mjtConstraint
+        self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -168,6 +201,8 @@ class ContactLawC:
         mujoco.mj_fwdActuation(model, data)
         mujoco.mj_fwdAcceleration(model, data)
         touching = self._solve(data)
+        while self.breaking is not None and self.breaking.give_way(data):
+            self._solve(data)
         mujoco.mj_checkAcc(model, data)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
@@ -191,28 +226,32 @@ class ContactLawC:
         mujoco.mj_fwdActuation(model, data)
 
     def _solve(self, data: Any) -> bool:
-        """Constraint forces; whether a contact or a stop may be among them."""
+        """Constraint forces; whether a contact, a stop or dry friction may be among them."""
         kinds = data.efc_type
-        stops = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
+        stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
+        rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
+        data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
         first = data.contact.efc_address[: data.ncon]
         chosen = np.flatnonzero(first >= 0)
         if len(chosen):
             self._solve_contacts(data, chosen, first[chosen], h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
-        return bool(len(stops) or len(chosen))
+        return bool(len(stops) or len(rubbing) or len(chosen))
 
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
         geoms = contact.geom[chosen]
         law = self.law[self.geom_class[geoms[:, 0]], self.geom_class[geoms[:, 1]]]
-        friction = np.maximum(law[:, [0, 0, 2, 3, 3]], config.smallest_friction)
+        friction = self._coefficients(data, chosen, geoms, law)
         contact.friction[chosen] = friction
         contact.mu[chosen] = friction[:, 0]
+        if self.rolls:
+            self._weigh_rows(data, normal, contact.dim[chosen], friction)
         image = np.zeros(data.nefc)
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
         speed = data.efc_vel[normal]
@@ -238,3 +277,28 @@ class ContactLawC:
             slip = left
             given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc
+
+    def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
+        """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""
+        slide, roll = law[:, 0], np.zeros(len(geoms))
+        if self.rolls:
+            axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
+            leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
+            on_end = self.flat_ended[geoms] & (leans > ON_END)
+            bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
+            np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
+        return np.maximum(
+            np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction
+        )
+
+    @staticmethod
+    def _weigh_rows(data: Any, normal: Array, dim: Array, friction: Array) -> None:
+        """Weights of the rows of spinning and rolling by their coefficients, as MuJoCo's cone has them."""
+        wide = dim > 3
+        first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
+        for k in range(2, 5):
+            row, weight = first + k, data.efc_D[first] * share[:, k]
+            data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
+            if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+                row = data.map_efc2iefc[row]
+                data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight
