@@ -116,41 +116,6 @@ def test_a_ball_bounces_as_its_pair_has_it(simulate, ball, floor, e, time_step):
     assert rise == pytest.approx(0.5 * e**2, rel=2e-3, abs=1e-3 if e == 0.0 else 0.0)
 
 
-@pytest.mark.parametrize("worlds", [1, 2])
-@pytest.mark.parametrize("jointed", [False, True])
-def test_an_elastic_ball_keeps_its_energy(simulate, jointed, worlds):
-    """Whichever order of steps it flies by: a world with a joint makes them of the fourth."""
-
-    def build(scene):
-        scene.ground()
-        scene.sphere("ball", radius=0.1, mass=10.0, position=(0, 0, 0.3), restitution=1.0)
-        if jointed:
-            scene.sphere("bob", radius=0.1, mass=1.0, position=(3, 0, 3))
-            scene.joint_revolute("hinge", None, "bob", anchor=(3, 0, 4), axis="Y")
-
-    run = simulate(build, 1.7, worlds)
-    height, speed = run.q["ball"][:, 2] - 0.1, run.v["ball"][:, 2]
-    energy = G * height + 0.5 * speed**2
-    if not jointed:  # the parabola through places of the first order
-        energy -= 0.5 * G * run.dt * speed
-    assert int((np.diff(np.sign(speed)) > 0).sum()) >= 4
-    assert energy[-1] == pytest.approx(energy[0], rel=5e-4)
-
-
-def test_a_blow_through_a_cluster_keeps_its_energy(simulate):
-    """A ball that is hit while it nears another lets go of that one: nothing is lost at a dead stop."""
-
-    def build(scene):
-        scene.simulation(gravity=(0, 0, 0))
-        for k, (x, speed) in enumerate(((0.0, 0.5), (0.204, 0.0), (-0.25, 20.0))):
-            scene.sphere(f"b{k}", radius=0.1, mass=1.0, position=(x, 0, 0), velocity=(speed, 0, 0), friction=0.0,
-                         restitution=1.0)  # fmt: skip
-
-    run = simulate(build, 0.05)
-    energy = sum(0.5 * (v**2).sum(axis=1) for v in run.v.values())
-    assert energy[-1] == pytest.approx(200.125, rel=1e-4)
-
-
 def test_a_ball_bounces_in_batched_worlds(simulate):
     def build(scene):
         scene.ground()
