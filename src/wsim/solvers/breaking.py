@@ -50,7 +50,7 @@ class BreakingC:
         self.load = np.zeros((1, len(constraints), 2))
 
     def give_way(self, data: Any) -> bool:
-        """Break what bears too much in a solution; whether anything did, so that the step must be solved again."""
+        """Break what bears too much in a solution; whether anything did, so that the step must be made anew."""
         anew = False
         equality = data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
         for k, own in enumerate(self.constraints):
@@ -61,7 +61,6 @@ class BreakingC:
             self.load[0, k] = np.maximum(self.load[0, k], load)
             if (load > self.strength[k]).any():
                 anew = self.broken[0, k] = True
-                data.efc_D[np.concatenate(rows)] = 0.0
                 data.eq_active[list(own)] = 0
         return anew
 
