@@ -15,9 +15,12 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
 from wsim.defaults import DURATION, FLUID_DENSITY, FRAME_RATE, GRAVITY
 from wsim.errors import UserError
 from wsim.scene import schema
+from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.describe_joints import read_gears, read_joints
 from wsim.scene.errors import one_line
+from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
+from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
 from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
 from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
 from wsim.scene.world import (
@@ -59,6 +62,9 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
         joints=list(read_joints(prims)),
         gears=list(read_gears(prims)),
+        springs=springs(prims),
+        ropes=ropes(prims),
+        contacts=read_contacts(prims),
         cameras=[_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
         lights=list(_lights(prims)),
         parameters=[_parameter(prim) for prim in prims if schema.has(prim, schema.PARAMETER)],
@@ -113,9 +119,11 @@ def _solids(prims: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[S
         if not prim.IsA(UsdGeom.Gprim) or not _shown(prim) or _in_fluid(prim):
             continue
         owner = owner_of(prim)
-        shape = read_shape(prim, frames[owner] if owner else Gf.Matrix4d(1.0))
+        base = frames[owner] if owner else Gf.Matrix4d(1.0)
+        shape = read_shape(prim, base)
         if shape is None:
             continue
+        shape = with_surface_velocity(shape, prim, base)
         if owner:
             of_body[owner].append(shape)
         else:
@@ -132,17 +140,22 @@ def _body(prim: Usd.Prim, frame: Gf.Matrix4d, shapes: list[Shape]) -> Body:
     mass = mass_of(prim, shapes)
     velocity = frame.TransformDir(Gf.Vec3d(api.GetVelocityAttr().Get()))
     spin = frame.TransformDir(Gf.Vec3d(api.GetAngularVelocityAttr().Get())) * (math.pi / 180.0)
+    path = path_of(prim)
+    place, turn = to_vec3(frame.ExtractTranslation()), to_quat(frame.ExtractRotationQuat())
+    if path is not None:
+        place, turn = (tuple(part.tolist()) for part in curve_of(path).pose(0.0))
     return Body(
         prim=str(prim.GetPath()),
         mass=mass.mass,
         volume=mass.volume,
         com=to_vec3(mass.com),
         inertia=tuple(mass.inertia.reshape(-1).tolist()),
-        position=to_vec3(frame.ExtractTranslation()),
-        rotation=to_quat(frame.ExtractRotationQuat()),
+        position=place,
+        rotation=turn,
         velocity=to_vec3(velocity),
         angular_velocity=to_vec3(spin),
         kinematic=bool(api.GetKinematicEnabledAttr().Get()),
+        path=path,
         shapes=shapes,
         line=line_of(prim),
     )

@@ -13,7 +13,9 @@ from wsim.errors import UserError
 from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations, importable
 from wsim.sim.constraints import add_constraints
-from wsim.sim.contacts import harden_contacts, spare_kinematic, spare_tied
+from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
+from wsim.sim.cord_shapes import add_cord_shapes
+from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -66,8 +68,12 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     fluids = _add_fluids(single, world, config) if config else {}
     step = choose_time_step(world, config.max_time_step if config else None, time_step or world.time_step or None)
     harden_contacts(single, ContactConfig())
+    let_roll(single, world)
     spare_kinematic(single)
     spare_tied(single, world)
+    add_cords(single, world, ContactConfig())
+    if world_count == 1:
+        add_cord_shapes(single, world)
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)

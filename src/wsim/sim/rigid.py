@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import newton
 import numpy as np
 import warp as wp
 from mujoco_warp import OverflowType
-from newton import JointType, ShapeFlags
+from newton import ShapeFlags
 
-from wsim.kernels.kinematic import carry
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
-from wsim.sim.contacts import contact_law
+from wsim.sim.contacts import contact_law, surface_velocities
 from wsim.sim.devices import steps_in_c
+from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.solver_rigid import SolverRigid
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
-ROWS_A_CONTACT = 3  # push and friction
+ROWS_A_CONTACT = 3  # push and friction; where rolling is resisted, 6
 SMALLEST_CONTACTS = 64
 # A line search that single precision cannot make any better is no overflow.
 STAGNATED = int(OverflowType.LS_ITERATIONS)
@@ -85,13 +84,16 @@ class RigidBodies:
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        smooth = bool(world.joints) and model.particle_count == 0 and not is_overdamped(world, dt)
-        jumps = breakable or any(joint.friction for joint in world.joints)
-        smooth = smooth and (self.on_c or not (_may_touch(model) or jumps))
+        swings = bool(world.joints or world.springs)
+        smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
+        smooth = smooth and (self.on_c or not breakable)
+        may_touch = _may_touch(model) or bool(world.ropes) or any(joint.friction for joint in world.joints)
         law = contact_law(model, world)
-        rows = ROWS_A_CONTACT * capacity + constraint_rows(world) + 64
+        rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
+        rows = rows_a_contact * capacity + constraint_rows(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, dt, breakable, **sizes)
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, **sizes)
+        self.solver.move_surfaces(surface_velocities(model, world))
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
@@ -100,37 +102,19 @@ class RigidBodies:
         if driven:
             kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
         self.observables: Any = self.solver.observables(kinds) if kinds else None
-        self._carried, self._carried_at = self._kinematic()
+        self._kinematic = Kinematic(model, world, dt)
         pushed = driven or controlled or model.particle_count > 0
         self.ledger = Ledger(model, self.observables if driven else None, self.on_c or smooth) if pushed else None
 
-    def _kinematic(self) -> tuple[Any, Any]:
-        """The kinematic bodies of all worlds, and where the pose of each stands in `joint_q`."""
-        model = self.model
-        kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
-        kinds, child = model.joint_type.numpy(), model.joint_child.numpy()
-        joints = [j for j in range(len(child)) if kinds[j] == int(JointType.FREE) and kinematic[child[j]]]
-        with wp.ScopedDevice(model.device):
-            return (
-                wp.array(child[joints], dtype=int),
-                wp.array(model.joint_q_start.numpy()[joints], dtype=int),
-            )
-
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
+        self._kinematic.before(state_in)
         if self.ledger:
             self.ledger.before(state_in)
         self.solver.step(state_in, state_out, control, None, dt, observables=self.observables)
         if self.ledger:
             self.ledger.after(state_in.body_f, state_out, control, dt)
-        if len(self._carried):
-            wp.launch(
-                carry,
-                dim=len(self._carried),
-                inputs=[self._carried, self._carried_at, self.model.body_com, state_out.body_qd, dt],
-                outputs=[state_out.body_q, state_out.joint_q],
-                device=self.model.device,
-            )
+        self._kinematic.after(state_out)
         if not self.on_c:
             wp.launch(
                 accumulate_overflow,
@@ -142,6 +126,7 @@ class RigidBodies:
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
+        self._kinematic.reset(state)
         self.solver.reset(state, flags=0)
         self.solver.mend()
         if self.ledger:

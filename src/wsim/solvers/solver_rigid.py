@@ -10,9 +10,11 @@ import numpy as np
 import warp as wp
 from mujoco_warp import OverflowType
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.smooth_steps import SmoothStepsWarp
 
 Array = np.ndarray
 
@@ -34,9 +36,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     Args:
         model: The Newton model.
         classes: Class of each shape of the first world, (shapes,).
-        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
+        curvature: Of each shape's round side [1/m], (shapes,); 0 for a flat one.
         on_c: Whether MuJoCo in C steps the first world alone.
-        smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
+        smooth: Whether steps that touch nothing are of the fourth order.
+        may_touch: Whether any contact, stop or dry friction can come up.
         time_step: Of the steps to come [s].
         breakable: The joints that may break.
         config: How the law is applied.
@@ -48,8 +52,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         model: Any,
         classes: Array,
         law: Array,
+        curvature: Array,
         on_c: bool,
         smooth: bool,
+        may_touch: bool,
         time_step: float,
         breakable: Sequence[Breakable] = (),
         config: ContactConfig | None = None,
@@ -60,7 +66,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             model,
             use_mujoco_cpu=on_c,
             use_mujoco_contacts=True,
-            integrator="rk4" if smooth and not on_c else "implicitfast",
+            integrator="rk4" if smooth and not on_c and not may_touch else "implicitfast",
             cone="elliptic",
             enable_multiccd=True,  # a cylinder stands on four points, not on one that wanders
             impratio=1.0,
@@ -68,7 +74,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             **options,
         )
         shapes = self.mjc_geom_to_newton_shape.numpy()[0]
-        geom_class = np.where(shapes >= 0, classes[np.maximum(shapes, 0) % len(classes)], 0)
+        geom_class, bends = (
+            np.where(shapes >= 0, of[np.maximum(shapes, 0) % len(of)], 0) for of in (classes, curvature)
+        )
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
@@ -78,9 +86,34 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if on_c:
             mujoco = self.import_mujoco()[0]
             config = self.contact_config
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, config, self.breaking)
-        elif not smooth:
-            self._prepare_warp(geom_class, law)
+            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking)
+        elif may_touch or not smooth:
+            self._prepare_warp(geom_class, law, bends)
+        self._smooth_steps: Any = None
+        if smooth and may_touch and not on_c:
+            self._smooth_steps = SmoothStepsWarp(self._mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data)
+
+    def move_surfaces(self, velocity: Array) -> None:
+        """Let surfaces move as belts do: what touches them slips against that velocity.
+
+        MuJoCo adds a geom's `surfacevel` to what its contacts' friction rows have for velocity, in C and in Warp.
+
+        Args:
+            velocity: Of each shape of the first world [m/s], in its body's axes, or the world's, (shapes, 3).
+        """
+        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
+        stated = np.where(shapes[:, None] >= 0, velocity[np.maximum(shapes, 0) % max(1, len(velocity))], 0.0)
+        if not stated.any():
+            return
+        for geom in np.flatnonzero(stated.any(axis=1)):
+            x, y, z, w = self.mj_model.geom_quat[geom][[1, 2, 3, 0]]
+            self.mj_model.geom_surfacevel[geom, :3] = rotate(conjugate(np.array([x, y, z, w])), stated[geom])
+        self.mj_model.flg_surfacevel = 1
+        if not self.use_mujoco_cpu:
+            moving = self.mjw_model.geom_surfacevel
+            values = np.broadcast_to(self.mj_model.geom_surfacevel, (moving.shape[0], self.mj_model.ngeom, 6))
+            moving.assign(values.astype(np.float32))
+            self.mjw_model.flg_surfacevel = True
 
     def _harden_constraints(self, h: float) -> None:
         """Loops, gears and what may break are as hard as contacts, the welds that drive kinematic bodies nearly so.
@@ -117,18 +150,23 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
-    def _prepare_warp(self, geom_class: Array, law: Array) -> None:
+    def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
+        # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
+        # the contacts of a box that slides, on an H200 in one step of some 300.
+        self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         margin = self.mjw_model.geom_margin
         weights = self.mjw_model.body_invweight0
         weights.assign(np.broadcast_to(self.mj_model.body_invweight0, weights.numpy().shape).astype(np.float32))
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
             self._geom_class = wp.array(geom_class, dtype=int)
-            self._law = wp.array(law, dtype=wp.vec4)
+            self._law = wp.array(law, dtype=wp.vec3)
+            self._curvature = wp.array(curvature, dtype=float)
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
+            self._blow = wp.zeros(data.naconmax, dtype=float)
             self._slip = wp.zeros(data.naconmax, dtype=float)
 
     def step(
@@ -155,6 +193,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             super()._mujoco_warp_step()
             return
         warp = self._mujoco_warp
+        if self._smooth_steps:
+            self._smooth_steps.before(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         warp.fwd_actuation(model, data)
@@ -168,6 +208,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self.breaking.give_way(model, data)
             warp.solve(model, data)
         warp.implicit(model, data)
+        if self._smooth_steps:
+            self._smooth_steps.after(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
         config, efc, contact = self.contact_config, data.efc, data.contact
@@ -186,11 +228,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law, self._struck,
+                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law,
+                model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
                 data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._slip, efc.aref],
+            outputs=[contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
@@ -208,6 +251,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 data.nacon, contact.worldid, contact.efc_address, contact.dim, contact.friction, efc.vel,
                 model.opt.timestep, data.qacc, *self._jacobian(model, efc), self._target,
+                self._blow, efc.D, efc.force,
             ],
             outputs=[self._slip, efc.aref],
         )  # fmt: skip

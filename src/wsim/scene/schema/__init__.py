@@ -11,6 +11,12 @@ FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
+SPRING = "WsimSpringAPI"
+ROPE = "WsimRopeAPI"
+MATERIAL = "WsimMaterialAPI"
+CONTACT = "WsimContactAPI"
+PATH = "WsimPathAPI"
+SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 GEAR = "WsimGearAPI"
 
 
