@@ -91,6 +91,7 @@ def break_worst(
     kind: wp.array(dtype=int),
     now: wp.array2d(dtype=wp.vec2),
     # Data out:
+    anew: wp.array(dtype=int),
     broken: wp.array2d(dtype=int),
     load: wp.array2d(dtype=wp.vec2),
     weight: wp.array2d(dtype=float),
@@ -98,6 +99,7 @@ def break_worst(
 ):
     """Break the joint that bears most by its strength, if that is too much; else note what all bear."""
     world = wp.tid()
+    anew[world] = 0
     worst = int(-1)
     most = float(1.0)
     for k in range(constraint.shape[0]):
@@ -109,6 +111,7 @@ def break_worst(
         for k in range(constraint.shape[0]):
             load[world, k] = wp.max(load[world, k], now[world, k])
         return
+    anew[world] = 1
     broken[world, worst] = 1
     load[world, worst] = wp.max(load[world, worst], now[world, worst])
     one, two = constraint[worst, 0], constraint[worst, 1]

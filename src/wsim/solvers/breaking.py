@@ -56,7 +56,7 @@ class BreakingC:
         whole = np.flatnonzero(~self.broken[0])
         if not len(whole):
             return False
-        loads = np.array([self._load(data, equality, self.constraints[k]) for k in whole])
+        loads = np.array([self._load(data, equality, self.constraints[k]) for k in whole.tolist()])
         shares = (loads / self.strength[whole]).max(axis=1)
         worst = int(np.argmax(shares))
         if shares[worst] > 1.0:
@@ -94,7 +94,11 @@ class BreakingC:
 
 
 class BreakingWarp:
-    """The same for all worlds of a batch, in MuJoCo Warp; for the arguments see `BreakingC`."""
+    """The same for all worlds of a batch, in MuJoCo Warp; for the arguments see `BreakingC`.
+
+    Attributes:
+        anew: (worlds,), whether something broke in the last step.
+    """
 
     def __init__(self, model: Any, constraints: Sequence[Sequence[int]], strength: Array, worlds: int) -> None:
         count = len(constraints)
@@ -104,6 +108,7 @@ class BreakingWarp:
         self._own = wp.array(pairs[pairs >= 0], dtype=wp.int32)
         self._now = wp.zeros((worlds, count), dtype=wp.vec2)
         self._row = wp.full((worlds, model.neq), -1, dtype=wp.int32)
+        self.anew = wp.zeros(worlds, dtype=wp.int32)
         self.broken = wp.zeros((worlds, count), dtype=wp.int32)
         self.load = wp.zeros((worlds, count), dtype=wp.vec2)
 
@@ -124,7 +129,7 @@ class BreakingWarp:
             break_worst,
             dim=data.nworld,
             inputs=[self._constraint, self._strength, self._row, model.eq_type, self._now],
-            outputs=[self.broken, self.load, efc.D, data.eq_active],
+            outputs=[self.anew, self.broken, self.load, efc.D, data.eq_active],
         )
 
     def clear(self, data: Any) -> None:
