@@ -196,13 +196,9 @@ class ContactLawC:
         mujoco, model = self.mujoco, self.model
         mujoco.mj_checkPos(model, data)
         mujoco.mj_checkVel(model, data)
-        mujoco.mj_fwdPosition(model, data)
-        mujoco.mj_fwdVelocity(model, data)
-        mujoco.mj_fwdActuation(model, data)
-        mujoco.mj_fwdAcceleration(model, data)
-        touching = self._solve(data)
+        touching = self._forward(data)
         while self.breaking is not None and self.breaking.give_way(data):
-            self._solve(data)
+            touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
@@ -215,6 +211,15 @@ class ContactLawC:
             self.touched += 1
         if model.nu:
             self._tell_efforts(data)
+
+    def _forward(self, data: Any) -> bool:
+        """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
+        mujoco, model = self.mujoco, self.model
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        mujoco.mj_fwdActuation(model, data)
+        mujoco.mj_fwdAcceleration(model, data)
+        return self._solve(data)
 
     def _tell_efforts(self, data: Any) -> None:
         """What the drives give at the step's end, which the books need, whichever way the step was made."""

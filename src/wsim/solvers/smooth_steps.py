@@ -48,9 +48,12 @@ class SmoothStepsWarp:
         for kept, array in zip(self._start, self._kept, strict=True):
             wp.copy(array, kept)
 
-    def after(self, model: Any, data: Any) -> None:
-        """Take the smooth step in the worlds in which the law's had nothing to do."""
-        self._touches.zero_()
+    def after(self, model: Any, data: Any, breaks: Any = None) -> None:
+        """Take the smooth step in the worlds in which the law's had nothing to do, and where no joint `breaks`."""
+        if breaks is None:
+            self._touches.zero_()
+        else:
+            wp.copy(self._touches, breaks)
         wp.launch(
             find_touching,
             dim=(data.nworld, data.njmax),

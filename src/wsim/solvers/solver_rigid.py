@@ -213,7 +213,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             warp.solve(model, data)
         warp.implicit(model, data)
         if self._smooth_steps:
-            self._smooth_steps.after(model, data)
+            self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
 
     def _aim(self, model: Any, data: Any) -> None:
         config, efc, contact = self.contact_config, data.efc, data.contact
