@@ -33,10 +33,9 @@ def three(values: wp.array2d(dtype=float), world: int, row: int) -> wp.vec3:
 
 
 @wp.kernel(enable_backward=False)
-def break_joints(
+def bear(
     # Data in:
     constraint: wp.array2d(dtype=int),  # of each joint, the second -1 where there is one alone
-    strength: wp.array2d(dtype=float),  # force [N] and torque [N m]
     first: wp.array2d(dtype=int),
     kind: wp.array(dtype=int),
     parameters: wp.array2d(dtype=wp.types.vector(length=12, dtype=float)),
@@ -44,40 +43,81 @@ def break_joints(
     turn: wp.array2d(dtype=wp.mat33),
     force: wp.array2d(dtype=float),
     # Data out:
+    now: wp.array2d(dtype=wp.vec2),
+):
+    """The force [N] and the torque about its anchor [N m] that each joint bears."""
+    world, k = wp.tid()
+    one, two = constraint[k, 0], constraint[k, 1]
+    row = first[world, one]
+    now[world, k] = wp.vec2(0.0, 0.0)
+    if row < 0:
+        return
+    push = three(force, world, row)
+    torque = float(0.0)
+    data = parameters[world % parameters.shape[0], one]
+    if kind[one] == WELD:
+        # The last rows are the vector part of a quaternion, half the angle.
+        torque = 0.5 * data[10] * wp.length(three(force, world, row + 3))
+    elif two >= 0:
+        far = parameters[world % parameters.shape[0], two]
+        arm = turn[world, body[one]] * (0.5 * wp.vec3(far[0] - data[0], far[1] - data[1], far[2] - data[2]))
+        second = three(force, world, first[world, two])
+        torque = wp.length(wp.cross(arm, second - push))
+        push += second
+    now[world, k] = wp.vec2(wp.length(push), torque)
+
+
+@wp.func
+def let_go(
+    world: int,
+    id: int,
+    count: int,
+    first: wp.array2d(dtype=int),
+    weight: wp.array2d(dtype=float),
+    active: wp.array2d(dtype=bool),
+):
+    """Take a constraint's rows out of this step and of all later."""
+    active[world, id] = False
+    for j in range(count):
+        weight[world, first[world, id] + j] = 0.0
+
+
+@wp.kernel(enable_backward=False)
+def break_worst(
+    # Data in:
+    constraint: wp.array2d(dtype=int),
+    strength: wp.array2d(dtype=float),  # force [N] and torque [N m]
+    first: wp.array2d(dtype=int),
+    kind: wp.array(dtype=int),
+    now: wp.array2d(dtype=wp.vec2),
+    # Data out:
+    anew: wp.array(dtype=int),
     broken: wp.array2d(dtype=int),
     load: wp.array2d(dtype=wp.vec2),
     weight: wp.array2d(dtype=float),
     active: wp.array2d(dtype=bool),
 ):
-    """Note what each joint bears, and take the rows of those that bear too much out of the step and of all later."""
-    world, k = wp.tid()
-    one, two = constraint[k, 0], constraint[k, 1]
-    row = first[world, one]
-    if broken[world, k] != 0 or row < 0:
+    """Break the joint that bears most by its strength, if that is too much; else note what all bear."""
+    world = wp.tid()
+    anew[world] = 0
+    worst = int(-1)
+    most = float(1.0)
+    for k in range(constraint.shape[0]):
+        share = wp.max(now[world, k][0] / strength[k, 0], now[world, k][1] / strength[k, 1])
+        if broken[world, k] == 0 and share > most:
+            worst = k
+            most = share
+    if worst < 0:
+        for k in range(constraint.shape[0]):
+            load[world, k] = wp.max(load[world, k], now[world, k])
         return
-    push = three(force, world, row)
-    torque = float(0.0)
+    anew[world] = 1
+    broken[world, worst] = 1
+    load[world, worst] = wp.max(load[world, worst], now[world, worst])
+    one, two = constraint[worst, 0], constraint[worst, 1]
     count = int(3)
-    other = int(-1)
-    data = parameters[world % parameters.shape[0], one]
     if kind[one] == WELD:
-        torque = 0.5 * data[10] * wp.length(three(force, world, row + 3))
         count = 6
-    elif two >= 0:
-        other = first[world, two]
-        far = parameters[world % parameters.shape[0], two]
-        arm = turn[world, body[one]] * (0.5 * wp.vec3(far[0] - data[0], far[1] - data[1], far[2] - data[2]))
-        second = three(force, world, other)
-        torque = wp.length(wp.cross(arm, second - push))
-        push += second
-    bears = wp.vec2(wp.length(push), torque)
-    load[world, k] = wp.max(load[world, k], bears)
-    if bears[0] > strength[k, 0] or bears[1] > strength[k, 1]:
-        broken[world, k] = 1
-        active[world, one] = False
-        for j in range(count):
-            weight[world, row + j] = 0.0
-        if other >= 0:
-            active[world, two] = False
-            for j in range(3):
-                weight[world, other + j] = 0.0
+    let_go(world, one, count, first, weight, active)
+    if two >= 0:
+        let_go(world, two, 3, first, weight, active)

@@ -86,8 +86,8 @@ class RigidBodies:
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
         swings = bool(world.joints or world.springs)
         smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
-        smooth = smooth and (self.on_c or not breakable)
-        may_touch = _may_touch(model) or bool(world.ropes) or any(joint.friction for joint in world.joints)
+        jumps = any(joint.friction or joint.may_break for joint in world.joints)
+        may_touch = _may_touch(model) or bool(world.ropes) or jumps
         law = contact_law(model, world)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + len(world.ropes) + 64

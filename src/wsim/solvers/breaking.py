@@ -1,7 +1,8 @@
 """Joints that break: what a constraint bears is read off its rows after each solution.
 
 A joint that bears more than it can is brittle: it gives way before the step is made, which is then solved again without
-it, so it passes on no more than its strength, and nothing in the step in which it breaks.
+it, so it passes on nothing in the step in which it breaks. Of several the weakest for its load goes first, and the
+others may be relieved: a chain breaks at one link. In Warp one joint of a world breaks in a step, in C as many as must.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from wsim.kernels.breaking import break_joints, find_rows
+from wsim.kernels.breaking import bear, break_worst, find_rows
 
 Array = np.ndarray
 POINTS = 2  # of a hinge; a ball joint has one, a weld is one row
@@ -50,23 +51,25 @@ class BreakingC:
         self.load = np.zeros((1, len(constraints), 2))
 
     def give_way(self, data: Any) -> bool:
-        """Break what bears too much in a solution; whether anything did, so that the step must be solved again."""
-        anew = False
+        """Break what bears most, by its strength, if that is too much; whether the step must be made anew."""
         equality = data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
-        for k, own in enumerate(self.constraints):
-            if self.broken[0, k]:
-                continue
-            rows = [np.flatnonzero(equality & (data.efc_id == c)) for c in own]
-            load = self._load(data, own, [data.efc_force[r] for r in rows])
-            self.load[0, k] = np.maximum(self.load[0, k], load)
-            if (load > self.strength[k]).any():
-                anew = self.broken[0, k] = True
-                data.efc_D[np.concatenate(rows)] = 0.0
-                data.eq_active[list(own)] = 0
-        return anew
+        whole = np.flatnonzero(~self.broken[0])
+        if not len(whole):
+            return False
+        loads = np.array([self._load(data, equality, self.constraints[k]) for k in whole.tolist()])
+        shares = (loads / self.strength[whole]).max(axis=1)
+        worst = int(np.argmax(shares))
+        if shares[worst] > 1.0:
+            self.broken[0, whole[worst]] = True
+            self.load[0, whole[worst]] = np.maximum(self.load[0, whole[worst]], loads[worst])
+            data.eq_active[list(self.constraints[whole[worst]])] = 0
+            return True
+        self.load[0, whole] = np.maximum(self.load[0, whole], loads)
+        return False
 
-    def _load(self, data: Any, own: Sequence[int], forces: list[Array]) -> tuple[float, float]:
+    def _load(self, data: Any, equality: Array, own: Sequence[int]) -> tuple[float, float]:
         model = self.model
+        forces = [data.efc_force[np.flatnonzero(equality & (data.efc_id == c))] for c in own]
         if model.eq_type[own[0]] == WELD:
             # Its last rows are the vector part of a quaternion, half the angle.
             scale = 0.5 * model.eq_data[own[0], 10]
@@ -91,7 +94,11 @@ class BreakingC:
 
 
 class BreakingWarp:
-    """The same for all worlds of a batch, in MuJoCo Warp; for the arguments see `BreakingC`."""
+    """The same for all worlds of a batch, in MuJoCo Warp; for the arguments see `BreakingC`.
+
+    Attributes:
+        anew: (worlds,), whether something broke in the last step.
+    """
 
     def __init__(self, model: Any, constraints: Sequence[Sequence[int]], strength: Array, worlds: int) -> None:
         count = len(constraints)
@@ -99,24 +106,31 @@ class BreakingWarp:
         self._constraint = wp.array(pairs, dtype=wp.int32)
         self._strength = wp.array(np.minimum(strength, 1e30).astype(np.float32), dtype=wp.float32)
         self._own = wp.array(pairs[pairs >= 0], dtype=wp.int32)
+        self._now = wp.zeros((worlds, count), dtype=wp.vec2)
         self._row = wp.full((worlds, model.neq), -1, dtype=wp.int32)
+        self.anew = wp.zeros(worlds, dtype=wp.int32)
         self.broken = wp.zeros((worlds, count), dtype=wp.int32)
         self.load = wp.zeros((worlds, count), dtype=wp.vec2)
 
     def give_way(self, model: Any, data: Any) -> None:
-        """Break what bears too much in a solution, in each world by itself."""
+        """Break what bears most, if that is too much, in each world by itself."""
         efc = data.efc
         self._row.fill_(-1)
         wp.launch(find_rows, dim=(data.nworld, data.njmax), inputs=[data.nefc, efc.type, efc.id], outputs=[self._row])
         wp.launch(
-            break_joints,
+            bear,
             dim=self.broken.shape,
             inputs=[
-                self._constraint, self._strength, self._row, model.eq_type, model.eq_data, model.eq_obj1id, data.xmat,
-                efc.force,
+                self._constraint, self._row, model.eq_type, model.eq_data, model.eq_obj1id, data.xmat, efc.force,
             ],
-            outputs=[self.broken, self.load, efc.D, data.eq_active],
+            outputs=[self._now],
         )  # fmt: skip
+        wp.launch(
+            break_worst,
+            dim=data.nworld,
+            inputs=[self._constraint, self._strength, self._row, model.eq_type, self._now],
+            outputs=[self.anew, self.broken, self.load, efc.D, data.eq_active],
+        )
 
     def clear(self, data: Any) -> None:
         """Mend all joints."""

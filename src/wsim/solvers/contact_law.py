@@ -80,11 +80,14 @@ def settling(distance: Array, h: float, config: ContactConfig) -> Array:
 def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: float, smooth: Array) -> Array:
     """Speeds after the step in which surfaces meet, for which the energy of the fall comes back e² times [m/s].
 
-    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2 (v² + a h v - 2 a z
-    stays), others that of v. The step of the blow itself goes on by h times the speed after it.
+    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2: they keep
+    v² + a h v - 2 a z. Others follow that of v. The step of the blow itself goes on by h times the speed after it.
 
     Args:
-        distance: Gaps [m]; speed: normal speeds [m/s]; free: accelerations [m/s^2]; restitution: of each pair.
+        distance: Gaps [m].
+        speed: Normal speeds at the step's start [m/s].
+        free: Normal accelerations without constraints [m/s^2].
+        restitution: Of each pair.
         h: Time step [s].
         smooth: Whether the bodies fly by steps of a higher order, (contacts,).
     """
@@ -193,13 +196,9 @@ class ContactLawC:
         mujoco, model = self.mujoco, self.model
         mujoco.mj_checkPos(model, data)
         mujoco.mj_checkVel(model, data)
-        mujoco.mj_fwdPosition(model, data)
-        mujoco.mj_fwdVelocity(model, data)
-        mujoco.mj_fwdActuation(model, data)
-        mujoco.mj_fwdAcceleration(model, data)
-        touching = self._solve(data)
+        touching = self._forward(data)
         while self.breaking is not None and self.breaking.give_way(data):
-            self._solve(data)
+            touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
@@ -212,6 +211,15 @@ class ContactLawC:
             self.touched += 1
         if model.nu:
             self._tell_efforts(data)
+
+    def _forward(self, data: Any) -> bool:
+        """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
+        mujoco, model = self.mujoco, self.model
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        mujoco.mj_fwdActuation(model, data)
+        mujoco.mj_fwdAcceleration(model, data)
+        return self._solve(data)
 
     def _tell_efforts(self, data: Any) -> None:
         """What the drives give at the step's end, which the books need, whichever way the step was made."""

@@ -1,15 +1,16 @@
 """Joints that hold, and those that drift, lean, overrun their limits or strain at the end of their strength."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.judge.theory import UPRIGHT, ask, box, edited, only, record, swinging, times, with_world
-from wsim.judge.checks.joint import CheckDrives, CheckJointLimits, CheckJoints
+from wsim.judge.checks.joint import CheckBreakage, CheckDrives, CheckGears, CheckJointLimits, CheckJoints
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.joints import track_of
-from wsim.scene.world import Joint, Motor
+from wsim.scene.world import Gear, Joint, Motor
 
 
 def with_joint(recording, **fields):
@@ -134,3 +135,56 @@ def test_a_drive_without_a_bound_cannot_strain():
     right = with_joint(swinging(), drive=Motor(stiffness=1.0))
     right.scalars["drive/hinge"] = np.full(len(right.time), math.inf)
     assert ask(CheckDrives(), right) == []
+
+
+# ---- breaking
+def breaking(borne, at=0.5, strength=100.0):
+    """A box that bears `borne` [N] and is let go `at` a time [s]; at 0 it never is."""
+    t = times(1.0)
+    gone = (t >= at) & (at > 0.0)
+    right = held("fixed", along(2, lambda t: -9.81 * np.maximum(t - at, 0.0) ** 2 / 2 * gone), break_force=strength)
+    scalars = {"broken/joint": gone.astype(float), "force/joint": np.where(gone, 0.0, 9.81), "torque/joint": 0.0 * t}
+    scalars["force/joint"][np.argmax(gone) if at else 10] = borne
+    return replace(right, scalars=right.scalars | scalars)
+
+
+def test_a_joint_holds_until_it_breaks():
+    assert only(ask(CheckJoints(), breaking(101.0))).passed
+    loose = breaking(101.0)
+    assert not only(ask(CheckJoints(), replace(loose, scalars={"broken/joint": 0.0 * loose.time}))).passed
+
+
+@pytest.mark.parametrize(
+    ("borne", "at", "passed", "says"),
+    [
+        (101.0, 0.5, True, "breaks at 1.01"),
+        (80.0, 0.5, False, "/World/joint breaks at 0.8 of its strength"),
+        (99.0, 0.0, True, "bears at most 0.99"),
+        (150.0, 0.0, False, "/World/joint bears 1.5 of its strength"),
+    ],
+)
+def test_a_joint_breaks_at_its_strength(borne, at, passed, says):
+    finding = only(ask(CheckBreakage(), breaking(borne, at)))
+    assert finding.passed == passed and says in finding.message
+    assert (finding.target is None) == passed
+
+
+# ---- gears
+@pytest.mark.parametrize(("ratio", "passed"), [(-0.5, True), (-0.52, False)])
+def test_a_gear_keeps_its_ratio(ratio, passed):
+    t = times(1.0)
+    turns = [about(1, lambda t, share=share: share * 2.0 * t)(t) for share in (1.0, -0.5)]
+    joints = [
+        Joint(
+            prim=f"/World/j{k}", kind="revolute", axis="Y", parent=None, child=f"/World/{name}",
+            parent_anchor=(0.0, 0.0, 0.0), child_anchor=(0.0, 0.0, 0.0),
+        )
+        for k, name in enumerate(("a", "b"))
+    ]  # fmt: skip
+    bodies = [box("a"), box("b")]
+    place, still = np.zeros((len(t), 2, 3)), np.zeros((len(t), 2, 3))
+    gears = [Gear(prim="/World/mesh", first="/World/j0", second="/World/j1", ratio=ratio, line="program.py:7")]
+    made = record(bodies, place, still, t, rotation=np.stack(turns, axis=1), joints=joints)
+    finding = only(ask(CheckGears(), with_world(made, gears=gears)))
+    assert finding.passed == passed
+    assert finding.value == pytest.approx(abs(ratio + 0.5) * 2.0, abs=1e-6)

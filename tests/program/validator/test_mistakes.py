@@ -32,6 +32,8 @@ SCENE = {
     'scene.cube("a", size=(1, 1, 1))': ("attribute", 'no "cube"', "Scene.box("),
     'scene.add_box("a", size=(1, 1, 1))': ("attribute", 'no "add_box"', "Scene.box("),
     'scene.joint_hinge("j", arm, fore)': ("attribute", 'no "joint_hinge"', "Scene.joint_revolute("),
+    'scene.joint_revolute("j", None, arm, friction=-1.0)': ("value", "friction = -1", "Scene.joint_revolute("),
+    'scene.joint_fixed("j", None, arm, break_force=0.0)': ("value", "break_force = 0", "Scene.joint_fixed("),
     "scene.gravity((0, 0, -1))": ("attribute", 'no "gravity"', "Scene.simulation("),
     'scene.box("a", size=(1, 1, 1), pos=(0, 0, 0))': ("argument", '"pos"', "Scene.box("),
     'scene.box("a", size=(1, 1, 1), rotation=(0, 0, 30))': ("argument", 'did you mean "rotation_deg"', "Scene.box("),

@@ -27,16 +27,21 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
     "contact": {"friction": 0.5, "restitution": 0.5},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
+    "surface_velocity": {"velocity": (1.0, 0.0, 0.0)},
+    "path": {"times": (0.0, 1.0), "positions": ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
+    "gear": {"ratio": 1.0},
 }  # fmt: skip
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
+ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
 OBJECTS = (*BODIES, "ground", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
-         "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links")  # fmt: skip
+         "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
+         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
@@ -101,7 +106,7 @@ class World:
                 self.note("capsule", link.name, certain=certain)
             return Const(made), "", ""
         self.open = self.open or method == "cable"  # its links have names of their own
-        if certain and method in (*OBJECTS, *JOINTS, *CORDS, "camera", "light", "material", "param"):
+        if certain and method in (*OBJECTS, *JOINTS, *CORDS, "gear", "camera", "light", "material", "param"):
             self.trusted = False
         self.note(method, name, certain=certain)
         field, refusal = self._try(method, arguments)
@@ -109,7 +114,7 @@ class World:
 
     def note(self, method: str, name: object, *, certain: bool) -> None:
         """Remember the prim that a call makes."""
-        if method in ("simulation", "save", "contact"):
+        if method in ("simulation", "save", "contact", *ABOUT):
             return
         if not isinstance(name, str):
             self.open = self.open or method not in ("material", "param")
@@ -197,12 +202,8 @@ class World:
     def _attempt(self, method: str, given: dict[str, Any], *, alone: bool) -> str:
         number = next(self._numbers)
         needs: dict[str, Any] = dict(_NEEDS[method])
-        if method not in ("simulation", "contact"):
+        if method not in ("simulation", "contact", *ABOUT):
             needs["name"] = f"probe_{number}"
-        if method in CORDS:
-            needs["a"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
-        if method.startswith("joint_"):
-            needs["child"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
         if method == "fluid":
             edges = given.get("size", (1.0, 1.0, 1.0))
             place = given.get("position", (0.0, 0.0, -5000.0 + 3.0 * number))
@@ -214,20 +215,33 @@ class World:
         if method == "camera" and ("eye" in given) != ("target" in given):
             other = "target" if "eye" in given else "eye"
             needs[other] = (-123.4, 56.7, 8.9)
-        scene = self._probe
-        if alone or method == "fluid":
-            scene = Scene()
-            if method.startswith("joint_"):
-                needs["child"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
-            if method in CORDS:
-                needs["a"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
-        if method == "contact":
-            needs |= {end: scene.box(f"probe_{end}_{number}", size=(1.0, 1.0, 1.0)) for end in ("a", "b")}
+        scene = Scene() if alone or method == "fluid" else self._probe
+        needs |= _tied(scene, method, number)
         try:
             getattr(scene, method)(**(needs | given))
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type
             return _refusal(error)
         return ""
+
+
+def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
+    """What a call ties together, made for it."""
+
+    def body(end: str, kinematic: bool = False) -> Any:
+        return scene.box(f"probe_body_{number}{end}", size=(1.0, 1.0, 1.0), kinematic=kinematic)
+
+    if method in ABOUT:
+        return {"body": body("a", kinematic=True)}
+    if method == "contact":
+        return {end: body(end) for end in ("a", "b")}
+    if method in CORDS:
+        return {"a": body("a")}
+    if method.startswith("joint_"):
+        return {"child": body("a")}
+    if method == "gear":
+        ends = {"joint_a": "a", "joint_b": "b"}
+        return {key: scene.joint_revolute(f"probe_joint_{number}{e}", None, body(e)) for key, e in ends.items()}
+    return {}
 
 
 def _no_asset(identifier: object) -> str:
