@@ -61,6 +61,7 @@ def strike(
     contact_row: wp.array2d(dtype=int),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    bend: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
     law: wp.array2d(dtype=wp.vec4),
@@ -78,7 +79,7 @@ def strike(
     world, geom = contact_world[k], contact_geom[k]
     restitution = law[geom_class[geom[0]], geom_class[geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
-    if meets(contact_dist[k], velocity[world, row], restitution, h, threshold * h):
+    if meets(contact_dist[k], velocity[world, row] + bend[k], restitution, h, threshold * h):
         for side in range(2):
             body = geom_body[geom[side]]
             if body > 0:
@@ -96,6 +97,7 @@ def aim(
     contact_dim: wp.array(dtype=int),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    bend: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
     law: wp.array2d(dtype=wp.vec4),
@@ -127,7 +129,7 @@ def aim(
     world, geom = contact_world[k], contact_geom[k]
     pair = law[geom_class[geom[0]], geom_class[geom[1]]]
     h = timestep[world % timestep.shape[0]]
-    distance, speed = contact_dist[k], velocity[world, row]
+    distance, speed = contact_dist[k], velocity[world, row] + bend[k]
     goal = settling(distance, h, settle_time, settle_speed)
     if pair[1] > 0.0:
         within = wp.max(distance, speed * h)  # no deeper than this approach has brought it
@@ -141,6 +143,7 @@ def aim(
         # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
         elif touched > 0 and distance > -threshold * h * h:
             goal = -LATER
+    goal += bend[k]
     target[k] = goal
 
     friction = contact_friction[k]
@@ -159,7 +162,7 @@ def aim(
         aref[world, r] = -v / h
         slipped += friction[j] * friction[j] * v * v
     slip[k] = wp.sqrt(slipped)
-    aref[world, row] = (goal - slip[k] - speed) / h
+    aref[world, row] = (goal - slip[k] - velocity[world, row]) / h
 
 
 @wp.kernel(enable_backward=False)

@@ -18,7 +18,7 @@ from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends
 from wsim.scene.errors import one_line
 from wsim.scene.usd_mass import mass_of
-from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
+from wsim.scene.usd_shapes import collides_exactly, read_shape, to_quat, to_vec3
 from wsim.scene.world import (
     Body,
     Camera,
@@ -127,7 +127,8 @@ def _solids(prims: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[S
         if owner:
             of_body[owner].append(shape)
         else:
-            of_static.setdefault(_object_path(prim, stage), []).append(shape)
+            still_shape = shape.model_copy(update={"exact": collides_exactly(prim)})
+            of_static.setdefault(_object_path(prim, stage), []).append(still_shape)
     moving = [_body(prim, frames[path], of_body[path]) for path, prim in bodies.items()]
     still = [
         Static(prim=path, shapes=shapes, line=_line(stage.GetPrimAtPath(path))) for path, shapes in of_static.items()

@@ -41,6 +41,8 @@ class Shape(_Model):
     restitution: float | None = None
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
+    normals: list[Vec3] = Field(default_factory=list)  # of each triangle's corners in turn, where it stands for a curve
+    exact: bool = False  # its triangles collide; else, of a mesh, its convex hull or its convex parts
 
 
 class Body(_Model):

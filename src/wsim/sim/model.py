@@ -14,10 +14,12 @@ from wsim.scene.world import World
 from wsim.sim.articulations import complete_articulations
 from wsim.sim.contacts import harden_contacts, spare_kinematic, spare_tied
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
+from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
+from wsim.solvers.surface_contacts import SurfaceParts
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -37,6 +39,7 @@ class Built:
     sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
     time_step: TimeStep
+    surfaces: SurfaceParts | None = None  # what collides by its triangles
 
 
 def build_model(stage: Path, world: World, device: Any, world_count: int = 1, time_step: float | None = None) -> Built:
@@ -64,12 +67,13 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     harden_contacts(single, ContactConfig())
     spare_kinematic(single)
     spare_tied(single, world)
+    surfaces = take_surfaces(single, world)
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
         builder.replicate(single, world_count)
     model = builder.finalize(device=device)
-    return Built(model, world, _body_indices(model, world), fluids, config, containers_of(world), step)
+    return Built(model, world, _body_indices(model, world), fluids, config, containers_of(world), step, surfaces)
 
 
 def _sph_config(world: World) -> Any | None:

@@ -17,7 +17,9 @@ from wsim.sim.contacts import contact_law
 from wsim.sim.devices import steps_in_c
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
+from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.solver_rigid import SolverRigid
+from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
 ROWS_A_CONTACT = 3  # push and friction
@@ -67,12 +69,15 @@ class RigidBodies:
         world: What the stage states of its surfaces and drives.
         dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
+        surfaces: What collides by its triangles.
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
     """
 
-    def __init__(self, model: Any, world: World, dt: float, controlled: bool = False) -> None:
+    def __init__(
+        self, model: Any, world: World, dt: float, controlled: bool = False, surfaces: SurfaceParts | None = None
+    ) -> None:
         self.model = model
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
@@ -80,10 +85,13 @@ class RigidBodies:
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
         smooth = _is_mechanism(model) and model.particle_count == 0 and not is_overdamped(world, dt)
-        smooth = smooth and (self.on_c or not _may_touch(model))
+        smooth = smooth and (self.on_c or not (_may_touch(model) or surfaces))
+        touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
+        if touching:
+            capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
         law = contact_law(model, world)
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, **sizes)
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, touching=touching, **sizes)
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}

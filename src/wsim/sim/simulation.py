@@ -96,7 +96,9 @@ class Simulation:
         self._were_inside: set[str] = set()
         progress("compiling kernels", 1, 3)
         self.rigid = (
-            RigidBodies(self.model, self.world, self.dt, controller is not None) if self.model.body_count else None
+            RigidBodies(self.model, self.world, self.dt, controller is not None, self.built.surfaces)
+            if self.model.body_count
+            else None
         )
         self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
         self.state, self.control = self.model.state(), self.model.control()

@@ -21,6 +21,8 @@ from typing import Any
 
 import numpy as np
 
+from wsim.solvers.surface_contacts import SurfaceContacts
+
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
 
@@ -118,13 +120,16 @@ class ContactLawC:
         law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
+        touching: Finds contacts with what MuJoCo does not know.
     """
 
     def __init__(
-        self, mujoco: Any, model: Any, geom_class: Array, law: Array, smooth: bool, config: ContactConfig
+        self, mujoco: Any, model: Any, geom_class: Array, law: Array, smooth: bool, config: ContactConfig,
+        touching: SurfaceContacts | None = None,
     ) -> None:
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law = geom_class, law
+        self.touching, self._bend = touching, np.zeros(0)
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         tilt_cylinders(mujoco, model)
 
@@ -133,7 +138,7 @@ class ContactLawC:
         mujoco, model = self.mujoco, self.model
         mujoco.mj_checkPos(model, data)
         mujoco.mj_checkVel(model, data)
-        mujoco.mj_fwdPosition(model, data)
+        self._position(data)
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
         mujoco.mj_fwdAcceleration(model, data)
@@ -148,6 +153,23 @@ class ContactLawC:
             mujoco.mj_implicit(model, data)
         if model.nu:
             self._tell_efforts(data)
+
+    def _position(self, data: Any) -> None:
+        """What hangs on the pose, contacts with what MuJoCo does not know among it."""
+        mujoco, model = self.mujoco, self.model
+        if self.touching is None:
+            mujoco.mj_fwdPosition(model, data)
+            self._bend = np.zeros(data.ncon)
+            return
+        mujoco.mj_fwdKinematics(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_factorM(model, data)
+        mujoco.mj_collision(model, data)
+        self._bend = self.touching.add_to_c(mujoco, model, data)
+        mujoco.mj_makeConstraint(model, data)
+        mujoco.mj_island(model, data)
+        mujoco.mj_transmission(model, data)
+        mujoco.mj_projectConstraint(model, data)
 
     def _tell_efforts(self, data: Any) -> None:
         """What the drives give at the step's end, which the books need, whichever way the step was made."""
@@ -183,8 +205,9 @@ class ContactLawC:
         contact.mu[chosen] = friction[:, 0]
         image = np.zeros(data.nefc)
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
-        speed = data.efc_vel[normal]
-        goal = targets(contact.dist[chosen], speed, image[normal], law[:, 1], model.geom_bodyid[geoms], h, config)
+        speed, bend = data.efc_vel[normal], self._bend[chosen]
+        bodies = model.geom_bodyid[geoms]
+        goal = bend + targets(contact.dist[chosen], speed + bend, image[normal], law[:, 1], bodies, h, config)
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
         offset = np.arange(1, 6)
         held = offset < contact.dim[chosen][:, None]

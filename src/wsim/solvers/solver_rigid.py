@@ -11,6 +11,7 @@ from mujoco_warp import OverflowType
 
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
 
@@ -36,6 +37,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
         config: How the law is applied.
+        touching: Finds contacts with what MuJoCo does not know.
         options: For `newton.solvers.SolverMuJoCo`.
     """
 
@@ -47,6 +49,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         on_c: bool,
         smooth: bool,
         config: ContactConfig | None = None,
+        touching: SurfaceContacts | None = None,
         **options: Any,
     ) -> None:
         self.contact_config = config or ContactConfig()
@@ -68,9 +71,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
         self._harden_loops()
+        self._touching = touching
+        if touching:
+            touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
         if on_c:
             mujoco = self.import_mujoco()[0]
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config)
+            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config, touching)
         elif not smooth:
             self._prepare_warp(geom_class, law)
 
@@ -98,11 +104,17 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._slip = wp.zeros(data.naconmax, dtype=float)
+            self._bend = wp.zeros(data.naconmax, dtype=float)
+        if self._touching:
+            found, bend = self._touching, self._bend
+            self.mjw_model.callback.contactfilter = lambda model, data: found.add_to_warp(model, data, bend)
 
     def step(
         self, state_in: Any, state_out: Any, control: Any, contacts: Any, dt: float, *, observables: Any = None
     ) -> None:
         """Advance by `dt` [s]; see `newton.solvers.SolverMuJoCo.step`."""
+        if self._touching:
+            self._touching.find(state_in, dt)
         if not self.use_mujoco_cpu:
             super().step(state_in, state_out, control, contacts, dt, observables=observables)
             return
@@ -143,7 +155,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             strike,
             dim=data.naconmax,
             inputs=[
-                *touching, efc.vel, h, self._geom_class, model.geom_bodyid, self._law, config.threshold,
+                *touching, efc.vel, h, self._bend, self._geom_class, model.geom_bodyid, self._law,
+                config.threshold,
             ],
             outputs=[self._struck],
         )  # fmt: skip
@@ -151,8 +164,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law, self._struck,
-                data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
+                *touching, contact.dim, efc.vel, h, self._bend, self._geom_class, model.geom_bodyid, self._law,
+                self._struck, data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._slip, efc.aref],
