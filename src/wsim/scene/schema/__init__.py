@@ -11,6 +11,7 @@ FLUID = "WsimFluidAPI"
 CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
+HEIGHT_FIELD = "WsimHeightFieldAPI"
 
 
 def register() -> None:
