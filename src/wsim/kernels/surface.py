@@ -18,7 +18,10 @@ from wsim.kernels.convex import SPHERE, Convex, corner_arm, corner_centre, corne
 FOOT_STEPS = wp.constant(16)  # to a curved surface's nearest point
 HALVINGS = wp.constant(24)
 INSIDE = wp.constant(1.0e-4)  # of a triangle: what lies on the line between two belongs to both
+INSIDE_CURVED = wp.constant(1.0e-2)  # two curved ones meet at their line to the second order only
 GUARD = wp.constant(1.0e-4)  # [m]: nearer than this to a convex edge the edge touches, not the face
+LEVEL = wp.constant(1.0e-5)  # [m]: faces of two objects that differ by less are one plane
+ASIDE = wp.constant(1.0e-4)  # [m]: how far beyond an edge another object's face must begin to carry on its plane
 LEANS = wp.constant(0.01)  # [rad] into the surface, at most
 ALONG = wp.constant(0.9995)  # cosine: one direction
 
@@ -98,6 +101,21 @@ def _lift(corner: wp.vec3, own: wp.vec3, normal: wp.vec3, q: wp.vec3) -> float:
 
 
 @wp.func
+def _carried_on(surface: Surface, at: wp.vec3, along: wp.vec3, normal: wp.vec3, third: wp.vec3) -> bool:
+    """Whether beyond an edge another face carries on the plane of one: as pieces of one floor do."""
+    out = wp.normalize(wp.cross(along, normal))
+    if wp.dot(out, third - at) > 0.0:
+        out = -out
+    place = at + ASIDE * out
+    query = wp.mesh_query_point_no_sign(surface.mesh, place, 10.0 * LEVEL)
+    if not query.result:
+        return False
+    there = wp.mesh_eval_position(surface.mesh, query.face, query.u, query.v)
+    same = wp.dot(wp.mesh_eval_face_normal(surface.mesh, query.face), normal) > 1.0 - 1.0e-6
+    return same and wp.length(there - place) < LEVEL
+
+
+@wp.func
 def _touch_face(
     surface: Surface,
     face: int,
@@ -151,7 +169,7 @@ def _touch_face(
                 miss = miss - wp.dot(miss, up) * up
                 q = q + miss - wp.dot(miss, normal) * normal
                 shares = _shares(a, b, c, side * normal, q)
-        if wp.min(shares) < -INSIDE:
+        if wp.min(shares) < wp.where(surface.curved[face] != 0, -INSIDE_CURVED, -INSIDE):
             continue
         distance = wp.dot(p - foot, up) - round
         if distance > reach or distance < -deepest:
@@ -163,7 +181,8 @@ def _touch_face(
                 to = surface.points[surface.corners[face, (e + 1) % 3]]
                 along = wp.normalize(to - from_)
                 off = (foot - from_) - wp.dot(foot - from_, along) * along
-                if wp.length(off) < GUARD:
+                third = surface.points[surface.corners[face, (e + 2) % 3]]
+                if wp.length(off) < GUARD and not _carried_on(surface, foot - off, along, side * normal, third):
                     near = float(1.0)
         if near > 0.0:
             continue
@@ -272,6 +291,16 @@ def _touch_edge(
         for k in range(surface.ring_first[point], surface.ring_first[point + 1]):
             if not _behind(surface, place, up, surface.ring[k]):
                 return
+    if surface.edge[face, e] == 1:
+        from_ = surface.points[first]
+        to = surface.points[last]
+        third = surface.points[surface.corners[face, (e + 2) % 3]]
+        if _carried_on(surface, place, to - from_, wp.normalize(wp.cross(to - from_, third - from_)), third):
+            return
+        if surface.beyond[face, e] >= 0:
+            fourth = surface.points[surface.beyond[face, e]]
+            if _carried_on(surface, place, to - from_, wp.normalize(wp.cross(fourth - from_, to - from_)), fourth):
+                return
     part = surface.part[face]
     ahead = float(0.0)
     behind = float(0.0)
@@ -342,26 +371,6 @@ def touch(
             kind = surface.edge[face, e]
             if kind == 1 or (kind == 2 and shape.kind != SPHERE):
                 _touch_edge(surface, face, e, shape, planes, pose, reach, deepest, deepest, probe, found)
-
-
-@wp.kernel(enable_backward=False)
-def cover(
-    # Data in:
-    mesh: wp.uint64,
-    point: wp.array(dtype=wp.vec3),
-    normal: wp.array(dtype=wp.vec3),
-    near: float,
-    # Data out:
-    covered: wp.array(dtype=int),
-):
-    """Whether a point lies on a face of a given normal."""
-    k = wp.tid()
-    query = wp.mesh_query_point_no_sign(mesh, point[k], 10.0 * near)
-    if query.result:
-        there = wp.mesh_eval_position(mesh, query.face, query.u, query.v)
-        same = wp.dot(wp.mesh_eval_face_normal(mesh, query.face), normal[k]) > 1.0 - 1.0e-6
-        if same and wp.length(there - point[k]) < near:
-            covered[k] = 1
 
 
 @wp.func

@@ -10,14 +10,12 @@ import numpy as np
 import trimesh
 import warp as wp
 
-from wsim.kernels.surface import Surface, cover
+from wsim.kernels.surface import Surface
 
 Array = np.ndarray
 
 KINK = 1e-3  # [rad]: faces that differ by less are one plane; a kink of d takes sin² d of the energy, 1e-6
 SAME_NORMAL = 1e-2  # two faces whose normals at an edge differ by less are one curved surface there
-LEVEL = 1e-5  # [m]: faces of two objects that differ by less are one plane
-ASIDE = 1e-4  # [m]: how far beyond an edge another object's face must begin to carry on its plane
 SHARP, CURVED = 1, 2
 
 
@@ -98,43 +96,6 @@ def _edges(points: Array, faces: Array, flat: Array, normals: Array, is_open: bo
     return kind, guard, beyond
 
 
-def _continued(points: Array, faces: Array, flat: Array, kind: Array, guard: Array, beyond: Array) -> None:
-    """Take away sharp edges beyond which another face carries on the plane of one of theirs."""
-    found = np.argwhere(kind == SHARP)
-    if len(found) == 0:
-        return
-    f, e = found.T
-    across = np.full(len(f), -1)
-    # The other face of each edge, by the edge's ends.
-    owner = {(int(faces[g, k]), int(faces[g, (k + 1) % 3])): (g, k) for g in range(len(faces)) for k in range(3)}
-    others = [owner.get((int(faces[a, (b + 1) % 3]), int(faces[a, b])), (-1, -1)) for a, b in found]
-    across, side = np.array(others).T
-    start, end = points[faces[f, e]], points[faces[f, (e + 1) % 3]]
-    covered = []
-    for face, turn in ((f, 1.0), (across, -1.0)):
-        normal = flat[face]
-        out = np.cross(end - start, normal) * turn
-        out /= np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
-        places = [start + t * (end - start) + ASIDE * out for t in (0.02, 0.5, 0.98)]
-        hits = _on_faces(points, faces, np.concatenate(places), np.concatenate([normal] * 3))
-        covered.append(hits.reshape(3, -1).all(axis=0) & (face >= 0))
-    either = covered[0] | covered[1]
-    kind[f[either], e[either]] = 0
-    guard[f[covered[0]], e[covered[0]]] = 0
-    second = covered[1] & (across >= 0)
-    guard[across[second], side[second]] = 0
-
-
-def _on_faces(points: Array, faces: Array, places: Array, normals: Array) -> Array:
-    """Which places lie on a face of the given normal."""
-    with wp.ScopedDevice("cpu"):
-        mesh = wp.Mesh(wp.array(points, dtype=wp.vec3), wp.array(faces.reshape(-1), dtype=wp.int32))
-        hit = wp.zeros(len(places), dtype=int)
-        given = [wp.array(values, dtype=wp.vec3) for values in (places, normals)]
-        wp.launch(cover, dim=len(places), inputs=[mesh.id, *given, LEVEL], outputs=[hit])
-        return hit.numpy() > 0
-
-
 def make_surface(parts: Sequence[Part], device: Any) -> tuple[Any, Any]:
     """All parts as one `wsim.kernels.surface.Surface` on a device, and the `wp.Mesh` behind it, to be kept."""
     ready = [_prepare(part) for part in parts]
@@ -145,7 +106,6 @@ def make_surface(parts: Sequence[Part], device: Any) -> tuple[Any, Any]:
     normals = np.concatenate([each.normals for each in ready])
     kind, guard = (np.concatenate([getattr(each, name) for each in ready]) for name in ("edge", "guard"))
     beyond = np.concatenate([np.where(r.beyond < 0, -1, r.beyond + k) for r, k in zip(ready, first, strict=False)])
-    _continued(points, faces, flat, kind, guard, beyond)
     pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     pairs = np.unique(np.concatenate([pairs, pairs[:, ::-1]]), axis=0)
     ring_first = np.searchsorted(pairs[:, 0], np.arange(len(points) + 1))
