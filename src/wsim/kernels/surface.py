@@ -409,7 +409,6 @@ def add(
     solimp: wp.array(dtype=wp.types.vector(length=5, dtype=float)),
     dim: wp.array(dtype=int),
     geom: wp.array(dtype=wp.vec2i),
-    flex: wp.array(dtype=wp.vec2i),
     adhesion: wp.array(dtype=float),
     kind: wp.array(dtype=int),
     number: wp.array(dtype=int),
@@ -445,7 +444,6 @@ def add(
     solimp[k] = geom_solimp[home % geom_solimp.shape[0], own]
     dim[k] = wp.max(geom_dim[own], geom_dim[fixed])
     geom[k] = wp.vec2i(fixed, own)
-    flex[k] = wp.vec2i(-1, -1)
     adhesion[k] = 0.0
     kind[k] = 1
     number[k] = slot

@@ -144,7 +144,7 @@ class SurfaceContacts:
             ],
             outputs=[
                 data.nacon, contact.dist, contact.pos, contact.frame, contact.includemargin, contact.friction,
-                contact.solref, contact.solreffriction, contact.solimp, contact.dim, contact.geom, contact.flex, contact.adhesion,
+                contact.solref, contact.solreffriction, contact.solimp, contact.dim, contact.geom, contact.adhesion,
                 contact.type, contact.geomcollisionid, contact.efc_address, contact.worldid, bend,
             ],
             device=self.model.device,
