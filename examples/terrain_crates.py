@@ -7,14 +7,14 @@ from wsim.scene import Scene
 
 def height(x: float, y: float) -> float:
     """A hill with a valley around it [m]."""
-    return 0.5 * math.exp(-(x * x + y * y) / 0.8) + 0.12 * (x * x + y * y) / 4.0
+    return 0.5 * math.exp(-(x * x + y * y) / 0.5) + 0.1 * (x * x + y * y)
 
 
 def build(scene: Scene) -> None:
-    scene.simulation(duration=4.0, frame_rate=30.0)
+    scene.simulation(duration=5.0, frame_rate=30.0)
     scene.height_field("hill", heights=height, size=(4.0, 4.0), cells=(80, 80), friction=0.8, color=(0.3, 0.42, 0.2))
     wood = scene.material("wood", density=500.0, friction=0.8, color=(0.55, 0.35, 0.15))
-    ice = scene.material("ice", density=917.0, friction=0.05, color=(0.7, 0.85, 0.95))
+    ice = scene.material("ice", density=917.0, friction=0.15, color=(0.7, 0.85, 0.95))
     edge = 0.2
     for k, (turn, material) in enumerate(((0.0, wood), (120.0, wood), (240.0, ice))):
         way = math.radians(turn)

@@ -13,7 +13,7 @@ from typing import Any
 
 from wsim.assets import AssetError, get
 from wsim.program.validator.values import Const, Instance, Items, NotKnownError, Unknown, Value, plain
-from wsim.scene import Scene, SceneError
+from wsim.scene import Part, Scene, SceneError
 from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
 
 _MOST_CALLS = 400
@@ -25,13 +25,15 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "ground": {}, "box": _SHAPE, "sphere": {"radius": 0.1}, "cylinder": _ROUND, "capsule": _ROUND,
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
-    "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
+    "track": {"pieces": [("line", 1.0)]},
+    "height_field": {"heights": [[0.0, 0.0], [0.0, 0.0]], "size": (1.0, 1.0)},
+    "compound": {"parts": [Part("sphere", radius=0.1)]}, "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
 }  # fmt: skip
-BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "asset")
+BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
-OBJECTS = (*BODIES, "ground", "tank", "fluid")
+OBJECTS = (*BODIES, "ground", "track", "height_field", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
-_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high")
+_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high", "points")
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
