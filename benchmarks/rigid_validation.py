@@ -24,12 +24,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT)] if str(ROOT) not in sys.path else []
 
-from benchmarks.rigid_cases.case import Bench, Case  # noqa: E402
+from benchmarks.rigid_cases.case import Bench, Case, Curve  # noqa: E402
 from wsim.sim.devices import pick_device  # noqa: E402
 
 FOLDER = "benchmarks.rigid_cases"
 DOCUMENT = ROOT / "docs/rigid.md"
-PICTURE = ROOT / "docs/images/rigid.png"
+PICTURES = ROOT / "docs/images"
 MARKS = re.compile(r"(?<=<!-- rigid:begin -->\n).*?(?=<!-- rigid:end -->)", re.DOTALL)
 HEADER = ("case", "what is known", "expected", "CPU", "CUDA", "reach", "step [ms]")
 
@@ -44,6 +44,7 @@ class Run:
     step: float = 0.0  # [s]
     seconds: float = 0.0
     failure: str = ""
+    curve: Curve | None = None
 
     @property
     def reached(self) -> bool:
@@ -84,7 +85,7 @@ def run_case(case: Case, device: str, worlds: int) -> Run:
     except Exception as problem:  # noqa: BLE001 - the other cases still run; it is reported and sets the exit code
         traceback.print_exc()
         run.failure = f"{type(problem).__name__}: {problem}".replace("\n", " ")
-    run.step, run.seconds = bench.step, time.perf_counter() - started
+    run.step, run.seconds, run.curve = bench.step, time.perf_counter() - started, bench.curve
     return run
 
 
@@ -143,23 +144,12 @@ def print_row(run: Run) -> None:
     print(f"{run.case.name:28} {found} {1e3 * run.step:5.3g} ms {result:8} {run.seconds:4.1f} s", flush=True)
 
 
-def plot(runs: list[Run], device: str) -> None:
-    """One picture: each case's error in parts of its reach."""
-    from matplotlib.figure import Figure  # of the extra dev, and --plot alone needs it
+def plot(runs: list[Run], device: str, folder: Path) -> None:
+    """A picture of each case, on sheets."""
+    from benchmarks.rigid_plot import draw  # loads matplotlib, of the extra dev, which --plot alone needs
 
-    good = [run for run in runs if not run.failure and run.case.reach]
-    errors = [(run.value - run.expected) / run.case.bound(run.expected) for run in good]
-    figure = Figure(figsize=(7.0, 0.2 * len(good) + 1.0), dpi=100, layout="constrained")
-    axes = figure.subplots()
-    colors = ["#0072b2" if run.reached else "#d55e00" for run in good]
-    axes.scatter([max(-3.0, min(3.0, error)) for error in errors], range(len(good)), c=colors, s=18)
-    axes.axvspan(-1.0, 1.0, color="#0072b2", alpha=0.08)
-    axes.axvline(0.0, color="k", linewidth=0.8)
-    axes.set(xlim=(-3.1, 3.1), ylim=(len(good), -1), xlabel=f"error, in parts of the reach ({device}; cut at 3)")
-    axes.set_yticks(range(len(good)), [run.case.name for run in good], fontsize=7)
-    axes.grid(axis="x", alpha=0.3)
-    PICTURE.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(PICTURE)
+    for path in draw([run for run in runs if not run.failure], folder, device):
+        print(f"{path}: {path.stat().st_size // 1000} kB")
 
 
 def write_table(runs: list[Run], device: str) -> None:
@@ -180,7 +170,8 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--cases", nargs="+", metavar="NAME", help="all, if left out")
     parser.add_argument("--write", action="store_true", help="put the table into docs/rigid.md")
-    parser.add_argument("--plot", action="store_true", help="draw docs/images/rigid.png; needs matplotlib")
+    parser.add_argument("--plot", nargs="?", const=PICTURES, type=Path, metavar="FOLDER",
+                        help="draw a picture of each case, on sheets in docs/images; needs matplotlib")  # fmt: skip
     args = parser.parse_args(arguments)
     device, runs = pick_device(args.device), []
     for case in find_cases(args.cases):
@@ -194,7 +185,7 @@ def main(arguments: list[str] | None = None) -> int:
     if args.write:
         write_table(runs, device)
     if args.plot:
-        plot(runs, device)
+        plot(runs, device, args.plot)
     return 1 if any(run.failure for run in runs) else 0
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import STILL, Bench, G, case
+from benchmarks.rigid_cases.case import STILL, Bench, G, bounces, case, step_at
 from wsim.scene import Scene
 
 
@@ -19,7 +19,10 @@ def paddle(bench: Bench) -> tuple[float, float]:
         scene.box("paddle", size=(0.1, 0.5, 0.5), position=(-0.3, 0, 0), kinematic=True, velocity=(1, 0, 0))
         scene.sphere("ball", radius=0.1, mass=1.0, position=(0.3, 0, 0), velocity=(-2, 0, 0), restitution=0.5)
 
-    return float(bench.run(build, 0.5).velocity("ball")[-1, 0]), 1 + 0.5 * 3
+    track = bench.run(build, 0.5)
+    speed = track.velocity("ball")[:, 0]
+    bench.show("v [m/s]", track.time, speed, step_at(track.time, 0.15, -2.0, 2.5))
+    return float(speed[-1]), 1 + 0.5 * 3
 
 
 @case("m")
@@ -30,7 +33,10 @@ def flat_box_bounce(bench: Bench) -> tuple[float, float]:
         scene.ground()
         scene.box("box", size=(0.2, 0.2, 0.2), density=600, position=(0, 0, 1.1), restitution=0.5)
 
-    return float(bench.run(build, 0.9).position("box")[50:, 2].max() - 0.1), 0.25
+    track = bench.run(build, 0.9)
+    height = track.position("box")[:, 2] - 0.1
+    bench.show("height [m]", track.time, height, bounces(track.time, 1.0, 0.5))
+    return float(height[50:].max()), 0.25
 
 
 @case("J/kg")
@@ -42,7 +48,9 @@ def elastic_bounces(bench: Bench) -> tuple[float, float]:
         scene.sphere("ball", radius=0.1, density=600, position=(0, 0, 1.1), restitution=1.0)
 
     track = bench.run(build, 5.0)
-    return float(G * (track.position("ball")[-1, 2] - 0.1) + 0.5 * track.velocity("ball")[-1, 2] ** 2), G
+    energy = G * (track.position("ball")[:, 2] - 0.1) + 0.5 * track.velocity("ball")[:, 2] ** 2
+    bench.show("energy [J/kg]", track.time, energy, G)
+    return float(energy[-1]), G
 
 
 @case("s")
@@ -56,7 +64,9 @@ def bounce_series(bench: Bench) -> tuple[float, float]:
     track = bench.run(build, 1.8, rate=800.0)
     last = 0.5**8  # [m], the last apex above 2 mm
     less = (math.sqrt(2 * G * last) - math.sqrt(2 * G * (last - 2e-3))) / G
-    high = np.flatnonzero(track.position("ball")[:, 2] - 0.1 > 2e-3)
+    height = track.position("ball")[:, 2] - 0.1
+    bench.show("height [m]", track.time, height, bounces(track.time, 1.0, 0.5))
+    high = np.flatnonzero(height > 2e-3)
     return float(track.time[high[-1]]), math.sqrt(2 / G) * (1 + 2 * (0.5 + 0.25 + 0.125 + 0.0625)) - less
 
 
@@ -71,7 +81,11 @@ def struck_door(bench: Bench) -> tuple[float, float]:
         scene.sphere("ball", radius=0.1, mass=2.0, position=(0.6, -0.5, 1.0), velocity=(0, 4, 0))
 
     inertia = 20.0 * ((0.8**2 + 0.05**2) / 12 + 0.4**2)
-    return float(bench.run(build, 0.2).spin("door")[-1, 2]), 1.5 * 2 * 4 * 0.6 / (inertia + 2 * 0.6**2)
+    expected = 1.5 * 2 * 4 * 0.6 / (inertia + 2 * 0.6**2)
+    track = bench.run(build, 0.2)
+    spin = track.spin("door")[:, 2]
+    bench.show("ω [rad/s]", track.time, spin, step_at(track.time, 0.375 / 4, 0.0, expected))
+    return float(spin[-1]), expected
 
 
 @case("rad/s")
@@ -85,7 +99,10 @@ def struck_rod(bench: Bench) -> tuple[float, float]:
 
     inertia = 3.0 * (1.0 + 0.1**2) / 12
     blow = 2 * 3.0 / (1.0 + 1 / 3 + 0.4**2 / inertia)
-    return float(bench.run(build, 0.2).spin("rod")[-1, 2]), blow * 0.4 / inertia
+    track = bench.run(build, 0.2)
+    spin = track.spin("rod")[:, 2]
+    bench.show("ω [rad/s]", track.time, spin, step_at(track.time, 0.4 / 3, 0.0, blow * 0.4 / inertia))
+    return float(spin[-1]), blow * 0.4 / inertia
 
 
 @case("m/s", 0.02, "the balls start 5 mm apart and meet a little after the ground")
@@ -98,7 +115,10 @@ def ball_on_ball(bench: Bench) -> tuple[float, float]:
         scene.sphere("light", radius=0.05, mass=0.1, position=(0, 0, 0.755), restitution=1.0)
 
     track = bench.run(build, 0.4, rate=800.0)
-    return float(track.velocity("light")[:, 2].max()), (6 - 0.1) / 2.1 * math.sqrt(G)
+    speed, met, expected = track.velocity("light")[:, 2], math.sqrt(1.0 / G), (6 - 0.1) / 2.1 * math.sqrt(G)
+    known = np.where(track.time < met, -G * track.time, expected - G * (track.time - met))
+    bench.show("v [m/s]", track.time, speed, known)
+    return float(speed.max()), expected
 
 
 @case("m", 1e-3, STILL)
@@ -110,7 +130,9 @@ def bouncy_stack(bench: Bench) -> tuple[float, float]:
         for k in range(5):
             scene.box(f"b{k}", size=(0.2, 0.2, 0.2), density=600, position=(0, 0, 0.1 + 0.2 * k), restitution=0.8)
 
-    return bench.run(build, 2.0).moved(), 0.0
+    track = bench.run(build, 2.0)
+    bench.show("moved [m]", track.time, track.drift(), 0.0)
+    return track.moved(), 0.0
 
 
 @case("m", 1e-3, "it does not leave the ground")
@@ -121,7 +143,9 @@ def bouncy_slide(bench: Bench) -> tuple[float, float]:
         scene.ground()
         scene.box("box", size=(0.2, 0.2, 0.2), density=600, position=(0, 0, 0.1), velocity=(5, 0, 0), restitution=0.8)
 
-    return float((bench.run(build, 1.5).position("box")[:, 2] - 0.1).max()), 0.0
+    track = bench.run(build, 1.5)
+    bench.show("rise [m]", track.time, track.position("box")[:, 2] - 0.1, 0.0)
+    return float((track.position("box")[:, 2] - 0.1).max()), 0.0
 
 
 @case("m", 1e-3, "a rolling ball does not hop")
@@ -132,4 +156,6 @@ def bouncy_roll(bench: Bench) -> tuple[float, float]:
         scene.ground()
         scene.sphere("ball", radius=0.1, density=600, position=(0, 0, 0.1), velocity=(3, 0, 0), restitution=0.9)
 
-    return float((bench.run(build, 1.5).position("ball")[:, 2] - 0.1).max()), 0.0
+    track = bench.run(build, 1.5)
+    bench.show("rise [m]", track.time, track.position("ball")[:, 2] - 0.1, 0.0)
+    return float((track.position("ball")[:, 2] - 0.1).max()), 0.0

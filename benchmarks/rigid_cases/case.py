@@ -60,20 +60,44 @@ class Track:
         ]
         return np.moveaxis(np.array(rows), -1, 0)
 
+    def drift(self) -> Array:
+        """How far any body's origin is from its start at most [m], (frames,)."""
+        return np.linalg.norm(self.body_q[:, :, :3] - self.body_q[0, :, :3], axis=2).max(axis=1)
+
     def moved(self) -> float:
         """How far any body's origin ended from its start [m]."""
-        return float(np.linalg.norm(self.body_q[-1, :, :3] - self.body_q[0, :, :3], axis=1).max())
+        return float(self.drift()[-1])
 
     def at(self, values: Array, time: float) -> float:
         """A row of numbers at a time."""
         return float(np.interp(time, self.time, values))
 
 
+@dataclass(frozen=True)
+class Curve:
+    """What a case measured over the time or a parameter, and what is known of it there."""
+
+    names: tuple[str, str]  # of the axes, with their units
+    x: Array
+    measured: Array
+    known: Array | float
+
+
 class Bench:
-    """Runs worlds on one device, of several copies the first, and keeps the longest time step that they took [s]."""
+    """Runs worlds on one device, of several copies the first.
+
+    Attributes:
+        step: The longest time step that they took [s].
+        curve: For the case's picture, if it has one.
+    """
 
     def __init__(self, device: str, worlds: int = 1) -> None:
         self.device, self.worlds, self.step = device, worlds, 0.0
+        self.curve: Curve | None = None
+
+    def show(self, name: str, x: Array, measured: Array, known: Array | float, along: str = "t [s]") -> None:
+        """Leave a curve for the case's picture: `measured` and what is known, over `x`."""
+        self.curve = Curve((along, name), x, measured, known)
 
     def run(
         self, build: Build, seconds: float, *, rate: float = 100.0, step: float | None = None, exactly: bool = False
@@ -160,6 +184,46 @@ def period(time: Array, values: Array) -> float:
     k = np.flatnonzero((values[:-1] < 0.0) & (values[1:] >= 0.0))
     crossings = time[k] - values[k] * (time[k + 1] - time[k]) / (values[k + 1] - values[k])
     return float(np.diff(crossings).mean()) if len(crossings) > 1 else math.nan
+
+
+def step_at(time: Array, when: float, before: float, after: float) -> Array:
+    """What jumps at a blow."""
+    return np.where(time < when, before, after)
+
+
+def bounces(time: Array, height: float, restitution: float) -> Array:
+    """Height [m] of what falls from `height` [m] and bounces by Newton's law of impact."""
+    after, found = math.sqrt(2.0 * height / G), height - 0.5 * G * time**2
+    speed = math.sqrt(2.0 * G * height)
+    while restitution and after < time[-1] and speed > 1e-3:
+        speed *= restitution
+        found = np.where(time >= after, speed * (time - after) - 0.5 * G * (time - after) ** 2, found)
+        after += 2.0 * speed / G
+    return np.maximum(found, 0.0)
+
+
+def swing(time: Array, angle: float, length: float, rate: float = 0.0) -> Array:
+    """Angles of a pendulum of a reduced length [m] let go at `angle` [rad] and `rate` [rad/s] (Runge and Kutta)."""
+
+    def change(state: Array) -> Array:
+        return np.array([state[1], -G / length * math.sin(state[0])])
+
+    state, found = np.array([angle, rate]), [angle]
+    for h in np.diff(time):
+        for _ in range(10):
+            a = change(state)
+            b = change(state + 0.05 * h * a)
+            c = change(state + 0.05 * h * b)
+            state = state + h / 60 * (a + 2 * b + 2 * c + change(state + 0.1 * h * c))
+        found.append(float(state[0]))
+    return np.array(found)
+
+
+def approach(time: Array, mass: float, stiffness: float, damping: float) -> Array:
+    """The way of a damped spring to its new length, from 0 to 1."""
+    root = np.emath.sqrt(complex(damping**2 - 4 * stiffness * mass))
+    a, b = (-damping + root) / (2 * mass), (-damping - root) / (2 * mass)
+    return np.real(1 - (a * np.exp(b * time) - b * np.exp(a * time)) / (a - b))
 
 
 STILL = "at rest: nothing is to move"

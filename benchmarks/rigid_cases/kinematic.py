@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import Bench, G, Track, case
+from benchmarks.rigid_cases.case import Bench, G, Track, case, step_at
 from wsim.scene import Scene
 
 
@@ -15,7 +15,9 @@ def _belt(bench: Bench, seconds: float) -> float:
         scene.box("belt", size=(8, 1, 0.2), position=(0, 0, 0.1), kinematic=True, velocity=(1, 0, 0))
         scene.box("crate", size=(0.3, 0.3, 0.3), density=300, position=(0, 0, 0.35), friction=0.2)
 
-    return float(bench.run(build, seconds).velocity("crate")[-1, 0])
+    track = bench.run(build, seconds)
+    bench.show("v [m/s]", track.time, track.velocity("crate")[:, 0], np.minimum(0.2 * G * track.time, 1.0))
+    return float(track.velocity("crate")[-1, 0])
 
 
 @case("m/s")
@@ -45,13 +47,18 @@ def _table(bench: Bench, spin: float) -> Track:
 @case("m")
 def turntable_keeps_its_load(bench: Bench) -> tuple[float, float]:
     """Where ω² r is below μ g a box stays at its radius, 0.5 m, for 2 s."""
-    return float(np.linalg.norm(_table(bench, 2.0).position("box")[-1, :2])), 0.5
+    track = _table(bench, 2.0)
+    radius = np.linalg.norm(track.position("box")[:, :2], axis=1)
+    bench.show("radius [m]", track.time, radius, 0.5)
+    return float(radius[-1]), 0.5
 
 
 @case("rad")
 def turntable_turns_its_load(bench: Bench) -> tuple[float, float]:
     """The box goes round with it by ω t = 4 rad."""
-    return float(_table(bench, 2.0).angle("box", 2)[-1]), 4.0
+    track = _table(bench, 2.0)
+    bench.show("turned [rad]", track.time, track.angle("box", 2), 2.0 * track.time)
+    return float(track.angle("box", 2)[-1]), 4.0
 
 
 @case("", 0.0, "yes or no")
@@ -69,7 +76,9 @@ def plough(bench: Bench) -> tuple[float, float]:
         scene.box("plough", size=(0.2, 1, 0.4), position=(-0.5, 0, 0.21), kinematic=True, velocity=(1, 0, 0))
         scene.box("crate", size=(0.3, 0.3, 0.3), density=600, position=(0, 0, 0.15), friction=0.5)
 
-    return float(bench.run(build, 1.5).velocity("crate")[-1, 0]), 1.0
+    track = bench.run(build, 1.5)
+    bench.show("v [m/s]", track.time, track.velocity("crate")[:, 0], step_at(track.time, 0.25, 0.0, 1.0))
+    return float(track.velocity("crate")[-1, 0]), 1.0
 
 
 @case("m")
@@ -81,5 +90,7 @@ def plough_goes_its_way(bench: Bench) -> tuple[float, float]:
         scene.box("plough", size=(0.2, 1, 0.4), position=(-0.5, 0, 0.21), kinematic=True, velocity=(1, 0, 0))
         scene.box("crate", size=(1, 1, 1), mass=2000, position=(0.5, 0, 0.5), friction=0.8)
 
-    position = bench.run(build, 1.5).position("plough")
-    return float(position[-1, 0] - position[0, 0]), 1.5
+    track = bench.run(build, 1.5)
+    way = track.position("plough")[:, 0] - track.position("plough")[0, 0]
+    bench.show("way [m]", track.time, way, track.time)
+    return float(way[-1]), 1.5

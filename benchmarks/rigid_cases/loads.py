@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import STILL, Bench, G, case
+from benchmarks.rigid_cases.case import STILL, Bench, G, approach, case
 from wsim.scene import Drive, Scene
 
 
@@ -19,7 +19,9 @@ def heavy_on_light(bench: Bench) -> tuple[float, float]:
         scene.box("light", size=(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, 0.1))
         scene.box("heavy", size=(0.4, 0.4, 0.4), mass=1000.0, position=(0, 0, 0.4))
 
-    return bench.run(build, 2.0).moved(), 0.0
+    track = bench.run(build, 2.0)
+    bench.show("moved [m]", track.time, track.drift(), 0.0)
+    return track.moved(), 0.0
 
 
 @case("m")
@@ -35,7 +37,10 @@ def groove(bench: Bench) -> tuple[float, float]:
         scene.cylinder("log", radius=0.05, height=0.4, axis="X", mass=2.0, position=(-1, 0, up), velocity=(2, 0, 0),
                        friction=0.3)  # fmt: skip
 
-    return bench.run(build, 1.2).moved(), 4.0 / (2 * math.sqrt(2.0) * 0.3 * G)
+    track, slows = bench.run(build, 1.2), math.sqrt(2.0) * 0.3 * G
+    held = np.minimum(track.time, 2.0 / slows)
+    bench.show("way [m]", track.time, track.drift(), 2.0 * held - 0.5 * slows * held**2)
+    return track.moved(), 4.0 / (2 * math.sqrt(2.0) * 0.3 * G)
 
 
 @case("rad/s")
@@ -47,7 +52,9 @@ def bounded_torque(bench: Bench) -> tuple[float, float]:
         scene.joint_revolute("axle", None, "wheel", anchor=(0, 0, 1), axis="Y",
                              drive=Drive(velocity=36000.0, damping=1.0, max_force=2.0))  # fmt: skip
 
-    return float(bench.run(build, 1.0).spin("wheel")[-1, 1]), 2.0 / 0.225
+    track = bench.run(build, 1.0)
+    bench.show("ω [rad/s]", track.time, track.spin("wheel")[:, 1], 2.0 / 0.225 * track.time)
+    return float(track.spin("wheel")[-1, 1]), 2.0 / 0.225
 
 
 @case("m")
@@ -58,7 +65,10 @@ def sag(bench: Bench) -> tuple[float, float]:
         scene.box("load", size=(0.2, 0.2, 0.2), mass=5.0, position=(0, 0, 1))
         scene.joint_prismatic("rail", None, "load", axis="Z", drive=Drive(stiffness=1000.0, damping=100.0))
 
-    return 1.0 - float(bench.run(build, 2.0).position("load")[-1, 2]), 5 * G / 1000
+    track = bench.run(build, 2.0)
+    sunk = 1.0 - track.position("load")[:, 2]
+    bench.show("sag [m]", track.time, sunk, 5 * G / 1000 * approach(track.time, 5.0, 1000.0, 100.0))
+    return float(sunk[-1]), 5 * G / 1000
 
 
 @case("m")
@@ -69,7 +79,10 @@ def slider_stop(bench: Bench) -> tuple[float, float]:
         scene.box("load", size=(0.2, 0.2, 0.2), mass=5.0, position=(0, 0, 1))
         scene.joint_prismatic("rail", None, "load", axis="Z", limits=(-0.3, 0.1))
 
-    return 1.0 - float(bench.run(build, 1.0).position("load")[:, 2].min()), 0.3
+    track = bench.run(build, 1.0)
+    fallen = 1.0 - track.position("load")[:, 2]
+    bench.show("fallen [m]", track.time, fallen, np.minimum(0.5 * G * track.time**2, 0.3))
+    return float(fallen.max()), 0.3
 
 
 @case("rad/s", 0.02, "it has leaned by a degree")
@@ -84,7 +97,9 @@ def seesaw(bench: Bench) -> tuple[float, float]:
 
     inertia = 4.0 * (2.0**2 + 0.04**2) / 12
     inertia += sum(m * (0.1**2 / 6 + d**2 + 0.07**2) for m, d in ((3.0, 0.3), (1.0, 0.6)))
-    return float(bench.run(build, 0.1).spin("plank")[-1, 1]), G * (0.9 - 0.6) * 0.1 / inertia
+    track = bench.run(build, 0.1)
+    bench.show("ω [rad/s]", track.time, track.spin("plank")[:, 1], G * (0.9 - 0.6) * track.time / inertia)
+    return float(track.spin("plank")[-1, 1]), G * (0.9 - 0.6) * 0.1 / inertia
 
 
 @case("m/s", 2e-3, "the slip is sought to 3e-4 m/s")
@@ -95,4 +110,7 @@ def belt_does_not_slip(bench: Bench) -> tuple[float, float]:
         scene.box("belt", size=(8, 1, 0.2), position=(0, 0, 0.1), kinematic=True, velocity=(1, 0, 0))
         scene.box("crate", size=(0.3, 0.3, 0.3), density=300, position=(0, 0, 0.35), velocity=(1, 0, 0))
 
-    return float(np.linalg.norm(bench.run(build, 2.0).velocity("crate") - (1, 0, 0), axis=1).max()), 0.0
+    track = bench.run(build, 2.0)
+    slip = np.linalg.norm(track.velocity("crate") - (1, 0, 0), axis=1)
+    bench.show("slip [m/s]", track.time, slip, 0.0)
+    return float(slip.max()), 0.0

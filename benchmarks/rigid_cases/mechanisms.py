@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import EXACT, Bench, G, Track, case, elliptic_k, period
+from benchmarks.rigid_cases.case import EXACT, Bench, G, Track, approach, case, elliptic_k, period, swing
 from wsim.scene import Drive, Scene
 
 
@@ -20,6 +20,7 @@ def large_swing(bench: Bench) -> tuple[float, float]:
         scene.joint_revolute("hinge", None, "bob", anchor=(0, 0, 0), axis="Y")
 
     track = bench.run(build, 6.0)
+    bench.show("x [m]", track.time, track.position("bob")[:, 0], np.sin(swing(track.time, start, 1.004)))
     return period(track.time, track.position("bob")[:, 0]), 4 * math.sqrt(1.004 / G) * elliptic_k(math.sin(start / 2))
 
 
@@ -36,6 +37,7 @@ def conical_pendulum(bench: Bench) -> tuple[float, float]:
         scene.joint_spherical("pivot", None, "bob", anchor=(0, 0, 0))
 
     track = bench.run(build, 4.0)
+    bench.show("y [m]", track.time, track.position("bob")[:, 1], math.sin(lean) * np.sin(rate * track.time))
     return period(track.time, track.position("bob")[:, 1]), 2 * math.pi / rate
 
 
@@ -56,6 +58,7 @@ def double_pendulum(bench: Bench) -> tuple[float, float]:
         + 0.5 * 0.4 * 0.01 * (track.spin(b) ** 2).sum(axis=1)
         for b in ("b1", "b2")
     )
+    bench.show("ΔE / (m g l)", track.time, (energy - energy[0]) / G, 0.0)
     return float(np.abs(energy - energy[0]).max() / G), 0.0
 
 
@@ -77,6 +80,8 @@ def parallelogram(bench: Bench) -> tuple[float, float]:
 
     track = bench.run(build, 4.5)
     inertia = bar * length**2 + 2 * link * (length**2 / 3 + 0.04**2 / 12)
+    angle = swing(track.time, lean, inertia / ((bar + link) * length))
+    bench.show("x [m]", track.time, track.position("bar")[:, 0] - 0.4, length * np.sin(angle))
     expected = 4 * math.sqrt(inertia / ((bar + link) * G * length)) * elliptic_k(math.sin(lean / 2))
     return period(track.time, track.position("bar")[:, 0] - 0.4), expected
 
@@ -108,6 +113,7 @@ def crank_slider(bench: Bench) -> tuple[float, float]:
     track = _crank(bench)
     phi = math.radians(60.0) - track.angle("crank", 1)
     place = 0.3 * np.cos(phi) + np.sqrt(1.0 - (0.3 * np.sin(phi)) ** 2)
+    bench.show("slider [m]", phi, track.position("slider")[:, 0], place, "crank [rad]")
     return float(np.abs(track.position("slider")[:, 0] - place).max()), 0.0
 
 
@@ -123,6 +129,7 @@ def crank_slider_energy(bench: Bench) -> tuple[float, float]:
         + 0.5 * i * (track.spin(b) ** 2).sum(axis=1)
         for b, (m, i) in masses.items()
     )
+    bench.show("energy [J]", track.time, energy, energy[0])
     worst = int(np.abs(energy - energy[0]).argmax())
     return float(energy[worst]), float(energy[0])
 
@@ -137,7 +144,9 @@ def door_stop(bench: Bench) -> tuple[float, float]:
                   angular_velocity_deg=(0, 0, math.degrees(3.0)))  # fmt: skip
         scene.joint_revolute("hinge", None, "door", anchor=(0, 0, 1.0), axis="Z", limits_deg=(0, 45))
 
-    return float(bench.run(build, 1.0).angle("door", 2).max()), math.pi / 4
+    track = bench.run(build, 1.0)
+    bench.show("angle [rad]", track.time, track.angle("door", 2), np.minimum(3.0 * track.time, math.pi / 4))
+    return float(track.angle("door", 2).max()), math.pi / 4
 
 
 @case("rad/s", 1e-3, EXACT)
@@ -149,7 +158,9 @@ def flywheel(bench: Bench) -> tuple[float, float]:
                        angular_velocity_deg=(0, math.degrees(10.0), 0))  # fmt: skip
         scene.joint_revolute("axle", None, "wheel", anchor=(0, 0, 1), axis="Y")
 
-    return float(bench.run(build, 2.0).spin("wheel")[-1, 1]), 10.0
+    track = bench.run(build, 2.0)
+    bench.show("ω [rad/s]", track.time, track.spin("wheel")[:, 1], 10.0)
+    return float(track.spin("wheel")[-1, 1]), 10.0
 
 
 def _slider(bench: Bench, drive: Drive, mass: float, seconds: float) -> Track:
@@ -158,7 +169,14 @@ def _slider(bench: Bench, drive: Drive, mass: float, seconds: float) -> Track:
         scene.box("cart", size=(0.1, 0.1, 0.1), mass=mass)
         scene.joint_prismatic("rail", None, "cart", axis="X", drive=drive)
 
-    return bench.run(build, seconds)
+    track = bench.run(build, seconds)
+    if drive.stiffness:
+        way = approach(track.time, mass, drive.stiffness, drive.damping)
+        bench.show("x [m]", track.time, track.position("cart")[:, 0], drive.position * way)
+    else:
+        speed = drive.velocity * (1 - np.exp(-drive.damping / mass * track.time))
+        bench.show("v [m/s]", track.time, track.velocity("cart")[:, 0], speed)
+    return track
 
 
 @case("s")

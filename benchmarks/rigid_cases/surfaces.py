@@ -113,7 +113,9 @@ def ball_in_a_bowl(bench: Bench) -> tuple[float, float]:
 
     def build(scene: Scene) -> None:
         with tempfile.TemporaryDirectory() as folder:
-            scene.mesh("bowl", file=_bowl(Path(folder) / "bowl.stl", radius), static=True, smooth_deg=20.0, friction=1.0)
+            scene.mesh(
+                "bowl", file=_bowl(Path(folder) / "bowl.stl", radius), static=True, smooth_deg=20.0, friction=1.0
+            )
         scene.sphere("it", radius=0.05, mass=1.0, friction=1.0,
                      position=(0, reach * math.sin(swing), -reach * math.cos(swing)))  # fmt: skip
 

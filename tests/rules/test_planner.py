@@ -152,7 +152,7 @@ def test_what_is_not_understood_is_named(prompt, words):
         ("a 30 m ball sinks in water", "outside 0.02 to 5 m"),
         ("three balls roll on the ground", "one thing roll"),
         ("a stack of five boxes floats", "not in water"),
-        ("a box rolls into a stack of five boxes", "rolls balls only"),
+        ("a box rolls into a stack of five boxes", "rolls balls, barrels"),
         ("a 2 cm ball and a 4 m ball sink in water", "particles"),
         ("a tank of water and a water tank", "one tank"),
         ("a box and a ball drop onto a block", "one thing, or a stack, on another"),

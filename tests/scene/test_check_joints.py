@@ -6,11 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from pxr import Gf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim import sim
-from wsim.scene import Scene
+from wsim.scene import Scene, schema
 from wsim.scene.check import check_stage
+from wsim.scene.describe import describe
 
 GAP = 0.3  # [m] between the boxes
 BOXES = "abcd"
@@ -91,6 +92,32 @@ def _excluded(stage: Usd.Stage) -> None:
     UsdPhysics.Joint(stage.GetPrimAtPath("/World/joint0")).CreateExcludeFromArticulationAttr(True)
 
 
+def _limited(stage: Usd.Stage) -> None:
+    _excluded(stage)
+    UsdPhysics.RevoluteJoint(stage.GetPrimAtPath("/World/joint0")).CreateLowerLimitAttr(-1.0)
+
+
+def _rubbing(stage: Usd.Stage) -> None:
+    _root("/World/a")(stage)
+    stage.GetPrimAtPath("/World/joint0").CreateAttribute("newton:friction", Sdf.ValueTypeNames.Float).Set(-1.0)
+
+
+def _breaking(stage: Usd.Stage) -> None:
+    UsdPhysics.Joint(stage.GetPrimAtPath("/World/joint0")).CreateBreakForceAttr(0.0)
+
+
+def _kinematic(stage: Usd.Stage) -> None:
+    for name in "ab":
+        UsdPhysics.RigidBodyAPI(stage.GetPrimAtPath(f"/World/{name}")).CreateKinematicEnabledAttr(True)
+
+
+def _gear(stage: Usd.Stage) -> None:
+    prim = stage.DefinePrim("/World/gear", "Scope")
+    schema.apply(prim, schema.GEAR, {"ratio": (Sdf.ValueTypeNames.Double, 0.0)})
+    for name, target in (("joint0", "joint0"), ("joint1", "b")):
+        prim.CreateRelationship(f"wsim:{name}", custom=False).SetTargets([f"/World/{target}"])
+
+
 REFUSED: list[tuple[list[Joined], Callable[[Usd.Stage], None], str]] = [
     ([("FixedJoint", "a", "b")], _root(), "/World/a: its joints have no articulation root; apply"),
     (
@@ -115,7 +142,17 @@ REFUSED: list[tuple[list[Joined], Callable[[Usd.Stage], None], str]] = [
         _root("/World/a"),
         "joint1.physics:body1: </World/b> is the body1 of </World/joint0>, too; swap body0 and body1 in one of",
     ),
-    ([("RevoluteJoint", "a", "b")], _excluded, "joint0.physics:excludeFromArticulation: 1 must be 0: the joint closes"),
+    (
+        [("PrismaticJoint", "a", "b")],
+        _excluded,
+        "joint0: a PhysicsPrismaticJoint closes a loop; only a fixed, revolute",
+    ),
+    ([("RevoluteJoint", "a", "b")], _limited, "joint0: it closes a loop, and such a joint can have no limits"),
+    ([("RevoluteJoint", "a", "b")], _rubbing, "joint0.newton:friction: -1 must be finite and >= 0"),
+    ([("RevoluteJoint", "a", "b")], _breaking, "joint0.physics:breakForce: 0 must be > 0; inf never breaks"),
+    ([("RevoluteJoint", "a", "b")], _kinematic, "joint0: a kinematic body goes its own way; a joint needs a body at"),
+    ([("RevoluteJoint", "a", "b")], _gear, "/World/gear.wsim:joint1: </World/b> is no revolute or prismatic joint"),
+    ([("RevoluteJoint", "a", "b")], _gear, "/World/gear.wsim:ratio: 0.0 must be finite and not 0"),
     ([("DistanceJoint", "", "a")], _root(), "/World/joint0: a distance joint is not supported"),
 ]
 
@@ -131,18 +168,29 @@ def test_joints_that_the_simulator_cannot_take_are_refused(
     assert any(message in problem for problem in problems), problems
 
 
-def test_a_save_says_which_joints_join_two_chains(tmp_path: Path) -> None:
+def test_a_save_turns_joints_round_that_join_two_chains(tmp_path: Path) -> None:
     scene = _boxes()
-    _join(scene.stage, ("RevoluteJoint", "a", "b"), ("RevoluteJoint", "c", "b"))
-    (problem,) = check_stage(scene.save(tmp_path / "stage.usda"), [tmp_path])
-    assert "</World/b> is the body1 of </World/joint0>, too; swap body0 and body1" in problem
+    _join(scene.stage, ("RevoluteJoint", "a", "b"), ("PrismaticJoint", "c", "b"))
+    path = scene.save(tmp_path / "stage.usda")
+    assert check_stage(path, [tmp_path]) == []
+    simulation = sim.Simulation(path, device="cpu")
+    assert len(simulation.model.joint_qd) == 6 + 2 + 6  # a floats with b and c, d by itself
 
 
-def test_a_slider_closes_no_loop(tmp_path: Path) -> None:
+def test_a_slider_makes_another_joint_of_its_loop_the_closing_one(tmp_path: Path) -> None:
     scene = _boxes()
     _join(scene.stage, ("RevoluteJoint", "a", "b"), ("RevoluteJoint", "b", "c"), ("PrismaticJoint", "c", "a"))
+    path = scene.save(tmp_path / "stage.usda")
+    assert check_stage(path, [tmp_path]) == []
+    assert [joint.prim for joint in describe(path).joints if joint.closing] == ["/World/joint1"]
+    sim.Simulation(path, device="cpu").step()
+
+
+def test_a_loop_of_sliders_is_refused(tmp_path: Path) -> None:
+    scene = _boxes()
+    _join(scene.stage, *(("PrismaticJoint", *ends) for ends in ("ab", "bc", "ca")))
     (problem,) = check_stage(scene.save(tmp_path / "stage.usda"), [tmp_path])
-    assert problem.startswith("/World/joint2: a PhysicsPrismaticJoint cannot close a loop")
+    assert problem.startswith("/World/joint2: a PhysicsPrismaticJoint closes a loop; only a fixed, revolute or")
 
 
 def _prim(kind: str, moves: bool = False, **values: object) -> Callable[[Usd.Stage], None]:

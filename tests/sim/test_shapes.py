@@ -168,7 +168,9 @@ def test_a_crate_slides_down_a_slope_of_a_field(simulate):
         scene.box("crate", size=(0.2,) * 3, mass=1.0, position=place, rotation_deg=(0, 25, 0), friction=0.3)
 
     q = simulate(build, 0.6).q["crate"]
-    assert np.linalg.norm(q[-1] - q[0]) == pytest.approx(0.5 * G * 0.36 * (math.sin(lean) - 0.3 * math.cos(lean)), rel=0.01)
+    assert np.linalg.norm(q[-1] - q[0]) == pytest.approx(
+        0.5 * G * 0.36 * (math.sin(lean) - 0.3 * math.cos(lean)), rel=0.01
+    )
 
 
 @pytest.mark.parametrize("seed", [1, 2])

@@ -8,7 +8,11 @@ import warp as wp
 
 ELLIPTIC = wp.constant(7)  # mjtConstraint: mjCNSTR_CONTACT_ELLIPTIC
 FRICTIONLESS = wp.constant(5)  # mjCNSTR_CONTACT_FRICTIONLESS
+RUBBING = wp.constant(1)  # mjCNSTR_FRICTION_DOF
 LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
+TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
+CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
+ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 
 
@@ -25,6 +29,19 @@ def meets(distance: float, speed: float, restitution: float, h: float, threshold
     """Whether two surfaces meet in this step, nearer to its start than to its end."""
     after = distance + speed * h
     return restitution > 0.0 and speed < -threshold and after < 0.0 and -after > distance
+
+
+@wp.func
+def rebound(distance: float, speed: float, free: float, restitution: float, h: float) -> float:
+    """Speed after the step in which surfaces meet, for which the energy of the fall comes back e^2 times [m/s].
+
+    Steps of the first order follow the parabola on which the speed is v + a h / 2: see `wsim.solvers.contact_law`.
+    """
+    half = 0.5 * free * h
+    fall = 2.0 * wp.max(distance, speed * h) * free  # no deeper than this approach has brought it
+    before = speed + half
+    squared = restitution * restitution * (before * before - fall) + fall
+    return wp.max(wp.sqrt(wp.max(squared, 0.0)) + half, 0.0)
 
 
 @wp.func
@@ -51,6 +68,14 @@ def along(
     return total
 
 
+@wp.func
+def bent(turn: wp.mat33, frame: wp.mat33, curvature: float, kind: int) -> float:
+    """Curvature of a surface where it touches [1/m]: none of a cylinder that stands on its end."""
+    if kind == CYLINDER and wp.abs(wp.dot(wp.vec3(turn[0, 2], turn[1, 2], turn[2, 2]), frame[0])) > ON_END:
+        return 0.0
+    return curvature
+
+
 @wp.kernel(enable_backward=False)
 def strike(
     # Data in:
@@ -61,10 +86,10 @@ def strike(
     contact_row: wp.array2d(dtype=int),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
-    bend: wp.array(dtype=float),
+    bow: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec4),
+    law: wp.array2d(dtype=wp.vec3),
     threshold: float,
     # Data out:
     struck: wp.array2d(dtype=int),
@@ -79,7 +104,7 @@ def strike(
     world, geom = contact_world[k], contact_geom[k]
     restitution = law[geom_class[geom[0]], geom_class[geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
-    if meets(contact_dist[k], velocity[world, row] + bend[k], restitution, h, threshold * h):
+    if meets(contact_dist[k], velocity[world, row] + bow[k], restitution, h, threshold * h):
         for side in range(2):
             body = geom_body[geom[side]]
             if body > 0:
@@ -97,10 +122,14 @@ def aim(
     contact_dim: wp.array(dtype=int),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
-    bend: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
+    bow: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec4),
+    law: wp.array2d(dtype=wp.vec3),
+    geom_kind: wp.array(dtype=int),
+    curvature: wp.array(dtype=float),
+    geom_turn: wp.array2d(dtype=wp.mat33),
+    contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
     sparse: bool,
@@ -116,7 +145,9 @@ def aim(
     # Data out:
     contact_friction: wp.array(dtype=wp.types.vector(length=5, dtype=float)),
     target: wp.array(dtype=float),
+    blow: wp.array(dtype=float),  # 1 where surfaces meet
     slip: wp.array(dtype=float),
+    weight: wp.array2d(dtype=float),
     aref: wp.array2d(dtype=float),
 ):
     """Give each contact its pair's law, and its rows what they should reach."""
@@ -129,32 +160,43 @@ def aim(
     world, geom = contact_world[k], contact_geom[k]
     pair = law[geom_class[geom[0]], geom_class[geom[1]]]
     h = timestep[world % timestep.shape[0]]
-    distance, speed = contact_dist[k], velocity[world, row] + bend[k]
+    distance, speed = contact_dist[k], velocity[world, row] + bow[k]
     goal = settling(distance, h, settle_time, settle_speed)
+    blow[k] = 0.0
     if pair[1] > 0.0:
-        within = wp.max(distance, speed * h)  # no deeper than this approach has brought it
-        fall = 2.0 * within * along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
         touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
         if meets(distance, speed, pair[1], h, threshold * h):
-            goal = wp.sqrt(wp.max(pair[1] * pair[1] * (speed * speed - fall) + fall, 0.0))
+            pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
+            goal = rebound(distance, speed, pull, pair[1], h)
+            blow[k] = 1.0
         elif speed < -threshold * h:
             if distance > 0.0:
-                goal = wp.min(goal, 4.0 * speed)
+                goal = wp.where(touched > 0, -LATER, wp.min(goal, 4.0 * speed))
         # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
         elif touched > 0 and distance > -threshold * h * h:
             goal = -LATER
-    goal += bend[k]
+    goal += bow[k]
     target[k] = goal
 
+    roll = float(0.0)
+    if pair[2] > 0.0:
+        bend = float(0.0)
+        for side in range(2):
+            bend += bent(geom_turn[world, geom[side]], contact_frame[k], curvature[geom[side]], geom_kind[geom[side]])
+        if bend > 0.0:
+            roll = pair[2] / bend
     friction = contact_friction[k]
     for j in range(5):
         part = pair[0]
         if j == 2:
-            part = pair[2]
+            part = wp.pi * pair[0] * roll
         elif j > 2:
-            part = pair[3]
+            part = roll
         friction[j] = wp.max(part, smallest)
     contact_friction[k] = friction
+    for j in range(2, contact_dim[k] - 1):
+        share = friction[j] / friction[0]
+        weight[world, contact_row[k, j + 1]] = weight[world, contact_row[k, 1]] * share * share
     slipped = float(0.0)
     for j in range(contact_dim[k] - 1):
         r = contact_row[k, j + 1]
@@ -183,16 +225,19 @@ def aim_again(
     row_start: wp.array2d(dtype=int),
     column: wp.array3d(dtype=int),
     target: wp.array(dtype=float),
+    blow: wp.array(dtype=float),
+    inertia: wp.array2d(dtype=float),  # of the rows' regularisation, 1 / R
+    force: wp.array2d(dtype=float),
     # Data out:
     slip: wp.array(dtype=float),
     aref: wp.array2d(dtype=float),
 ):
-    """Take the slip that the last solution leaves in place of the one that was guessed."""
+    """Take the slip that the last solution leaves in place of the guess, and add what a blow's row gave way."""
     k = wp.tid()
     if k >= count[0]:
         return
     row = contact_row[k, 0]
-    if row < 0 or contact_dim[k] < 2:
+    if row < 0:
         return
     world = contact_world[k]
     h = timestep[world % timestep.shape[0]]
@@ -204,7 +249,10 @@ def aim_again(
         v = friction[j] * (velocity[world, r] + h * change)
         slipped += v * v
     slip[k] = wp.sqrt(slipped)
-    aref[world, row] = (target[k] - slip[k] - velocity[world, row]) / h
+    given = float(0.0)
+    if blow[k] > 0.0:
+        given = force[world, row] / inertia[world, row]
+    aref[world, row] = (target[k] - slip[k] - velocity[world, row]) / h + given
 
 
 @wp.kernel(enable_backward=False)
@@ -220,10 +268,13 @@ def stop(
     # Data out:
     aref: wp.array2d(dtype=float),
 ):
-    """Joints end at their stops, without a bounce."""
+    """Joints end at their stops, ropes where they are taut, without a bounce; dry friction would end motion."""
     world, row = wp.tid()
-    if row >= rows[world] or kind[world, row] != LIMIT:
+    what = kind[world, row]
+    if row >= rows[world] or (what != LIMIT and what != TAUT and what != RUBBING):
         return
     h = timestep[world % timestep.shape[0]]
-    goal = settling(position[world, row], h, settle_time, settle_speed)
+    goal = float(0.0)
+    if what != RUBBING:
+        goal = settling(position[world, row], h, settle_time, settle_speed)
     aref[world, row] = (goal - velocity[world, row]) / h

@@ -1,4 +1,4 @@
-"""Kinematic bodies go where their velocity takes them, whatever they meet."""
+"""Kinematic bodies go where their velocity or their path takes them, whatever they meet."""
 
 import warp as wp
 
@@ -32,3 +32,136 @@ def carry(
         joint_q[first + i] = place[i]
     for i in range(4):
         joint_q[first + 3 + i] = turn[i]
+
+
+@wp.func
+def power_sum(coefficients: wp.array2d(dtype=wp.vec3d), piece: int, s: wp.float64) -> wp.vec3d:
+    """A cubic of the time since a piece's key."""
+    total = coefficients[piece, 2] + s * coefficients[piece, 3]
+    total = coefficients[piece, 1] + s * total
+    return coefficients[piece, 0] + s * total
+
+
+@wp.func
+def piece_at(times: wp.array(dtype=wp.float64), first: int, last: int, time: wp.float64) -> int:
+    """The piece of a path, its key between `first` and `last`, that a time is in."""
+    low = int(first)
+    high = int(last)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if times[middle] <= time:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@wp.func
+def place_at(
+    path: int,
+    time: wp.float64,
+    start: wp.array(dtype=int),
+    repeats: wp.array(dtype=int),
+    times: wp.array(dtype=wp.float64),
+    place: wp.array2d(dtype=wp.vec3d),
+    base: wp.array(dtype=wp.quatd),
+    turn: wp.array2d(dtype=wp.vec3d),
+) -> wp.transformd:
+    """Where a path is at a time; see `wsim.geometry.paths`."""
+    first, last = start[path], start[path + 1] - 1
+    begin, end = times[first], times[last]
+    t = time
+    if repeats[path] == 1 and t > end:
+        t = begin + wp.mod(t - begin, end - begin)
+    t = wp.min(wp.max(t, begin), end)
+    k = piece_at(times, first, last, t)
+    s = t - times[k]
+    vector = power_sum(turn, k, s)
+    angle = wp.length(vector)
+    rotation = base[k]
+    if angle > wp.float64(0.0):
+        rotation = base[k] * wp.quat_from_axis_angle(vector / angle, angle)
+    return wp.transformd(power_sum(place, k, s), rotation)
+
+
+@wp.func
+def single(pose: wp.transformd) -> wp.transform:
+    """In single precision."""
+    p, q = wp.transform_get_translation(pose), wp.transform_get_rotation(pose)
+    return wp.transform(
+        wp.vec3(float(p[0]), float(p[1]), float(p[2])), wp.quat(float(q[0]), float(q[1]), float(q[2]), float(q[3]))
+    )
+
+
+@wp.kernel(enable_backward=False)
+def lead(
+    # Data in:
+    step: wp.array(dtype=int),  # steps taken so far
+    dt: wp.float64,
+    body: wp.array(dtype=int),
+    path: wp.array(dtype=int),
+    coordinate: wp.array(dtype=int),  # where the free joint of each stands in joint_q
+    freedom: wp.array(dtype=int),  # and in joint_qd
+    body_com: wp.array(dtype=wp.vec3),
+    start: wp.array(dtype=int),
+    repeats: wp.array(dtype=int),
+    times: wp.array(dtype=wp.float64),
+    place: wp.array2d(dtype=wp.vec3d),
+    base: wp.array(dtype=wp.quatd),
+    turn: wp.array2d(dtype=wp.vec3d),
+    # Data out:
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    joint_q: wp.array(dtype=float),
+    joint_qd: wp.array(dtype=float),
+    target: wp.array(dtype=wp.transform),
+):
+    """Put each body where its path is, with the velocity that takes it in `dt` [s] to where its path is then."""
+    k = wp.tid()
+    index = body[k]
+    now = wp.float64(step[0]) * dt
+    here = place_at(path[k], now, start, repeats, times, place, base, turn)
+    there = place_at(path[k], now + dt, start, repeats, times, place, base, turn)
+    q0, q1 = wp.transform_get_rotation(here), wp.transform_get_rotation(there)
+    com = wp.vec3d(wp.float64(body_com[index][0]), wp.float64(body_com[index][1]), wp.float64(body_com[index][2]))
+    way = (wp.transform_point(there, com) - wp.transform_point(here, com)) / dt
+    between = q1 * wp.quat_inverse(q0)
+    if between[3] < wp.float64(0.0):
+        between = -between
+    axis = wp.vec3d(between[0], between[1], between[2])
+    sine = wp.length(axis)
+    spin = wp.vec3d()
+    if sine > wp.float64(0.0):
+        spin = axis / sine * (wp.float64(2.0) * wp.atan2(sine, between[3]) / dt)
+    v = wp.vec3(float(way[0]), float(way[1]), float(way[2]))
+    w = wp.vec3(float(spin[0]), float(spin[1]), float(spin[2]))
+    pose = single(here)
+    body_q[index] = pose
+    body_qd[index] = wp.spatial_vector(v, w)
+    target[k] = single(there)
+    first, free = coordinate[k], freedom[k]
+    for i in range(7):
+        joint_q[first + i] = pose[i]
+    for i in range(3):
+        joint_qd[free + i] = v[i]
+        joint_qd[free + 3 + i] = w[i]
+
+
+@wp.kernel(enable_backward=False)
+def arrive(
+    # Data in:
+    body: wp.array(dtype=int),
+    coordinate: wp.array(dtype=int),
+    target: wp.array(dtype=wp.transform),
+    # Data out:
+    body_q: wp.array(dtype=wp.transform),
+    joint_q: wp.array(dtype=float),
+    step: wp.array(dtype=int),
+):
+    """Put each body where its path is at the step's end, and count the step."""
+    k = wp.tid()
+    body_q[body[k]] = target[k]
+    for i in range(7):
+        joint_q[coordinate[k] + i] = target[k][i]
+    if k == 0:
+        step[0] = step[0] + 1

@@ -212,9 +212,7 @@ def _behind(surface: Surface, at: wp.vec3, way: wp.vec3, point: int) -> bool:
 
 
 @wp.func
-def _runs(
-    shape: Convex, planes: wp.array(dtype=wp.vec4), x: wp.vec3, way: wp.vec3, up: wp.vec3, reach: float
-) -> float:
+def _runs(shape: Convex, planes: wp.array(dtype=wp.vec4), x: wp.vec3, way: wp.vec3, up: wp.vec3, reach: float) -> float:
     """How much of the line from x along `way` is near the same side of the shape, 0 to 1."""
     end = signed(shape, planes, x + way)
     if -wp.dot(wp.vec3(end[0], end[1], end[2]), up) > ALONG and end[3] < reach:
@@ -380,9 +378,7 @@ def _frame(normal: wp.vec3) -> wp.mat33:
         other = wp.vec3(0.0, 1.0, 0.0)
     second = wp.normalize(other - wp.dot(other, normal) * normal)
     third = wp.cross(normal, second)
-    return wp.mat33(
-        normal[0], normal[1], normal[2], second[0], second[1], second[2], third[0], third[1], third[2]
-    )
+    return wp.mat33(normal[0], normal[1], normal[2], second[0], second[1], second[2], third[0], third[1], third[2])
 
 
 @wp.kernel(enable_backward=False)

@@ -7,6 +7,7 @@ A view is named for the side of the box where the camera stands: `side_plus_x` s
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from itertools import product
 
 from wsim.defaults import FIELD_OF_VIEW
@@ -41,15 +42,16 @@ def bounds(plan: Plan) -> tuple[Vec3, Vec3]:
     return box.low, box.high
 
 
-def cameras(plan: Plan, above: float | None = None) -> list[CameraPlan]:
+def cameras(plan: Plan, above: float | None = None, goes: Mapping[str, Vec3] | None = None) -> list[CameraPlan]:
     """A view from the side, a little off the axis, and one from the top.
 
     Args:
         plan: A plan with poses.
         above: A height that the side view looks across from slightly higher up, such as a water surface [m].
+        goes: How far from its start an object gets, by its name [m].
     """
-    low, high = bounds(plan)
-    box = Box(low, high)
+    box = union([Box(*bounds(plan)), *(_shifted(around(plan.object(name)), way) for name, way in (goes or {}).items())])
+    low, high = box.low, box.high
     centre = box.center
     width, depth, height = box.size
     distance = _distance(width, height) + depth / 2
@@ -66,6 +68,11 @@ def cameras(plan: Plan, above: float | None = None) -> list[CameraPlan]:
         target=_rounded(centre[0], centre[1], low[2]),
     )
     return [side, top]
+
+
+def _shifted(box: Box, way: Vec3) -> Box:
+    low, high = ((at[0] + way[0], at[1] + way[1], at[2] + way[2]) for at in (box.low, box.high))
+    return Box(low, high)
 
 
 def resolve_all(plan: Plan, keep: bool = False) -> Plan:

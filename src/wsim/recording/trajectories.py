@@ -31,6 +31,7 @@ class Trajectories:
         contact_force: (W, T, B, 3) [N].
         penetration: (W, T) [m], the solver's deepest contact; None where it is not known.
         mass: (W, B) [kg], where the copies differ from `world`; None where they do not.
+        scalars: (W, T) each: what else a recording keeps of a copy, by its name there.
         problems: (W,) lists of what went wrong in a copy, as its log would say it; empty: nothing in any.
         metadata: As of a recording.
     """
@@ -42,6 +43,7 @@ class Trajectories:
     contact_force: Array
     penetration: Array | None = None
     mass: Array | None = None
+    scalars: dict[str, Array] = field(default_factory=dict)
     problems: list[list[str]] = field(default_factory=list)
     metadata: dict[str, Any] = field(default_factory=dict)
 
@@ -59,8 +61,9 @@ class Trajectories:
             "penetration": (worlds, frames),
             "mass": (worlds, bodies),
         }
-        for name, shape in wanted.items():
-            array = getattr(self, name)
+        given = {name: getattr(self, name) for name in wanted} | self.scalars
+        for name, array in given.items():
+            shape = wanted.get(name, (worlds, frames))
             if array is not None and array.shape != shape:
                 raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
         if self.problems and len(self.problems) != worlds:
@@ -85,7 +88,8 @@ class Trajectories:
 
     def recording(self, k: int) -> Recording:
         """World k as a recording in memory."""
-        scalars = {} if self.penetration is None else {"contact/penetration": self.penetration[k].astype(np.float64)}
+        kept = self.scalars | ({} if self.penetration is None else {"contact/penetration": self.penetration})
+        scalars = {name: array[k].astype(np.float64) for name, array in kept.items()}
         end = float(self.time[-1]) if len(self.time) else 0.0
         problems = self.problems[k] if self.problems else []
         return Recording(

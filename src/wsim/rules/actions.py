@@ -12,6 +12,7 @@ from wsim.rules.places import arrange, common, do, hang, part, put, put_inside, 
 from wsim.rules.reader import Reader
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
+CARRIERS = ("belt", "turntable")  # what moves under what stands on it
 _INTO = ("into", "to", "against", "towards", "at")
 
 
@@ -205,6 +206,44 @@ def _throw(reader: Reader, thing: Thing, action: Action) -> None:
             raise NotUnderstood([place.words], "cannot throw a thing there:")
 
 
+# ---- on what moves
+def _carry(reader: Reader, thing: Thing, action: Action) -> None:
+    if thing.noun.family not in CARRIERS or action.target is None:
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a conveyor or a turntable carry things, not so:")
+    put(thing, "ground")
+    for place in action.places:
+        if not common(reader, thing, place):
+            raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
+    load = where(reader, action.target)
+    if not isinstance(load, Thing):
+        raise NotUnderstood([action.words], "lets a conveyor or a turntable carry blocks, balls and the like, not so:")
+    support(reader, load, thing)
+    do(load, "ride")
+
+
+def _ride(reader: Reader, thing: Thing, action: Action) -> None:
+    _movable(thing, action)
+    do(thing, "ride")
+    for place in action.places:
+        at = where(reader, place.phrase) if place.phrase is not None and place.preposition in ("on", "along") else None
+        if isinstance(at, Thing) and at.noun.family in CARRIERS:
+            support(reader, thing, at)
+        elif not common(reader, thing, place):
+            raise NotUnderstood([place.words], "lets things ride on a conveyor or a turntable, not there:")
+    if thing.support is None:
+        raise NotUnderstood([action.words], "lets things ride on a conveyor or a turntable; name it after")
+
+
+def _run(reader: Reader, thing: Thing, action: Action) -> None:
+    if thing.noun.family not in CARRIERS:
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a conveyor run and a turntable turn, not this:")
+    put(thing, "ground")
+    do(thing, "run")
+    for place in action.places:
+        if not common(reader, thing, place):
+            raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
+
+
 # ---- on a hinge
 def _swing(reader: Reader, thing: Thing, action: Action) -> None:
     for place in action.places:
@@ -269,5 +308,6 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "topple": _topple, "fall": _fall, "drop": _fall,
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
+    "carry": _carry, "ride": _ride, "run": _run,
     "stack": _stack, "face": _face, "rest": _rest, "hold": _refused, "pour": _refused,
 }  # fmt: skip

@@ -136,13 +136,14 @@ def _check_water(cast: Cast) -> None:
 def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
-    moving = thing.target is not None or {"roll", "slide", "push", "throw", "meet"} & {*thing.does}
+    moving = thing.target is not None or {"roll", "slide", "push", "throw", "meet", "ride", "run"} & {*thing.does}
+    carries = family in ("belt", "turntable")
     posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
     ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")
     for given, problem in (
         (phrase.angle is not None and family != "ramp", "inclines a ramp, but not this"),
         (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
-        (thing.speed is not None and not moving, "needs to be told how this moves"),
+        (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
         (bool(thing.beside) and bool(posed or ill), "cannot place this beside something, with what else it does"),
         (
             family == "pendulum" and bool(set(phrase.measures) - {"x", "z", "mass"}),

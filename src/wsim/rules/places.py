@@ -74,7 +74,7 @@ def _beside(reader: Reader, thing: Thing, place: Place) -> None:
     if not isinstance(other, Thing) or other is thing:
         raise NotUnderstood([place.words], "places things by other things, not so:")
     if predicate == "under":
-        if other.noun.family != "solid":
+        if other.noun.family != "solid" or (other.support is not None and other.support is not thing):
             raise NotUnderstood(
                 [place.words], f"builds a {other.kind} as a solid body that has no room under it, so not this:"
             )
@@ -175,7 +175,7 @@ def support(reader: Reader, thing: Thing, other: Thing) -> None:
         thing.path = other
         return
     crowded = any(one is not thing and one.support is other for one in reader.cast.things)
-    if crowded and other.noun.family != "furniture":
+    if crowded and other.noun.family not in ("furniture", "belt", "turntable"):
         raise UserError(f"{other.words!r}: the builtin planner puts one thing, or a stack, on another, not two")
     thing.support = other
 

@@ -20,6 +20,7 @@ from wsim.rules.cast import Cast
 from wsim.rules.grammar import NotUnderstood, parse
 from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
+from wsim.rules.scenes.carried import build_carried
 from wsim.rules.scenes.ground import build_ground
 from wsim.rules.scenes.incline import build_inclines
 from wsim.rules.scenes.mechanisms import build_pendulum, build_seesaw
@@ -36,7 +37,7 @@ LONGEST = 60.0  # that a prompt may ask for [s]
 
 
 def plan(prompt: str) -> Plan:
-    """The plan for a prompt about things in a tank of water, on the ground, on tables, ramps or hinges.
+    """The plan for a prompt about things in a tank of water, on the ground, on tables, ramps, belts or hinges.
 
     Raises:
         NotUnderstood: names the words that no rule took.
@@ -57,7 +58,7 @@ def plan(prompt: str) -> Plan:
         {
             **whole.model_dump(),
             "objectives": scene.objectives,
-            "cameras": cameras(whole, above=scene.surface),
+            "cameras": cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
             "assumptions": cast.assumptions,
         }
@@ -69,10 +70,12 @@ def _scene(cast: Cast) -> Part:
     scene = Part(objects=[ground_object()])
     if cast.wet:
         scene.add(build_tank(cast, taken))
-    for build in (build_pour, build_inclines, build_pendulum, build_seesaw):
+    for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw):
         made = build(cast, taken)
         if made.objects and cast.wet:
-            raise UserError("the builtin planner builds ramps, hinges and what is poured without a tank of water")
+            raise UserError(
+                "the builtin planner builds ramps, belts, hinges and what is poured without a tank of water"
+            )
         scene.add(made)
     if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
         fixed = Part(objects=scene.objects[1:] if not cast.wet else [], names=scene.names)

@@ -137,12 +137,18 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
     material = material_of(thing, cast)
     size = size_of(thing, material, 1000.0, cast)
     proxy = Proxy(primitive=noun.primitive, size=size)
-    static = noun.family in ("furniture", "ramp", "vessel")
+    static = noun.family in ("furniture", "ramp", "vessel", "belt", "turntable")
     if noun.asset is not None:
         cast.assume(thing.words, f"a {noun.primitive} stands for it", "the builtin planner builds with plain shapes")
     made = PlanObject(
         name="thing",
-        role={"furniture": "background", "vessel": "container", "ramp": "terrain"}.get(noun.family, "rigid_body"),
+        role={
+            "furniture": "background",
+            "vessel": "container",
+            "ramp": "terrain",
+            "belt": "background",
+            "turntable": "background",
+        }.get(noun.family, "rigid_body"),
         construction=proxy if noun.asset is None else External(candidate=noun.asset, stand_in=proxy),
         material=None if noun.family == "vessel" else material,
         state="static" if static else "dynamic",

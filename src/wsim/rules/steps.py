@@ -15,10 +15,18 @@ def steps(plan: Plan) -> list[Step]:
         ("fluid", [o for o in plan.objects if o.role == "fluid"], "at its level or over its vessel, inside no solid"),
         ("bodies", [o for o in plan.objects if o.state == "dynamic"], "each where its rows put it, touching no other"),
         ("joints", _jointed(plan), "bodies held together at their anchors"),
-        ("motion", [o for o in plan.objects if any(o.velocity)], "each starts with its own velocity"),
+        (
+            "motion",
+            [o for o in plan.objects if _moves(o)],
+            "each starts with its own velocity, and each belt runs at its own",
+        ),
     )
     made = [Step(title=title, objects=[o.name for o in items], shows=shows) for title, items, shows in groups if items]
     return [*made, Step(title="cameras", shows="the whole scene in every view")]
+
+
+def _moves(item: PlanObject) -> bool:
+    return any(item.velocity) or item.angular_velocity_deg is not None or item.surface_velocity is not None
 
 
 def _jointed(plan: Plan) -> list[PlanObject]:

@@ -2,60 +2,59 @@
 
 from __future__ import annotations
 
-from pxr import Sdf, Usd, UsdPhysics
+import math
 
-WORLD_END = Sdf.Path.absoluteRootPath
+from pxr import Gf, Sdf, Usd, UsdPhysics
+
+from wsim.scene import schema
+from wsim.scene.spanning import WORLD_END, Link, Tree, span
+
+_HALF_TURN = {"X": Gf.Quatf(0.0, 0.0, 1.0, 0.0), "Y": Gf.Quatf(0.0, 1.0, 0.0, 0.0), "Z": Gf.Quatf(0.0, 1.0, 0.0, 0.0)}
 
 
-def mark_articulations(stage: Usd.Stage) -> None:
+def mark_articulations(stage: Usd.Stage) -> Tree:
     """Put one articulation root on each tree of joints, and take joints that close a loop out of the tree.
 
-    The root is the joint to the world, or the body that no joint has as its child. Called after each new joint:
-    joints made by other means are marked with the rest, and roots set by other means give way.
+    The root is the joint to the world, or the topmost body. A joint that points towards its root is turned round, its
+    coordinate as it was. Called after each new joint: joints made by other means are marked with the rest, and roots
+    set by other means give way.
     """
-    tree = Forest()
+    tree = span(*links_of(stage))
     for prim in stage.Traverse():
         if prim.HasAPI(UsdPhysics.ArticulationRootAPI):
             prim.RemoveAPI(UsdPhysics.ArticulationRootAPI)
     for joint in joints_of(stage):
-        parent, child = joint_ends(joint)
-        if not tree.add(parent, child, joint.GetPath()) and tree.root(parent) == tree.root(child):
+        if joint.GetPath() in tree.closing:
             joint.CreateExcludeFromArticulationAttr(True)
         elif joint.GetExcludeFromArticulationAttr().HasAuthoredValue():
             joint.GetExcludeFromArticulationAttr().Clear()
-    for path in tree.roots():
+        if joint.GetPath() in tree.reversed:
+            _turn_round(joint)
+    for path in tree.roots:
         UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(path))
+    return tree
+
+
+def links_of(stage: Usd.Stage) -> tuple[list[Link], list[Sdf.Path]]:
+    """The joints of a stage as `span` takes them, and the kinematic bodies."""
+    geared = geared_joints(stage)
+    links = [
+        Link(
+            joint.GetPath(),
+            *joint_ends(joint),
+            needs_coordinate(joint) or joint.GetPath() in geared,
+            may_break(joint),
+        )
+        for joint in joints_of(stage)
+    ]
+    ends = dict.fromkeys(path for link in links for path in (link.parent, link.child) if path != WORLD_END)
+    return links, [path for path in ends if is_kinematic(stage.GetPrimAtPath(path))]
 
 
 def joints_of(stage: Usd.Stage) -> list[UsdPhysics.Joint]:
     """The joints that hold a body and are switched on."""
     joints = [UsdPhysics.Joint(prim) for prim in stage.Traverse() if prim.IsA(UsdPhysics.Joint)]
     return [joint for joint in joints if joint.GetJointEnabledAttr().Get() and joint_ends(joint)[1] != WORLD_END]
-
-
-def second_parent(stage: Usd.Stage, parent: Sdf.Path, child: Sdf.Path) -> Sdf.Path | None:
-    """What `child` already hangs on, where hanging it on `parent` too would join two chains and close no loop.
-
-    Newton's importer cannot take such a joint. A joint that closes a loop it takes as a constraint.
-    """
-    tree = Forest()
-    for joint in joints_of(stage):
-        tree.add(*joint_ends(joint), joint.GetPath())
-    return tree.holder(child) if tree.root(parent) != tree.root(child) else None
-
-
-def closes_loop(stage: Usd.Stage, parent: Sdf.Path, child: Sdf.Path) -> str:
-    """Whether a joint from `parent` to `child` would close a loop, and where: "", "world" or "bodies".
-
-    Newton's importer reads a loop that is closed at the world, and none that runs through two joints to the world
-    otherwise.
-    """
-    tree = Forest()
-    for joint in joints_of(stage):
-        tree.add(*joint_ends(joint), joint.GetPath())
-    if tree.holder(child) is None or tree.root(parent) != tree.root(child):
-        return ""
-    return "bodies" if parent != WORLD_END and tree.top(parent) != tree.top(child) else "world"
 
 
 def joint_ends(joint: UsdPhysics.Joint) -> tuple[Sdf.Path, Sdf.Path]:
@@ -78,50 +77,54 @@ def body_above(prim: Usd.Prim) -> Sdf.Path:
     return WORLD_END
 
 
-class Forest:
-    """Rooted trees of bodies, grown a joint at a time."""
+def is_kinematic(body: Usd.Prim) -> bool:
+    """Whether a body goes its own way."""
+    return bool(UsdPhysics.RigidBodyAPI(body).GetKinematicEnabledAttr().Get())
 
-    def __init__(self) -> None:
-        self._parent: dict[Sdf.Path, Sdf.Path] = {}
-        self._anchor: dict[Sdf.Path, Sdf.Path] = {}  # body → the joint that ties it to the world
-        self._bodies: dict[Sdf.Path, None] = {}
 
-    def add(self, parent: Sdf.Path, child: Sdf.Path, joint: Sdf.Path) -> bool:
-        """Hang `child` on `parent`; False, and nothing done, where that would give it two parents or close a loop."""
-        if child in self._parent or self.top(parent) == child:
-            return False
-        self._parent[child] = parent
-        if parent == WORLD_END:
-            self._anchor[child] = joint
-        for path in (parent, child):
-            if path != WORLD_END:
-                self._bodies[path] = None
+def may_break(joint: UsdPhysics.Joint) -> bool:
+    """Whether a joint has a force or a torque at which it breaks."""
+    return math.isfinite(joint.GetBreakForceAttr().Get()) or math.isfinite(joint.GetBreakTorqueAttr().Get())
+
+
+def needs_coordinate(joint: UsdPhysics.Joint) -> bool:
+    """Whether a joint does what a constraint cannot: it slides, or is driven, limited or rubbed."""
+    prim = joint.GetPrim()
+    if not any(prim.IsA(kind) for kind in (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)):
         return True
+    limits = (prim.GetAttribute(f"physics:{end}Limit") for end in ("lower", "upper"))
+    limited = any(limit and math.isfinite(limit.Get()) for limit in limits)
+    return limited or prim.HasAPI(UsdPhysics.DriveAPI, "angular") or dry_friction(prim) > 0.0
 
-    def holder(self, path: Sdf.Path) -> Sdf.Path | None:
-        """The parent of a body; None if it has none."""
-        return self._parent.get(path)
 
-    def root(self, path: Sdf.Path) -> Sdf.Path:
-        """What a body's tree stands on: the world, or the topmost body."""
-        top = self.top(path)
-        return WORLD_END if top in self._anchor else top
+def dry_friction(prim: Usd.Prim) -> float:
+    """A joint's dry friction [N m or N], `newton:friction`."""
+    attribute = prim.GetAttribute("newton:friction")
+    return float(attribute.Get() or 0.0) if attribute else 0.0
 
-    def roots(self) -> list[Sdf.Path]:
-        """The prim that roots each tree: a joint to the world, or the topmost body."""
-        tops = dict.fromkeys(self.top(path) for path in self._bodies)
-        return [self._anchor.get(top, top) for top in tops]
 
-    def bodies(self) -> list[Sdf.Path]:
-        """Every body that a joint holds."""
-        return list(self._bodies)
+def geared_joints(stage: Usd.Stage) -> set[Sdf.Path]:
+    """The joints that a gear or a mimic couples."""
+    found: set[Sdf.Path] = set()
+    for prim in stage.Traverse():
+        if schema.has(prim, schema.GEAR):
+            for name in ("wsim:joint0", "wsim:joint1"):
+                found.update(prim.GetRelationship(name).GetTargets() if prim.HasRelationship(name) else [])
+        elif prim.HasRelationship("newton:mimicJoint"):
+            found.update([prim.GetPath(), *prim.GetRelationship("newton:mimicJoint").GetTargets()])
+    return found
 
-    def anchor(self, path: Sdf.Path) -> Sdf.Path | None:
-        """The joint that ties a body to the world; None if none does."""
-        return self._anchor.get(path)
 
-    def top(self, path: Sdf.Path) -> Sdf.Path:
-        """The topmost body of a body's tree."""
-        while self._parent.get(path, WORLD_END) != WORLD_END:
-            path = self._parent[path]
-        return path
+def _turn_round(joint: UsdPhysics.Joint) -> None:
+    """Exchange a joint's ends; its axis is turned, too, so that its coordinate keeps its sign."""
+    axis = joint.GetPrim().GetAttribute("physics:axis")
+    half_turn = _HALF_TURN[axis.Get() if axis else "X"]
+    ends = [
+        (joint.GetBody0Rel(), joint.GetLocalPos0Attr(), joint.GetLocalRot0Attr()),
+        (joint.GetBody1Rel(), joint.GetLocalPos1Attr(), joint.GetLocalRot1Attr()),
+    ]
+    said = [(body.GetTargets(), place.Get(), turn.Get()) for body, place, turn in ends]
+    for (body, place, turn), (target, position, rotation) in zip(ends, said[::-1], strict=True):
+        body.SetTargets(target)
+        place.Set(position)
+        turn.Set(rotation * half_turn)

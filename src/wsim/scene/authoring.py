@@ -14,6 +14,7 @@ from wsim.scene.validate import Call, Vec3, shown, suggestion
 WORLD = "/World"
 LOOKS = "/World/Looks"
 PARAMETERS = "/World/Parameters"
+CONTACTS = "/World/Contacts"
 PHYSICS_SCENE = "/World/PhysicsScene"
 
 _PACKAGE = str(Path(__file__).parent) + os.sep
@@ -72,7 +73,7 @@ class Author:
         return prim
 
     def _object_names(self) -> list[str]:
-        reserved = {LOOKS, PARAMETERS, PHYSICS_SCENE}
+        reserved = {LOOKS, PARAMETERS, CONTACTS, PHYSICS_SCENE}
         children = self._stage.GetPrimAtPath(WORLD).GetAllChildren()
         return [prim.GetName() for prim in children if str(prim.GetPath()) not in reserved]
 

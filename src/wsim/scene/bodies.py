@@ -12,6 +12,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from wsim.defaults import BODY_DENSITY
 from wsim.scene.authoring import Handle, note_line, rotation, set_extent, set_pose
 from wsim.scene.materials import Material, Materials, bind
+from wsim.scene.rolling import Round
 from wsim.scene.validate import Call, Vec3
 
 
@@ -31,6 +32,8 @@ class BodyOptions:
     friction: float | None
     restitution: float | None
     color: Sequence[float] | None
+    rolling_friction: float | None = None
+    rolling: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,7 @@ class Bodies(Materials):
         options: BodyOptions,
         geometry: Callable[[str], UsdGeom.Gprim],
         mass_properties: Callable[[float | None, float | None], MassProperties | None] | None = None,
+        rolls: Round | None = None,
     ) -> Handle:
         """Author one solid.
 
@@ -74,10 +78,18 @@ class Bodies(Materials):
             options: What the call was given.
             geometry: Defines the Gprim at a path, centred on the body.
             mass_properties: From (mass, density), what is to be written instead of leaving it to the geometry.
+            rolls: How it rolls, of what is round.
         """
         path = self._path(call)
         mass, density = self._mass_or_density(call, options)
-        material = self._surface(call, options.material, options.friction, options.restitution, options.color)
+        material = self._surface(
+            call,
+            options.material,
+            options.friction,
+            options.restitution,
+            options.color,
+            rolling=options.rolling_friction,
+        )
         if mass is None and density is None:
             density = material.density or BODY_DENSITY
 
@@ -87,7 +99,7 @@ class Bodies(Materials):
             finish_collider(shape, material)
             return mass_properties(mass, density) if mass_properties else None
 
-        return self._body_of(call, options, path, author, mass, density)
+        return self._body_of(call, options, path, author, mass, density, rolls)
 
     def _body_of(
         self,
@@ -97,6 +109,7 @@ class Bodies(Materials):
         author: Callable[[], MassProperties | None],
         mass: float | None = None,
         density: float | None = None,
+        rolls: Round | None = None,
     ) -> Handle:
         """Author the Xform of a solid, and what `author` puts under it; what that gives weighs before the rest."""
         position = call.position("position", options.position)
@@ -128,6 +141,15 @@ class Bodies(Materials):
             field, value = ("velocity", velocity) if any(velocity) else ("angular_velocity_deg", spin)
             call.fail(f"{field} = {value} on a static object; leave it out, or static=True")
         return not options.static
+
+
+def _rolling(call: Call, options: BodyOptions, velocity: Vec3, spin: Vec3, turn: Gf.Quatd, rolls: Round) -> Vec3:
+    """The spin with which it starts, where it is to roll."""
+    if options.static or options.kinematic:
+        call.fail(f"rolling = True on a {'static' if options.static else 'kinematic'} object; only a loose body rolls")
+    if any(spin):
+        call.fail(f"rolling = True and angular_velocity_deg = {spin} are both given; rolling gives the spin: keep one")
+    return rolls.spin(call, velocity, turn)
 
 
 def _make_rigid(prim: Usd.Prim, turn: Gf.Quatd, velocity: Vec3, spin: Vec3, *, kinematic: bool) -> None:

@@ -16,8 +16,11 @@ from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
 from wsim.scene.check_colliders import check_solid
+from wsim.scene.check_contacts import contact_problems, surface_problems
+from wsim.scene.check_cords import cord_problems
 from wsim.scene.check_indices import check_indices
 from wsim.scene.check_joints import joint_problems
+from wsim.scene.check_motion import motion_problems
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.limits import (
@@ -31,6 +34,7 @@ from wsim.scene.limits import (
     MAX_POSITION,
     MAX_PRIMS,
     MAX_SIZE,
+    MAX_SPEED,
 )
 
 _NOW = Usd.TimeCode.Default()
@@ -104,7 +108,10 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
     if sound:  # what follows reads shapes, and follows indices and paths
         for prim in prims:
             yield from check_solid(prim)
+            yield from cord_problems(prim)
         yield from joint_problems(stage)
+        yield from contact_problems(prims)
+        yield from motion_problems(stage)
 
 
 def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
@@ -117,6 +124,7 @@ def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
         yield from _pose(prim)
         yield from _mass(prim)
         yield from _wsim(prim)
+        yield from surface_problems(prim)
         if prim.IsA(UsdGeom.Gprim):
             yield from _geometry(prim)
         if prim.IsA(UsdGeom.PointBased):
@@ -253,6 +261,8 @@ def _wsim(prim: Usd.Prim) -> Iterator[str]:
         yield from _bounded(prim.GetAttribute("wsim:timeStep"), 1.0, "s", zero=True)
     if schema.has(prim, schema.FLUID):
         yield from _fluid(prim)
+    if schema.has(prim, schema.SURFACE_VELOCITY):
+        yield from _within(prim.GetAttribute("wsim:surfaceVelocity"), MAX_SPEED, "m/s")
     if schema.has(prim, schema.CONTAINER):
         yield from _bounded(prim.GetAttribute("wsim:innerSize"), MAX_SIZE, "m")
 
@@ -287,3 +297,11 @@ def _bounded(attribute: Usd.Attribute, high: float, unit: str, *, zero: bool = F
             yield f"{attribute.GetPath()}: {number:g} must be {'>=' if zero else '>'} 0 {unit}"
         elif number > high:
             yield f"{attribute.GetPath()}: {number:g} must be <= {high:g} {unit}"
+
+
+def _within(attribute: Usd.Attribute, limit: float, unit: str) -> Iterator[str]:
+    """Problems of the numbers of an authored vector, each of which must lie in -limit..limit."""
+    numbers = _as_array(attribute.Get()) if attribute and attribute.HasAuthoredValue() else None
+    for number in () if numbers is None else numbers[np.isfinite(numbers)]:
+        if abs(number) > limit:
+            yield f"{attribute.GetPath()}: {number:g} must be within {limit:g} {unit} of 0"

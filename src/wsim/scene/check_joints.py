@@ -1,17 +1,21 @@
-"""Joints that the simulator can take: in trees, one articulation root to each, and a loop closed by a joint left out.
+"""Joints that the simulator can take: in trees, one articulation root to each, and loops closed by joints left out.
 
 `mark_articulations` makes a stage so. One that was written by other means says so itself, or is refused.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from pxr import Sdf, Usd, UsdPhysics
 
-from wsim.scene.articulation import WORLD_END, Forest, joint_ends, joints_of
+from wsim.scene import schema
+from wsim.scene.articulation import dry_friction, geared_joints, is_kinematic, joint_ends, joints_of, may_break
+from wsim.scene.spanning import WORLD_END
 
 _CLOSING = (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)
+_ONE_FREEDOM = (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)
 _ROOT = UsdPhysics.ArticulationRootAPI
 
 
@@ -22,19 +26,48 @@ def joint_problems(stage: Usd.Stage) -> Iterator[str]:
     for joint in joints_of(stage):
         if joint.GetPrim().IsA(UsdPhysics.DistanceJoint):
             yield f"{joint.GetPath()}: a distance joint is not supported; use a spherical joint, or a prismatic one"
-        elif joint.GetExcludeFromArticulationAttr().Get():
+            continue
+        yield from _numbers(joint)
+        yield from _kinematic(joint)
+        if may_break(joint) or joint.GetExcludeFromArticulationAttr().Get():
             closing.append(joint)
         else:
             yield from _grown(tree, joint, holders)
+    geared = geared_joints(stage)
     for joint in closing:
-        yield from _closing(tree, joint)
+        yield from _constraint(joint, joint.GetPath() in geared)
     yield from _roots(tree, stage)
+    for prim in stage.Traverse():
+        if schema.has(prim, schema.GEAR):
+            yield from _gear(prim)
+
+
+def _numbers(joint: UsdPhysics.Joint) -> Iterator[str]:
+    """Friction, and what a joint breaks at."""
+    friction = dry_friction(joint.GetPrim())
+    if not (math.isfinite(friction) and friction >= 0.0):
+        yield f"{joint.GetPath()}.newton:friction: {friction:g} must be finite and >= 0"
+    if friction > 0.0 and not any(joint.GetPrim().IsA(kind) for kind in _ONE_FREEDOM):
+        yield f"{joint.GetPath()}.newton:friction: a revolute or a prismatic joint can rub, not this one"
+    for attribute in (joint.GetBreakForceAttr(), joint.GetBreakTorqueAttr()):
+        if not attribute.Get() > 0.0:
+            yield f"{attribute.GetPath()}: {attribute.Get():g} must be > 0; inf never breaks"
+
+
+def _kinematic(joint: UsdPhysics.Joint) -> Iterator[str]:
+    """A joint that is to hold what goes its own way."""
+    stage = joint.GetPrim().GetStage()
+    held = [path for path in joint_ends(joint) if path != WORLD_END and not is_kinematic(stage.GetPrimAtPath(path))]
+    if not held:
+        yield f"{joint.GetPath()}: a kinematic body goes its own way; a joint needs a body at one end that it can move"
 
 
 def _grown(tree: Forest, joint: UsdPhysics.Joint, holders: dict[Sdf.Path, Sdf.Path]) -> Iterator[str]:
     """Hang a joint's child on its parent, or say why that cannot be."""
     parent, child = joint_ends(joint)
-    if tree.add(parent, child, joint.GetPath()):
+    if is_kinematic(joint.GetPrim().GetStage().GetPrimAtPath(child)):
+        yield f"{joint.GetPath()}.physics:body1: <{child}> is kinematic; make it body0, or exclude the joint"
+    elif tree.add(parent, child, joint.GetPath()):
         holders[child] = joint.GetPath()
     elif tree.root(parent) == tree.root(child):
         yield f"{joint.GetPath()}: closes a loop of joints; give it physics:excludeFromArticulation = 1"
@@ -45,25 +78,43 @@ def _grown(tree: Forest, joint: UsdPhysics.Joint, holders: dict[Sdf.Path, Sdf.Pa
         )
 
 
-def _closing(tree: Forest, joint: UsdPhysics.Joint) -> Iterator[str]:
-    """A joint that is left out must close a loop: what hangs on it alone reaches no solver."""
-    parent, child = joint_ends(joint)
-    if child not in tree.bodies():
-        if parent != WORLD_END:
-            yield f"{joint.GetPath()}.physics:excludeFromArticulation: 1 must be 0: the joint closes no loop"
-    elif tree.root(parent) != tree.root(child):
-        yield (
-            f"{joint.GetPath()}.physics:excludeFromArticulation: it joins two chains and closes no loop; "
-            "make it 0, and let no body be the body1 of two joints"
-        )
-    elif parent != WORLD_END and tree.top(parent) != tree.top(child):
-        yield (
-            f"{joint.GetPath()}: its bodies both hang on the world; a loop is one chain from the world round to its "
-            "last body, closed by a joint of that body and the world"
-        )
-    elif not any(joint.GetPrim().IsA(kind) for kind in _CLOSING):
-        kind = joint.GetPrim().GetTypeName()
-        yield f"{joint.GetPath()}: a {kind} cannot close a loop; close it with a fixed, revolute or spherical joint"
+def _constraint(joint: UsdPhysics.Joint, geared: bool) -> Iterator[str]:
+    """A joint outside the trees is a constraint, which has no coordinate."""
+    does = "breaks" if may_break(joint) else "closes a loop"
+    prim = joint.GetPrim()
+    if not any(prim.IsA(kind) for kind in _CLOSING):
+        yield f"{joint.GetPath()}: a {prim.GetTypeName()} {does}; only a fixed, revolute or spherical joint can"
+    elif what := _needs(prim, geared):
+        yield f"{joint.GetPath()}: it {does}, and such a joint can have no {what}; put that on another joint"
+
+
+def _needs(prim: Usd.Prim, geared: bool) -> str:
+    """What a joint has that needs a coordinate."""
+    ends = [prim.GetAttribute(f"physics:{end}Limit") for end in ("lower", "upper")]
+    has = {
+        "drive": prim.HasAPI(UsdPhysics.DriveAPI, "angular"),
+        "limits": any(end and math.isfinite(end.Get()) for end in ends),
+        "friction": dry_friction(prim) > 0.0,
+        "gear": geared,
+    }
+    return next((what for what, there in has.items() if there), "")
+
+
+def _gear(prim: Usd.Prim) -> Iterator[str]:
+    """A gear couples two joints of one freedom each."""
+    targets = []
+    for name in ("wsim:joint0", "wsim:joint1"):
+        relation = prim.GetRelationship(name)
+        path = next(iter(relation.GetTargets() if relation else []), None)
+        joint = prim.GetStage().GetPrimAtPath(path) if path else None
+        targets.append(path)
+        if not joint or not any(joint.IsA(kind) for kind in _ONE_FREEDOM):
+            yield f"{prim.GetPath()}.{name}: <{path or ''}> is no revolute or prismatic joint"
+    if targets[0] == targets[1]:
+        yield f"{prim.GetPath()}.wsim:joint1: <{targets[1]}> is the gear's other joint, too"
+    value = prim.GetAttribute("wsim:ratio").Get() if prim.HasAttribute("wsim:ratio") else None
+    if value is None or not math.isfinite(value) or value == 0.0:
+        yield f"{prim.GetPath()}.wsim:ratio: {value} must be finite and not 0"
 
 
 def _roots(tree: Forest, stage: Usd.Stage) -> Iterator[str]:
@@ -87,3 +138,43 @@ def _at_or_above(prim: Usd.Prim) -> Iterator[Sdf.Path]:
         if prim.HasAPI(_ROOT):
             yield prim.GetPath()
         prim = prim.GetParent()
+
+
+class Forest:
+    """Rooted trees of bodies, grown a joint at a time."""
+
+    def __init__(self) -> None:
+        self._parent: dict[Sdf.Path, Sdf.Path] = {}
+        self._anchor: dict[Sdf.Path, Sdf.Path] = {}  # body → the joint that ties it to the world
+        self._bodies: dict[Sdf.Path, None] = {}
+
+    def add(self, parent: Sdf.Path, child: Sdf.Path, joint: Sdf.Path) -> bool:
+        """Hang `child` on `parent`; False, and nothing done, where that would give it two parents or close a loop."""
+        if child in self._parent or self.top(parent) == child:
+            return False
+        self._parent[child] = parent
+        if parent == WORLD_END:
+            self._anchor[child] = joint
+        for path in (parent, child):
+            if path != WORLD_END:
+                self._bodies[path] = None
+        return True
+
+    def root(self, path: Sdf.Path) -> Sdf.Path:
+        """What a body's tree stands on: the world, or the topmost body."""
+        top = self.top(path)
+        return WORLD_END if top in self._anchor else top
+
+    def bodies(self) -> list[Sdf.Path]:
+        """Every body that a joint holds."""
+        return list(self._bodies)
+
+    def anchor(self, path: Sdf.Path) -> Sdf.Path | None:
+        """The joint that ties a body to the world; None if none does."""
+        return self._anchor.get(path)
+
+    def top(self, path: Sdf.Path) -> Sdf.Path:
+        """The topmost body of a body's tree."""
+        while self._parent.get(path, WORLD_END) != WORLD_END:
+            path = self._parent[path]
+        return path

@@ -98,10 +98,16 @@ def _collides(prim: Usd.Prim) -> bool:
     return any(prim.HasAPI(api) for api in _FILTERED)
 
 
+def _solid(prim: Usd.Prim) -> bool:
+    return any(part.HasAPI(UsdPhysics.CollisionAPI) for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()))
+
+
 _FILTERED = (UsdPhysics.RigidBodyAPI, UsdPhysics.CollisionAPI, UsdPhysics.ArticulationRootAPI)
 _KINDS: dict[str, tuple[Callable[[Usd.Prim], bool], str]] = {
     "physics:filteredPairs": (_collides, "a rigid body, a collider or an articulation"),
     "physics:filteredGroups": (lambda prim: prim.IsA(UsdPhysics.CollisionGroup), "a PhysicsCollisionGroup"),
     "physics:simulationOwner": (lambda prim: prim.IsA(UsdPhysics.Scene), "a PhysicsScene"),
     "wsim:container": (lambda prim: schema.has(prim, schema.CONTAINER), "a container"),
+    "wsim:first": (_solid, "something that collides"),
+    "wsim:second": (_solid, "something that collides"),
 }

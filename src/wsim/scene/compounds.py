@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, UsdGeom
+from pxr import UsdGeom
 
 from wsim.defaults import BODY_DENSITY
 from wsim.geometry.rotations import matrices

@@ -4,6 +4,11 @@ Two surfaces in contact rub and bounce as the weaker one has it: the smaller fri
 Project Chrono's rule (ChContactMaterial, its default composition strategy): ice is slippery whatever stands on it, and
 clay takes the bounce out of any ball. A surface that states nothing leaves it to the other. Where another engine made
 the motion its rule may be another, which the world then says: MuJoCo takes the larger friction.
+
+What resists rolling is the work that the surfaces lose as they are pressed in and let go (Johnson, Contact Mechanics,
+1985, 9.2), and of two in series the softer one gives way and loses it: the larger coefficient counts, as in MuJoCo.
+
+What a world states of a pair of objects (`World.contacts`) comes before all that.
 """
 
 from __future__ import annotations
@@ -11,25 +16,53 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from wsim.defaults import FRICTION
-from wsim.scene.world import Shape, World
+from wsim.scene.world import Contact, Shape, World
 
 RESTITUTION = 0.0
+ROLLING = 0.0
 
 
 @dataclass(frozen=True)
 class Pair:
-    """The law of two surfaces: coefficients of friction and restitution."""
+    """The law of two surfaces: coefficients of friction, restitution and rolling resistance."""
 
     friction: float
     restitution: float
+    rolling: float
 
 
 def pair_law(world: World, a: Shape, b: Shape) -> Pair:
     """What holds between two shapes of a world."""
     choose = min if world.combine == "smaller" else max
-    frictions = [value for value in (a.friction, b.friction) if value is not None]
-    restitutions = [value for value in (a.restitution, b.restitution) if value is not None]
-    return Pair(choose(frictions, default=FRICTION), choose(restitutions, default=RESTITUTION))
+    frictions, restitutions, rollings = (
+        [value for value in (getattr(a, name), getattr(b, name)) if value is not None]
+        for name in ("friction", "restitution", "rolling")
+    )
+    law = Pair(
+        choose(frictions, default=FRICTION), choose(restitutions, default=RESTITUTION), max(rollings, default=0.0)
+    )
+    stated = stated_pair(world, a.prim, b.prim)
+    if stated is None:
+        return law
+    return Pair(
+        law.friction if stated.friction is None else stated.friction,
+        law.restitution if stated.restitution is None else stated.restitution,
+        law.rolling if stated.rolling is None else stated.rolling,
+    )
+
+
+def stated_pair(world: World, a: str, b: str) -> Contact | None:
+    """What a world states of two objects, given by their prims or by those of their shapes."""
+    for contact in world.contacts:
+        first, second = contact.first, contact.second
+        if (within(a, first) and within(b, second)) or (within(a, second) and within(b, first)):
+            return contact
+    return None
+
+
+def within(prim: str, owner: str) -> bool:
+    """Whether a prim is an object's, or the object itself."""
+    return prim == owner or prim.startswith(owner + "/")
 
 
 def friction_of(shape: Shape) -> float:
@@ -40,3 +73,21 @@ def friction_of(shape: Shape) -> float:
 def restitution_of(shape: Shape) -> float:
     """A shape's restitution, where nothing that it touches has less."""
     return RESTITUTION if shape.restitution is None else shape.restitution
+
+
+def rolling_of(shape: Shape) -> float:
+    """A shape's rolling resistance, where nothing that it touches has more."""
+    return ROLLING if shape.rolling is None else shape.rolling
+
+
+def curvature(shape: Shape, *, moves: bool) -> float:
+    """What a shape rolls by: one over the radius of its round side [1/m], 0 where it is flat.
+
+    A mesh that moves counts as round with half the middle one of the edges of its bounding box, which is the radius of
+    a ball, a wheel and a log alike; one that never moves is ground to roll on.
+    """
+    if shape.kind in ("sphere", "cylinder", "capsule"):
+        return 1.0 / shape.size[0]
+    if shape.kind == "mesh" and moves:
+        return 2.0 / max(sorted(shape.size)[1], 1e-9)
+    return 0.0

@@ -120,7 +120,7 @@ def spline(points: Floats) -> list[Stretch]:
             point = point + ((a**3 - a) * bent[first] + (b**3 - b) * bent[first + 1]) * h * h / 6.0
             way = (points[first + 1] - points[first]) / h
             way = way + ((3 * b * b - 1.0) * bent[first + 1] - (3 * a * a - 1.0) * bent[first]) * h / 6.0
-            way = way / np.linalg.norm(way, axis=1, keepdims=True)
+            way /= np.linalg.norm(way, axis=1, keepdims=True)
             up = UP - way[:, 2:] * way
             return Frames(point, way, up / np.linalg.norm(up, axis=1, keepdims=True))
 
@@ -158,7 +158,9 @@ def sweep(stretch: Stretch, across: Floats) -> tuple[Floats, Floats]:
     return placed(s), (placed(s + little) - placed(s - little)) / (2.0 * little)
 
 
-def chain(start: Floats, heading: float, slope: float, pieces: Sequence[tuple[str, tuple[float, ...]]]) -> list[Stretch]:
+def chain(
+    start: Floats, heading: float, slope: float, pieces: Sequence[tuple[str, tuple[float, ...]]]
+) -> list[Stretch]:
     """Stretches one after another, from a point, a heading and a slope [rad]; a piece is its kind and numbers."""
     along = np.array([math.cos(heading) * math.cos(slope), math.sin(heading) * math.cos(slope), math.sin(slope)])
     up = np.array([-math.cos(heading) * math.sin(slope), -math.sin(heading) * math.sin(slope), math.cos(slope)])

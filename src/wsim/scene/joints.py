@@ -8,12 +8,14 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
-from wsim.scene.articulation import WORLD_END, closes_loop, mark_articulations, second_parent
+from wsim.scene import schema
+from wsim.scene.articulation import is_kinematic, mark_articulations, may_break
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.limits import MAX_POSITION
 from wsim.scene.validate import Call, shown
 
 _MAX_GAIN = 1e9
+_MAX_LOAD = 1e12  # [N] or [N m]
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,11 @@ class Joints(Author):
 
     `parent` and `child` are bodies; a parent of None, or a static one, is the world. `anchor` is where they meet, in
     the world [m]; the child's origin if not given. `axis` is "X", "Y" or "Z" of the world, or a direction (x, y, z).
-    The pose of the bodies at time 0 is the joint's zero.
+    The pose of the bodies at time 0 is the joint's zero. Joints may close loops, in any order: one of each loop becomes
+    a constraint, and is a plain hinge, ball or fixed joint without drive, limits and friction.
+
+    `friction` is dry: it holds up to so much, and slows by as much what moves. A joint breaks for good, between two
+    steps, where what it bears reaches more than `break_force` [N] or, about its anchor, `break_torque` [N m].
     """
 
     def joint_fixed(
@@ -48,10 +54,15 @@ class Joints(Author):
         child: Handle | str,
         *,
         anchor: Sequence[float] | None = None,
+        break_force: float | None = None,
+        break_torque: float | None = None,
     ) -> Handle:
         """Hold two bodies together as they stand. For the arguments see `Joints`."""
         call = Call("joint_fixed", name)
-        return self._joint(call, UsdPhysics.FixedJoint, parent, child, anchor, None)
+        strength = _Strength.of(call, break_force, break_torque)
+        prim = self._joint(call, UsdPhysics.FixedJoint, parent, child, anchor, None)
+        strength.write(prim)
+        return self._spanned(call, prim)
 
     def joint_revolute(
         self,
@@ -63,18 +74,29 @@ class Joints(Author):
         axis: str | Sequence[float] = "Z",
         limits_deg: Sequence[float] | None = None,
         drive: Drive | None = None,
+        friction: float = 0.0,
+        break_force: float | None = None,
+        break_torque: float | None = None,
     ) -> Handle:
-        """Hinge two bodies about an axis, within `limits_deg` = (low, high) [deg]. For the rest see `Joints`."""
+        """Hinge two bodies about an axis, within `limits_deg` = (low, high) [deg], against `friction` [N m].
+
+        For the rest see `Joints`. A hinge that may break has neither limits nor drive nor friction.
+        """
         call = Call("joint_revolute", name)
         limits = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
         motor = _checked(call, drive, 36000.0)
-        driven = motor is not None or limits is not None
-        handle = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis, driven=driven)
-        self._limit(handle, limits)
+        rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N m")
+        strength = _Strength.of(call, break_force, break_torque)
+        if strength and (limits is not None or motor is not None or rubs):
+            call.fail("a hinge that may break can have no limits_deg, drive or friction: put them on another joint")
+        prim = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis)
+        _write_limits(prim, limits)
+        _write_friction(prim, rubs)
+        strength.write(prim)
         if motor is not None:
             # USD counts an angular drive's gains per degree.
-            self._drive(handle, "angular", motor, math.pi / 180.0)
-        return handle
+            _write_drive(prim, "angular", motor, math.pi / 180.0)
+        return self._spanned(call, prim)
 
     def joint_prismatic(
         self,
@@ -86,16 +108,22 @@ class Joints(Author):
         axis: str | Sequence[float] = "Z",
         limits: Sequence[float] | None = None,
         drive: Drive | None = None,
+        friction: float = 0.0,
     ) -> Handle:
-        """Let a body slide along an axis, within `limits` = (low, high) [m]. For the rest see `Joints`."""
+        """Let a body slide along an axis, within `limits` = (low, high) [m], against `friction` [N].
+
+        For the rest see `Joints`.
+        """
         call = Call("joint_prismatic", name)
         bounds = None if limits is None else _limits(call, "limits", limits, MAX_POSITION, "m")
         motor = _checked(call, drive, MAX_POSITION)
-        handle = self._joint(call, UsdPhysics.PrismaticJoint, parent, child, anchor, axis)
-        self._limit(handle, bounds)
+        rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N")
+        prim = self._joint(call, UsdPhysics.PrismaticJoint, parent, child, anchor, axis)
+        _write_limits(prim, bounds)
+        _write_friction(prim, rubs)
         if motor is not None:
-            self._drive(handle, "linear", motor, 1.0)
-        return handle
+            _write_drive(prim, "linear", motor, 1.0)
+        return self._spanned(call, prim)
 
     def joint_spherical(
         self,
@@ -104,10 +132,14 @@ class Joints(Author):
         child: Handle | str,
         *,
         anchor: Sequence[float] | None = None,
+        break_force: float | None = None,
     ) -> Handle:
         """Hold two bodies at one point, free to turn. For the arguments see `Joints`."""
         call = Call("joint_spherical", name)
-        return self._joint(call, UsdPhysics.SphericalJoint, parent, child, anchor, "X")
+        strength = _Strength.of(call, break_force, None)
+        prim = self._joint(call, UsdPhysics.SphericalJoint, parent, child, anchor, "X")
+        strength.write(prim)
+        return self._spanned(call, prim)
 
     def _joint(
         self,
@@ -117,9 +149,7 @@ class Joints(Author):
         child: Handle | str,
         anchor: Sequence[float] | None,
         axis: str | Sequence[float] | None,
-        *,
-        driven: bool = False,
-    ) -> Handle:
+    ) -> Usd.Prim:
         path = self._path(call)
         child_prim = self._body(call, "child", child)
         if not child_prim.HasAPI(UsdPhysics.RigidBodyAPI):
@@ -131,8 +161,8 @@ class Joints(Author):
             parent_prim = None  # what never moves is the world
         else:
             fixture = None
-        self._check_one_parent(call, parent_prim, child_prim)
-        self._check_closing(call, parent_prim, child_prim, kind, driven)
+        if all(prim is None or is_kinematic(prim) for prim in (parent_prim, child_prim)):
+            call.fail(f"{shown(child_prim.GetName())} is kinematic and goes its own way; a joint needs a body to move")
         position, turn = world_pose(child_prim)
         point = position if anchor is None else Gf.Vec3d(*call.position("anchor", anchor))
         token, frame = _axis(call, axis)
@@ -151,36 +181,20 @@ class Joints(Author):
             joint.GetPrim().CreateRelationship("wsim:fixture", custom=False).SetTargets([fixture.GetPath()])
         if axis is not None:
             joint.CreateAxisAttr(token)
-        mark_articulations(self._stage)
-        return Handle(name=joint.GetPrim().GetName(), path=path, kind="joint")
+        return joint.GetPrim()
 
-    def _check_one_parent(self, call: Call, parent: Usd.Prim | None, child: Usd.Prim) -> None:
-        """A chain grows from its root: what already hangs on one thing cannot be hung on a second chain."""
-        above, below = (WORLD_END if prim is None else prim.GetPath() for prim in (parent, child))
-        other = second_parent(self._stage, above, below)
-        if other is None:
-            return
-        name = shown(child.GetName())
-        holder = "the world" if other == WORLD_END else shown(other.name)
-        if parent is None:
-            call.fail(f"child = {name} already hangs on {holder}; make {name} the parent in that joint")
-        call.fail(
-            f"child = {name} already hangs on {holder}; swap them: parent={name}, child={shown(parent.GetName())}"
-        )
-
-    def _check_closing(self, call: Call, parent: Usd.Prim | None, child: Usd.Prim, kind: type, driven: bool) -> None:
-        """What closes a loop is a constraint; the solver has one for hinges, ball joints and fixed ones alone."""
-        above, below = (WORLD_END if prim is None else prim.GetPath() for prim in (parent, child))
-        closed = closes_loop(self._stage, above, below)
-        if closed == "bodies":
+    def _spanned(self, call: Call, prim: Usd.Prim, kind: str = "joint") -> Handle:
+        """Choose the joints of the trees anew; what `call` made is taken back where there is no choice."""
+        stuck = mark_articulations(self._stage).stuck
+        if stuck:
+            self._stage.RemovePrim(prim.GetPath())
+            mark_articulations(self._stage)
+            names = ", ".join(path.name for path in stuck)
             call.fail(
-                f"{shown(child.GetName())} and its parent both hang on the world: a loop is one chain from the world "
-                "round to its last body, closed by a last joint with parent=None"
+                f"the joints {names} make a loop in which each slides, or has a drive, limits, friction or a gear; "
+                "a loop needs one plain hinge, ball or fixed joint, or bodies in between"
             )
-        if closed and kind is UsdPhysics.PrismaticJoint:
-            call.fail("a slider cannot close a loop: make it the first joint of the chain, and close with a hinge")
-        if closed and driven:
-            call.fail("the hinge that closes a loop can have no drive and no limits: put them on another joint of it")
+        return Handle(name=prim.GetName(), path=str(prim.GetPath()), kind=kind)
 
     def _body(self, call: Call, field: str, what: Handle | str) -> Usd.Prim:
         prim = self._find(call, field, what)
@@ -189,22 +203,91 @@ class Joints(Author):
             call.fail(f"{field} = {shown(prim.GetName())} is not a body; name a box, sphere, cylinder, capsule or mesh")
         return prim
 
-    def _limit(self, handle: Handle, limits: tuple[float, float] | None) -> None:
-        if limits is None:
-            return
-        prim = self._stage.GetPrimAtPath(handle.path)
-        prim.CreateAttribute("physics:lowerLimit", Sdf.ValueTypeNames.Float, False).Set(limits[0])
-        prim.CreateAttribute("physics:upperLimit", Sdf.ValueTypeNames.Float, False).Set(limits[1])
+    def gear(self, name: str, joint_a: Handle | str, joint_b: Handle | str, *, ratio: float) -> Handle:
+        """Couple two hinges or sliders without play: `joint_b` goes `ratio` times as far as `joint_a`.
 
-    def _drive(self, handle: Handle, freedom: str, drive: Drive, per_unit: float) -> None:
-        api = UsdPhysics.DriveAPI.Apply(self._stage.GetPrimAtPath(handle.path), freedom)
-        api.CreateTypeAttr("force")
-        api.CreateTargetPositionAttr(drive.position)
-        api.CreateTargetVelocityAttr(drive.velocity)
-        api.CreateStiffnessAttr(drive.stiffness * per_unit)
-        api.CreateDampingAttr(drive.damping * per_unit)
-        if drive.max_force is not None:
-            api.CreateMaxForceAttr(drive.max_force)
+        Args:
+            name: Of the prim.
+            joint_a: A hinge or a slider.
+            joint_b: Another.
+            ratio: In rad or m of `joint_b` for a rad or a m of `joint_a`: two wheels of 20 and 40 teeth that mesh have
+                -0.5 about parallel axes, a rack on a wheel of radius r has r or -r [m/rad].
+
+        Raises:
+            SceneError: If a joint is no hinge or slider, or may break, or the ratio is 0.
+        """
+        call = Call("gear", name)
+        path = self._path(call)
+        ends = [self._geared(call, field, what) for field, what in (("joint_a", joint_a), ("joint_b", joint_b))]
+        if ends[0] == ends[1]:
+            call.fail(f"joint_a = joint_b = {shown(ends[0].GetName())}: a gear couples two joints")
+        value = call.within("ratio", ratio, -1e6, 1e6)
+        if abs(value) < 1e-6:
+            call.fail(f"ratio = {value:g} must not be 0")
+        prim = self._stage.DefinePrim(path, "Scope")
+        schema.apply(prim, schema.GEAR, {"ratio": (Sdf.ValueTypeNames.Double, value)})
+        for key, end in zip(("wsim:joint0", "wsim:joint1"), ends, strict=True):
+            prim.CreateRelationship(key, custom=False).SetTargets([end.GetPath()])
+        note_line(prim)
+        return self._spanned(call, prim, "gear")
+
+    def _geared(self, call: Call, field: str, what: Handle | str) -> Usd.Prim:
+        prim = self._find(call, field, what)
+        if not any(prim.IsA(kind) for kind in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
+            call.fail(f"{field} = {shown(prim.GetName())} is no hinge and no slider, which a gear needs")
+        if may_break(UsdPhysics.Joint(prim)):
+            call.fail(f"{field} = {shown(prim.GetName())} may break; a gear needs joints that hold")
+        return prim
+
+
+@dataclass(frozen=True)
+class _Strength:
+    """What a joint breaks at [N], [N m]; None is never."""
+
+    force: float | None
+    torque: float | None
+
+    @classmethod
+    def of(cls, call: Call, force: float | None, torque: float | None) -> _Strength:
+        """As a call gives it."""
+        return cls(
+            None if force is None else call.positive("break_force", force, _MAX_LOAD, "N"),
+            None if torque is None else call.positive("break_torque", torque, _MAX_LOAD, "N m"),
+        )
+
+    def __bool__(self) -> bool:
+        return self.force is not None or self.torque is not None
+
+    def write(self, prim: Usd.Prim) -> None:
+        """State it on a joint."""
+        if self.force is not None:
+            UsdPhysics.Joint(prim).CreateBreakForceAttr(self.force)
+        if self.torque is not None:
+            UsdPhysics.Joint(prim).CreateBreakTorqueAttr(self.torque)
+
+
+def _write_limits(prim: Usd.Prim, limits: tuple[float, float] | None) -> None:
+    if limits is None:
+        return
+    prim.CreateAttribute("physics:lowerLimit", Sdf.ValueTypeNames.Float, False).Set(limits[0])
+    prim.CreateAttribute("physics:upperLimit", Sdf.ValueTypeNames.Float, False).Set(limits[1])
+
+
+def _write_friction(prim: Usd.Prim, friction: float) -> None:
+    if friction:
+        prim.AddAppliedSchema("NewtonJointAPI")
+        prim.CreateAttribute("newton:friction", Sdf.ValueTypeNames.Float, False).Set(friction)
+
+
+def _write_drive(prim: Usd.Prim, freedom: str, drive: Drive, per_unit: float) -> None:
+    api = UsdPhysics.DriveAPI.Apply(prim, freedom)
+    api.CreateTypeAttr("force")
+    api.CreateTargetPositionAttr(drive.position)
+    api.CreateTargetVelocityAttr(drive.velocity)
+    api.CreateStiffnessAttr(drive.stiffness * per_unit)
+    api.CreateDampingAttr(drive.damping * per_unit)
+    if drive.max_force is not None:
+        api.CreateMaxForceAttr(drive.max_force)
 
 
 def _limits(call: Call, field: str, value: Sequence[float], bound: float, unit: str) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
 
+from wsim.scene import schema
 from wsim.scene.authoring import LOOKS, Author, Handle, note_line
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
@@ -26,8 +27,8 @@ _PALETTE: tuple[Vec3, ...] = (
 class Material(Handle):
     """A material by name.
 
-    `density` [kg/m^3] is None where it is left to the object, `friction` and `restitution` where they are left to what
-    it touches.
+    `density` [kg/m^3] is None where it is left to the object, `friction`, `restitution` and `rolling` where they are
+    left to what it touches.
     """
 
     density: float | None
@@ -35,6 +36,7 @@ class Material(Handle):
     restitution: float | None
     color: Vec3
     opacity: float
+    rolling: float | None = None
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ class Materials(Author):
         density: float | None = None,
         friction: float | None = None,
         restitution: float | None = None,
+        rolling: float | None = None,
         color: Sequence[float] = (0.7, 0.7, 0.7),
         opacity: float = 1.0,
     ) -> Material:
@@ -72,6 +75,8 @@ class Materials(Author):
             friction: Coefficient of friction, 0 to 10. Of two surfaces the smaller counts; not given, the other's,
                 and 0.5 if neither states one.
             restitution: 0 (dead) to 1 (elastic); likewise, and 0 if neither states one.
+            rolling: Rolling resistance, 0 to 1: the torque that slows a ball, a wheel or a log is this times its radius
+                times the push on it. Of two surfaces the larger counts; 0 if neither states one.
             color: Linear red, green, blue, 0 to 1.
             opacity: 0 (clear) to 1.
 
@@ -87,6 +92,7 @@ class Materials(Author):
             density=None if density is None else call.density(density),
             friction=None if friction is None else call.friction(friction),
             restitution=None if restitution is None else call.fraction("restitution", restitution),
+            rolling=None if rolling is None else call.fraction("rolling", rolling),
             color=call.color("color", color),
             opacity=call.fraction("opacity", opacity),
         )
@@ -111,6 +117,9 @@ class Materials(Author):
             physics.CreateDynamicFrictionAttr(material.friction)
         if material.restitution is not None:
             physics.CreateRestitutionAttr(material.restitution)
+        if material.rolling is not None:
+            double = Sdf.ValueTypeNames.Double
+            schema.apply(usd.GetPrim(), schema.MATERIAL, {"rolling": (double, material.rolling)})
         if material.density is not None:
             physics.CreateDensityAttr(material.density)
         note_line(usd.GetPrim())
@@ -125,12 +134,13 @@ class Materials(Author):
         restitution: float | None,
         color: Sequence[float] | None,
         *,
+        rolling: float | None = None,
         opacity: float = 1.0,
         look: Look | None = None,
     ) -> Material:
         """The material of an object: the one it names, or one of its own where it overrides or names none."""
         base = self._named(call, material)
-        if base is not None and friction is None and restitution is None and color is None:
+        if base is not None and friction is None and restitution is None and rolling is None and color is None:
             return base
         name = str(call.name)
         while self._stage.GetPrimAtPath(f"{LOOKS}/{name}"):
@@ -150,6 +160,9 @@ class Materials(Author):
             ),
             color=call.color("color", color) if color is not None else base.color if base else self._next_color(),
             opacity=base.opacity if base else opacity,
+            rolling=(
+                call.fraction("rolling_friction", rolling) if rolling is not None else base.rolling if base else None
+            ),
         )
         return self._author_material(own, look)
 

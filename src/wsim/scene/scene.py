@@ -12,19 +12,20 @@ from wsim.defaults import DURATION, FRAME_RATE, GRAVITY
 from wsim.scene import schema
 from wsim.scene.articulation import mark_articulations
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
+from wsim.scene.cables import Cables
 from wsim.scene.catalogued import Catalogued
 from wsim.scene.check_joints import joint_problems
+from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
-from wsim.scene.fluids import Fluids
-from wsim.scene.joints import Joints
 from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE
+from wsim.scene.motions import Motions
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.views import Views
 
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Fluids, Joints, Views, Catalogued):
+class Scene(Cables, Contacts, Motions, Views, Catalogued):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,
@@ -158,6 +159,7 @@ class Scene(Fluids, Joints, Views, Catalogued):
         side = target.with_name(f".{target.stem}.part{target.suffix}")
         if any(joint_problems(self._stage)):
             mark_articulations(self._stage)  # joints that the program made through USD alone
+        self._bake_paths(self._duration, self._frame_rate)
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)
         return target

@@ -11,6 +11,7 @@ from pxr import UsdGeom
 from wsim.scene.authoring import Handle, calling_folder, note_line, set_pose
 from wsim.scene.bodies import Bodies, BodyOptions, finish_collider
 from wsim.scene.mesh_file import MeshFile
+from wsim.scene.rolling import Round
 from wsim.scene.validate import Call
 
 _HERE = (0.0, 0.0, 0.0)
@@ -25,11 +26,16 @@ class Shapes(Bodies):
         rotation_deg: Roll, pitch, yaw about the world's X, Y, Z, in this order [deg].
         density, mass: [kg/m^3] or [kg]; give one. Neither: the material's density, else 1000 kg/m^3.
         velocity, angular_velocity_deg: At time 0, in the world's axes [m/s], [deg/s].
+        rolling: Of what is round: it starts with the spin that fits its velocity, v / r, so that it rolls and does not
+            slip, on the level or straight up or down a slope; a cylinder or a capsule across its axis.
         static: Never moves.
         kinematic: Moves and turns by its velocity whatever it meets, and carries and pushes what it meets.
-        material: What `scene.material` returned, or its name; friction, restitution and color override it.
+        material: What `scene.material` returned, or its name; friction, restitution, rolling_friction and color
+            override it.
         friction, restitution: Of two surfaces the smaller counts; one that states none leaves it to the other, and
             it is 0.5 and 0 if neither does.
+        rolling_friction: The material's `rolling`: what slows a ball that rolls. Of two surfaces the larger counts,
+            and it is 0 if neither states one.
     A call raises `SceneError`, naming the argument and its value, for what cannot be built.
     """
 
@@ -42,6 +48,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a level plane without end, at z = `height` [m]."""
         call = Call("ground", name)
@@ -49,7 +56,7 @@ class Shapes(Bodies):
         z = call.position("position", (0.0, 0.0, call.number("height", height, "m")))[2]
         if material is None and color is None:
             color = (0.35, 0.36, 0.38)
-        surface = self._surface(call, material, friction, restitution, color)
+        surface = self._surface(call, material, friction, restitution, color, rolling=rolling_friction)
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
         set_pose(prim, (0.0, 0.0, z))
@@ -78,6 +85,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a box with full edge lengths `size` = (x, y, z) [m]. For the other options see `Shapes`."""
         call = Call("box", name)
@@ -102,6 +110,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry)
 
@@ -116,12 +125,14 @@ class Shapes(Bodies):
         mass: float | None = None,
         velocity: Sequence[float] = _HERE,
         angular_velocity_deg: Sequence[float] = _HERE,
+        rolling: bool = False,
         static: bool = False,
         kinematic: bool = False,
         material: Handle | str | None = None,
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a ball of `radius` [m]. For the other options see `Shapes`."""
         call = Call("sphere", name)
@@ -145,8 +156,10 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
+            rolling,
         )
-        return self._solid(call, options, geometry)
+        return self._solid(call, options, geometry, rolls=Round(r))
 
     def cylinder(
         self,
@@ -161,12 +174,14 @@ class Shapes(Bodies):
         mass: float | None = None,
         velocity: Sequence[float] = _HERE,
         angular_velocity_deg: Sequence[float] = _HERE,
+        rolling: bool = False,
         static: bool = False,
         kinematic: bool = False,
         material: Handle | str | None = None,
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a cylinder of `radius` and `height` [m] along its own `axis` X, Y or Z. For the rest see `Shapes`."""
         call = Call("cylinder", name)
@@ -184,8 +199,10 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
+            rolling,
         )
-        return self._solid(call, options, geometry)
+        return self._solid(call, options, geometry, rolls=Round(radius, call.axis(axis)))
 
     def capsule(
         self,
@@ -200,12 +217,14 @@ class Shapes(Bodies):
         mass: float | None = None,
         velocity: Sequence[float] = _HERE,
         angular_velocity_deg: Sequence[float] = _HERE,
+        rolling: bool = False,
         static: bool = False,
         kinematic: bool = False,
         material: Handle | str | None = None,
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a capsule: a cylinder of `radius` and `height` [m], caps not counted. For the rest see `Shapes`."""
         call = Call("capsule", name)
@@ -223,8 +242,10 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
+            rolling,
         )
-        return self._solid(call, options, geometry)
+        return self._solid(call, options, geometry, rolls=Round(radius, call.axis(axis)))
 
     def mesh(
         self,
@@ -247,6 +268,7 @@ class Shapes(Bodies):
         friction: float | None = None,
         restitution: float | None = None,
         color: Sequence[float] | None = None,
+        rolling_friction: float | None = None,
     ) -> Handle:
         """Make a solid from a triangle mesh. For the other options see `Shapes`.
 
@@ -273,6 +295,7 @@ class Shapes(Bodies):
             friction: Overrides the material's.
             restitution: Overrides the material's.
             color: Overrides the material's.
+            rolling_friction: Overrides the material's rolling.
 
         Raises:
             SceneError: If the file cannot be read, or as all shapes do.
@@ -298,6 +321,7 @@ class Shapes(Bodies):
             friction,
             restitution,
             color,
+            rolling_friction,
         )
         return self._solid(call, options, geometry, source.mass_properties)
 

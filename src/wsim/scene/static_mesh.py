@@ -50,9 +50,7 @@ def smooth_normals(points: Floats, triangles: Integers, most: float) -> Floats:
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-300)
     a, b = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
-    cosine = np.einsum("fki,fki->fk", a, b) / np.maximum(
-        np.linalg.norm(a, axis=2) * np.linalg.norm(b, axis=2), 1e-300
-    )
+    cosine = np.einsum("fki,fki->fk", a, b) / np.maximum(np.linalg.norm(a, axis=2) * np.linalg.norm(b, axis=2), 1e-300)
     angle = np.arccos(np.clip(cosine, -1.0, 1.0)).reshape(-1)
     at = triangles.reshape(-1)
     order = np.argsort(at, kind="stable")

@@ -12,9 +12,9 @@ from pxr import Gf, Sdf, UsdGeom
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_pose
 from wsim.scene.bodies import finish_collider
+from wsim.scene.compounds import Compounds
 from wsim.scene.limits import MAX_SIZE
 from wsim.scene.static_mesh import define_mesh, smooth_normals
-from wsim.scene.compounds import Compounds
 from wsim.scene.validate import Call, shown
 
 Floats = NDArray[np.float64]
@@ -79,7 +79,11 @@ class Terrain(Compounds):
         schema.apply(
             mesh,
             schema.HEIGHT_FIELD,
-            {"rows": (kinds.Int, rows), "columns": (kinds.Int, columns), "fieldSize": (kinds.Float2, Gf.Vec2f(*across))},
+            {
+                "rows": (kinds.Int, rows),
+                "columns": (kinds.Int, columns),
+                "fieldSize": (kinds.Float2, Gf.Vec2f(*across)),
+            },
         )
         finish_collider(mesh, surface)
         return Handle(name=prim.GetName(), path=path, kind="static")

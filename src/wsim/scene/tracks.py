@@ -162,7 +162,7 @@ def _piece(call: Call, k: int, piece: Sequence[object]) -> tuple[str, tuple[floa
     if kind in TURNS and len(numbers) == 2:
         radius = call.size(f"{where} radius", numbers[0])
         return str(kind), (radius, math.radians(call.positive(f"{where} angle", numbers[1], _MOST_TURN, "deg")))
-    call.fail(
+    return call.fail(
         f'{where} = {shown(piece)} must be ("line", length), ("loop", radius, aside), or ("up", "down", "left" or '
         '"right", radius, angle_deg)'
     )
@@ -173,7 +173,9 @@ def _not_steep(call: Call, pieces: Sequence[Sequence[object]], made: list[Stretc
     for k, (piece, stretch) in enumerate(zip(pieces, made, strict=True)):
         begins = stretch.at(np.zeros(1))
         if piece[0] in ("left", "right") and (abs(begins.along[0, 2]) > _STEEPEST or begins.up[0, 2] <= 0.0):
-            call.fail(f"pieces[{k}] = {shown(piece)} begins where the track is vertical or upside down; bend it up first")
+            call.fail(
+                f"pieces[{k}] = {shown(piece)} begins where the track is vertical or upside down; bend it up first"
+            )
 
 
 def _through(call: Call, points: Sequence[Sequence[float]]) -> list[Stretch]:
@@ -211,7 +213,9 @@ def _sections(call: Call, profile: str, width: float, wall: float | None, thickn
     return flat(w, 0.0 if wall is None else call.within("wall", wall, 0.0, MAX_SIZE, "m"), t)
 
 
-def _swept(call: Call, stretches: list[Stretch], sections: list[Section]) -> tuple[Floats, list[NDArray[np.int64]], Floats]:
+def _swept(
+    call: Call, stretches: list[Stretch], sections: list[Section]
+) -> tuple[Floats, list[NDArray[np.int64]], Floats]:
     """Points, faces of four and of three corners, and the normals of their corners."""
     cells = sum(stretch.cells for stretch in stretches) * sum(len(section.corner) for section in sections)
     if cells > 20 * _MOST_CELLS:

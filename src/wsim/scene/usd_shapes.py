@@ -53,7 +53,7 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
         found = ("mesh", tuple(np.ptp(vertices, axis=0).tolist()), (0.0, 0.0, 0.0, 1.0))
     kind, size, own_turn = found
     color, opacity = _look(prim)
-    friction, restitution = _surface(prim)
+    friction, restitution, rolling = _surface(prim)
     return Shape(
         prim=str(prim.GetPath()),
         kind=kind,
@@ -65,6 +65,7 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
         collides=collides(prim),
         friction=friction,
         restitution=restitution,
+        rolling=rolling,
         vertices=[] if vertices is None else vertices.tolist(),
         triangles=[] if triangles is None else triangles.tolist(),
         normals=[] if normals is None else normals.reshape(-1, 3).tolist(),
@@ -238,17 +239,18 @@ def _look(prim: Usd.Prim) -> tuple[Vec3, float]:
     return color, opacity
 
 
-def _surface(prim: Usd.Prim) -> tuple[float | None, float | None]:
-    """Friction and restitution of the bound physics material; None where it states none."""
+def _surface(prim: Usd.Prim) -> tuple[float | None, float | None, float | None]:
+    """Friction, restitution and rolling resistance of the bound physics material; None where it states none."""
     material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
     if not material or not material.GetPrim().HasAPI(UsdPhysics.MaterialAPI):
-        return None, None
+        return None, None, None
     api = UsdPhysics.MaterialAPI(material.GetPrim())
-    friction, restitution = (
-        float(attribute.Get()) if attribute.HasAuthoredValue() else None
-        for attribute in (api.GetDynamicFrictionAttr(), api.GetRestitutionAttr())
+    rolling = material.GetPrim().GetAttribute("wsim:rolling")
+    friction, restitution, resistance = (
+        float(attribute.Get()) if attribute and attribute.HasAuthoredValue() else None
+        for attribute in (api.GetDynamicFrictionAttr(), api.GetRestitutionAttr(), rolling)
     )
-    return friction, restitution
+    return friction, restitution, resistance
 
 
 def to_vec3(vector: Gf.Vec3d) -> Vec3:

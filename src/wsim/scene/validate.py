@@ -26,7 +26,7 @@ Number: TypeAlias = SupportsFloat | SupportsIndex
 Vector: TypeAlias = Sequence[float]
 Vec3 = tuple[float, float, float]
 
-RESERVED = ("PhysicsScene", "Looks", "Parameters")
+RESERVED = ("PhysicsScene", "Looks", "Parameters", "Contacts")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 

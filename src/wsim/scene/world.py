@@ -39,10 +39,21 @@ class Shape(_Model):
     collides: bool = True
     friction: float | None = None  # None leaves it to what it touches (`wsim.scene.contact`)
     restitution: float | None = None
+    rolling: float | None = None  # torque that resists rolling, of radius times push
+    surface_velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], in the frame of `position`: the surface moves as a belt does
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
     normals: list[Vec3] = Field(default_factory=list)  # of each triangle's corners in turn, where it stands for a curve
     exact: bool = False  # its triangles collide; else, of a mesh, its convex hull or its convex parts
+
+
+class Path(_Model):
+    """Key frames of a kinematic body; `wsim.geometry.paths` says how it goes from one to the next."""
+
+    times: list[float]  # [s], rising
+    positions: list[Vec3]  # [m], of the body's origin, world
+    rotations: list[Quat]  # world
+    repeat: bool = False  # starts anew after the last key, or holds there
 
 
 class Body(_Model):
@@ -58,6 +69,7 @@ class Body(_Model):
     velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial, of the centre of mass
     angular_velocity: Vec3 = (0.0, 0.0, 0.0)  # [rad/s], initial, world
     kinematic: bool = False
+    path: Path | None = None  # of a kinematic body; None: it goes by its velocity
     shapes: list[Shape]
     line: str | None = None  # "program.py:12": who made it
 
@@ -123,7 +135,74 @@ class Joint(_Model):
     low: float | None = None  # [rad] or [m]; None: free
     high: float | None = None
     drive: Motor | None = None
+    friction: float = 0.0  # dry, of a hinge [N m] or a slider [N]
+    closing: bool = False  # it closes a loop, or may break: a constraint, and none of the trees' joints
+    break_force: float | None = None  # [N]; None: it holds any
+    break_torque: float | None = None  # [N m]
     line: str | None = None
+
+    @property
+    def may_break(self) -> bool:
+        """Whether there is a load at which it breaks."""
+        return self.break_force is not None or self.break_torque is not None
+
+
+class Gear(_Model):
+    """Two joints coupled without play: the second goes `ratio` times as far as the first."""
+
+    prim: str
+    first: str  # prim of a joint
+    second: str
+    ratio: float  # [rad/rad], [m/rad], [rad/m] or [m/m]
+    offset: float = 0.0  # [rad] or [m], of the second where the first is at 0
+    line: str | None = None
+
+
+class Contact(_Model):
+    """The law of one pair of objects, before what their surfaces combine to; None leaves a coefficient to them."""
+
+    prim: str
+    first: str  # prim of a body or a static object
+    second: str
+    friction: float | None = None
+    restitution: float | None = None
+    rolling: float | None = None
+    line: str | None = None
+
+
+class Guide(_Model):
+    """A point that a spring or a rope is fixed to or runs through; with a radius a cylinder that it runs round."""
+
+    body: str | None = None  # None: the world
+    owner: str | None = None  # prim of the body or the static object, where there is one
+    position: Vec3  # [m], in the body's frame, or the world's; a cylinder's centre
+    radius: float = 0.0  # [m]
+    axis: Vec3 = (0.0, 1.0, 0.0)  # of the cylinder, in the same frame
+    side: Vec3 = (0.0, 0.0, 1.0)  # from its axis to where the rope passes it, in the same frame
+    groove: bool = False  # the rope stays in the plane of the cylinder's middle: a pulley, which turns with its rope
+    shape: str | None = None  # prim of the cylinder
+
+
+class _Cord(_Model):
+    prim: str
+    path: list[Guide]  # from end to end; of two cylinders in a row one has a point before the other
+    radius: float  # [m], drawn: of a spring's coil, of a rope
+    color: Vec3 = (0.7, 0.7, 0.7)
+    line: str | None = None
+
+
+class Spring(_Cord):
+    """A force stiffness (length - rest_length) + damping (rate of length) along the line between two points."""
+
+    stiffness: float = 0.0  # [N/m]
+    damping: float = 0.0  # [N s/m]
+    rest_length: float  # [m]
+
+
+class Rope(_Cord):
+    """A rope without mass and friction that cannot be stretched: it pulls where it is taut, and never pushes."""
+
+    length: float  # [m]
 
 
 class Camera(_Model):
@@ -176,9 +255,18 @@ class World(_Model):
     containers: list[Container] = Field(default_factory=list)
     fluids: list[Fluid] = Field(default_factory=list)
     joints: list[Joint] = Field(default_factory=list)
+    contacts: list[Contact] = Field(default_factory=list)
+    gears: list[Gear] = Field(default_factory=list)
+    springs: list[Spring] = Field(default_factory=list)
+    ropes: list[Rope] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)
     lights: list[Light] = Field(default_factory=list)
     parameters: list[Parameter] = Field(default_factory=list)
+
+    @property
+    def cords(self) -> list[Spring | Rope]:
+        """The springs, then the ropes."""
+        return [*self.springs, *self.ropes]
 
     def body(self, prim: str) -> Body:
         """The body at a prim path; KeyError naming the known ones."""

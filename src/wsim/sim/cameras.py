@@ -16,6 +16,7 @@ from newton.sensors import SensorCamera
 from wsim.kernels.render import composite, display, faces, sky
 from wsim.progress import silent
 from wsim.sim import render_materials, render_views
+from wsim.sim.cord_shapes import CordShapes
 from wsim.sim.render_surface import FluidMesh
 from wsim.solvers.launch import launch_shared
 
@@ -123,6 +124,7 @@ class CameraRenderer:
             KeyError: `fluids` names a fluid that the world does not have.
             ValueError: positions of a wrong shape.
         """
+        self._cords.update(state)
         self.model.bvh_refit_shapes(state)
         self._fluid_mesh.update(fluids or {})
         wanted = [v for v in self._views if cameras is None or v.camera.prim in cameras]
@@ -130,6 +132,7 @@ class CameraRenderer:
 
     def _init_shapes(self, world_index: int) -> None:
         model = self.model
+        self._cords = CordShapes(model, self.world)
         looks = render_materials.shape_looks(model, self.world, world_index)
         if model.shape_count:
             model.shape_color.assign(looks.color.astype(np.float32))

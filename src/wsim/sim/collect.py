@@ -38,19 +38,22 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
     qd = np.zeros((worlds, frames, bodies, 6), dtype=np.float32)
     force = np.zeros((worlds, frames, bodies, 3), dtype=np.float32)
     deepest = np.zeros((worlds, frames))
+    scalars: dict[str, np.ndarray] = {}
     for frame in range(frames):
         if frame:
             simulation.advance_frame()
         time[frame] = simulation.time
         if rigid:
             pushes, deepest[:, frame] = rigid.contacts()
+            for name, values in rigid.breakage().items():
+                scalars.setdefault(name, np.zeros((worlds, frames)))[:, frame] = values
             q[:, frame] = simulation.state.body_q.numpy().reshape(worlds, -1, 7)[:, built.bodies]
             qd[:, frame] = simulation.state.body_qd.numpy().reshape(worlds, -1, 6)[:, built.bodies]
             force[:, frame] = pushes[:, built.bodies]
         progress("simulating", frame, frames - 1)
     mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
     return Trajectories(
-        world, time, q, qd, force, deepest, mass, problems=_problems(simulation, q, qd), metadata=simulation.facts()
+        world, time, q, qd, force, deepest, mass, scalars, _problems(simulation, q, qd), simulation.facts()
     )
 
 

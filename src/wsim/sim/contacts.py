@@ -7,7 +7,7 @@ from typing import Any
 import newton
 import numpy as np
 
-from wsim.scene.contact import pair_law
+from wsim.scene.contact import curvature, pair_law, within
 from wsim.scene.world import Shape, World
 from wsim.solvers.contact_law import ContactConfig
 
@@ -27,6 +27,7 @@ def harden_contacts(builder: Any, config: ContactConfig) -> None:
     builder.shape_material_mu = [max(mu, 2.0 * config.smallest_friction) for mu in builder.shape_material_mu]
     builder.custom_attributes["mujoco:geom_solimp"].values = dict.fromkeys(shapes, impedance)
     builder.custom_attributes["mujoco:solimplimit"].values = dict.fromkeys(dofs, impedance)
+    builder.custom_attributes["mujoco:solimpfriction"].values = dict.fromkeys(dofs, impedance)
     builder.custom_attributes["mujoco:limit_margin"].values = dict.fromkeys(dofs, config.limit_reach)
 
 
@@ -42,13 +43,17 @@ def spare_kinematic(builder: Any) -> None:
 
 
 def spare_tied(builder: Any, world: World) -> None:
-    """Let no body touch the static object that a joint ties it to, as two bodies that a joint ties do not."""
-    for joint in world.joints:
-        if joint.fixture is not None:
-            tied, held = (_shapes_of(builder, prim) for prim in (joint.fixture, joint.child))
-            for k in held:
-                for other in tied:
-                    builder.add_shape_collision_filter_pair(k, other)
+    """Let no body touch what a joint ties it to, be it static, or what a gear meshes it with."""
+    joints = {joint.prim: joint for joint in world.joints}
+    pairs = [(joint.parent or joint.fixture, joint.child) for joint in world.joints]
+    pairs += [(joints[gear.first].child, joints[gear.second].child) for gear in world.gears]
+    for first, second in pairs:
+        if first is None or first == second:
+            continue
+        tied, held = (_shapes_of(builder, prim) for prim in (first, second))
+        for k in held:
+            for other in tied:
+                builder.add_shape_collision_filter_pair(k, other)
 
 
 def _shapes_of(builder: Any, prim: str) -> list[int]:
@@ -56,27 +61,70 @@ def _shapes_of(builder: Any, prim: str) -> list[int]:
     return [k for k, label in enumerate(labels) if label == prim or label.startswith(prim + "/")]
 
 
-def contact_law(model: Any, world: World) -> tuple[Array, Array]:
-    """The class of each shape of the model's first world, (shapes,), and the law of two classes, (classes, classes, 4).
+def let_roll(builder: Any, world: World) -> None:
+    """Give contacts rows for spinning and rolling where a shape rolls against friction; others keep three rows."""
+    if not any(shape.rolling for shape in _shapes(world).values()) and not any(pair.rolling for pair in world.contacts):
+        return
+    classes, law, bends = _law([str(label) for label in builder.shape_label], world)
+    kinds = np.column_stack([classes, bends > 0.0, np.array(builder.shape_body) >= 0])
+    needs = set()
+    for one in {tuple(kind) for kind in kinds.tolist()}:
+        for other in {tuple(kind) for kind in kinds.tolist()}:
+            # Of a contact one side asks for the rows: of two that move the round one.
+            asks = one[2] and (one[1] or (other[1] and not other[2]))
+            if asks and law[one[0], other[0], 2] > 0.0:
+                needs.add(one)
+    rows = {k: 6 for k, kind in enumerate(kinds.tolist()) if tuple(kind) in needs}
+    builder.custom_attributes["mujoco:condim"].values = dict.fromkeys(range(builder.shape_count), 3) | rows
 
-    A law is friction, restitution, spinning and rolling friction [m].
+
+def contact_law(model: Any, world: World) -> tuple[Array, Array, Array]:
+    """What `wsim.solvers.solver_rigid.SolverRigid` needs of the surfaces of the model's first world.
+
+    Returns:
+        The class of each shape, (shapes,), the law of two classes, (classes, classes, 3): friction, restitution and
+        rolling resistance, and the curvature of each shape's round side [1/m], (shapes,).
     """
-    bodies = [shape for body in world.bodies for shape in body.shapes]
-    known = {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
     count = model.shape_count // max(1, model.world_count)
+    return _law([str(label) for label in model.shape_label[:count]], world)
+
+
+def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
+    moving = {shape.prim for body in world.bodies for shape in body.shapes}
+    known = _shapes(world)
+    named = {prim for contact in world.contacts for prim in (contact.first, contact.second)}
     surfaces: dict[tuple[Any, ...], Shape] = {}
-    classes = np.zeros(count, dtype=np.int64)
-    for k, label in enumerate(model.shape_label[:count]):
-        shape = _of_label(str(label), known)
-        key = (shape.friction, shape.restitution)
+    index: dict[tuple[Any, ...], int] = {}
+    classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
+    drawn = tuple(f"{cord.prim}/" for cord in world.cords)  # and their points: nothing touches them
+    for k, label in enumerate(labels):
+        if label.startswith(drawn):
+            continue
+        shape = _of_label(label, known)
+        owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
+        key = (shape.friction, shape.restitution, shape.rolling, owners)
         surfaces.setdefault(key, shape)
-        classes[k] = list(surfaces).index(key)
-    law = np.zeros((len(surfaces), len(surfaces), 4))
+        classes[k] = index.setdefault(key, len(index))
+        bends[k] = curvature(shape, moves=shape.prim in moving)
+    law = np.zeros((len(surfaces), len(surfaces), 3))
     for i, a in enumerate(surfaces.values()):
         for j, b in enumerate(surfaces.values()):
             pair = pair_law(world, a, b)
-            law[i, j, :2] = pair.friction, pair.restitution
-    return classes, law
+            law[i, j] = pair.friction, pair.restitution, pair.rolling
+    return classes, law, bends
+
+
+def surface_velocities(model: Any, world: World) -> Array:
+    """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
+    known = _shapes(world)
+    count = model.shape_count // max(1, model.world_count)
+    labels = [str(label) for label in model.shape_label[:count]]
+    return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
+
+
+def _shapes(world: World) -> dict[str, Shape]:
+    bodies = [shape for body in world.bodies for shape in body.shapes]
+    return {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:

@@ -17,8 +17,8 @@ ONE_DOF = ("revolute", "prismatic")
 
 
 def driven_joints(world: World) -> list[str]:
-    """Prim paths of the joints with one degree of freedom, in the order of the arrays."""
-    return [joint.prim for joint in world.joints if joint.kind in ONE_DOF]
+    """Prim paths of the joints with one coordinate, in the order of the arrays; what closes a loop has none."""
+    return [joint.prim for joint in world.joints if joint.kind in ONE_DOF and not joint.closing]
 
 
 class ArrayController:

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.recording import FluidFrame, Frame
+from wsim.scene.cord_paths import spring_track
 from wsim.sim.ledger import Ledger
 from wsim.sim.model import Built
 from wsim.sim.rigid import RigidBodies
@@ -32,12 +33,15 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         force = force[built.bodies]
         scalars["contact/penetration"] = deepest
         scalars.update(_body_energy(built, body_q, body_qd))
+        if rigid:
+            scalars.update({name: float(value[0]) for name, value in rigid.breakage().items()})
+        if built.world.springs:
+            scalars["energy/potential_springs"] = _spring_energy(built, body_q, body_qd)
         if rigid and rigid.ledger:
             pushed, worked = _from_outside(built, rigid.ledger, scalars)
     scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
-    scalars["energy/potential"] = scalars.get("energy/potential_bodies", 0.0) + scalars.get(
-        "energy/potential_fluid", 0.0
-    )
+    parts = ("bodies", "fluid", "springs")
+    scalars["energy/potential"] = sum(scalars.get(f"energy/potential_{part}", 0.0) for part in parts)
     return Frame(
         body_q=body_q.astype(np.float32),
         body_qd=body_qd.astype(np.float32),
@@ -83,6 +87,13 @@ def _fluids(built: Built, state: Any, scalars: dict[str, float]) -> dict[str, Fl
     scalars["energy/kinetic_fluid"] = float(0.5 * (mass[part] * speed2).sum())
     scalars["energy/potential_fluid"] = float(-(mass[part] * (position[part] @ np.array(built.world.gravity))).sum())
     return frames
+
+
+def _spring_energy(built: Built, body_q: Array, body_qd: Array) -> float:
+    """Energy that the springs hold [J]."""
+    bodies = {body.prim: body for body in built.world.bodies}
+    poses, twists = ({prim: row[None] for prim, row in zip(bodies, rows, strict=True)} for rows in (body_q, body_qd))
+    return float(sum(spring_track(spring, bodies, poses, twists).energy[0] for spring in built.world.springs))
 
 
 def _body_energy(built: Built, body_q: Array, body_qd: Array) -> dict[str, float]:

@@ -11,11 +11,15 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.scene.world import World
-from wsim.sim.articulations import complete_articulations
-from wsim.sim.contacts import harden_contacts, spare_kinematic, spare_tied
+from wsim.sim.articulations import complete_articulations, importable
+from wsim.sim.constraints import add_constraints
+from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
+from wsim.sim.cord_shapes import add_cord_shapes
+from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
+from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
@@ -39,6 +43,7 @@ class Built:
     sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
     time_step: TimeStep
+    breakable: list[Breakable]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
 
 
@@ -59,21 +64,27 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
     SolverSPH.register_custom_attributes(single)
     ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
-    single.add_usd(str(stage), ignore_paths=ignore, apply_up_axis_from_stage=True)
+    single.add_usd(importable(stage, world), ignore_paths=ignore, apply_up_axis_from_stage=True)
     complete_articulations(single)
+    breakable = add_constraints(single, world)
     config = _sph_config(world)
     fluids = _add_fluids(single, world, config) if config else {}
     step = choose_time_step(world, config.max_time_step if config else None, time_step or world.time_step or None)
     harden_contacts(single, ContactConfig())
+    let_roll(single, world)
     spare_kinematic(single)
     spare_tied(single, world)
     surfaces = take_surfaces(single, world)
+    add_cords(single, world, ContactConfig())
+    if world_count == 1:
+        add_cord_shapes(single, world)
     builder = single
     if world_count > 1:
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
         builder.replicate(single, world_count)
     model = builder.finalize(device=device)
-    return Built(model, world, _body_indices(model, world), fluids, config, containers_of(world), step, surfaces)
+    bodies = _body_indices(model, world)
+    return Built(model, world, bodies, fluids, config, containers_of(world), step, breakable, surfaces)
 
 
 def _sph_config(world: World) -> Any | None:

@@ -10,12 +10,13 @@ import numpy as np
 import warp as wp
 
 from wsim.geometry.colour import srgb_of
+from wsim.scene.world import Shape
 from wsim.sim.render_views import is_ground
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from wsim.scene.world import Fluid, Shape, World
+    from wsim.scene.world import Fluid, World
 
 OPAQUE = 0.995  # opacity from which a shape is drawn opaque
 GLASS_GLOW = 0.35  # share of its colour that a thick piece of glass shows of itself: its edges read dark
@@ -111,6 +112,9 @@ def shapes_by_label(model: Any, world: World) -> Iterator[tuple[int, Shape, bool
     """Index in the model, the world's description, and whether it is ground, of each shape that the world knows."""
     described = {shape.prim: (shape, is_ground(shape)) for static in world.statics for shape in static.shapes}
     described |= {shape.prim: (shape, False) for body in world.bodies for shape in body.shapes}
+    for cord in world.cords:
+        drawn = Shape(prim=cord.prim, kind="capsule", size=(cord.radius, 0.0), color=cord.color, collides=False)
+        described[cord.prim] = (drawn, False)
     for index, label in enumerate(model.shape_label):
         path = str(label)
         # A batched world's label has a prefix; a decomposed mesh's parts lie below its prim.

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
-import newton
 import numpy as np
 import warp as wp
 from mujoco_warp import OverflowType
-from newton import JointType, ShapeFlags
+from newton import ShapeFlags
 
-from wsim.kernels.kinematic import carry
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
-from wsim.sim.contacts import contact_law
+from wsim.sim.constraints import constraint_rows
+from wsim.sim.contacts import contact_law, surface_velocities
 from wsim.sim.devices import steps_in_c
+from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
+from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.solver_rigid import SolverRigid
 from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
-ROWS_A_CONTACT = 3  # push and friction
+ROWS_A_CONTACT = 3  # push and friction; where rolling is resisted, 6
 SMALLEST_CONTACTS = 64
 # A line search that single precision cannot make any better is no overflow.
 STAGNATED = int(OverflowType.LS_ITERATIONS)
@@ -41,11 +43,6 @@ def contact_capacity(model: Any) -> int:
     fixed = int((collides & (model.shape_body.numpy() < 0)).sum())
     pairs = moving * (moving - 1) // 2 + moving * fixed
     return max(SMALLEST_CONTACTS, CONTACTS_A_PAIR * min(pairs, 12 * moving))
-
-
-def _is_mechanism(model: Any) -> bool:
-    """Whether any joint is more than the free joint of a loose body."""
-    return model.joint_count > 0 and bool((model.joint_type.numpy() != int(JointType.FREE)).any())
 
 
 def _may_touch(model: Any) -> bool:
@@ -69,6 +66,7 @@ class RigidBodies:
         world: What the stage states of its surfaces and drives.
         dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
+        breakable: The joints that may break.
         surfaces: What collides by its triangles.
 
     Attributes:
@@ -76,22 +74,34 @@ class RigidBodies:
     """
 
     def __init__(
-        self, model: Any, world: World, dt: float, controlled: bool = False, surfaces: SurfaceParts | None = None
+        self,
+        model: Any,
+        world: World,
+        dt: float,
+        controlled: bool = False,
+        breakable: Sequence[Breakable] = (),
+        surfaces: SurfaceParts | None = None,
     ) -> None:
-        self.model = model
+        self.model, self.breakable = model, breakable
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
-        smooth = _is_mechanism(model) and model.particle_count == 0 and not is_overdamped(world, dt)
-        smooth = smooth and (self.on_c or not (_may_touch(model) or surfaces))
+        swings = bool(world.joints or world.springs)
+        smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
+        smooth = smooth and (self.on_c or not breakable)
+        may_touch = _may_touch(model) or bool(world.ropes) or any(joint.friction for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
         if touching:
+            may_touch = True
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
         law = contact_law(model, world)
-        sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": ROWS_A_CONTACT * capacity + 64}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, touching=touching, **sizes)
+        rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
+        rows = rows_a_contact * capacity + constraint_rows(world) + len(world.ropes) + 64
+        sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, touching=touching, **sizes)
+        self.solver.move_surfaces(surface_velocities(model, world))
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
@@ -100,37 +110,19 @@ class RigidBodies:
         if driven:
             kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
         self.observables: Any = self.solver.observables(kinds) if kinds else None
-        self._carried, self._carried_at = self._kinematic()
+        self._kinematic = Kinematic(model, world, dt)
         pushed = driven or controlled or model.particle_count > 0
         self.ledger = Ledger(model, self.observables if driven else None, self.on_c or smooth) if pushed else None
 
-    def _kinematic(self) -> tuple[Any, Any]:
-        """The kinematic bodies of all worlds, and where the pose of each stands in `joint_q`."""
-        model = self.model
-        kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
-        kinds, child = model.joint_type.numpy(), model.joint_child.numpy()
-        joints = [j for j in range(len(child)) if kinds[j] == int(JointType.FREE) and kinematic[child[j]]]
-        with wp.ScopedDevice(model.device):
-            return (
-                wp.array(child[joints], dtype=int),
-                wp.array(model.joint_q_start.numpy()[joints], dtype=int),
-            )
-
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
+        self._kinematic.before(state_in)
         if self.ledger:
             self.ledger.before(state_in)
         self.solver.step(state_in, state_out, control, None, dt, observables=self.observables)
         if self.ledger:
             self.ledger.after(state_in.body_f, state_out, control, dt)
-        if len(self._carried):
-            wp.launch(
-                carry,
-                dim=len(self._carried),
-                inputs=[self._carried, self._carried_at, self.model.body_com, state_out.body_qd, dt],
-                outputs=[state_out.body_q, state_out.joint_q],
-                device=self.model.device,
-            )
+        self._kinematic.after(state_out)
         if not self.on_c:
             wp.launch(
                 accumulate_overflow,
@@ -142,11 +134,28 @@ class RigidBodies:
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
+        self._kinematic.reset(state)
         self.solver.reset(state, flags=0)
+        self.solver.mend()
         if self.ledger:
             self.ledger.clear()
         if not self.on_c:
             self.overflow_seen.zero_()
+
+    def breakage(self) -> dict[str, np.ndarray]:
+        """Of each joint that may break: whether it is broken, and the most that it bore since the last call, (W,).
+
+        Names are `broken`, `force` [N] and `torque` [N m] before the joint's path below /World.
+        """
+        if self.solver.breaking is None:
+            return {}
+        broken, load = self.solver.breaking.take()
+        found: dict[str, np.ndarray] = {}
+        for k, joint in enumerate(self.breakable):
+            name = joint.prim.removeprefix("/World")
+            found |= {f"broken{name}": broken[:, k].astype(np.float64)}
+            found |= {f"force{name}": load[:, k, 0], f"torque{name}": load[:, k, 1]}
+        return found
 
     def problems(self) -> list[str]:
         """What the solver warned of since the start: each fails the run."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from importlib.metadata import version
@@ -94,9 +94,12 @@ class Simulation:
         self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps
         self.time, self.step_count = 0.0, 0
         self._were_inside: set[str] = set()
+        self._broken: set[str] = set()
         progress("compiling kernels", 1, 3)
         self.rigid = (
-            RigidBodies(self.model, self.world, self.dt, controller is not None, self.built.surfaces)
+            RigidBodies(
+                self.model, self.world, self.dt, controller is not None, self.built.breakable, self.built.surfaces
+            )
             if self.model.body_count
             else None
         )
@@ -206,7 +209,10 @@ class Simulation:
                 if frame:
                     self.advance_frame()
                 problems = self.problems()
-                writer.frame(self.time, measure(self.built, self.state, self.rigid))
+                measured = measure(self.built, self.state, self.rigid)
+                writer.frame(self.time, measured)
+                for prim, text in self._breakages(measured.scalars):
+                    writer.log(self.time, "INFO", text, prim)
                 if pictures and not problems:
                     pictures.take(frame, self.time, self.state)
                 progress("simulating", frame, frames)
@@ -229,6 +235,17 @@ class Simulation:
             device=str(self.device),
             stills=pictures.stills if pictures else [],
         )
+
+    def _breakages(self, scalars: Mapping[str, float]) -> list[tuple[str, str]]:
+        """Joints of the first world that have broken since the last call: prim and what to say."""
+        found = []
+        for joint in self.built.breakable:
+            name = joint.prim.removeprefix("/World")
+            if scalars[f"broken{name}"] and joint.prim not in self._broken:
+                self._broken.add(joint.prim)
+                force, torque = scalars[f"force{name}"], scalars[f"torque{name}"]
+                found.append((joint.prim, f"{joint.prim} breaks under {force:.4g} N and {torque:.4g} N m"))
+        return found
 
     def _departures(self) -> list[tuple[str, str]]:
         """Bodies of the first world that have left the fluid's domain since the last call: prim and what to say."""

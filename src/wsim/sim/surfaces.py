@@ -27,9 +27,7 @@ def take_surfaces(builder: Any, world: World) -> SurfaceParts | None:
     spared = frozenset((min(a, b), max(a, b)) for a, b in builder.shape_collision_filter_pairs)
     shapes = [labels[shape.prim] for shape in exact]
     collide = int(ShapeFlags.COLLIDE_SHAPES)
-    moving = [
-        k for k, body in enumerate(builder.shape_body) if body >= 0 and int(builder.shape_flags[k]) & collide
-    ]
+    moving = [k for k, body in enumerate(builder.shape_body) if body >= 0 and int(builder.shape_flags[k]) & collide]
     for surface in shapes:
         for k in moving:
             builder.add_shape_collision_filter_pair(surface, k)

@@ -10,11 +10,11 @@ import numpy as np
 from wsim.errors import UserError
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
+from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import Body, Joint, World
+from wsim.sim.spring_steps import DRIVE_SHARE, SMALLEST_DRIVE_STEP, is_overdamped_spring, spring_limits
 
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
-DRIVE_SHARE = 0.25  # of 1 / omega of a drive's spring: its force is taken at the step's start
-SMALLEST_DRIVE_STEP = 1e-5  # [s]
 DAMPED_SHARE = 0.5  # of a speed, lost in a step
 SHARE_OF_SIZE = 0.25  # a body may cross this share of the thinnest thing in a step
 
@@ -37,7 +37,7 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
         given: A step from the caller or the stage [s]: one more upper bound.
 
     Raises:
-        UserError: If a drive is so stiff that no step of `SMALLEST_DRIVE_STEP` or more can follow it.
+        UserError: If a drive or a spring is so stiff that no step of `SMALLEST_DRIVE_STEP` or more can follow it.
     """
     limits = {"rigid bodies": LARGEST_RIGID_STEP}
     crossing = _crossing_time(world)
@@ -46,6 +46,7 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
     if fluid_limit is not None:
         limits["sound in the fluid"] = fluid_limit
     limits |= _drive_limits(world)
+    limits |= spring_limits(world)
     if given:
         limits["given"] = given
     reason = min(limits, key=limits.__getitem__)
@@ -75,8 +76,8 @@ def _drive_limits(world: World) -> dict[str, float]:
 
 
 def is_overdamped(world: World, dt: float) -> bool:
-    """Whether a drive's damping takes a speed away in about a step, so that only implicit integration can follow it."""
-    return any(
+    """Whether damping takes a speed away in about a step, so that only implicit integration can follow it."""
+    return is_overdamped_spring(world, dt, DAMPED_SHARE) or any(
         joint.drive is not None and joint.drive.damping * dt > DAMPED_SHARE * driven_inertia(world, joint)
         for joint in world.joints
     )
@@ -109,8 +110,15 @@ def _crossing_time(world: World) -> float | None:
         return None
     g = float(np.linalg.norm(world.gravity))
     fall = max(max(body.position[2] for body in world.bodies) - min(0.0, *(b.position[2] for b in world.bodies)), 0.0)
-    start = max(float(np.linalg.norm(body.velocity)) for body in world.bodies)
+    start = max(_fastest(body) for body in world.bodies)
     return min(extents) / max(math.sqrt(start**2 + 2.0 * g * fall), 1e-3)
+
+
+def _fastest(body: Body) -> float:
+    """Speed of a body at its start, or anywhere on its path [m/s]."""
+    if body.path is not None:
+        return float(curve_of(body.path).speeds()[0].max())
+    return float(np.linalg.norm(body.velocity))
 
 
 def thickness(body: Body) -> float:

@@ -9,22 +9,36 @@ step's end. The slip is taken from the step's start, and again from each solutio
 What a row should reach stands in its reference acceleration, (target - velocity) / h, with an impedance near one.
 A contact is a row before the surfaces touch: it may close its gap in the step and not more (Stewart and Trinkle 1996).
 Where the two bounce, the step that ends farther below than it starts above is the one in which they meet; the speed
-after it is that with which a body of the same acceleration comes back through the surface at e times its speed.
+after it is that with which a body of the same acceleration comes back through the surface at e times its speed. What
+MuJoCo's regularisation gives way under a blow is added to what is asked for, or each would lose 1e-4 of its speed.
 A body that is hit lets go of what it touches for that step, so that a blow goes through a row of bodies one by one,
 as in Newton's cradle, and all keep their energy.
+
+What rolls is resisted by a torque of rho times its push, rho = C / (1/R1 + 1/R2): C is the pair's coefficient, R the
+radii of the two surfaces where they touch, without end for a flat one (as discrete elements have it: Ai et al. 2011).
+Surfaces that lose that much are pressed flat over a patch. Rolling takes 3/16 alpha a of the push as a torque, a the
+patch's radius and alpha <= 1 the share of the work of pressing in that is lost (Johnson 1985, 9.2), and spinning about
+the normal 3 pi/16 mu a (Lubkin 1951). So spinning is resisted by pi mu rho or more, and that is what is taken.
+
+Sliding, spinning and rolling share one cone, an ellipsoid, and each is resisted in proportion to its own speed. For
+sliding and spinning that is what a patch does, nearly (Howe and Cutkosky 1996). Rolling is not weakened by a push along
+the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from wsim.solvers.breaking import BreakingC
 from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
+ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
 
 
 @dataclass(frozen=True)
@@ -37,6 +51,8 @@ class ContactConfig:
     """The same of the weld that holds a kinematic body to its way; nearer to one it shakes what rides on it."""
     solver_tolerance: float = 1e-7
     """MuJoCo's tolerance."""
+    rolling_tolerance: float = 1e-10
+    """The same where rolling is resisted: those torques are small beside the pushes."""
     solver_tolerance_warp: float = 1e-3
     """The same where worlds are batched: an error of 0.03 m/s^2. Less is below single precision."""
     reach: float = 0.01
@@ -62,10 +78,35 @@ def settling(distance: Array, h: float, config: ContactConfig) -> Array:
     return np.where(distance > 0.0, -distance / h, np.minimum(-distance / config.settle_time, config.settle_speed))
 
 
+def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: float, smooth: Array) -> Array:
+    """Speeds after the step in which surfaces meet, for which the energy of the fall comes back e² times [m/s].
+
+    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2 (v² + a h v - 2 a z
+    stays), others that of v. The step of the blow itself goes on by h times the speed after it.
+
+    Args:
+        distance: Gaps [m]; speed: normal speeds [m/s]; free: accelerations [m/s^2]; restitution: of each pair.
+        h: Time step [s].
+        smooth: Whether the bodies fly by steps of a higher order, (contacts,).
+    """
+    half = np.where(smooth, 0.0, 0.5 * free * h)
+    fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
+    own = np.where(smooth, free * h, half)
+    squared = restitution**2 * ((speed + half) ** 2 - fall) + fall + np.where(smooth, own**2, 0.0)
+    return np.maximum(np.sqrt(np.maximum(squared, 0.0)) + own, 0.0)
+
+
 def targets(
-    distance: Array, speed: Array, free: Array, restitution: Array, bodies: Array, h: float, config: ContactConfig
-) -> Array:
-    """Normal speeds that contacts should end a step of `h` [s] with [m/s], (contacts,).
+    distance: Array,
+    speed: Array,
+    free: Array,
+    restitution: Array,
+    bodies: Array,
+    h: float,
+    config: ContactConfig,
+    smooth: Array | bool = False,
+) -> tuple[Array, Array]:
+    """Normal speeds that contacts should end a step of `h` [s] with [m/s], and which of them are blows, (contacts,).
 
     Args:
         distance: Gaps, negative where shapes overlap [m].
@@ -75,25 +116,25 @@ def targets(
         bodies: (contacts, 2), 0 for the world.
         h: Time step [s].
         config: How the law is applied.
+        smooth: Whether bodies fly by steps of a higher order.
     """
     goal = settling(distance, h, config)
     bouncy = restitution > 0.0
     if not bouncy.any():
-        return goal
+        return goal, bouncy
     after = distance + speed * h
     fast = bouncy & (speed < -config.threshold * h)
     meets = fast & (after < 0.0) & (-after > distance)
-    fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
-    rebound = np.sqrt(np.maximum(restitution**2 * (speed**2 - fall) + fall, 0.0))
+    rebound = rebounds(distance, speed, free, restitution, h, np.broadcast_to(smooth, speed.shape))
     waits = fast & ~meets & (distance > 0.0)
     struck = np.zeros(int(bodies.max()) + 1, dtype=bool)
     struck[bodies[meets]] = True
     struck[0] = False
     # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
     light = distance > -config.threshold * h * h
-    later = bouncy & ~fast & light & struck[bodies].any(axis=1)
+    later = bouncy & (waits | (~fast & light)) & struck[bodies].any(axis=1)
     goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
-    return np.where(meets, rebound, np.where(later, -LATER, goal))
+    return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
 
 def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
@@ -117,20 +158,38 @@ class ContactLawC:
         mujoco: The module.
         model: MuJoCo's model.
         geom_class: Class of each geom, (geoms,).
-        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
+        curvature: Of each geom's round side [1/m], (geoms,); 0 for a flat one.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
+        breaking: What breaks joints, if any may break.
         touching: Finds contacts with what MuJoCo does not know.
     """
 
     def __init__(
-        self, mujoco: Any, model: Any, geom_class: Array, law: Array, smooth: bool, config: ContactConfig,
+        self,
+        mujoco: Any,
+        model: Any,
+        geom_class: Array,
+        law: Array,
+        curvature: Array,
+        smooth: bool,
+        config: ContactConfig,
+        breaking: BreakingC | None = None,
         touching: SurfaceContacts | None = None,
     ) -> None:
+        self.breaking = breaking
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.geom_class, self.law = geom_class, law
-        self.touching, self._bend = touching, np.zeros(0)
+        self.geom_class, self.law, self.curvature = geom_class, law, curvature
+        self.touching, self._bow = touching, np.zeros(0)
+        self.touched = 0  # steps of the first order since the last smooth one
+        self.rolls = bool(law[..., 2].any())
+        if self.rolls:
+            model.opt.tolerance = config.rolling_tolerance
+        self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        rows = mujoco.mjtConstraint
+        self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -143,14 +202,18 @@ class ContactLawC:
         mujoco.mj_fwdActuation(model, data)
         mujoco.mj_fwdAcceleration(model, data)
         touching = self._solve(data)
+        while self.breaking is not None and self.breaking.give_way(data):
+            self._solve(data)
         mujoco.mj_checkAcc(model, data)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
             model.opt.disableflags |= self.unilateral
             mujoco.mj_RungeKutta(model, data, 4)
             model.opt.disableflags &= ~self.unilateral
+            self.touched = 0
         else:
             mujoco.mj_implicit(model, data)
+            self.touched += 1
         if model.nu:
             self._tell_efforts(data)
 
@@ -159,13 +222,13 @@ class ContactLawC:
         mujoco, model = self.mujoco, self.model
         if self.touching is None:
             mujoco.mj_fwdPosition(model, data)
-            self._bend = np.zeros(data.ncon)
+            self._bow = np.zeros(data.ncon)
             return
         mujoco.mj_fwdKinematics(model, data)
         mujoco.mj_makeM(model, data)
         mujoco.mj_factorM(model, data)
         mujoco.mj_collision(model, data)
-        self._bend = self.touching.add_to_c(mujoco, model, data)
+        self._bow = self.touching.add_to_c(mujoco, model, data)
         mujoco.mj_makeConstraint(model, data)
         mujoco.mj_island(model, data)
         mujoco.mj_transmission(model, data)
@@ -181,33 +244,39 @@ class ContactLawC:
         mujoco.mj_fwdActuation(model, data)
 
     def _solve(self, data: Any) -> bool:
-        """Constraint forces; whether a contact or a stop may be among them."""
+        """Constraint forces; whether a contact, a stop or dry friction may be among them."""
         kinds = data.efc_type
-        stops = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT)
+        stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
+        rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
+        data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
         first = data.contact.efc_address[: data.ncon]
         chosen = np.flatnonzero(first >= 0)
         if len(chosen):
             self._solve_contacts(data, chosen, first[chosen], h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
-        return bool(len(stops) or len(chosen))
+        return bool(len(stops) or len(rubbing) or len(chosen))
 
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
         geoms = contact.geom[chosen]
         law = self.law[self.geom_class[geoms[:, 0]], self.geom_class[geoms[:, 1]]]
-        friction = np.maximum(law[:, [0, 0, 2, 3, 3]], config.smallest_friction)
+        friction = self._coefficients(data, chosen, geoms, law)
         contact.friction[chosen] = friction
         contact.mu[chosen] = friction[:, 0]
+        if self.rolls:
+            self._weigh_rows(data, normal, contact.dim[chosen], friction)
         image = np.zeros(data.nefc)
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
-        speed, bend = data.efc_vel[normal], self._bend[chosen]
-        bodies = model.geom_bodyid[geoms]
-        goal = bend + targets(contact.dist[chosen], speed + bend, image[normal], law[:, 1], bodies, h, config)
+        speed, bow = data.efc_vel[normal], self._bow[chosen]
+        free, bodies = image[normal], model.geom_bodyid[geoms]
+        smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
+        goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], bodies, h, config, smooth)
+        goal = goal + bow
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
         offset = np.arange(1, 6)
         held = offset < contact.dim[chosen][:, None]
@@ -216,12 +285,39 @@ class ContactLawC:
         velocity = data.efc_vel[rows]
         data.efc_aref[rows[held]] = -velocity[held] / h
         slip = np.linalg.norm(weight * velocity, axis=1)
-        for _ in range(config.solutions):
-            data.efc_aref[normal] = (goal - slip - speed) / h
+        given = np.zeros(len(normal))  # by the regularisation under a blow [m/s^2]
+        for k in range(config.solutions):
+            data.efc_aref[normal] = (goal - slip - speed) / h + given
             mujoco.mj_fwdConstraint(model, data)
             mujoco.mj_mulJacVec(model, data, image, data.qacc)
             left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
-            if np.abs(left - slip).max() < config.tolerance:
+            if np.abs(left - slip).max() < config.tolerance and (k or not blow.any()):
                 return
             slip = left
+            given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc
+
+    def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
+        """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""
+        slide, roll = law[:, 0], np.zeros(len(geoms))
+        if self.rolls:
+            axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
+            leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
+            on_end = self.flat_ended[geoms] & (leans > ON_END)
+            bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
+            np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
+        return np.maximum(
+            np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction
+        )
+
+    @staticmethod
+    def _weigh_rows(data: Any, normal: Array, dim: Array, friction: Array) -> None:
+        """Weights of the rows of spinning and rolling by their coefficients, as MuJoCo's cone has them."""
+        wide = dim > 3
+        first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
+        for k in range(2, 5):
+            row, weight = first + k, data.efc_D[first] * share[:, k]
+            data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
+            if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+                row = data.map_efc2iefc[row]
+                data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight

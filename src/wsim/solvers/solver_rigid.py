@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -9,8 +10,11 @@ import numpy as np
 import warp as wp
 from mujoco_warp import OverflowType
 
+from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
+from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
@@ -33,9 +37,13 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     Args:
         model: The Newton model.
         classes: Class of each shape of the first world, (shapes,).
-        law: Friction, restitution, spinning and rolling friction [m] of two classes, (classes, classes, 4).
+        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
+        curvature: Of each shape's round side [1/m], (shapes,); 0 for a flat one.
         on_c: Whether MuJoCo in C steps the first world alone.
-        smooth: Whether steps that touch nothing are of the fourth order. In Warp: all steps, and nothing may touch.
+        smooth: Whether steps that touch nothing are of the fourth order.
+        may_touch: Whether any contact, stop or dry friction can come up.
+        time_step: Of the steps to come [s].
+        breakable: The joints that may break.
         config: How the law is applied.
         touching: Finds contacts with what MuJoCo does not know.
         options: For `newton.solvers.SolverMuJoCo`.
@@ -46,8 +54,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         model: Any,
         classes: Array,
         law: Array,
+        curvature: Array,
         on_c: bool,
         smooth: bool,
+        may_touch: bool,
+        time_step: float,
+        breakable: Sequence[Breakable] = (),
         config: ContactConfig | None = None,
         touching: SurfaceContacts | None = None,
         **options: Any,
@@ -57,7 +69,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             model,
             use_mujoco_cpu=on_c,
             use_mujoco_contacts=True,
-            integrator="rk4" if smooth and not on_c else "implicitfast",
+            integrator="rk4" if smooth and not on_c and not may_touch else "implicitfast",
             cone="elliptic",
             enable_multiccd=True,  # a cylinder stands on four points, not on one that wanders
             impratio=1.0,
@@ -65,49 +77,109 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             **options,
         )
         shapes = self.mjc_geom_to_newton_shape.numpy()[0]
-        geom_class = np.where(shapes >= 0, classes[np.maximum(shapes, 0) % len(classes)], 0)
+        geom_class, bends = (
+            np.where(shapes >= 0, of[np.maximum(shapes, 0) % len(of)], 0) for of in (classes, curvature)
+        )
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
-        self._harden_loops()
+        self._harden_constraints(time_step)
+        self.breaking = self._breaking(breakable) if breakable else None
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
         if on_c:
             mujoco = self.import_mujoco()[0]
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, smooth, self.contact_config, touching)
-        elif not smooth:
-            self._prepare_warp(geom_class, law)
-
-    def _harden_loops(self) -> None:
-        """Loops that joints close are as hard as contacts, and the welds that drive kinematic bodies nearly so."""
-        welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else ()
-        for k in range(self.mj_model.neq):
             config = self.contact_config
-            self.mj_model.eq_solimp[k, :2] = config.kinematic_impedance if k in welds else config.impedance
-        if not self.use_mujoco_cpu and self.mj_model.neq:
-            impedances = self.mjw_model.eq_solimp
-            values = np.broadcast_to(self.mj_model.eq_solimp, (*impedances.shape, 5))
-            impedances.assign(values.astype(np.float32))
+            self._law_c = ContactLawC(
+                mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking, touching
+            )
+        elif may_touch or not smooth:
+            self._prepare_warp(geom_class, law, bends)
+        self._smooth_steps: Any = None
+        if smooth and may_touch and not on_c:
+            self._smooth_steps = SmoothStepsWarp(self._mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data)
 
-    def _prepare_warp(self, geom_class: Array, law: Array) -> None:
+    def move_surfaces(self, velocity: Array) -> None:
+        """Let surfaces move as belts do: what touches them slips against that velocity.
+
+        MuJoCo adds a geom's `surfacevel` to what its contacts' friction rows have for velocity, in C and in Warp.
+
+        Args:
+            velocity: Of each shape of the first world [m/s], in its body's axes, or the world's, (shapes, 3).
+        """
+        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
+        stated = np.where(shapes[:, None] >= 0, velocity[np.maximum(shapes, 0) % max(1, len(velocity))], 0.0)
+        if not stated.any():
+            return
+        for geom in np.flatnonzero(stated.any(axis=1)):
+            x, y, z, w = self.mj_model.geom_quat[geom][[1, 2, 3, 0]]
+            self.mj_model.geom_surfacevel[geom, :3] = rotate(conjugate(np.array([x, y, z, w])), stated[geom])
+        self.mj_model.flg_surfacevel = 1
+        if not self.use_mujoco_cpu:
+            moving = self.mjw_model.geom_surfacevel
+            values = np.broadcast_to(self.mj_model.geom_surfacevel, (moving.shape[0], self.mj_model.ngeom, 6))
+            moving.assign(values.astype(np.float32))
+            self.mjw_model.flg_surfacevel = True
+
+    def _harden_constraints(self, h: float) -> None:
+        """Loops, gears and what may break are as hard as contacts, the welds that drive kinematic bodies nearly so.
+
+        A row asks, as a contact does, that the speed at the end of a step of `h` [s] lets its gap fade in the settling
+        time: -gap / (settle_time h) - speed / h, in MuJoCo's direct form of a reference acceleration.
+        """
+        config, model = self.contact_config, self.mj_model
+        welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else ()
+        for k in range(model.neq):
+            if k in welds:
+                model.eq_solimp[k, :2] = config.kinematic_impedance
+            else:
+                model.eq_solimp[k, :2] = config.impedance
+                model.eq_solref[k] = -1.0 / (config.settle_time * h), -1.0 / h
+        if not self.use_mujoco_cpu and model.neq:
+            for name in ("eq_solimp", "eq_solref"):
+                array = getattr(self.mjw_model, name)
+                values = np.broadcast_to(getattr(model, name), array.numpy().shape)
+                array.assign(values.astype(np.float32))
+
+    def _breaking(self, breakable: Sequence[Breakable]) -> Any:
+        """What breaks joints, under MuJoCo's numbers of their constraints."""
+        rows = self.mjc_eq_to_newton_eq.numpy()[0].tolist()
+        constraints = [[rows.index(row) for row in joint.rows] for joint in breakable]
+        strength = np.array([[joint.force, joint.torque] for joint in breakable])
+        if self.use_mujoco_cpu:
+            return BreakingC(self.import_mujoco()[0], self.mj_model, constraints, strength)
+        with wp.ScopedDevice(self.model.device):
+            return BreakingWarp(self.mj_model, constraints, strength, self.mjw_data.nworld)
+
+    def mend(self) -> None:
+        """Make all joints whole that broke."""
+        if self.breaking is not None:
+            self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
+
+    def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
+        # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
+        # the contacts of a box that slides, on an H200 in one step of some 300.
+        self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         margin = self.mjw_model.geom_margin
         weights = self.mjw_model.body_invweight0
         weights.assign(np.broadcast_to(self.mj_model.body_invweight0, weights.numpy().shape).astype(np.float32))
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
             self._geom_class = wp.array(geom_class, dtype=int)
-            self._law = wp.array(law, dtype=wp.vec4)
+            self._law = wp.array(law, dtype=wp.vec3)
+            self._curvature = wp.array(curvature, dtype=float)
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
+            self._blow = wp.zeros(data.naconmax, dtype=float)
             self._slip = wp.zeros(data.naconmax, dtype=float)
-            self._bend = wp.zeros(data.naconmax, dtype=float)
+            self._bow = wp.zeros(data.naconmax, dtype=float)
         if self._touching:
-            found, bend = self._touching, self._bend
-            self.mjw_model.callback.contactfilter = lambda model, data: found.add_to_warp(model, data, bend)
+            found, bow = self._touching, self._bow
+            self.mjw_model.callback.contactfilter = lambda model, data: found.add_to_warp(model, data, bow)
 
     def step(
         self, state_in: Any, state_out: Any, control: Any, contacts: Any, dt: float, *, observables: Any = None
@@ -135,6 +207,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             super()._mujoco_warp_step()
             return
         warp = self._mujoco_warp
+        if self._smooth_steps:
+            self._smooth_steps.before(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         warp.fwd_actuation(model, data)
@@ -144,7 +218,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             if k:
                 self._aim_again(model, data)
             warp.solve(model, data)
+        if self.breaking is not None:
+            self.breaking.give_way(model, data)
+            warp.solve(model, data)
         warp.implicit(model, data)
+        if self._smooth_steps:
+            self._smooth_steps.after(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
         config, efc, contact = self.contact_config, data.efc, data.contact
@@ -155,7 +234,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             strike,
             dim=data.naconmax,
             inputs=[
-                *touching, efc.vel, h, self._bend, self._geom_class, model.geom_bodyid, self._law,
+                *touching, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 config.threshold,
             ],
             outputs=[self._struck],
@@ -164,11 +243,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._bend, self._geom_class, model.geom_bodyid, self._law,
-                self._struck, data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
+                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
+                model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
+                data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._slip, efc.aref],
+            outputs=[contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
@@ -186,6 +266,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 data.nacon, contact.worldid, contact.efc_address, contact.dim, contact.friction, efc.vel,
                 model.opt.timestep, data.qacc, *self._jacobian(model, efc), self._target,
+                self._blow, efc.D, efc.force,
             ],
             outputs=[self._slip, efc.aref],
         )  # fmt: skip

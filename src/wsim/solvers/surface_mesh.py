@@ -72,8 +72,7 @@ def _edges(points: Array, faces: Array, flat: Array, normals: Array, is_open: bo
     ordered = np.sort(ends, axis=1)[order]
     starts = np.flatnonzero(np.r_[True, (np.diff(ordered, axis=0) != 0).any(axis=1)])
     sizes = np.diff(np.r_[starts, len(ordered)])
-    lone = np.concatenate([order[s : s + n] for s, n in zip(starts[sizes != 2], sizes[sizes != 2], strict=True)] or [[]])
-    lone = lone.astype(np.int64)
+    lone = order[np.repeat(sizes != 2, sizes)]
     kind.reshape(-1)[lone] = SHARP
     guard.reshape(-1)[lone] = 1
     first, second = order[starts[sizes == 2]], order[starts[sizes == 2] + 1]
@@ -118,7 +117,9 @@ def make_surface(parts: Sequence[Part], device: Any) -> tuple[Any, Any]:
         surface.corners = wp.array(faces, dtype=wp.int32, ndim=2)
         surface.normals = wp.array(normals, dtype=wp.vec3)
         surface.curved = wp.array((np.abs(normals - flat[:, None]).max(axis=(1, 2)) > 1e-5).astype(np.int32))
-        surface.open = wp.array(np.repeat([each.is_open for each in ready], [len(r.faces) for r in ready]).astype(np.int32))
+        surface.open = wp.array(
+            np.repeat([each.is_open for each in ready], [len(r.faces) for r in ready]).astype(np.int32)
+        )
         surface.part = wp.array(np.repeat(np.arange(len(ready)), [len(r.faces) for r in ready]).astype(np.int32))
         surface.edge, surface.guard = wp.array(kind.astype(np.int32)), wp.array(guard.astype(np.int32))
         surface.beyond = wp.array(beyond.astype(np.int32))

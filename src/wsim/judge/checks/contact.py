@@ -222,8 +222,8 @@ class CheckFriction(Check):
         beside = np.zeros(len(k), dtype=bool)
         supports = []
         for shape in evidence.placed:
-            if shape.body >= 0 or shape.shape.kind not in ("plane", "box"):
-                continue
+            if shape.body >= 0 or shape.shape.kind not in ("plane", "box") or any(shape.shape.surface_velocity):
+                continue  # on a belt it is carried, not slowed
             upright = rotate(shape.rotation[:1], np.array([[0.0, 0.0, 1.0]]))[0, 2] > 1.0 - 1e-6
             top = shape.position[0, 2] + (shape.shape.size[2] / 2 if shape.shape.kind == "box" else 0.0)
             local = rotate(conjugate(shape.rotation[k]), evidence.motion.com[k, i] - shape.position[k])

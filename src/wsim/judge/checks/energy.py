@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
+from wsim.judge.evidence.carriers import carried_work
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class CheckEnergy(Check):
-    """Nothing gains energy from nowhere: kinetic and potential energy, less work done on it, only fall.
+    """Nothing gains energy from nowhere: kinetic, potential and springs' energy, less work done on it, only fall.
 
     By mechanism, over the time in which it meets no other, and for all bodies together. What friction and impacts take
     is not known, so a loss is always possible; a gain never is.
@@ -37,10 +38,11 @@ class CheckEnergy(Check):
         motion = evidence.motion
         if len(motion.h) == 0 or self._unknown(evidence):
             return []
-        energy = motion.kinetic + motion.potential
+        energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
-        energy = energy - self._chattered(evidence)
+        energy = energy - self._chattered(evidence) - carried_work(evidence)
+        energy[:, motion.kinematic] = 0.0  # they go where they are told to
         stored = self._stored(evidence)
         none = np.zeros(len(evidence.time))
         worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
@@ -51,7 +53,8 @@ class CheckEnergy(Check):
             else self._by_mechanism(evidence, energy, stored)
         )
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
-        return [*found, self._finding(evidence, np.arange(len(motion.mass)), together, stored)]
+        rows = np.flatnonzero(~motion.kinematic)
+        return [*found, self._finding(evidence, rows, together, stored)] if len(rows) else found
 
     @staticmethod
     def _unknown(evidence: Evidence) -> bool:
@@ -59,10 +62,13 @@ class CheckEnergy(Check):
         recording, world = evidence.recording, evidence.world
         pushed = bool(world.fluids) or bool(recording.metadata.get("controlled"))
         driven = any(joint.drive for joint in world.joints)
-        carried = bool(evidence.motion.kinematic.any() and evidence.motion.speed[:, evidence.motion.kinematic].any())
+        held = {end for joint in world.joints for end in (joint.parent, joint.child)}
+        led = any(
+            body.kinematic and body.prim in held for body in world.bodies
+        )  # by joints, whose forces are not known
         return (
             len(world.bodies) == 0
-            or carried
+            or led
             or (pushed and recording.applied_work is None)
             or (driven and "work/drives" not in recording.scalars)
         )
@@ -104,7 +110,7 @@ class CheckEnergy(Check):
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
         motion = evidence.motion
         worst: Finding | None = None
-        for unit in np.unique(motion.unit):
+        for unit in np.unique(motion.unit[~motion.kinematic]):
             rows = np.flatnonzero(motion.unit == unit)
             meets = np.asarray(motion.meets[:, rows].any(axis=1))
             gained = np.where(meets, 0.0, np.diff(energy[:, rows].sum(axis=1)))
@@ -154,8 +160,8 @@ class CheckEnergy(Check):
     def _limit(self, evidence: Evidence, rows: NDArray[np.intp]) -> tuple[float, float]:
         """The gain that is no finding yet, and the energy that changes hands [J]."""
         motion, g = evidence.motion, evidence.gravity
-        kinetic, potential = motion.kinetic[:, rows].sum(axis=1), motion.potential[:, rows].sum(axis=1)
-        scale = float(max(kinetic.max(), np.ptp(potential)))
+        parts = [energy[:, rows].sum(axis=1) for energy in (motion.kinetic, motion.potential, motion.elastic)]
+        scale = float(max(parts[0].max(), np.ptp(parts[1]), np.ptp(parts[2])))
         size = np.array([evidence.solid(int(i)).smallest for i in rows])
         height = np.abs(motion.com[:, rows, 2]).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.

@@ -1,4 +1,4 @@
-"""Checks of joints: they hold, they keep to their limits, and their drives are strong enough."""
+"""Checks of joints: they hold, keep to their limits and ratios, are strong enough, and break when they are to."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.joints import broken
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.joints import JointTrack
     from wsim.judge.verdict import Finding
     from wsim.scene.world import Joint
+
+    Floats = NDArray[np.float64]
 
 
 @dataclass
@@ -127,4 +130,80 @@ class CheckDrives(Check):
         return found
 
 
-CHECKS: Checks = (CheckJoints, CheckJointLimits, CheckDrives)
+@dataclass
+class CheckBreakage(Check):
+    """A joint that may break does so under the load that it is to break at, and under no less."""
+
+    share: float = 0.01  # of its strength
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each joint that may break and whose loads are recorded."""
+        found = []
+        for joint in evidence.world.joints:
+            name = joint.prim.removeprefix("/World")
+            scalars = evidence.recording.scalars
+            if not joint.may_break or "broken" + name not in scalars:
+                continue
+            borne = [scalars[kind + name] for kind in ("force", "torque")]
+            limits = [np.inf if limit is None else limit for limit in (joint.break_force, joint.break_torque)]
+            share = np.max([np.nan_to_num(load) / limit for load, limit in zip(borne, limits, strict=True)], axis=0)
+            gone = broken(evidence, joint)
+            found.append(self._borne(evidence, joint, share, gone))
+        return found
+
+    def _borne(self, evidence: Evidence, joint: Joint, share: Floats, gone: NDArray[np.bool_]) -> Finding:
+        at = int(np.argmax(gone)) if gone.any() else int(np.argmax(share))
+        held = share[:at].max(initial=0.0) if gone.any() else float(share[at])
+        early = bool(gone.any()) and 1.0 - share[at] > held - 1.0
+        what = f"breaks at {share[at]:.4g}" if early else f"bears {held:.4g}"
+        fine = f"breaks at {share[at]:.4g}" if gone.any() else f"bears at most {held:.4g}"
+        return self.measured(
+            f"{joint.prim} {what} of its strength",
+            max(float(1.0 - share[at]) if early else float(held) - 1.0, 0.0), self.share, "of its strength",
+            fine=f"{joint.prim} {fine} of its strength", prim=joint.prim, time=float(evidence.time[at]), expected=0.0,
+            limit_from=f"{self.share:g} of its strength, for single precision and the iterations of a solver",
+            target=RepairTarget(kind="joint", prim=joint.prim, parameter="break_force", direction="change"),
+        )  # fmt: skip
+
+
+@dataclass
+class CheckGears(Check):
+    """A gear has no play: its second joint goes as far as its ratio says."""
+
+    share: float = 0.02  # of the smallest extent of what a slider moves
+    lean: float = 0.02  # [rad]
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each gear whose joints can be followed from frame to frame."""
+        joints = {joint.prim: joint for joint in evidence.world.joints}
+        found = []
+        for gear in evidence.world.gears:
+            ends = [joints.get(prim) for prim in (gear.first, gear.second)]
+            tracks = [None if joint is None else evidence.joint(joint) for joint in ends]
+            if any(track is None or not _followed(joint, track) for joint, track in zip(ends, tracks, strict=True)):
+                continue
+            first, second = (track.position for track in tracks if track is not None)
+            error = np.abs(second - gear.offset - gear.ratio * first)
+            turns = ends[1] is not None and ends[1].kind == "revolute"
+            child = "" if ends[1] is None else ends[1].child
+            limit = self.lean if turns else self.share * evidence.solid(evidence.index(child)).smallest
+            at = int(np.argmax(error))
+            unit = "rad" if turns else "m"
+            found.append(
+                self.measured(
+                    f"{gear.prim}: its joints are {float(error[at]):.3g} {unit} out of mesh",
+                    float(error[at]), limit, unit, fine=f"{gear.prim} meshes", prim=gear.prim, expected=0.0,
+                    time=float(evidence.time[at]),
+                    limit_from=f"{self.lean:g} rad" if turns else f"{self.share:g} of {child}'s smallest extent",
+                    target=RepairTarget(kind="joint", prim=gear.prim, parameter="ratio", direction="change"),
+                )
+            )  # fmt: skip
+        return found
+
+
+def _followed(joint: Joint | None, track: JointTrack) -> bool:
+    """Whether a joint turns by so little between frames that its whole turns can be counted."""
+    return joint is not None and (joint.kind != "revolute" or np.abs(np.diff(track.position)).max(initial=0.0) < 2.5)
+
+
+CHECKS: Checks = (CheckJoints, CheckJointLimits, CheckDrives, CheckBreakage, CheckGears)

@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.geometry.shapes import reach
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.carriers import surface_speed
 from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.recorded import MissingError
 
@@ -52,7 +53,7 @@ class CheckExplosion(Check):
             lows += [float(evidence.track(fluid).position[:, :, 2].min()) for fluid in world.fluids]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
         start = max((float(np.linalg.norm(body.velocity)) for body in world.bodies), default=0.0)
-        return math.sqrt(start**2 + 2 * evidence.gravity * fall)
+        return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:
         reported = np.linalg.norm(evidence.body_qd[:, :, :3], axis=2)
@@ -72,17 +73,19 @@ class CheckExplosion(Check):
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
             value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
             limit_from=f"{self.body_factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
-            "by a far heavier body, and the work of drives and control",
+            "by a far heavier body, and the work of drives, control and springs",
         )  # fmt: skip
 
     @staticmethod
     def _driven(evidence: Evidence) -> Floats:
-        """The square of the speed that the work of drives, control and fluid may have given, (T, B) [m^2/s^2]."""
+        """The square of the speed that drives, springs, control and fluid may have given, (T, B) [m^2/s^2]."""
         applied, motion = evidence.motion.applied_work, evidence.motion
         work = np.zeros(motion.speed.shape) if applied is None else applied.copy()
         drives = evidence.recording.scalars.get("work/drives")
         if drives is not None:
             work[:, motion.jointed] += np.nancumsum(drives)[:, None]
+        # What springs hold at the start may end in any of the bodies that they move.
+        work[:, motion.jointed] += motion.elastic[0].sum()
         most: Floats = 2.0 * np.maximum(np.maximum.accumulate(work, axis=0), 0.0) / motion.mass
         return most
 

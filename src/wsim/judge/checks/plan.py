@@ -36,7 +36,7 @@ class CheckPlanSizes(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that differs, or one for none."""
-        found = [finding for item, made in _pairs(evidence) for finding in self._solid(made, item)]
+        found = [finding for item, made in pairs(evidence) for finding in self._solid(made, item)]
         found += self._hollows(evidence)
         return found or ([self.passed("Objects have the plan's sizes")] if evidence.plan is not None else [])
 
@@ -90,7 +90,7 @@ class CheckPlanPlaces(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that starts otherwise, or one for none."""
-        found = [finding for item, made in _pairs(evidence) for finding in self._start(evidence, made, item)]
+        found = [finding for item, made in pairs(evidence) for finding in self._start(evidence, made, item)]
         return found or ([self.passed("Objects start where the plan has them")] if evidence.plan is not None else [])
 
     def _start(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
@@ -148,7 +148,7 @@ class CheckPlanLooks(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that differs, or one for none."""
-        found = [finding for item, made in _pairs(evidence) for finding in self._look(made, item)]
+        found = [finding for item, made in pairs(evidence) for finding in self._look(made, item)]
         return found or ([self.passed("Objects have the plan's looks")] if evidence.plan is not None else [])
 
     def _look(self, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
@@ -178,7 +178,7 @@ class CheckPlanLooks(Check):
             )  # fmt: skip
 
 
-def _pairs(evidence: Evidence) -> Iterator[tuple[PlanObject, Body | Static]]:
+def pairs(evidence: Evidence) -> Iterator[tuple[PlanObject, Body | Static]]:
     """The plan's objects, and the bodies and statics made of them."""
     if evidence.plan is None:
         return
@@ -194,7 +194,7 @@ def _turned(item: PlanObject, turn: Floats, shape: Shape) -> float:
     """The angle between a rotation and the plan's [deg]; 0 for what looks the same from all sides."""
     if item.pose is None or item.primitive == "sphere":
         return 0.0
-    planned = _quaternion(item.pose.rotation_deg)
+    planned = quaternion(item.pose.rotation_deg)
     if item.primitive in ("cylinder", "capsule"):  # only its axis is to be seen, and not which way it points
         between = multiply(conjugate(planned), turn)
         cosine = abs(1.0 - 2.0 * float(between[0] ** 2 + between[1] ** 2))
@@ -228,7 +228,7 @@ def _quarters() -> tuple[Floats, ...]:
     return tuple(turns)
 
 
-def _quaternion(rotation_deg: tuple[float, float, float]) -> Floats:
+def quaternion(rotation_deg: tuple[float, float, float]) -> Floats:
     """Roll, then pitch, then yaw [deg] as a quaternion."""
     q = np.array([0.0, 0.0, 0.0, 1.0])
     for axis, angle in enumerate(rotation_deg):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from wsim.judge.checks import (
     camera,
     contact,
+    cord,
     energy,
     fluid,
     joint,
@@ -18,6 +19,7 @@ from wsim.judge.checks import (
     physics,
     plan,
     plan_joints,
+    plan_motion,
     rest,
     run,
     settled,
@@ -27,7 +29,9 @@ if TYPE_CHECKING:
     from wsim.judge.checks.check import Check
 
 RUN = (run,)
-PHYSICS = (physics, settled, motion, energy, contact, rest, joint, mass, plan, plan_joints, fluid, camera)
+PHYSICS = (
+    physics, settled, motion, energy, contact, rest, joint, cord, mass, plan, plan_joints, plan_motion, fluid, camera,
+)  # fmt: skip
 
 
 def run_checks() -> list[Check]:

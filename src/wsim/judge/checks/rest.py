@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.checks.check import Check, Checks, worst
+from wsim.judge.evidence.carriers import rides
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 from wsim.scene.contact import friction_of
@@ -179,11 +180,12 @@ class CheckCreep(Check):
 
     @staticmethod
     def _carried(evidence: Evidence, i: int) -> bool:
-        """Whether something else that moves is with it: it may ride, or be pushed."""
+        """Whether something else that moves is with it, or a belt: it may ride, or be pushed."""
         motion, here = evidence.motion, np.flatnonzero(evidence.window)[:-1]
         others = np.ones(len(motion.mass), dtype=bool)
         others[i] = False
-        return bool(motion.meets[here, i].any() and (motion.speed[here][:, others] > 1e-3).any())
+        moves = bool(motion.meets[here, i].any() and (motion.speed[here][:, others] > 1e-3).any())
+        return moves or rides(evidence, i, here)
 
     @staticmethod
     def _afloat(evidence: Evidence, i: int) -> bool:

@@ -136,7 +136,8 @@ class CheckPlanObjects(Check):
         has = {
             "container": {c.prim for c in world.containers},
             "fluid": {f.prim for f in world.fluids},
-            "dynamic": {b.prim for b in world.bodies},
+            "dynamic": {b.prim for b in world.bodies if not b.kinematic},
+            "kinematic": {b.prim for b in world.bodies if b.kinematic},
             "static": {s.prim for s in world.statics},
         }
         everything = {"/".join(prim.split("/")[:3]) for prims in has.values() for prim in prims}

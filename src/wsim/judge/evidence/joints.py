@@ -22,7 +22,7 @@ AXES = {"X": 0, "Y": 1, "Z": 2}
 
 @dataclass(frozen=True)
 class JointTrack:
-    """One joint through time, (T,) each."""
+    """One joint through time, (T,) each; of one that breaks, `apart` and `turned` are 0 from then on."""
 
     apart: Floats  # how far its anchors are from where it holds them [m]
     turned: Floats  # angle by which its ends are turned against what it allows [rad]
@@ -53,7 +53,16 @@ def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
         angle = np.arcsin(np.clip(leaning, 0.0, 1.0))
     elif joint.kind == "spherical":
         angle = np.zeros(len(offset))
-    return JointTrack(np.linalg.norm(offset, axis=1), angle, position)
+    apart = np.linalg.norm(offset, axis=1)
+    gone = broken(evidence, joint)
+    return JointTrack(np.where(gone, 0.0, apart), np.where(gone, 0.0, angle), position)
+
+
+def broken(evidence: Recorded, joint: Joint) -> NDArray[np.bool_]:
+    """In which frames a joint is broken, (T,), as the recording says."""
+    said = evidence.recording.scalars.get("broken" + joint.prim.removeprefix("/World"))
+    found: NDArray[np.bool_] = np.zeros(len(evidence.time), dtype=bool) if said is None else np.nan_to_num(said) > 0.0
+    return found
 
 
 def _anchor(evidence: Recorded, prim: str | None, position: Vec3, turn: Quat) -> tuple[Floats, Floats]:

@@ -12,10 +12,12 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.cords import spring_energy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.placed import Placed
     from wsim.judge.evidence.recorded import Recorded
 
     Floats = NDArray[np.float64]
@@ -120,15 +122,32 @@ class Motion:
         bodies = self._recorded.world.bodies
         row = {body.prim: i for i, body in enumerate(bodies)}
         unit = np.arange(len(bodies))
-        for joint in self._recorded.world.joints:
-            if joint.parent in row and joint.child in row:
-                unit[unit == unit[row[joint.child]]] = unit[row[joint.parent]]
+        world = self._recorded.world
+        child = {joint.prim: joint.child for joint in world.joints}
+        pairs: list[tuple[str | None, str | None]] = [(joint.parent, joint.child) for joint in world.joints]
+        pairs += [(child.get(gear.first), child.get(gear.second)) for gear in world.gears]
+        pairs += [(tied[0], other) for tied in self._tied for other in tied[1:]]
+        for first, second in pairs:
+            if first in row and second in row:
+                unit[unit == unit[row[second]]] = unit[row[first]]
         return unit
+
+    @property
+    def _tied(self) -> list[list[str]]:
+        """The bodies that each spring and rope is fixed to or runs round."""
+        world = self._recorded.world
+        return [[guide.body for guide in cord.path if guide.body] for cord in world.cords]
+
+    @cached_property
+    def elastic(self) -> Floats:
+        """Energy that springs hold, shared by the bodies at their ends, (T, B) [J]."""
+        return spring_energy(self._recorded)
 
     @cached_property
     def jointed(self) -> Bools:
-        """Whether a joint holds the body, (B,)."""
+        """Whether a joint, a spring or a rope holds the body, (B,)."""
         held = {end for joint in self._recorded.world.joints for end in (joint.parent, joint.child)}
+        held |= {prim for tied in self._tied for prim in tied}
         return np.array([body.prim in held for body in self._recorded.world.bodies], dtype=bool)
 
     # ---- whom it may meet
@@ -165,16 +184,21 @@ class Motion:
         """
         near = np.zeros(len(intervals), dtype=bool)
         for shape in self._recorded.placed:
-            if shape.body == i:
-                continue
-            reach = self.reach[intervals, i] + (self.reach[intervals, shape.body] if shape.body >= 0 else 0.0)
-            for frames in (intervals, intervals + 1):
-                local = rotate(conjugate(shape.rotation[frames]), self.com[frames, i] - shape.position[frames])
-                if shape.shape.kind == "mesh":
-                    gap = np.linalg.norm(local, axis=1) - shape.radius
-                else:
-                    gap = -shape.kind.depth(local)
-                near |= gap <= self.radius[i] + reach
+            if shape.body != i:
+                near |= self.approaches(shape, i, intervals)
+        return near
+
+    def approaches(self, shape: Placed, i: int, intervals: NDArray[np.intp]) -> Bools:
+        """Whether body i and a shape may touch within the intervals, (len(intervals),)."""
+        near = np.zeros(len(intervals), dtype=bool)
+        reach = self.reach[intervals, i] + (self.reach[intervals, shape.body] if shape.body >= 0 else 0.0)
+        for frames in (intervals, intervals + 1):
+            local = rotate(conjugate(shape.rotation[frames]), self.com[frames, i] - shape.position[frames])
+            if shape.shape.kind == "mesh":
+                gap = np.linalg.norm(local, axis=1) - shape.radius
+            else:
+                gap = -shape.kind.depth(local)
+            near |= gap <= self.radius[i] + reach
         return near
 
     def wet(self, i: int, intervals: NDArray[np.intp]) -> Bools:

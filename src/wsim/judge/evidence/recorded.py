@@ -132,6 +132,7 @@ class Recorded:
         """The program's line that made a prim."""
         lines = {item.prim: item.line for item in self.world.fluids}
         lines |= {item.prim: item.line for item in self.world.joints}
+        lines |= {item.prim: item.line for item in self.world.cords}
         lines |= {item.prim: item.line for item in self.world.statics}
         lines |= {item.prim: item.line for item in self.world.bodies}
         return lines.get(prim) if prim is not None else None

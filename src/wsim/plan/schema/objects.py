@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from wsim.defaults import FRICTION
 from wsim.plan.schema.base import Color, Name, NotNegative, Positive, Share, Strict, Text, Vec3, Word
@@ -33,6 +33,8 @@ SIZE_MEANING = {
     "ground": "nothing",
 }
 _SOLIDS = ("box", "sphere", "cylinder", "capsule")
+_MOTIONS = ("angular_velocity_deg", "rolling", "surface_velocity")
+ROLLS = ("sphere", "cylinder", "capsule")
 ROLE_PRIMITIVES: dict[str, tuple[str, ...]] = {
     "rigid_body": _SOLIDS,
     "mechanism": _SOLIDS,
@@ -157,7 +159,10 @@ class PlanObject(Strict):
     state: State = "dynamic"
     topology: Topology = Field(default_factory=Topology)
     pose: Pose | None = None
-    velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial
+    velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial; of what is kinematic, for good
+    angular_velocity_deg: Vec3 | None = None  # likewise [deg/s], about the world's axes
+    rolling: bool | None = None  # it starts with the spin that fits its velocity
+    surface_velocity: Vec3 | None = None  # of a belt's surface, along the object's own axes [m/s]
     registration: Registration = Field(default_factory=Registration)
     words: Text = ""  # the words of the prompt that asked for it
 
@@ -251,4 +256,23 @@ class PlanObject(Strict):
             raise ValueError(f'{self.name}: a dynamic body needs "material" with a name and a density in kg/m^3')
         if self.dimensions is not None and min(self.dimensions) <= 0.0:
             raise ValueError(f"{self.name}: dimensions {self.dimensions} must be > 0")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without the motions that it has not, so that a plan without them reads as it always did."""
+        return {name: value for name, value in write(self).items() if value is not None or name not in _MOTIONS}
+
+    @model_validator(mode="after")
+    def _moves(self) -> PlanObject:
+        if self.rolling and (self.primitive not in ROLLS or self.state != "dynamic"):
+            raise ValueError(
+                f"{self.name}: rolling is of a dynamic {', '.join(ROLLS)}; it is a {self.state} {self.primitive}"
+            )
+        if self.rolling and not any(self.velocity):
+            raise ValueError(f"{self.name}: rolling needs a velocity; give one, or leave rolling out")
+        if self.rolling and self.angular_velocity_deg is not None:
+            raise ValueError(f"{self.name}: rolling gives the spin; remove angular_velocity_deg, or rolling")
+        if self.surface_velocity is not None and self.primitive in ("fluid", "tank", "asset"):
+            raise ValueError(f"{self.name}: surface_velocity is of a solid; it is a {self.primitive}")
         return self

@@ -29,7 +29,8 @@ def _continues(group: list[PlanObject], item: PlanObject) -> bool:
     first = group[0]
     prefix, _, start = first.name.rpartition("_")
     if (
-        start not in ("0", "1")
+        item.surface_velocity is not None
+        or start not in ("0", "1")
         or item.name != f"{prefix}_{int(start) + len(group)}"
         or item.primitive in ("tank", "fluid", "ground", "asset")
     ):
@@ -39,7 +40,8 @@ def _continues(group: list[PlanObject], item: PlanObject) -> bool:
 
 def _alike(item: PlanObject) -> object:
     rotation = item.pose.rotation_deg if item.pose is not None else None
-    return (item.primitive, item.size, item.material, item.state, item.velocity, rotation, shapes.weight(item))
+    motion = (item.velocity, item.angular_velocity_deg, item.rolling)
+    return (item.primitive, item.size, item.material, item.state, motion, rotation, shapes.weight(item))
 
 
 def loop(draft: Draft, group: Sequence[PlanObject]) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from wsim.plan.schema import PlanObject
 from wsim.program.compose import assets, fluids, loops, shapes
 from wsim.program.compose.draft import Draft
-from wsim.program.source import call
+from wsim.program.source import call, tuple_of
 
 
 def statements(draft: Draft) -> list[str]:
@@ -26,6 +26,9 @@ def statements(draft: Draft) -> list[str]:
             draft.handles[item.name] = draft.variable(item.name)
             target = f"{draft.handles[item.name]} = {target}"
         lines += call(target, [f'"{item.name}"', *_arguments(draft, item)])
+        if item.surface_velocity is not None:
+            moved = f"velocity={tuple_of(item.surface_velocity)}"
+            lines += call("scene.surface_velocity", [f'"{item.name}"', moved])
     return lines
 
 

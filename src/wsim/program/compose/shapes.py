@@ -25,8 +25,12 @@ def arguments(draft: Draft, item: PlanObject, at: str | None = None) -> list[str
         found.append(f"position={at or tuple_of(position(item))}")
     if not stands:
         found += rotation(item)
-    if any(item.velocity) and item.state == "dynamic":
+    if any(item.velocity) and item.state in ("dynamic", "kinematic"):
         found.append(f"velocity={tuple_of(item.velocity)}")
+    if item.angular_velocity_deg is not None and item.state in ("dynamic", "kinematic"):
+        found.append(f"angular_velocity_deg={tuple_of(item.angular_velocity_deg)}")
+    if item.rolling:
+        found.append("rolling=True")
     if item.state == "static" and not stands:
         found.append("static=True")
     if item.state == "kinematic":

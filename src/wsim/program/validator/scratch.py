@@ -20,20 +20,24 @@ _MOST_CALLS = 400
 _SHAPE = {"size": (1.0, 1.0, 1.0)}
 _ROUND = {"radius": 0.1, "height": 0.2}
 _JOINT: dict[str, Any] = {"parent": None}
+_CORD: dict[str, Any] = {"b": None, "anchor_b": (0.0, 0.0, 2.0)}
 # What a call needs beside the argument that is tried.
 _NEEDS: dict[str, dict[str, Any]] = {
     "ground": {}, "box": _SHAPE, "sphere": {"radius": 0.1}, "cylinder": _ROUND, "capsule": _ROUND,
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
-    "track": {"pieces": [("line", 1.0)]},
+    "track": {"pieces": [("line", 1.0)]}, "compound": {"parts": [Part("sphere", radius=0.1)]},
     "height_field": {"heights": [[0.0, 0.0], [0.0, 0.0]], "size": (1.0, 1.0)},
-    "compound": {"parts": [Part("sphere", radius=0.1)]}, "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
+    "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
+    "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
 }  # fmt: skip
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
+CORDS = ("spring", "rope", "cable")
 OBJECTS = (*BODIES, "ground", "track", "height_field", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
-_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high", "points")
+_TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high", "a", "b",
+         "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links", "points")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
@@ -94,8 +98,11 @@ class World:
                 self.note(method, name, certain=certain)
                 return (None, *self._blame(method, arguments, _refusal(error)))
             self.note(method, name, certain=certain)
+            for link in made if method == "cable" else ():
+                self.note("capsule", link.name, certain=certain)
             return Const(made), "", ""
-        if certain and method in (*OBJECTS, *JOINTS, "camera", "light", "material", "param"):
+        self.open = self.open or method == "cable"  # its links have names of their own
+        if certain and method in (*OBJECTS, *JOINTS, *CORDS, "camera", "light", "material", "param"):
             self.trusted = False
         self.note(method, name, certain=certain)
         field, refusal = self._try(method, arguments)
@@ -193,6 +200,8 @@ class World:
         needs: dict[str, Any] = dict(_NEEDS[method])
         if method != "simulation":
             needs["name"] = f"probe_{number}"
+        if method in CORDS:
+            needs["a"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
         if method.startswith("joint_"):
             needs["child"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0))
         if method == "fluid":
@@ -211,6 +220,8 @@ class World:
             scene = Scene()
             if method.startswith("joint_"):
                 needs["child"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
+            if method in CORDS:
+                needs["a"] = scene.box("probe_child", size=(1.0, 1.0, 1.0))
         try:
             getattr(scene, method)(**(needs | given))
         except Exception as error:  # noqa: BLE001 - what it cannot take at all is told by its type

@@ -156,7 +156,11 @@ def _may_be_scene(kind: str, wanted: str, index: Index) -> bool:
         return True
     # What is typed as a mere handle may be any of them.
     whole = f"wsim.scene.{wanted}"
-    return kind == whole or _inherits(kind, whole, index) or (wanted not in ("Drive", "Part") and kind == "wsim.scene.Handle")
+    return (
+        kind == whole
+        or _inherits(kind, whole, index)
+        or (wanted not in ("Drive", "Part") and kind == "wsim.scene.Handle")
+    )
 
 
 def _inherits(kind: str, base: str, index: Index) -> bool:

@@ -26,8 +26,8 @@ def build_ground(cast: Cast, taken: set[str], scene: Part, behind: str | None = 
         scene: What is there already.
         behind: Name of the tank that the row stands in front of.
     """
-    part = Part(duration=3.0, names=scene.names)
     things = [thing for thing in cast.things if thing.place == "ground" and id(thing) not in scene.names]
+    part = Part(duration=3.0 if any(_waits(thing) for thing in things) else 1.5, names=scene.names)
     _settle_sides(things, cast)
     ends = _Ends(behind or next((o.name for o in scene.objects), None), "FRONT-OF" if behind else "LEFT-OF")
     # What carries another comes first: its name is needed.
@@ -43,6 +43,11 @@ def build_ground(cast: Cast, taken: set[str], scene: Part, behind: str | None = 
         if thing.target is not None and thing.path is not None:
             struck(thing, part)
     return part
+
+
+def _waits(thing: Thing) -> bool:
+    """Whether a thing moves, and nothing has set it in motion: it is seen to stay, or to fall and come to rest."""
+    return thing.noun.family == "solid" and not {"roll", "slide", "push", "throw", "meet"} & {*thing.does}
 
 
 class _Ends:

@@ -153,3 +153,7 @@ def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, p
         pull = 0.0
     time = math.sqrt(2 * slab.size[0] / pull) if pull > 0.1 else 1.0
     part.duration = max(part.duration, round(time + (2.0 if thing.target is not None else 0.5), 1))
+    if pull > 0.1 and thing.target is None:  # past the foot it goes on at the speed that it has there
+        beyond = pull * time * math.cos(turn) * (part.duration - time)
+        way = slab.size[0] * math.cos(turn) + beyond
+        part.goes[name] = (round(way, 3), 0.0, round(-slab.size[0] * math.sin(turn), 3))

@@ -7,14 +7,17 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
-from wsim.rules.cast import Cast, Thing
+from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
 from wsim.rules.scenes.part import DIRECTIONS, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
 
 HIT_SPEED = 3.0  # [m/s]
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
-ROLL_DISTANCE, SLIDE_DISTANCE = 0.6, 0.3  # from what moves to what it hits [m]
+ROLL_DISTANCE, SLIDE_DISTANCE = 0.6, 0.3  # from what moves to what it hits, at least [m]
+APPROACH = 0.6  # that it takes what rolls to get there [s]
+SLIDE_SHARE = 0.6  # of the way to its stop, after which what slides hits
+ROLL_WAY = 3.0  # that a ball rolls while one looks [m]
 MEET_SPEED, MEET_DISTANCE = 1.0, 0.8  # of two that come at each other [m/s], [m]
 THROW_SPEED, THROW_ANGLE, THROW_HEIGHT = 4.0, 45.0, 1.0  # [m/s], [deg], [m]
 AIM_DISTANCE = 1.5  # from what is thrown to what it is thrown at [m]
@@ -44,15 +47,31 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
     direction = thing.direction or "front"
     if thing.direction is None:
         cast.assume(thing.words, "towards +X", "the prompt gives no direction")
-    moving = item.model_copy(update={"velocity": times(DIRECTIONS[direction], speed)})
+    moving = started(item, times(DIRECTIONS[direction], speed), rolls=how == "roll")
     part.objectives += _way(thing, moving, carrier, how, speed, direction)
-    part.duration = max(part.duration, round(1.0 + speed / (pair_friction(item, carrier) * GRAVITY), 1))
+    friction = pair_friction(item, carrier)
+    stop = speed / (friction * GRAVITY)
+    time = max(1.5, ROLL_WAY / speed) if how == "roll" else 1.0 + stop
+    part.duration = max(part.duration, round(min(time, 3.0) if how == "roll" else time, 1))
+    way = speed * (cast.duration or part.duration) if how == "roll" else stopping_distance(speed, friction)
+    part.goes[item.name] = times(DIRECTIONS[direction], round(way, 3))
     return moving
 
 
+def started(item: PlanObject, velocity: Vec3, *, rolls: bool) -> PlanObject:
+    """The object with its start's velocity; what rolls has the spin that fits, and lies across its way."""
+    if not rolls:
+        return item.model_copy(update={"velocity": velocity})
+    moving = item.model_copy(update={"velocity": velocity, "rolling": True})
+    if item.primitive == "sphere":
+        return moving
+    rows = [row for row in item.relations if not row.predicate.startswith("LIES-ALONG")]
+    return moving.related([*rows, Relation(predicate="LIES-ALONG-Y" if velocity[0] else "LIES-ALONG-X")])
+
+
 def _check_round(thing: Thing) -> None:
-    if "roll" in thing.does and not thing.round:
-        raise UserError(f"{thing.words!r}: the builtin planner rolls balls only")
+    if "roll" in thing.does and thing.noun.primitive not in ROUND:
+        raise UserError(f"{thing.words!r}: the builtin planner rolls balls, barrels and the like")
     if thing.speed is not None and not 0.0 < thing.speed <= MOST_SPEED:
         raise UserError(f"{thing.words!r}: {thing.speed:g} m/s is outside 0 to {MOST_SPEED:g} m/s, the planner's range")
 
@@ -109,7 +128,8 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         speed = thing.speed or HIT_SPEED
         if thing.speed is None:
             cast.assume(thing.words, f"starts at {speed:g} m/s along +X", "the prompt gives no speed")
-        item = item.model_copy(update={"velocity": (speed, 0.0, 0.0)})
+        distance = _run_up(slides, speed, pair_friction(item, _GROUND))
+        item = started(item, (speed, 0.0, 0.0), rolls=not slides)
     cast.assume(thing.words, f"starts {distance:g} m from {target.words}", "the prompt gives no distance")
     rows = [base, Relation(predicate="BACK-OF", ref=first, gap=distance)]
     part.objects.append(item.related(rows + item.relations))
@@ -117,6 +137,13 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
     part.duration = max(part.duration, 4.0 if target.group else 2.0)
     if not target.group or "throw" in thing.does:
         _collision(item.name, aimed, part)
+
+
+def _run_up(slides: bool, speed: float, friction: float) -> float:
+    """From what rolls or slides to what it hits [m]."""
+    if slides:
+        return max(SLIDE_DISTANCE, round(min(APPROACH * speed, SLIDE_SHARE * stopping_distance(speed, friction)), 2))
+    return max(ROLL_DISTANCE, round(APPROACH * speed, 2))
 
 
 def struck(thing: Thing, part: Part) -> None:
@@ -158,7 +185,7 @@ def meet(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
     ground = Relation(predicate="PLACE-ON-BASE")
     apart = Relation(predicate="FRONT-OF", ref=pair[0].name, gap=distance)
     for item, sign, rows in ((pair[0], 1.0, [ground]), (pair[1], -1.0, [ground, apart])):
-        moving = item.model_copy(update={"velocity": (sign * speed, 0.0, 0.0)})
+        moving = started(item, (sign * speed, 0.0, 0.0), rolls=thing.round)
         part.objects.append(moving.related(rows + item.relations))
     part.duration = max(2.0, round(distance / speed + 1.0, 1)) if part.duration <= 3.0 else part.duration
     _collision(pair[0].name, pair[1].name, part)

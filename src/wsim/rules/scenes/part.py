@@ -29,6 +29,7 @@ class Part:
         names: Of each thing's objects, lowest first, by the thing's identity.
         spacing: Of its fluid's particles [m]; 0 without a fluid.
         surface: Height that the side camera looks across [m].
+        goes: How far from its start an object gets, which the cameras are to show, too [m].
     """
 
     objects: list[PlanObject] = field(default_factory=list)
@@ -39,6 +40,7 @@ class Part:
     names: dict[int, list[str]] = field(default_factory=dict)
     spacing: float = 0.0
     surface: float | None = None
+    goes: dict[str, Vec3] = field(default_factory=dict)
 
     def add(self, other: Part) -> None:
         """Take in another part."""
@@ -48,6 +50,7 @@ class Part:
         self.objectives += other.objectives
         self.duration = max(self.duration, other.duration)
         self.names |= other.names
+        self.goes |= other.goes
         self.spacing = self.spacing or other.spacing
         self.surface = self.surface if self.surface is not None else other.surface
 

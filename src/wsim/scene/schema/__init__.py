@@ -12,6 +12,13 @@ CONTAINER = "WsimContainerAPI"
 CAMERA = "WsimCameraAPI"
 PARAMETER = "WsimParameterAPI"
 HEIGHT_FIELD = "WsimHeightFieldAPI"
+SPRING = "WsimSpringAPI"
+ROPE = "WsimRopeAPI"
+MATERIAL = "WsimMaterialAPI"
+CONTACT = "WsimContactAPI"
+PATH = "WsimPathAPI"
+SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
+GEAR = "WsimGearAPI"
 
 
 def register() -> None:

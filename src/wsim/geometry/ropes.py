@@ -1,0 +1,170 @@
+"""The way of a taut rope through points and round cylinders, as long as it is: straight lines, arcs and helices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+Array = np.ndarray
+ARC_STEP = 0.2  # [rad] between the points that draw an arc
+
+
+@dataclass(frozen=True)
+class Stop:
+    """What a rope runs through or round, at T moments.
+
+    `position` (T, 3) [m] is a point, or the centre of a cylinder of `radius` [m] along the unit vectors `axis` (T, 3),
+    which the rope passes on the side that `side` (T, 3) points to. With a `groove` it is a pulley that swivels: the
+    rope stays in the plane of the cylinder's centre and the points before and after.
+    """
+
+    position: Array
+    radius: float = 0.0
+    axis: Array | None = None
+    side: Array | None = None
+    groove: bool = False
+
+
+@dataclass(frozen=True)
+class _Wrap:
+    """Where the way from one point to another meets a cylinder between them, in the plane across its axis."""
+
+    length: Array  # (T,) [m]
+    first: Array  # (T, 2), where it comes to the cylinder, in radii; the points themselves where it passes by
+    angle: Array  # (T,) that it turns through, signed [rad]; 0 where it passes by
+    before: Array  # (T,), length of the straight part before it, in the plane [m]
+    climb: Array  # (T,), along the axis, a metre of way in the plane
+    frame: tuple[Array, Array, Array]  # (T, 3) axes of the plane, and the cylinder's own
+
+
+def path_length(stops: list[Stop]) -> Array:
+    """Length of a taut rope [m], (T,). The first and last stops are points, and so is one of any two in a row."""
+    total = np.zeros(len(stops[0].position))
+    for before, stop, after in _legs(stops):
+        if stop is None:
+            total += np.linalg.norm(after.position - before.position, axis=1)
+        else:
+            total += _wrap(before.position, after.position, stop).length
+    return total
+
+
+def path_points(stops: list[Stop]) -> Array:
+    """Points that draw a taut rope at the first moment, (P, 3) [m]."""
+    points = [stops[0].position[:1]]
+    for before, stop, after in _legs(stops):
+        if stop is not None:
+            points.append(_arc(before, stop, _wrap(before.position[:1], after.position[:1], stop)))
+        points.append(after.position[:1])
+    return np.concatenate(points)
+
+
+def common_tangent(before: Array, one: Stop, other: Stop, after: Array) -> Array:
+    """The point midway on the straight rope between two cylinders of parallel axes in a row, at the first moment.
+
+    A rope that goes round a cylinder in the sense w about the axis n, in direction u where it leaves, leaves it at
+    c - w r n x u from its centre; the line between two cylinders follows from that.
+
+    Args:
+        before: Where the rope comes from, (3,) [m].
+        one: The cylinder that it leaves.
+        other: The one that it comes to.
+        after: Where it goes on to, (3,) [m].
+    """
+    axis = _frame(one)[2][0]
+    senses = [_sense(stop, axis, way) for stop, way in ((one, other.position[0] - before),
+                                                        (other, after - one.position[0]))]  # fmt: skip
+    apart = other.position[0] - one.position[0]
+    flat = apart - (apart @ axis) * axis
+    offset = senses[1] * other.radius - senses[0] * one.radius
+    reach = float(flat @ flat)
+    length = np.sqrt(max(reach - offset**2, 0.0))
+    along = (length * flat - offset * np.cross(axis, flat)) / max(reach, 1e-12)
+    across = np.cross(axis, along)
+    ends = [stop.position[0] - w * stop.radius * across for stop, w in zip((one, other), senses, strict=True)]
+    middle: Array = 0.5 * (ends[0] + ends[1])
+    return middle
+
+
+def _sense(stop: Stop, axis: Array, way: Array) -> float:
+    """Whether a rope on its side of a cylinder, going a way, turns with (1) or against (-1) the axis."""
+    return 1.0 if np.cross(axis, _frame(stop)[0][0]) @ way >= 0.0 else -1.0
+
+
+def _legs(stops: list[Stop]) -> list[tuple[Stop, Stop | None, Stop]]:
+    """The parts of a way between points, each with the cylinder that is on it."""
+    legs: list[tuple[Stop, Stop | None, Stop]] = []
+    before, between = stops[0], None
+    for stop in stops[1:]:
+        if stop.radius > 0.0:
+            between = stop
+        else:
+            legs.append((before, between, stop))
+            before, between = stop, None
+    return legs
+
+
+def _frame(stop: Stop, start: Array | None = None, end: Array | None = None) -> tuple[Array, Array, Array]:
+    """Axes of the plane across a cylinder, the first towards the side that the rope passes on, and its own axis."""
+    assert stop.axis is not None and stop.side is not None
+    axis, side = stop.axis, stop.side
+    if stop.groove and start is not None and end is not None:
+        axis, side, centre = (x[: len(start)] for x in (axis, side, stop.position))
+        normal = np.cross(start - centre, end - centre)
+        size = np.linalg.norm(normal, axis=1, keepdims=True)
+        axis = np.where(size > 1e-9, normal / np.maximum(size, 1e-12), axis)
+    across = side - (side * axis).sum(axis=1, keepdims=True) * axis
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
+    return across, np.cross(axis, across), axis
+
+
+def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
+    """The way between two points round a cylinder, on its side; straight where the cylinder is not in the way."""
+    u, v, w = _frame(stop, start, end)
+    frame = (u[: len(start)], v[: len(start)], w[: len(start)])
+    p, q = (np.stack([((x - stop.position[: len(x)]) * axis).sum(axis=1) for axis in frame], axis=1)
+            for x in (start, end))  # fmt: skip
+    r, rise = stop.radius, q[:, 2] - p[:, 2]
+    p, q = p[:, :2], q[:, :2]
+    straight = np.linalg.norm(q - p, axis=1)
+    far = [np.linalg.norm(x, axis=1) for x in (p, q)]
+    lines = [np.sqrt(np.maximum(x * x - r * r, 0.0)) for x in far]
+    # The rope comes to the cylinder a quarter turn, less what it sees of it, before or after the point's own direction.
+    bearing = [np.arctan2(x[:, 1], x[:, 0]) for x in (p, q)]
+    open_ = [np.arccos(np.clip(r / np.maximum(x, 1e-12), -1.0, 1.0)) for x in far]
+    best = np.full(len(p), np.inf)
+    angle, first = np.zeros(len(p)), np.zeros(len(p))
+    for turn in (1.0, -1.0):
+        t0, t1 = bearing[0] + turn * open_[0], bearing[1] - turn * open_[1]
+        # From side to side over the cylinder's own side, direction 0, not over the opposite one.
+        swept = np.mod(turn * (t1 - t0), 2.0 * np.pi)
+        middle = t0 + turn * 0.5 * swept
+        off = np.abs(np.mod(middle + np.pi, 2.0 * np.pi) - np.pi)
+        better = off < best
+        best = np.where(better, off, best)
+        angle, first = np.where(better, turn * swept, angle), np.where(better, t0, first)
+    share = np.clip(-((q - p) * p).sum(axis=1) / np.maximum(straight**2, 1e-24), 0.0, 1.0)
+    nearest = p + share[:, None] * (q - p)
+    past = (np.linalg.norm(nearest, axis=1) > r) & (nearest[:, 0] >= 0.0)
+    past |= (far[0] < r) | (far[1] < r)
+    flat = np.where(past, straight, lines[0] + r * np.abs(angle) + lines[1])
+    touch = np.where(past[:, None], p, r * np.stack([np.cos(first), np.sin(first)], axis=1))
+    climb = rise / np.maximum(flat, 1e-12)
+    return _Wrap(np.hypot(flat, rise), touch, np.where(past, 0.0, angle), lines[0], climb, frame)
+
+
+def _arc(before: Stop, stop: Stop, wrap: _Wrap) -> Array:
+    """Points of the rope on a cylinder, (P, 3); none where it passes by."""
+    angle = float(wrap.angle[0])
+    if angle == 0.0:
+        return np.zeros((0, 3))
+    turned = np.linspace(0.0, angle, 2 + int(abs(angle) / ARC_STEP))
+    start = np.arctan2(wrap.first[0, 1], wrap.first[0, 0])
+    across, along, axis = (vector[0] for vector in wrap.frame)
+    # The rope climbs evenly along its way, as a straight line does on the cylinder rolled out.
+    way_there = wrap.before[0] + stop.radius * np.abs(turned)
+    heights = float((before.position[0] - stop.position[0]) @ axis) + wrap.climb[0] * way_there
+    way = start + turned
+    flat_points = stop.radius * (np.cos(way)[:, None] * across + np.sin(way)[:, None] * along)
+    points: Array = stop.position[0] + flat_points + heights[:, None] * axis
+    return points

@@ -1,0 +1,33 @@
+"""Which worlds of a batch touch nothing in a step, and the better step for those."""
+
+import warp as wp
+
+FIRST_THAT_JUMPS = wp.constant(1)  # mjtConstraint: after equalities come dry friction, stops and contacts
+
+
+@wp.kernel(enable_backward=False)
+def find_touching(
+    # Data in:
+    rows: wp.array(dtype=int),
+    kind: wp.array2d(dtype=int),
+    # Data out:
+    touches: wp.array(dtype=int),
+):
+    """Mark the worlds with dry friction, a stop or a contact among their constraint rows."""
+    world, row = wp.tid()
+    if row < rows[world] and kind[world, row] >= FIRST_THAT_JUMPS:
+        touches[world] = 1
+
+
+@wp.kernel(enable_backward=False)
+def take_where_free(
+    # Data in:
+    touches: wp.array(dtype=int),
+    smooth: wp.array2d(dtype=float),
+    # Data out:
+    taken: wp.array2d(dtype=float),
+):
+    """Take the values of the smooth step where a world touches nothing."""
+    world, k = wp.tid()
+    if touches[world] == 0:
+        taken[world, k] = smooth[world, k]

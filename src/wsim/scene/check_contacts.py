@@ -1,0 +1,53 @@
+"""What a stage states of its surfaces and of pairs of objects: coefficients in range, two objects, stated once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+
+from pxr import Sdf, Usd
+
+from wsim.scene import schema
+from wsim.scene.limits import MAX_FRICTION
+from wsim.scene.usd_contacts import COEFFICIENTS, ends, moves, stated
+
+_MOST = {"friction": MAX_FRICTION, "restitution": 1.0, "rolling": 1.0}
+
+
+def surface_problems(prim: Usd.Prim) -> Iterator[str]:
+    """Coefficients of one prim, a material or a pair, that are out of range."""
+    if schema.has(prim, schema.MATERIAL) or schema.has(prim, schema.CONTACT):
+        for name, value in stated(prim).items():
+            # What is no number, or not finite, is told elsewhere.
+            if isinstance(value, float) and math.isfinite(value) and not 0.0 <= value <= _MOST[name]:
+                limit = ">= 0" if value < 0.0 else f"<= {_MOST[name]:g}"
+                yield f"{prim.GetPath()}.wsim:{name}: {value:g} must be {limit}"
+
+
+def contact_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
+    """Pairs that are none, never meet, state nothing, or are stated twice."""
+    seen: dict[frozenset[Sdf.Path], Sdf.Path] = {}
+    for prim in prims:
+        if schema.has(prim, schema.CONTACT):
+            yield from _pair(prim, seen)
+
+
+def _pair(prim: Usd.Prim, seen: dict[frozenset[Sdf.Path], Sdf.Path]) -> Iterator[str]:
+    for name in ("first", "second"):
+        relation = prim.GetRelationship(f"wsim:{name}")
+        count = len(relation.GetTargets()) if relation else 0
+        if count != 1:
+            yield f"{prim.GetPath()}.wsim:{name}: names {count} objects; it must name one"
+            return
+    paths = ends(prim)
+    found = [prim.GetStage().GetPrimAtPath(path) for path in paths]
+    pair = frozenset(paths)
+    if paths[0].HasPrefix(paths[1]) or paths[1].HasPrefix(paths[0]):
+        yield f"{prim.GetPath()}.wsim:second: <{paths[1]}> is wsim:first, or a part of it; a pair is two objects"
+    elif not any(moves(each) for each in found):
+        yield f"{prim.GetPath()}.wsim:second: <{paths[1]}> is static, as wsim:first is; they never meet"
+    elif not stated(prim):
+        yield f"{prim.GetPath()}: states nothing; give {', '.join(f'wsim:{name}' for name in COEFFICIENTS)}"
+    elif pair in seen:
+        yield f"{prim.GetPath()}: the pair is stated in <{seen[pair]}>, too; state it once"
+    seen.setdefault(pair, prim.GetPath())

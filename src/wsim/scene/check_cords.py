@@ -1,0 +1,101 @@
+"""Check springs and ropes of a stage before they are simulated: their ends, their numbers and their way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from pxr import Usd
+
+from wsim.geometry.ropes import path_length
+from wsim.scene import schema
+from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
+from wsim.scene.limits import MAX_SIZE
+from wsim.scene.world import Guide, Rope, Spring
+
+MAX_STIFFNESS = 1e9  # [N/m]
+MAX_DAMPING = 1e9  # [N s/m]
+FARTHEST = 100.0  # [m] between a spring's ends
+MOST_STRETCH = 10.0  # a spring's length, of its rest: rubber bears less, and steel far less
+TAUT = 1e-4  # [m]: a rope may be that much shorter than its way, by the rounding of what states it
+
+
+def cord_problems(prim: Usd.Prim) -> Iterator[str]:
+    """Problems of a prim that is a spring or a rope; none of any other."""
+    if not (schema.has(prim, schema.SPRING) or schema.has(prim, schema.ROPE)):
+        return
+    path = prim.GetPath()
+    problems = list(_ends(prim))
+    yield from problems
+    if problems:
+        return
+    rope = schema.has(prim, schema.ROPE)
+    cord = read_rope(prim) if rope else read_spring(prim)
+    if cord.path[0].body is None and cord.path[-1].body is None:
+        yield f"{path}: neither wsim:a nor wsim:b is a body that moves"
+    elif cord.path[0].body == cord.path[-1].body:
+        yield f"{path}.wsim:b: <{cord.path[0].body}> is at its other end, too"
+    elif not 0.0 < cord.radius <= MAX_SIZE:
+        yield f"{path}.wsim:radius: {cord.radius:g} m must be > 0 and <= {MAX_SIZE:g} m"
+    elif isinstance(cord, Rope):
+        yield from _rope(cord, prim)
+    else:
+        yield from _spring(cord, prim)
+
+
+def _ends(prim: Usd.Prim) -> Iterator[str]:
+    for end in "ab":
+        relation = prim.GetRelationship(f"wsim:{end}")
+        if relation and len(relation.GetTargets()) > 1:
+            yield f"{relation.GetPath()}: names {len(relation.GetTargets())} prims; one end is fixed to one"
+    around = prim.GetRelationship("wsim:around")
+    for target in around.GetTargets() if around else []:
+        if read_pulley(prim.GetStage().GetPrimAtPath(target)) is None:
+            yield f"{around.GetPath()}: <{target}> has no cylinder that collides; a rope runs round cylinders"
+
+
+def _spring(spring: Spring, prim: Usd.Prim) -> Iterator[str]:
+    for name, value, high, unit in (
+        ("stiffness", spring.stiffness, MAX_STIFFNESS, "N/m"),
+        ("damping", spring.damping, MAX_DAMPING, "N s/m"),
+        ("restLength", spring.rest_length, MAX_SIZE, "m"),
+    ):
+        if not 0.0 <= value <= high:
+            yield f"{spring.prim}.wsim:{name}: {value:g} must be >= 0 and <= {high:g} {unit}"
+    stops = stops_at_start(spring.path, prim.GetStage())
+    apart = float(path_length(stops)[0])
+    if not TAUT <= apart <= FARTHEST:
+        yield f"{spring.prim}: its ends are {apart:.4g} m apart; it must be {TAUT:g} to {FARTHEST:g} m"
+    elif spring.stiffness > 0.0 and 0.0 < spring.rest_length * MOST_STRETCH < apart:
+        yield (
+            f"{spring.prim}.wsim:restLength: {spring.rest_length:g} m, and its ends are {apart:.4g} m apart; a spring "
+            f"is stretched to {MOST_STRETCH:g} times its length at most"
+        )
+
+
+def _rope(rope: Rope, prim: Usd.Prim) -> Iterator[str]:
+    stops = stops_at_start(rope.path, prim.GetStage())
+    for k, (guide, stop) in enumerate(zip(rope.path, stops, strict=True)):
+        if stop.radius == 0.0:
+            continue
+        assert stop.axis is not None
+        assert stop.side is not None
+        if np.linalg.norm(np.cross(stop.axis[0], stop.side[0])) < 1e-3:
+            yield f"{rope.prim}.wsim:sides: the one of <{guide.owner}> must not be along its axis"
+            return
+        for near in (k - 1, k + 1):
+            apart = stops[near].position[0] - stop.position[0]
+            if np.linalg.norm(np.cross(apart, stop.axis[0])) < stop.radius:
+                where = _name(rope.path[near])
+                yield f"{rope.prim}: {where} lies inside the cylinder of <{guide.owner}> that it runs round"
+                return
+    way = float(path_length(stops)[0])
+    if not 0.0 < rope.length <= MAX_SIZE:
+        yield f"{rope.prim}.wsim:length: {rope.length:g} m must be > 0 and <= {MAX_SIZE:g} m"
+    elif rope.length < way - TAUT:
+        yield f"{rope.prim}.wsim:length: {rope.length:g} m is shorter than its way at the start, {way:.4g} m"
+
+
+def _name(guide: Guide) -> str:
+    point = ", ".join(f"{x:.4g}" for x in guide.position)
+    return f"the point ({point}) m" if guide.owner is None else f"its point on <{guide.owner}>"

@@ -1,0 +1,59 @@
+"""Read what a stage states of pairs of objects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from pxr import Sdf, Usd, UsdPhysics
+
+from wsim.scene import schema
+from wsim.scene.articulation import WORLD_END, body_above
+from wsim.scene.world import Contact
+
+COEFFICIENTS = ("friction", "restitution", "rolling")
+
+
+def read_contacts(prims: Iterable[Usd.Prim]) -> list[Contact]:
+    """The pairs of a stage that passed its check."""
+    return [_contact(prim) for prim in prims if schema.has(prim, schema.CONTACT)]
+
+
+def _contact(prim: Usd.Prim) -> Contact:
+    first, second = (str(end) for end in ends(prim))
+    line = prim.GetCustomDataByKey("wsim:line")
+    return Contact(
+        prim=str(prim.GetPath()),
+        first=first,
+        second=second,
+        **{name: value for name, value in stated(prim).items() if isinstance(value, (int, float))},
+        line=line if isinstance(line, str) else None,
+    )
+
+
+def stated(prim: Usd.Prim) -> dict[str, object]:
+    """The coefficients that a pair states, by name."""
+    attributes = {name: prim.GetAttribute(f"wsim:{name}") for name in COEFFICIENTS}
+    return {name: each.Get() for name, each in attributes.items() if each and each.HasAuthoredValue()}
+
+
+def ends(prim: Usd.Prim) -> list[Sdf.Path]:
+    """The objects that a pair's relationships mean, `wsim:first` before `wsim:second`."""
+    relations = (prim.GetRelationship(f"wsim:{name}") for name in ("first", "second"))
+    targets = [path for relation in relations if relation for path in relation.GetTargets()]
+    return [owner(prim.GetStage().GetPrimAtPath(path)).GetPath() for path in targets]
+
+
+def owner(prim: Usd.Prim) -> Usd.Prim:
+    """The object that a part belongs to: its body, or of what never moves the child of the default prim above it."""
+    body = body_above(prim)
+    if body != WORLD_END:
+        return prim.GetStage().GetPrimAtPath(body)
+    default = prim.GetStage().GetDefaultPrim()
+    while prim.GetParent() and not prim.GetParent().IsPseudoRoot() and prim.GetParent() != default:
+        prim = prim.GetParent()
+    return prim
+
+
+def moves(prim: Usd.Prim) -> bool:
+    """Whether an object is a body, or holds one."""
+    return any(part.HasAPI(UsdPhysics.RigidBodyAPI) for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()))

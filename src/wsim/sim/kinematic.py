@@ -1,0 +1,110 @@
+"""Kinematic bodies: those that go by their velocity, and those that a path leads."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import newton
+import numpy as np
+import warp as wp
+from newton import JointType
+
+from wsim.kernels.kinematic import arrive, carry, lead
+from wsim.scene.usd_motion import curve_of
+from wsim.scene.world import World
+
+Array = np.ndarray
+
+
+class Kinematic:
+    """Moves the kinematic bodies of all worlds of a model.
+
+    A body on a path has, over each step, the velocity that takes it to where its path is at the step's end: what it
+    meets meets that velocity, and no error adds up.
+
+    Args:
+        model: The Newton model.
+        world: What the stage states of the first world.
+        dt: Time step [s].
+    """
+
+    def __init__(self, model: Any, world: World, dt: float) -> None:
+        self.model, self.dt = model, dt
+        kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
+        kinds, child = model.joint_type.numpy(), model.joint_child.numpy()
+        joints = [j for j in range(len(child)) if kinds[j] == int(JointType.FREE) and kinematic[child[j]]]
+        paths = {body.prim: body.path for body in world.bodies if body.path is not None}
+        number = {prim: k for k, prim in enumerate(paths)}
+        labels = [str(label) for label in model.body_label]
+        led = [j for j in joints if labels[child[j]] in number]
+        free = [j for j in joints if labels[child[j]] not in number]
+        coordinates, freedoms = model.joint_q_start.numpy(), model.joint_qd_start.numpy()
+        with wp.ScopedDevice(model.device):
+            self._carried = wp.array(child[free], dtype=int), wp.array(coordinates[free], dtype=int)
+            self._led = wp.array(child[led], dtype=int)
+            self._coordinate = wp.array(coordinates[led], dtype=int)
+            self._freedom = wp.array(freedoms[led], dtype=int)
+            self._path = wp.array([number[labels[child[j]]] for j in led], dtype=int)
+            self._target = wp.zeros(len(led), dtype=wp.transform)
+            self._step = wp.zeros(1, dtype=int)
+            self._curves = _arrays([curve_of(path) for path in paths.values()]) if led else []
+
+    def before(self, state: Any) -> None:
+        """Set the bodies on paths where a step starts, with the velocity that they have in it."""
+        if not len(self._led):
+            return
+        wp.launch(
+            lead,
+            dim=len(self._led),
+            inputs=[
+                self._step, self.dt, self._led, self._path, self._coordinate, self._freedom, self.model.body_com,
+                *self._curves,
+            ],
+            outputs=[state.body_q, state.body_qd, state.joint_q, state.joint_qd, self._target],
+            device=self.model.device,
+        )  # fmt: skip
+
+    def after(self, state: Any) -> None:
+        """Set all of them where a step ends."""
+        device = self.model.device
+        bodies, coordinates = self._carried
+        if len(bodies):
+            wp.launch(
+                carry,
+                dim=len(bodies),
+                inputs=[bodies, coordinates, self.model.body_com, state.body_qd, self.dt],
+                outputs=[state.body_q, state.joint_q],
+                device=device,
+            )
+        if len(self._led):
+            wp.launch(
+                arrive,
+                dim=len(self._led),
+                inputs=[self._led, self._coordinate, self._target],
+                outputs=[state.body_q, state.joint_q, self._step],
+                device=device,
+            )
+
+    def reset(self, state: Any) -> None:
+        """Start the paths anew; `state` is where the next step starts."""
+        self._step.zero_()
+        self.before(state)
+
+
+def _arrays(curves: list[Any]) -> list[Any]:
+    """The curves' pieces one after another: where each starts, whether it repeats, times and coefficients.
+
+    Each has one piece more than it needs, so that keys and pieces have the same numbers.
+    """
+    starts = np.cumsum([0, *(len(curve.times) for curve in curves)])
+    fill = [np.concatenate([curve.place, curve.place[-1:]]) for curve in curves]
+    turns = [np.concatenate([curve.turn, curve.turn[-1:]]) for curve in curves]
+    bases = [np.concatenate([curve.base, curve.base[-1:]]) for curve in curves]
+    return [
+        wp.array(starts, dtype=int),
+        wp.array([int(curve.repeat) for curve in curves], dtype=int),
+        wp.array(np.concatenate([curve.times for curve in curves]), dtype=wp.float64),
+        wp.array(np.concatenate(fill), dtype=wp.vec3d),
+        wp.array(np.concatenate(bases), dtype=wp.quatd),
+        wp.array(np.concatenate(turns), dtype=wp.vec3d),
+    ]

@@ -1,0 +1,133 @@
+"""Joints that break: what a constraint bears is read off its rows after each solution.
+
+A joint that bears more than it can is brittle: it gives way before the step is made, which is then solved again without
+it, so it passes on no more than its strength, and nothing in the step in which it breaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from wsim.kernels.breaking import break_joints, find_rows
+
+Array = np.ndarray
+POINTS = 2  # of a hinge; a ball joint has one, a weld is one row
+CONNECT, WELD = 0, 1  # mjtEq
+
+
+@dataclass(frozen=True)
+class Breakable:
+    """A joint that may break: its rows of `mujoco:equality_constraint`, and the loads [N], [N m] that break it."""
+
+    prim: str
+    rows: tuple[int, ...]
+    force: float
+    torque: float
+
+
+class BreakingC:
+    """Joints that break, one world on the CPU.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model.
+        constraints: MuJoCo's equality constraints of each joint.
+        strength: (joints, 2), the force [N] and the torque [N m] that each bears.
+
+    Attributes:
+        broken: (1, joints), whether each is broken.
+        load: (1, joints, 2), the largest force and torque that each bore since it was last set to 0.
+    """
+
+    def __init__(self, mujoco: Any, model: Any, constraints: Sequence[Sequence[int]], strength: Array) -> None:
+        self.mujoco, self.model, self.constraints, self.strength = mujoco, model, constraints, strength
+        self.broken = np.zeros((1, len(constraints)), dtype=bool)
+        self.load = np.zeros((1, len(constraints), 2))
+
+    def give_way(self, data: Any) -> bool:
+        """Break what bears too much in a solution; whether anything did, so that the step must be solved again."""
+        anew = False
+        equality = data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
+        for k, own in enumerate(self.constraints):
+            if self.broken[0, k]:
+                continue
+            rows = [np.flatnonzero(equality & (data.efc_id == c)) for c in own]
+            load = self._load(data, own, [data.efc_force[r] for r in rows])
+            self.load[0, k] = np.maximum(self.load[0, k], load)
+            if (load > self.strength[k]).any():
+                anew = self.broken[0, k] = True
+                data.efc_D[np.concatenate(rows)] = 0.0
+                data.eq_active[list(own)] = 0
+        return anew
+
+    def _load(self, data: Any, own: Sequence[int], forces: list[Array]) -> tuple[float, float]:
+        model = self.model
+        if model.eq_type[own[0]] == WELD:
+            # Its last rows are the vector part of a quaternion, half the angle.
+            scale = 0.5 * model.eq_data[own[0], 10]
+            return float(np.linalg.norm(forces[0][:3])), scale * float(np.linalg.norm(forces[0][3:]))
+        if len(own) < POINTS:
+            return float(np.linalg.norm(forces[0])), 0.0
+        turn = data.xmat[model.eq_obj1id[own[0]]].reshape(3, 3)
+        arm = turn @ (0.5 * (model.eq_data[own[1], :3] - model.eq_data[own[0], :3]))
+        torque = np.cross(arm, forces[1] - forces[0])
+        return float(np.linalg.norm(forces[0] + forces[1])), float(np.linalg.norm(torque))
+
+    def clear(self, data: Any) -> None:
+        """Mend all joints."""
+        self.broken[:], self.load[:] = False, 0.0
+        data.eq_active[[c for own in self.constraints for c in own]] = 1
+
+    def take(self) -> tuple[Array, Array]:
+        """`broken` and `load`; the loads start anew."""
+        taken = self.broken.copy(), self.load.copy()
+        self.load[:] = 0.0
+        return taken
+
+
+class BreakingWarp:
+    """The same for all worlds of a batch, in MuJoCo Warp; for the arguments see `BreakingC`."""
+
+    def __init__(self, model: Any, constraints: Sequence[Sequence[int]], strength: Array, worlds: int) -> None:
+        count = len(constraints)
+        pairs = np.array([[own[0], own[1] if len(own) == POINTS else -1] for own in constraints], dtype=np.int32)
+        self._constraint = wp.array(pairs, dtype=wp.int32)
+        self._strength = wp.array(np.minimum(strength, 1e30).astype(np.float32), dtype=wp.float32)
+        self._own = wp.array(pairs[pairs >= 0], dtype=wp.int32)
+        self._row = wp.full((worlds, model.neq), -1, dtype=wp.int32)
+        self.broken = wp.zeros((worlds, count), dtype=wp.int32)
+        self.load = wp.zeros((worlds, count), dtype=wp.vec2)
+
+    def give_way(self, model: Any, data: Any) -> None:
+        """Break what bears too much in a solution, in each world by itself."""
+        efc = data.efc
+        self._row.fill_(-1)
+        wp.launch(find_rows, dim=(data.nworld, data.njmax), inputs=[data.nefc, efc.type, efc.id], outputs=[self._row])
+        wp.launch(
+            break_joints,
+            dim=self.broken.shape,
+            inputs=[
+                self._constraint, self._strength, self._row, model.eq_type, model.eq_data, model.eq_obj1id, data.xmat,
+                efc.force,
+            ],
+            outputs=[self.broken, self.load, efc.D, data.eq_active],
+        )  # fmt: skip
+
+    def clear(self, data: Any) -> None:
+        """Mend all joints."""
+        self.broken.zero_()
+        self.load.zero_()
+        active = data.eq_active.numpy()
+        active[:, self._own.numpy()] = True
+        data.eq_active.assign(active)
+
+    def take(self) -> tuple[Array, Array]:
+        """`broken` and `load` of all worlds; the loads start anew."""
+        taken = self.broken.numpy().astype(bool), self.load.numpy().astype(np.float64)
+        self.load.zero_()
+        return taken

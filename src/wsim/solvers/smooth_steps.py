@@ -1,0 +1,71 @@
+"""Steps of Runge and Kutta's fourth order for those worlds of a batch that touch nothing.
+
+A mechanism keeps its energy only with a higher order, and contacts and stops know none: a world takes the one step or
+the other as it has, at the step's start, a row that pushes and does not pull.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import warp as wp
+
+from wsim.kernels.smooth_steps import find_touching, take_where_free
+
+
+class SmoothStepsWarp:
+    """Makes the smooth step of all worlds beside the law's, and chooses.
+
+    Args:
+        mujoco: The module of MuJoCo in C, for its flags.
+        warp: The module of MuJoCo Warp.
+        model: MuJoCo Warp's model.
+        data: MuJoCo Warp's data.
+    """
+
+    def __init__(self, mujoco: Any, warp: Any, model: Any, data: Any) -> None:
+        self.mujoco, self.warp = mujoco, warp
+        self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        self._kept = [data.qpos, data.qvel, data.qacc_warmstart, data.time]
+        with wp.ScopedDevice(data.qpos.device):
+            self._start = [wp.empty_like(array) for array in self._kept]
+            self._smooth = [wp.empty_like(array) for array in (data.qpos, data.qvel)]
+            self._touches = wp.zeros(data.nworld, dtype=int)
+
+    def before(self, model: Any, data: Any) -> None:
+        """Make the smooth step from the present state, keep it, and go back."""
+        for kept, array in zip(self._start, self._kept, strict=True):
+            wp.copy(kept, array)
+        # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
+        flags = model.opt.disableflags
+        model.opt.disableflags = flags | self.unilateral
+        self.warp.forward(model, data)
+        self.warp.rungekutta4(model, data)
+        model.opt.disableflags = flags
+        for smooth, array in zip(self._smooth, (data.qpos, data.qvel), strict=True):
+            wp.copy(smooth, array)
+        for kept, array in zip(self._start, self._kept, strict=True):
+            wp.copy(array, kept)
+
+    def after(self, model: Any, data: Any) -> None:
+        """Take the smooth step in the worlds in which the law's had nothing to do."""
+        self._touches.zero_()
+        wp.launch(
+            find_touching,
+            dim=(data.nworld, data.njmax),
+            inputs=[data.nefc, data.efc.type],
+            outputs=[self._touches],
+        )
+        for smooth, array in zip(self._smooth, (data.qpos, data.qvel), strict=True):
+            wp.launch(take_where_free, dim=array.shape, inputs=[self._touches, smooth], outputs=[array])
+        if model.nu:
+            self._tell_efforts(model, data)
+
+    def _tell_efforts(self, model: Any, data: Any) -> None:
+        """What the drives give at the step's end, which the books need, whichever way the step was made."""
+        warp = self.warp
+        warp.kinematics(model, data)
+        warp.com_pos(model, data)
+        warp.transmission(model, data)
+        warp.fwd_velocity(model, data)
+        warp.fwd_actuation(model, data)

@@ -1,0 +1,140 @@
+"""Motion that a world states: moving surfaces, rolling starts, kinematic paths; each against theory."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.sim.test_bodies import Run
+
+G = 9.81
+BOTH = pytest.mark.parametrize("worlds", [1, 2])  # MuJoCo in C, and in Warp
+
+
+@pytest.fixture(params=["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
+def simulate(request, tmp_path):
+    """A run of what a function builds, on each device."""
+    return partial(Run, tmp_path, request.param)
+
+
+@BOTH
+def test_a_conveyor_speeds_a_crate_up_and_carries_it(simulate, worlds):
+    """By mu g t, and then at its own speed; the belt stays, and is turned: its own X is the world's Y."""
+
+    def build(scene):
+        belt = scene.box("belt", size=(6, 1, 0.2), position=(0, 0, 0.1), rotation_deg=(0, 0, 90), static=True)
+        scene.surface_velocity(belt, velocity=(1, 0, 3))  # what points out of it does nothing
+        scene.box("crate", size=(0.3, 0.3, 0.3), density=300, position=(0, -2, 0.35), friction=0.2)
+
+    run = simulate(build, 0.8, worlds)
+    speed = run.v["crate"][:, 1]
+    early = round(0.25 / run.dt) - 1
+    assert speed[early] == pytest.approx(0.2 * G * 0.25, rel=0.005)
+    assert speed[-1] == pytest.approx(1.0, rel=1e-4)
+    assert np.abs(run.q["crate"][:, 2] - 0.35).max() < 1e-4 and np.abs(run.v["crate"][:, 0]).max() < 1e-4
+
+
+@BOTH
+def test_a_ball_on_a_treadmill(simulate, worlds):
+    """Set down at rest it comes to 2/7 of the belt's speed; rolling against the belt at its speed it stays."""
+
+    def build(scene):
+        belt = scene.box("belt", size=(6, 2, 0.2), position=(0, 0, 0.1), static=True)
+        scene.surface_velocity(belt, velocity=(2, 0, 0))
+        scene.sphere("set_down", radius=0.1, density=600, position=(-2, -0.5, 0.3), friction=0.3)
+        scene.sphere("runner", radius=0.1, density=600, position=(1, 0.5, 0.3), friction=0.3,
+                     angular_velocity_deg=(0, -math.degrees(20), 0))  # fmt: skip
+
+    run = simulate(build, 0.6, worlds)
+    assert run.v["set_down"][-1, 0] == pytest.approx(4 / 7, rel=0.005)
+    assert np.abs(run.q["runner"][:, 0] - 1.0).max() < 1e-3
+
+
+@BOTH
+def test_a_belt_on_a_body_pushes_it_along(simulate, worlds):
+    """A crawler of m on ice pushes a slab of M off backwards: their momenta are opposite, their slip is the belt's."""
+
+    def build(scene):
+        scene.ground(friction=0.0)
+        slab = scene.box("slab", size=(4, 1, 0.2), mass=30, position=(0, 0, 0.1), friction=0.5)
+        crawler = scene.box("crawler", size=(0.4, 0.4, 0.2), mass=10, position=(0, 0, 0.3), friction=0.5)
+        scene.surface_velocity(crawler, velocity=(-1, 0, 0))
+        assert slab.kind == "body"
+
+    run = simulate(build, 0.4, worlds)
+    assert run.v["crawler"][-1, 0] == pytest.approx(0.75, rel=0.01)
+    assert run.v["slab"][-1, 0] == pytest.approx(-0.25, rel=0.01)
+
+
+@pytest.mark.parametrize(("kind", "k"), [("sphere", 7 / 5), ("cylinder", 3 / 2), ("capsule", None)])
+def test_what_starts_rolling_keeps_its_speed(simulate, kind, k):
+    """On the level it goes on at v; up a ramp it is slowed by g sin(a) / k from the start."""
+    angle = math.radians(10.0)
+
+    def build(scene):
+        scene.ground()
+        scene.box("ramp", size=(6, 4, 0.2), position=(0, 5, 1), rotation_deg=(0, -10, 0), static=True)
+        up = np.array((math.cos(angle), 0.0, math.sin(angle)))
+        on = np.array((0, 5, 1)) + 0.2 * np.array((-math.sin(angle), 0.0, math.cos(angle)))
+        size = {"radius": 0.1} if kind == "sphere" else {"radius": 0.1, "height": 0.3, "axis": "Y"}
+        make = getattr(scene, kind)
+        make("flat", position=(0, 0, 0.1), velocity=(3, 0, 0), rolling=True, **size)
+        make("climbs", position=on, velocity=2 * up, rolling=True, **size)
+
+    run = simulate(build, 0.4)
+    assert run.v["flat"][-1, 0] == pytest.approx(3.0, rel=1e-4)
+    assert run.w["flat"][-1, 1] == pytest.approx(30.0, rel=1e-4)
+    if k:
+        slowed = 2.0 - np.linalg.norm(run.v["climbs"][-1])
+        assert slowed == pytest.approx(G * math.sin(angle) / k * run.simulation.time, rel=0.01)
+
+
+@BOTH
+def test_a_lift_goes_through_its_keys_and_carries(simulate, worlds):
+    """Up, a wait, and back: its load stays on it at any acceleration below g, and its place is exact at the keys."""
+
+    def build(scene):
+        lift = scene.box("lift", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+        scene.path(lift, times=(0, 0.5, 0.7, 1.2), positions=((0, 0, 0.5), (0, 0, 0.8), (0, 0, 0.8), (0, 0, 0.5)))
+        scene.box("load", size=(0.3,) * 3, density=600, position=(0, 0, 0.7))
+
+    run = simulate(build, 1.3, worlds)
+    for time, height in ((0.5, 0.8), (0.6, 0.8), (0.7, 0.8), (1.2, 0.5), (1.3, 0.5)):
+        assert run.q["lift"][round(time / run.dt) - 1, 2] == pytest.approx(height, abs=2e-6)
+    apart = run.q["load"][:, 2] - run.q["lift"][:, 2]
+    assert np.abs(apart - 0.2).max() < 2e-4
+    early = round(0.25 / run.dt) - 1  # halfway up: 3/2 of the mean speed
+    assert run.v["load"][early, 2] == pytest.approx(0.9, rel=0.005)
+
+
+@BOTH
+def test_a_turning_plate_carries_round(simulate, worlds):
+    """A plate that swings to and fro about the vertical takes its load along; the path repeats."""
+
+    def build(scene):
+        plate = scene.box("plate", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+        scene.path(plate, times=(0, 0.5, 1), rotations_deg=((0, 0, 0), (0, 0, 40), (0, 0, 0)), repeat=True)
+        scene.box("load", size=(0.2,) * 3, density=600, position=(0.2, 0, 0.65), friction=0.8)
+
+    run = simulate(build, 1.5, worlds)
+    end = run.q["load"][-1]
+    assert math.degrees(math.atan2(end[1], end[0])) == pytest.approx(40.0, abs=0.5)
+    assert np.linalg.norm(end[:2]) == pytest.approx(0.2, abs=2e-3)
+
+
+@BOTH
+def test_a_piston_pushes_and_leaves(simulate, worlds):
+    """It gives what it hits its own speed, e = 0, slows, and what slides without friction goes on at that."""
+
+    def build(scene):
+        scene.ground(friction=0.0)
+        piston = scene.box("piston", size=(0.2, 0.4, 0.2), position=(0, 0, 0.11), kinematic=True)
+        times = (0, 0.2, 0.4, 0.6, 0.8)
+        scene.path(piston, times=times, positions=[(x, 0, 0.11) for x in (0, 0.1, 0.3, 0.5, 0.6)])
+        scene.box("puck", size=(0.2,) * 3, density=600, position=(0.4, 0, 0.1))
+
+    run = simulate(build, 1.2, worlds)
+    assert run.v["piston"][round(0.5 / run.dt) - 1, 0] == pytest.approx(1.0 + 1 / 12, rel=0.02)
+    assert run.v["puck"][-1, 0] == pytest.approx(run.v["piston"][:, 0].max(), rel=0.01)
+    assert np.abs(run.v["piston"][-1]).max() == 0.0 and run.q["piston"][-1, 0] == pytest.approx(0.6, abs=1e-6)

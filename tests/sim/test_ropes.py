@@ -1,0 +1,150 @@
+"""Ropes, pulleys and cables against closed forms: in C where one world is on a CPU, in Warp where it is not."""
+
+import math
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests.sim.cord_runs import period, run
+from wsim.geometry.catenary import hanging
+from wsim.geometry.ropes import Stop, path_length
+from wsim.judge import judge
+from wsim.recording import read
+from wsim.scene import Scene
+from wsim.sim import Simulation
+
+G = 9.81
+BOTH = pytest.mark.parametrize("worlds", [1, 2])
+
+
+@pytest.fixture(params=["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
+def simulate(request, tmp_path):
+    """A run of what a function builds, on each device."""
+    return partial(run, tmp_path, request.param)
+
+
+@BOTH
+def test_atwoods_machine(simulate, worlds):
+    """(m1 - m2) / (m1 + m2) g, down and up."""
+
+    def build(scene):
+        scene.cylinder("wheel", radius=0.2, height=0.1, axis="Y", position=(0, 0, 2), static=True)
+        scene.box("heavy", size=(0.1,) * 3, mass=2.0, position=(-0.2, 0, 1.5))
+        scene.box("light", size=(0.1,) * 3, mass=1.0, position=(0.2, 0, 1))
+        scene.rope("rope", "heavy", "light", around=["wheel"])
+
+    _, _, v = simulate(build, 0.5, worlds)
+    assert v["heavy"][-1, 2] == pytest.approx(-G / 3 * 0.5, rel=1e-3)
+    assert v["light"][-1, 2] == pytest.approx(G / 3 * 0.5, rel=1e-3)
+
+
+@BOTH
+def test_a_movable_pulley_halves_the_way_and_doubles_the_force(simulate, worlds):
+    """A = (2 m - M) g / (M + 4 m), a = 2 A."""
+
+    def build(scene):
+        scene.cylinder("fixed", radius=0.1, height=0.1, axis="Y", position=(0, 0, 2), static=True)
+        scene.cylinder("block", radius=0.1, height=0.1, axis="Y", position=(0.2, 0, 1), mass=1.0)
+        scene.box("weight", size=(0.1,) * 3, mass=1.0, position=(-0.1, 0, 1.5))
+        scene.rope("rope", "weight", None, anchor_b=(0.3, 0, 2), around=["fixed", ("block", "under")])
+
+    _, _, v = simulate(build, 0.4, worlds)
+    assert v["block"][-1, 2] == pytest.approx(G / 5 * 0.4, rel=1e-3)
+    assert v["weight"][-1, 2] == pytest.approx(-2 * G / 5 * 0.4, rel=1e-3)
+
+
+@BOTH
+def test_a_ball_swings_on_a_rope(simulate, worlds):
+    """By 30 degrees, in 2 pi sqrt(l / g) (1 + A^2 / 16 + 11 A^4 / 3072), and no farther away than the rope is long."""
+    start = math.radians(30.0)
+
+    def build(scene):
+        scene.sphere("bob", radius=0.02, mass=1.0, position=(math.sin(start), 0, -math.cos(start)))
+        scene.rope("rope", None, "bob", anchor_a=(0, 0, 0))
+
+    _, q, _ = simulate(build, 4.3, worlds)
+    assert np.linalg.norm(q["bob"], axis=1) == pytest.approx(1.0, abs=1e-4)
+    theory = 2 * math.pi * math.sqrt(1.0 / G) * (1 + start**2 / 16 + 11 * start**4 / 3072)
+    assert period(q["bob"][:, 0]) == pytest.approx(theory, rel=1e-3)
+
+
+@BOTH
+def test_a_rope_stops_a_falling_weight_at_its_length_and_lets_it_come_up(simulate, worlds):
+    def build(scene):
+        scene.sphere("bob", radius=0.05, mass=1.0, position=(0, 0, -0.2), velocity=(0, 0, 2))
+        scene.rope("rope", None, "bob", anchor_a=(0, 0, 0), length=1.0)
+
+    _, q, v = simulate(build, 1.2, worlds)
+    assert q["bob"][:, 2].max() == pytest.approx(-0.2 + 4.0 / (2 * G), abs=3e-3)  # slack, it does not hold it
+    assert q["bob"][:, 2].min() == pytest.approx(-1.0, abs=1e-4)
+    assert np.abs(v["bob"][-1]).max() < 1e-3
+
+
+def test_a_cable_hangs_in_a_catenary(simulate):
+    """31 links of a cable of 1.5 m between points 1 m apart; the middle one lies at the bottom."""
+
+    def build(scene):
+        scene.cable("c", None, None, anchor_a=(-0.5, 0, 2), anchor_b=(0.5, 0, 2), length=1.5, links=31)
+
+    _, q, _ = simulate(build, 0.2)
+    lowest = hanging(np.array([-0.5, 0, 2.0]), np.array([0.5, 0, 2.0]), 1.5, 10001)[:, 2].min()
+    assert q["c_15"][:, 2] == pytest.approx(lowest, abs=1e-3)
+
+
+def test_a_hanging_line_solves_the_catenary():
+    """a cosh(x / a): of the right length, through both ends, and with the slope that its weight asks for."""
+    points = hanging(np.array([0, 0, 1.0]), np.array([2.0, 0, 1.5]), 3.0, 20001)
+    steps = np.diff(points, axis=0)
+    assert np.linalg.norm(steps, axis=1).sum() == pytest.approx(3.0, rel=1e-6)
+    assert points[[0, -1]] == pytest.approx(np.array([[0, 0, 1.0], [2.0, 0, 1.5]]), abs=1e-9)
+    slope = steps[:, 2] / steps[:, 0]
+    pull = 3.0 / (slope[-1] - slope[0])  # the same everywhere: weight over change of slope
+    half = len(slope) // 2
+    assert 1.5 / (slope[half] - slope[0]) == pytest.approx(pull, rel=1e-3)
+
+
+def test_a_rope_runs_along_a_cylinder_as_a_line_on_it_rolled_out():
+    def stop(*position, **more):
+        return Stop(np.array([position], dtype=float), **more)
+
+    post = stop(0, 0, 0, radius=0.5, axis=np.array([[0, 1.0, 0]]), side=np.array([[0, 0, 1.0]]))
+    flat = [stop(-0.5, 0, -1), post, stop(0.5, 0, -1)]
+    assert path_length(flat)[0] == pytest.approx(2.0 + math.pi * 0.5)
+    helix = [stop(-0.5, 0, -1), post, stop(0.5, 0.7, -1)]
+    assert path_length(helix)[0] == pytest.approx(math.hypot(2.0 + math.pi * 0.5, 0.7))
+    above = [stop(-1, 0, 0.6), post, stop(1, 0, 0.6)]
+    assert path_length(above)[0] == pytest.approx(2.0)
+
+
+def test_the_solver_and_the_judge_agree_on_a_ropes_way(tmp_path):
+    """Over one pulley, under a block that hangs in it, over another, and along a post aslant."""
+    scene = Scene()
+    for name, x in (("one", 0.0), ("other", 0.4)):
+        scene.cylinder(name, radius=0.1, height=0.1, axis="Y", position=(x, 0, 2), static=True)
+    scene.cylinder("block", radius=0.1, height=0.1, axis="Y", position=(0.2, 0, 1), mass=1.0)
+    scene.cylinder("post", radius=0.1, height=1.0, axis="Y", position=(2, 0, 1), static=True)
+    for name, at in (("left", (-0.1, 0, 1.2)), ("right", (0.5, 0, 1.2)), ("ball", (2.3, 0.3, 0.5))):
+        scene.sphere(name, radius=0.04, mass=1.0, position=at)
+    scene.rope("tackle", "left", "right", around=["one", ("block", "under"), "other"])
+    scene.rope("aslant", "ball", None, anchor_b=(1.7, -0.2, 0.6), around=["post"])
+    simulation = Simulation(scene.save(tmp_path / "stage.usda"), "cpu")
+    stated = [rope.length for rope in simulation.world.ropes]
+    assert simulation.rigid.solver.mj_data.ten_length == pytest.approx(stated, rel=1e-5)
+
+
+def test_the_judge_sees_a_rope_that_is_cut(tmp_path):
+    scene = Scene()
+    scene.simulation(duration=0.6, frame_rate=100.0)
+    scene.sphere("bob", radius=0.05, mass=1.0, position=(0.6, 0, 1.2))
+    scene.rope("rope", None, "bob", anchor_a=(0, 0, 2))
+    stage = scene.save(tmp_path / "stage.usda")
+    Simulation(stage, "cpu").run(tmp_path / "right.rrd")
+    right = judge(read(tmp_path / "right.rrd"))
+    assert right.failures == []
+    assert "CheckRopes" in {finding.check for finding in right.findings}
+
+    cut = Simulation(stage, "cpu")
+    cut.rigid.solver.mj_model.tendon_range[:, 1] = 100.0
+    cut.run(tmp_path / "cut.rrd")
+    assert "CheckRopes" in {finding.check for finding in judge(read(tmp_path / "cut.rrd")).failures}
