@@ -28,7 +28,7 @@ def build(scene: Scene) -> None:
     )  # fmt: skip
 
     # The marble leaves the run and falls into a hollow of the ground below its end.
-    x, y, z = run.end
+    x, y, _ = run.end
     hollow = (x + 0.12 * run.direction(run.length)[0], y + 0.12 * run.direction(run.length)[1])
 
     def height(east: float, north: float) -> float:

@@ -118,11 +118,12 @@ def spline(points: Floats) -> list[Stretch]:
             a = 1.0 - b
             point = a * points[first] + b * points[first + 1]
             point = point + ((a**3 - a) * bent[first] + (b**3 - b) * bent[first + 1]) * h * h / 6.0
-            way = (points[first + 1] - points[first]) / h
+            way: Floats = (points[first + 1] - points[first]) / h
             way = way + ((3 * b * b - 1.0) * bent[first + 1] - (3 * a * a - 1.0) * bent[first]) * h / 6.0
             way /= np.linalg.norm(way, axis=1, keepdims=True)
             up = UP - way[:, 2:] * way
-            return Frames(point, way, up / np.linalg.norm(up, axis=1, keepdims=True))
+            length = np.maximum(np.linalg.norm(up, axis=1, keepdims=True), 1e-9)  # none where it is vertical
+            return Frames(point, way, up / length)
 
         return frames
 
