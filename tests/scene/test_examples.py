@@ -10,7 +10,10 @@ from wsim.scene.describe import describe
 from wsim.scene.world import World
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-NAMES = ("floating_blocks", "dam_break", "double_pendulum", "stack_and_ball")
+NAMES = (
+    "floating_blocks", "dam_break", "double_pendulum", "stack_and_ball", "marble_run", "terrain_crates", "thrown_hammer",
+    "springs", "pulleys",
+)  # fmt: skip
 
 
 def build(name: str, folder: Path) -> World:

@@ -29,6 +29,7 @@ PATTERNS = {
     "cameras-and-light", "containers-and-fluid", "control-functions", "floating-bodies", "joints-and-mechanisms",
     "objectives", "parameters", "pendulums-and-springs", "projectiles-and-collisions", "raw-usd", "repairing",
     "rigid-bodies", "stacks-and-contact", "time-step-and-stability", "waves-and-dam-breaks",
+    "tracks-terrain-compounds",
 }  # fmt: skip
 CHECKS = {check.name for check in [*run_checks(), *physics_checks()]} | {"CheckConverged", "ObjectiveFormula"}
 CHECKS |= {check.__name__ for check in OBJECTIVES.values()}

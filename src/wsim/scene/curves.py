@@ -121,7 +121,7 @@ def spline(points: Floats) -> list[Stretch]:
             way: Floats = (points[first + 1] - points[first]) / h
             way = way + ((3 * b * b - 1.0) * bent[first + 1] - (3 * a * a - 1.0) * bent[first]) * h / 6.0
             way /= np.linalg.norm(way, axis=1, keepdims=True)
-            up = UP - way[:, 2:] * way
+            up: Floats = UP - way[:, 2:] * way
             length = np.maximum(np.linalg.norm(up, axis=1, keepdims=True), 1e-9)  # none where it is vertical
             return Frames(point, way, up / length)
 
@@ -139,8 +139,7 @@ def _second_derivatives(knots: Floats, points: Floats) -> Floats:
     for k in range(1, n - 1):
         matrix[k, k - 1 : k + 2] = h[k - 1] / 6.0, (h[k - 1] + h[k]) / 3.0, h[k] / 6.0
         right[k] = (points[k + 1] - points[k]) / h[k] - (points[k] - points[k - 1]) / h[k - 1]
-    solved: Floats = np.linalg.solve(matrix, right)
-    return solved
+    return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
 
 
 def sweep(stretch: Stretch, across: Floats) -> tuple[Floats, Floats]:

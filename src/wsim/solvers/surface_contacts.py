@@ -12,7 +12,8 @@ from newton import BodyFlags, GeoType, ShapeFlags
 from scipy.spatial import ConvexHull
 
 from wsim.kernels.convex import BOX, CAPSULE, CYLINDER, HULL, SPHERE, Convex
-from wsim.kernels.surface import Found, add, touch
+from wsim.kernels.surface import Found, touch
+from wsim.kernels.surface_rows import add
 from wsim.solvers.surface_mesh import Part, make_surface
 
 Array = np.ndarray

@@ -37,7 +37,8 @@ CORDS = ("spring", "rope", "cable")
 OBJECTS = (*BODIES, "ground", "track", "height_field", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high", "a",
-         "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links", "points")  # fmt: skip
+         "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
+         "points")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
