@@ -11,8 +11,8 @@ from wsim.scene.world import World
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NAMES = (
-    "floating_blocks", "dam_break", "double_pendulum", "stack_and_ball", "marble_run", "terrain_crates", "thrown_hammer",
-    "springs", "pulleys",
+    "floating_blocks", "dam_break", "double_pendulum", "stack_and_ball", "marble_run", "terrain_crates",
+    "thrown_hammer", "springs", "pulleys",
 )  # fmt: skip
 
 
