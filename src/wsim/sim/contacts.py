@@ -96,7 +96,7 @@ def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     surfaces: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
-    drawn = tuple(f"{cord.prim}/" for cord in world.cords)  # and their points: nothing touches them
+    drawn = _drawn(world)
     for k, label in enumerate(labels):
         if label.startswith(drawn):
             continue
@@ -118,8 +118,15 @@ def surface_velocities(model: Any, world: World) -> Array:
     """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
     known = _shapes(world)
     count = model.shape_count // max(1, model.world_count)
-    labels = [str(label) for label in model.shape_label[:count]]
-    return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
+    labels, drawn = [str(label) for label in model.shape_label[:count]], _drawn(world)
+    still = (0.0, 0.0, 0.0)
+    moves = [still if label.startswith(drawn) else _of_label(label, known).surface_velocity for label in labels]
+    return np.array(moves).reshape(-1, 3)
+
+
+def _drawn(world: World) -> tuple[str, ...]:
+    """How the labels of what draws springs and ropes start: nothing touches it."""
+    return tuple(f"{cord.prim}/" for cord in world.cords)
 
 
 def _shapes(world: World) -> dict[str, Shape]:
