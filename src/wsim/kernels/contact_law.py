@@ -90,6 +90,7 @@ def strike(
     contact_row: wp.array2d(dtype=int),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    bow: wp.array(dtype=float),
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
     law: wp.array2d(dtype=wp.vec3),
@@ -107,7 +108,7 @@ def strike(
     world, geom = contact_world[k], contact_geom[k]
     restitution = law[geom_class[geom[0]], geom_class[geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
-    if meets(contact_dist[k], velocity[world, row], restitution, h, threshold * h):
+    if meets(contact_dist[k], velocity[world, row] + bow[k], restitution, h, threshold * h):
         for side in range(2):
             body = geom_body[geom[side]]
             if body > 0:
@@ -125,6 +126,7 @@ def aim(
     contact_dim: wp.array(dtype=int),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    bow: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
     geom_class: wp.array(dtype=int),
     geom_body: wp.array(dtype=int),
     law: wp.array2d(dtype=wp.vec3),
@@ -163,7 +165,7 @@ def aim(
     world, geom = contact_world[k], contact_geom[k]
     pair = law[geom_class[geom[0]], geom_class[geom[1]]]
     h = timestep[world % timestep.shape[0]]
-    distance, speed = contact_dist[k], velocity[world, row]
+    distance, speed = contact_dist[k], velocity[world, row] + bow[k]
     goal = settling(distance, h, settle_time, settle_speed)
     blow[k] = 0.0
     if pair[1] > 0.0:
@@ -179,6 +181,7 @@ def aim(
         # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
         elif touched > 0 and distance > -threshold * h * h:
             goal = -LATER
+    goal += bow[k]
     target[k] = goal
 
     roll = float(0.0)
@@ -207,7 +210,7 @@ def aim(
         aref[world, r] = -v / h
         slipped += friction[j] * friction[j] * v * v
     slip[k] = wp.sqrt(slipped)
-    aref[world, row] = (goal - slip[k] - speed) / h
+    aref[world, row] = (goal - slip[k] - velocity[world, row]) / h
 
 
 @wp.kernel(enable_backward=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.defaults import BODY_DENSITY
@@ -43,6 +45,20 @@ class MassProperties:
     inertia: Gf.Vec3f
     axes: Gf.Quatf
 
+    @classmethod
+    def of(cls, mass: float, com: NDArray[np.float64], inertia: NDArray[np.float64]) -> MassProperties:
+        """From a mass [kg], its centre (3,) [m] and the inertia about it (3, 3) [kg m^2]."""
+        principal, vectors = np.linalg.eigh(inertia)
+        if np.linalg.det(vectors) < 0.0:
+            vectors[:, 0] *= -1.0
+        matrix = Gf.Matrix3d(*(float(v) for v in vectors.T.reshape(-1)))  # USD multiplies rows
+        return cls(
+            mass=mass,
+            com=Gf.Vec3f(*(float(v) for v in com)),
+            inertia=Gf.Vec3f(*(float(v) for v in principal)),
+            axes=Gf.Quatf(matrix.ExtractRotation().GetQuat()),
+        )
+
 
 class Bodies(Materials):
     """Writes a solid: an Xform with the body's physics, and one child with its geometry."""
@@ -65,16 +81,9 @@ class Bodies(Materials):
             rolls: How it rolls, of what is round.
         """
         path = self._path(call)
-        position = call.position("position", options.position)
-        turn = rotation(call.angles(options.rotation_deg))
-        velocity = call.velocity(options.velocity)
-        spin = call.spin(options.angular_velocity_deg)
         mass, density = self._mass_or_density(call, options)
-        moving = self._moving(call, options, velocity, spin)
         if not isinstance(options.rolling, bool):
             call.fail(f"rolling = {shown(options.rolling)} must be True or False; its resistance is rolling_friction")
-        if options.rolling and rolls is not None:
-            spin = _rolling(call, options, velocity, spin, turn, rolls)
         material = self._surface(
             call,
             options.material,
@@ -86,16 +95,40 @@ class Bodies(Materials):
         if mass is None and density is None:
             density = material.density or BODY_DENSITY
 
+        def author() -> MassProperties | None:
+            shape = geometry(f"{path}/geometry").GetPrim()
+            note_line(shape)
+            finish_collider(shape, material)
+            return mass_properties(mass, density) if mass_properties else None
+
+        return self._body_of(call, options, path, author, mass, density, rolls)
+
+    def _body_of(
+        self,
+        call: Call,
+        options: BodyOptions,
+        path: str,
+        author: Callable[[], MassProperties | None],
+        mass: float | None = None,
+        density: float | None = None,
+        rolls: Round | None = None,
+    ) -> Handle:
+        """Author the Xform of a solid, and what `author` puts under it; what that gives weighs before the rest."""
+        position = call.position("position", options.position)
+        turn = rotation(call.angles(options.rotation_deg))
+        velocity = call.velocity(options.velocity)
+        spin = call.spin(options.angular_velocity_deg)
+        moving = self._moving(call, options, velocity, spin)
+        if options.rolling and rolls is not None:
+            spin = _rolling(call, options, velocity, spin, turn, rolls)
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
         set_pose(prim, position, turn)
         if moving:
             _make_rigid(prim, turn, velocity, spin, kinematic=options.kinematic)
-            properties = mass_properties(mass, density) if mass_properties else None
+        properties = author()
+        if moving:
             _set_mass(prim, mass, density, properties)
-        shape = geometry(f"{path}/geometry").GetPrim()
-        note_line(shape)
-        finish_collider(shape, material)
         return Handle(name=prim.GetName(), path=path, kind="body" if moving else "static")
 
     def _mass_or_density(self, call: Call, options: BodyOptions) -> tuple[float | None, float | None]:

@@ -11,6 +11,7 @@ from wsim.scene.articulation import body_above
 from wsim.scene.usd_shapes import Array, collides, read_shape, solid
 
 _FLAT = 1e-5  # of a mesh's extent: MuJoCo's own bound is 1e-6, in single precision
+_MOST_TRIANGLES = 1_000_000  # of a mesh that collides
 _BOUNDS = ("boundingCube", "boundingSphere")  # what stands for a mesh that may be flat
 _AXES = ("X", "Y", "Z")
 
@@ -74,6 +75,8 @@ def _mesh(mesh: UsdGeom.Mesh) -> Iterator[str]:
         approximation = UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr()
         if not mesh.GetFaceVertexCountsAttr().Get():
             yield f"{prim.GetPath()}.faceVertexCounts: a mesh that collides needs faces"
+        elif (count := len(mesh.GetFaceVertexCountsAttr().Get())) > _MOST_TRIANGLES:
+            yield f"{prim.GetPath()}.faceVertexCounts: {count} faces collide; at most {_MOST_TRIANGLES}"
         elif not (approximation and approximation.Get() in _BOUNDS) and _flat(_placed(mesh)):
             yield f"{prim.GetPath()}.points: a flat mesh cannot collide; give it thickness, or use a Cube or a Plane"
 

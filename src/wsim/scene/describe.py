@@ -22,7 +22,7 @@ from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
 from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
-from wsim.scene.usd_shapes import read_shape, to_quat, to_vec3
+from wsim.scene.usd_shapes import collides_exactly, read_shape, to_quat, to_vec3
 from wsim.scene.world import (
     Body,
     Camera,
@@ -127,7 +127,8 @@ def _solids(prims: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[S
         if owner:
             of_body[owner].append(shape)
         else:
-            of_static.setdefault(object_path(prim, stage), []).append(shape)
+            still_shape = shape.model_copy(update={"exact": collides_exactly(prim)})
+            of_static.setdefault(object_path(prim, stage), []).append(still_shape)
     moving = [_body(prim, frames[path], of_body[path]) for path, prim in bodies.items()]
     still = [
         Static(prim=path, shapes=shapes, line=line_of(stage.GetPrimAtPath(path))) for path, shapes in of_static.items()

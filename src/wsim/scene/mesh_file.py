@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Gf, Usd, UsdGeom, UsdPhysics, Vt
+from pxr import Usd, UsdGeom, UsdPhysics
 
 from wsim.scene.bodies import MassProperties
 from wsim.scene.errors import one_line
 from wsim.scene.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
+from wsim.scene.static_mesh import define_mesh, smooth_normals
 from wsim.scene.validate import Call, shown
 
 FORMATS = (".obj", ".stl", ".ply", ".glb")
@@ -69,15 +70,12 @@ class MeshFile:
             call.fail('collision = "none" needs static=True; a mesh that moves takes convexHull or convexDecomposition')
         return collision
 
-    def define(self, stage: Usd.Stage, path: str, approximation: str) -> UsdGeom.Mesh:
-        """Write the triangles to a stage."""
-        usd = UsdGeom.Mesh.Define(stage, path)
-        faces = np.asarray(self.mesh.faces, dtype=np.int32)
-        usd.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(np.asarray(self.mesh.vertices, dtype=np.float32)))
-        usd.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(faces), 3, dtype=np.int32)))
-        usd.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(np.ascontiguousarray(faces.reshape(-1))))
-        usd.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
-        UsdPhysics.MeshCollisionAPI.Apply(usd.GetPrim()).CreateApproximationAttr(approximation)
+    def define(self, stage: Usd.Stage, path: str, approximation: str, smooth: float = 0.0) -> UsdGeom.Mesh:
+        """Write the triangles to a stage; those that meet at a kink below `smooth` [rad] stand for a curve."""
+        points, faces = np.asarray(self.mesh.vertices), np.asarray(self.mesh.faces, dtype=np.int64)
+        normals = smooth_normals(points, faces, smooth).reshape(-1, 3) if smooth > 0.0 else None
+        usd = define_mesh(stage, path, points, [faces], normals)
+        UsdPhysics.MeshCollisionAPI(usd.GetPrim()).CreateApproximationAttr(approximation)
         return usd
 
     def mass_properties(self, mass: float | None, density: float | None) -> MassProperties | None:
@@ -87,16 +85,8 @@ class MeshFile:
         hull = self.mesh.convex_hull
         if mass is None:
             mass = float(density or 0.0) * float(hull.volume)
-        inertia, vectors = np.linalg.eigh(np.asarray(hull.moment_inertia) * (mass / float(hull.volume)))
-        if np.linalg.det(vectors) < 0.0:
-            vectors[:, 0] *= -1.0
-        matrix = Gf.Matrix3d(*(float(v) for v in vectors.T.reshape(-1)))  # USD multiplies rows
-        return MassProperties(
-            mass=mass,
-            com=Gf.Vec3f(*(float(v) for v in hull.center_mass)),
-            inertia=Gf.Vec3f(*(float(v) for v in inertia)),
-            axes=Gf.Quatf(matrix.ExtractRotation().GetQuat()),
-        )
+        inertia = np.asarray(hull.moment_inertia) * (mass / float(hull.volume))
+        return MassProperties.of(mass, np.asarray(hull.center_mass), inertia)
 
 
 def _find(call: Call, file: str | Path, folder: Path | None) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -254,6 +255,7 @@ class Shapes(Bodies):
         scale: float | Sequence[float] = 1.0,
         up_axis: str = "Z",
         collision: str | None = None,
+        smooth_deg: float = 0.0,
         position: Sequence[float] = _HERE,
         rotation_deg: Sequence[float] = _HERE,
         density: float | None = None,
@@ -278,7 +280,9 @@ class Shapes(Bodies):
             scale: One factor, or one for each axis of the file; 0.001 for a file in millimetres.
             up_axis: "Z", or "Y" for a file with Y up (every GLB).
             collision: "convexHull" (default), "convexDecomposition", or "none" for the triangles as they are
-                (default of a static mesh, and for static meshes only).
+                (default of a static mesh, and for static meshes only): a bowl holds, an arch lets through.
+            smooth_deg: Where the triangles of a static mesh meet at a smaller angle they stand for a curve, and what
+                rolls or slides there keeps its energy; 0: all are flat [deg].
             position: See `Shapes`, as for the rest.
             rotation_deg: [deg].
             density: [kg/m^3].
@@ -299,9 +303,10 @@ class Shapes(Bodies):
         call = Call("mesh", name)
         source = MeshFile.read(call, file, calling_folder(), scale=scale, up_axis=up_axis)
         approximation = source.approximation(call, collision, static=static)
+        smooth = math.radians(call.within("smooth_deg", smooth_deg, 0.0, 90.0, "deg"))
 
         def geometry(path: str) -> UsdGeom.Gprim:
-            return source.define(self._stage, path, approximation)
+            return source.define(self._stage, path, approximation, smooth)
 
         options = BodyOptions(
             position,

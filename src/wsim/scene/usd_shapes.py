@@ -37,15 +37,19 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
     found = _measure(prim, scale)
     vertices: Array | None = None
     triangles: NDArray[np.int64] | None = None
+    normals: Array | None = None
     if found is None:
         mesh = _mesh(prim)
         if mesh is None:
             return None
-        local, triangles = mesh
+        local, triangles, normals = mesh
         placed = np.c_[local, np.ones(len(local))] @ np.array(matrix)
         vertices = (placed[:, :3] - position) @ matrices(np.array(turn))
         if matrix.GetDeterminant() < 0.0:
             triangles = triangles[:, ::-1]
+            normals = None if normals is None else normals[:, ::-1]
+        if normals is not None:
+            normals = _turned(normals, np.array(matrix)[:3, :3]) @ matrices(np.array(turn))
         found = ("mesh", tuple(np.ptp(vertices, axis=0).tolist()), (0.0, 0.0, 0.0, 1.0))
     kind, size, own_turn = found
     color, opacity = _look(prim)
@@ -64,6 +68,7 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
         rolling=rolling,
         vertices=[] if vertices is None else vertices.tolist(),
         triangles=[] if triangles is None else triangles.tolist(),
+        normals=[] if normals is None else normals.reshape(-1, 3).tolist(),
     )
 
 
@@ -72,6 +77,13 @@ def collides(prim: Usd.Prim) -> bool:
     if not prim.HasAPI(UsdPhysics.CollisionAPI):
         return False
     return bool(UsdPhysics.CollisionAPI(prim).GetCollisionEnabledAttr().Get())
+
+
+def collides_exactly(prim: Usd.Prim) -> bool:
+    """Whether a static collider is the triangles of a mesh, as they are."""
+    if not prim.IsA(UsdGeom.Mesh) or not collides(prim):
+        return False
+    return UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get() in (None, UsdPhysics.Tokens.none)
 
 
 def solid(shape: Shape) -> Solid:
@@ -145,10 +157,17 @@ def _measure(prim: Usd.Prim, scale: tuple[float, ...]) -> tuple[ShapeKind, tuple
     return None
 
 
-def _mesh(prim: Usd.Prim) -> tuple[Array, NDArray[np.int64]] | None:
-    """Vertices and triangles in the prim's own coordinates; a cone counts as a mesh."""
+def _turned(normals: Array, matrix: Array) -> Array:
+    """Normals (F, 3, 3) under a linear map of points, as rows."""
+    moved = normals @ np.linalg.inv(matrix).T
+    unit: Array = moved / np.linalg.norm(moved, axis=2, keepdims=True)
+    return unit
+
+
+def _mesh(prim: Usd.Prim) -> tuple[Array, NDArray[np.int64], Array | None] | None:
+    """Vertices, triangles and their corners' normals in the prim's own coordinates; a cone counts as a mesh."""
     if prim.IsA(UsdGeom.Cone):
-        return _cone(UsdGeom.Cone(prim))
+        return *_cone(UsdGeom.Cone(prim)), None
     if not prim.IsA(UsdGeom.Mesh):
         return None
     mesh = UsdGeom.Mesh(prim)
@@ -163,11 +182,30 @@ def _mesh(prim: Usd.Prim) -> tuple[Array, NDArray[np.int64]] | None:
     for k in range(1, int(sizes.max()) - 1):  # the k-th triangle of each face that has one
         reaches = sizes > k + 1
         sizes, starts = sizes[reaches], starts[reaches]  # a face of many corners does not cost a look at all others
-        fans.append(np.stack([corners[starts], corners[starts + k], corners[starts + k + 1]], axis=1))
-    triangles = np.concatenate(fans) if fans else np.zeros((0, 3), dtype=np.int64)
+        fans.append(np.stack([starts, starts + k, starts + k + 1], axis=1))
+    order = np.concatenate(fans) if fans else np.zeros((0, 3), dtype=np.int64)
     if mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded:
-        triangles = triangles[:, ::-1]
-    return np.asarray(points, dtype=np.float64), triangles
+        order = order[:, ::-1]
+    return np.asarray(points, dtype=np.float64), corners[order], _corner_normals(mesh, order, corners, len(points))
+
+
+def _corner_normals(
+    mesh: UsdGeom.Mesh, order: NDArray[np.int64], corners: NDArray[np.int64], points: int
+) -> Array | None:
+    """The normals that a mesh states at the corners of its triangles, (F, 3, 3); None where it states none."""
+    given = mesh.GetNormalsAttr().Get()
+    if not given:
+        return None
+    normals = np.asarray(given, dtype=np.float64)
+    each = mesh.GetNormalsInterpolation()
+    if each in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying) and len(normals) == points:
+        found = normals[corners[order]]
+    elif each == UsdGeom.Tokens.faceVarying and len(normals) == len(corners):
+        found = normals[order]
+    else:
+        return None  # one a face, or one for all: flat
+    length = np.linalg.norm(found, axis=2, keepdims=True)
+    return found / length if np.isfinite(length).all() and (length > 0.0).all() else None
 
 
 def _cone(cone: UsdGeom.Cone) -> tuple[Array, NDArray[np.int64]]:

@@ -43,6 +43,8 @@ class Shape(_Model):
     surface_velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], in the frame of `position`: the surface moves as a belt does
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
+    normals: list[Vec3] = Field(default_factory=list)  # of each triangle's corners in turn, where it stands for a curve
+    exact: bool = False  # its triangles collide; else, of a mesh, its convex hull or its convex parts
 
 
 class Path(_Model):

@@ -17,11 +17,13 @@ from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
+from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
+from wsim.solvers.surface_contacts import SurfaceParts
 
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
@@ -42,6 +44,7 @@ class Built:
     containers: tuple[OpenBox, ...]
     time_step: TimeStep
     breakable: list[Breakable]
+    surfaces: SurfaceParts | None = None  # what collides by its triangles
 
 
 def build_model(stage: Path, world: World, device: Any, world_count: int = 1, time_step: float | None = None) -> Built:
@@ -71,6 +74,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     let_roll(single, world)
     spare_kinematic(single)
     spare_tied(single, world)
+    surfaces = take_surfaces(single, world)
     add_cords(single, world, ContactConfig())
     if world_count == 1:
         add_cord_shapes(single, world)
@@ -79,7 +83,8 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
         builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
         builder.replicate(single, world_count)
     model = builder.finalize(device=device)
-    return Built(model, world, _body_indices(model, world), fluids, config, containers_of(world), step, breakable)
+    bodies = _body_indices(model, world)
+    return Built(model, world, bodies, fluids, config, containers_of(world), step, breakable, surfaces)
 
 
 def _sph_config(world: World) -> Any | None:

@@ -19,7 +19,9 @@ from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
+from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.solver_rigid import SolverRigid
+from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
 ROWS_A_CONTACT = 3  # push and friction; where rolling is resisted, 6
@@ -65,6 +67,7 @@ class RigidBodies:
         dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
         breakable: The joints that may break.
+        surfaces: What collides by its triangles.
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
@@ -77,6 +80,7 @@ class RigidBodies:
         dt: float,
         controlled: bool = False,
         breakable: Sequence[Breakable] = (),
+        surfaces: SurfaceParts | None = None,
     ) -> None:
         self.model, self.breakable = model, breakable
         self.on_c = steps_in_c(model.device, model.world_count)
@@ -87,12 +91,15 @@ class RigidBodies:
         swings = bool(world.joints or world.springs)
         smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
-        may_touch = _may_touch(model) or bool(world.ropes) or jumps
+        touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
+        may_touch = _may_touch(model) or bool(world.ropes or touching) or jumps
+        if touching:
+            capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
         law = contact_law(model, world)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, **sizes)
+        self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, touching=touching, **sizes)
         self.solver.move_surfaces(surface_velocities(model, world))
         kinds: set[Any] = set()
         if not self.on_c:

@@ -97,7 +97,9 @@ class Simulation:
         self._broken: set[str] = set()
         progress("compiling kernels", 1, 3)
         self.rigid = (
-            RigidBodies(self.model, self.world, self.dt, controller is not None, self.built.breakable)
+            RigidBodies(
+                self.model, self.world, self.dt, controller is not None, self.built.breakable, self.built.surfaces
+            )
             if self.model.body_count
             else None
         )

@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from wsim.solvers.breaking import BreakingC
+from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
@@ -165,6 +166,7 @@ class ContactLawC:
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
+        touching: Finds contacts with what MuJoCo does not know.
     """
 
     def __init__(
@@ -177,10 +179,12 @@ class ContactLawC:
         smooth: bool,
         config: ContactConfig,
         breaking: BreakingC | None = None,
+        touching: SurfaceContacts | None = None,
     ) -> None:
         self.breaking = breaking
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law, self.curvature = geom_class, law, curvature
+        self.touching, self._bow = touching, np.zeros(0)
         self.touched = 0  # steps of the first order since the last smooth one
         self.rolls = bool(law[..., 2].any())
         if self.rolls:
@@ -215,11 +219,28 @@ class ContactLawC:
     def _forward(self, data: Any) -> bool:
         """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
         mujoco, model = self.mujoco, self.model
-        mujoco.mj_fwdPosition(model, data)
+        self._position(data)
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
         mujoco.mj_fwdAcceleration(model, data)
         return self._solve(data)
+
+    def _position(self, data: Any) -> None:
+        """What hangs on the pose, contacts with what MuJoCo does not know among it."""
+        mujoco, model = self.mujoco, self.model
+        if self.touching is None:
+            mujoco.mj_fwdPosition(model, data)
+            self._bow = np.zeros(data.ncon)
+            return
+        mujoco.mj_fwdKinematics(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_factorM(model, data)
+        mujoco.mj_collision(model, data)
+        self._bow = self.touching.add_to_c(mujoco, model, data)
+        mujoco.mj_makeConstraint(model, data)
+        mujoco.mj_island(model, data)
+        mujoco.mj_transmission(model, data)
+        mujoco.mj_projectConstraint(model, data)
 
     def _tell_efforts(self, data: Any) -> None:
         """What the drives give at the step's end, which the books need, whichever way the step was made."""
@@ -259,10 +280,11 @@ class ContactLawC:
             self._weigh_rows(data, normal, contact.dim[chosen], friction)
         image = np.zeros(data.nefc)
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
-        speed = data.efc_vel[normal]
-        free = image[normal]
+        speed, bow = data.efc_vel[normal], self._bow[chosen]
+        free, bodies = image[normal], model.geom_bodyid[geoms]
         smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
-        goal, blow = targets(contact.dist[chosen], speed, free, law[:, 1], model.geom_bodyid[geoms], h, config, smooth)
+        goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], bodies, h, config, smooth)
+        goal = goal + bow
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
         offset = np.arange(1, 6)
         held = offset < contact.dim[chosen][:, None]

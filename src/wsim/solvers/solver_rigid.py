@@ -15,6 +15,7 @@ from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.smooth_steps import SmoothStepsWarp
+from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
 ALWAYS = 2**30  # steps
@@ -45,6 +46,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         time_step: Of the steps to come [s].
         breakable: The joints that may break.
         config: How the law is applied.
+        touching: Finds contacts with what MuJoCo does not know.
         options: For `newton.solvers.SolverMuJoCo`.
     """
 
@@ -60,6 +62,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         time_step: float,
         breakable: Sequence[Breakable] = (),
         config: ContactConfig | None = None,
+        touching: SurfaceContacts | None = None,
         **options: Any,
     ) -> None:
         self.contact_config = config or ContactConfig()
@@ -84,10 +87,15 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
         self._harden_constraints(time_step)
         self.breaking = self._breaking(breakable) if breakable else None
+        self._touching = touching
+        if touching:
+            touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
         if on_c:
             mujoco = self.import_mujoco()[0]
             config = self.contact_config
-            self._law_c = ContactLawC(mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking)
+            self._law_c = ContactLawC(
+                mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking, touching
+            )
         elif may_touch or not smooth:
             self._prepare_warp(geom_class, law, bends)
         self._smooth_steps: Any = None
@@ -172,11 +180,17 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._blow = wp.zeros(data.naconmax, dtype=float)
             self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
             self._slip = wp.zeros(data.naconmax, dtype=float)
+            self._bow = wp.zeros(data.naconmax, dtype=float)
+        if self._touching:
+            found, bow = self._touching, self._bow
+            self.mjw_model.callback.contactfilter = lambda model, data: found.add_to_warp(model, data, bow)
 
     def step(
         self, state_in: Any, state_out: Any, control: Any, contacts: Any, dt: float, *, observables: Any = None
     ) -> None:
         """Advance by `dt` [s]; see `newton.solvers.SolverMuJoCo.step`."""
+        if self._touching:
+            self._touching.find(state_in, dt)
         if not self.use_mujoco_cpu:
             super().step(state_in, state_out, control, contacts, dt, observables=observables)
             return
@@ -224,7 +238,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             strike,
             dim=data.naconmax,
             inputs=[
-                *touching, efc.vel, h, self._geom_class, model.geom_bodyid, self._law, config.threshold,
+                *touching, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
+                config.threshold,
             ],
             outputs=[self._struck],
         )  # fmt: skip
@@ -232,7 +247,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law,
+                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
                 data.qacc_smooth, self._touched_for, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,

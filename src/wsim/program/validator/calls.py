@@ -100,8 +100,8 @@ def _result(reader: State, entry: Entry, called: Named, arguments: Arguments, *,
         _dtype(reader, *bound["dtype"])
     if called.owner is not None and isinstance(called.owner, (Const, Items, Dict)):
         return plain_values.method(reader, called, arguments)
-    if entry.name == "wsim.scene.Drive" and fitting:
-        return Instance(entry.name) if arguments.open else scene_calls.drive(bound)
+    if entry.name in scene_calls.PLAIN and fitting:
+        return Instance(entry.name) if arguments.open else scene_calls.made(entry.name, bound)
     if not arguments.open and fitting:
         named = {key: value for key, (value, _) in arguments.named.items()}
         found = reader.tried(arguments.call, lambda: pure.function(entry.name, arguments.values, named))

@@ -10,7 +10,10 @@ from wsim.program.validator.problem import spelt
 from wsim.program.validator.scratch import World
 from wsim.program.validator.state import State
 from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, NotKnownError, Value, plain
-from wsim.scene import Drive
+from wsim.scene import Drive, Part
+
+# What says something to a call and makes no prim itself.
+PLAIN: dict[str, Any] = {"wsim.scene.Drive": Drive, "wsim.scene.Part": Part}
 
 
 def check(
@@ -105,9 +108,9 @@ def _gravity(reader: State, bound: dict[str, Any]) -> None:
             reader.problems.add(node, "value", f"gravity points up: z = {up.value:g} m/s^2; down is (0.0, 0.0, -9.81)")
 
 
-def drive(bound: dict[str, Any]) -> Value:
-    """A motor of the validator's own, if all is known of it."""
+def made(name: str, bound: dict[str, Any]) -> Value:
+    """A motor or a part of the validator's own, if all is known of it."""
     try:
-        return Const(Drive(**{name: plain(value) for name, (value, _) in bound.items()}))
+        return Const(PLAIN[name](**{field: plain(value) for field, (value, _) in bound.items()}))
     except (NotKnownError, TypeError):
-        return Instance("wsim.scene.Drive")
+        return Instance(name)

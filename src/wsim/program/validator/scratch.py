@@ -13,7 +13,7 @@ from typing import Any
 
 from wsim.assets import AssetError, get
 from wsim.program.validator.values import Const, Instance, Items, NotKnownError, Unknown, Value, plain
-from wsim.scene import Scene, SceneError
+from wsim.scene import Part, Scene, SceneError
 from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
 
 _MOST_CALLS = 400
@@ -29,19 +29,21 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
     "surface_velocity": {"velocity": (1.0, 0.0, 0.0)},
     "path": {"times": (0.0, 1.0), "positions": ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
+    "track": {"pieces": [("line", 1.0)]}, "compound": {"parts": [Part("sphere", radius=0.1)]},
+    "height_field": {"heights": [[0.0, 0.0], [0.0, 0.0]], "size": (1.0, 1.0)},
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
     "gear": {"ratio": 1.0},
 }  # fmt: skip
-BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "asset")
+BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
 ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
-OBJECTS = (*BODIES, "ground", "tank", "fluid")
+OBJECTS = (*BODIES, "ground", "track", "height_field", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
-         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b")  # fmt: skip
+         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip

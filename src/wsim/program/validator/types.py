@@ -101,7 +101,7 @@ def _fits(value: Value, wanted: str, index: Index) -> bool:
         return mine[1] == theirs[1]
     if vector := _VECTOR.match(wanted):
         return _may_be_vector(value, kind, int(vector[1]))
-    if wanted in ("Handle", "Material", "Tank", "Fluid", "Drive"):
+    if wanted in ("Handle", "Material", "Tank", "Fluid", "Track", "Drive", "Part"):
         return _may_be_scene(kind, wanted, index)
     return True
 
@@ -156,7 +156,11 @@ def _may_be_scene(kind: str, wanted: str, index: Index) -> bool:
         return True
     # What is typed as a mere handle may be any of them.
     whole = f"wsim.scene.{wanted}"
-    return kind == whole or _inherits(kind, whole, index) or (wanted != "Drive" and kind == "wsim.scene.Handle")
+    return (
+        kind == whole
+        or _inherits(kind, whole, index)
+        or (wanted not in ("Drive", "Part") and kind == "wsim.scene.Handle")
+    )
 
 
 def _inherits(kind: str, base: str, index: Index) -> bool:

@@ -1,0 +1,42 @@
+"""The meshes of a stage that stand still and collide as they are, kept from MuJoCo, which would take their hulls."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from newton import ShapeFlags
+
+from wsim.geometry.rotations import rotate
+from wsim.scene.world import Shape, World
+from wsim.solvers.surface_contacts import SurfaceParts
+from wsim.solvers.surface_mesh import Part
+
+
+def take_surfaces(builder: Any, world: World) -> SurfaceParts | None:
+    """The surfaces among a builder's shapes; MuJoCo no longer sees them touch. None where there is none.
+
+    Args:
+        builder: The `newton.ModelBuilder` of one world, all that does not touch already filtered.
+        world: What the stage states.
+    """
+    labels = {str(label): k for k, label in enumerate(builder.shape_label)}
+    exact = [shape for static in world.statics for shape in static.shapes if shape.exact and shape.prim in labels]
+    if not exact or not world.bodies:
+        return None
+    spared = frozenset((min(a, b), max(a, b)) for a, b in builder.shape_collision_filter_pairs)
+    shapes = [labels[shape.prim] for shape in exact]
+    collide = int(ShapeFlags.COLLIDE_SHAPES)
+    moving = [k for k, body in enumerate(builder.shape_body) if body >= 0 and int(builder.shape_flags[k]) & collide]
+    for surface in shapes:
+        for k in moving:
+            builder.add_shape_collision_filter_pair(surface, k)
+    return SurfaceParts([_part(shape) for shape in exact], shapes, spared)
+
+
+def _part(shape: Shape) -> Part:
+    turn, position = np.array(shape.rotation), np.array(shape.position)
+    vertices = rotate(turn, np.array(shape.vertices, dtype=np.float64)) + position
+    triangles = np.array(shape.triangles, dtype=np.int64)
+    normals = rotate(turn, np.array(shape.normals, dtype=np.float64)).reshape(-1, 3, 3) if shape.normals else None
+    return Part(vertices, triangles, normals)
