@@ -31,6 +31,7 @@ FOLDER = "benchmarks.rigid_cases"
 DOCUMENT = ROOT / "docs/rigid.md"
 PICTURES = ROOT / "docs/images"
 MARKS = re.compile(r"(?<=<!-- rigid:begin -->\n).*?(?=<!-- rigid:end -->)", re.DOTALL)
+SHEETS = re.compile(r"(?<=<!-- pictures:begin -->\n).*?(?=<!-- pictures:end -->)", re.DOTALL)
 HEADER = ("case", "what is known", "expected", "CPU", "CUDA", "reach", "step [ms]")
 
 
@@ -145,19 +146,21 @@ def print_row(run: Run) -> None:
 
 
 def plot(runs: list[Run], device: str, folder: Path) -> None:
-    """A picture of each case, on sheets."""
+    """A picture of each case, on sheets; those of the document are shown in it."""
     from benchmarks.rigid_plot import draw  # loads matplotlib, of the extra dev, which --plot alone needs
 
-    for path in draw([run for run in runs if not run.failure], folder, device):
+    paths = draw([run for run in runs if not run.failure], folder, device)
+    for path in paths:
         print(f"{path}: {path.stat().st_size // 1000} kB")
+    if folder == PICTURES:
+        links = [f"![Measured over known, sheet {k}](images/{path.name})\n" for k, path in enumerate(paths, 1)]
+        rewrite(SHEETS, "\n".join(links))
 
 
-def write_table(runs: list[Run], device: str) -> None:
-    """Put the table between its marks, under a side name first."""
-    text = DOCUMENT.read_text(encoding="utf-8")
-    new = table(runs, device, kept_cells(text))
+def rewrite(marks: re.Pattern[str], new: str) -> None:
+    """Put text between its marks in the document, under a side name first."""
     side = DOCUMENT.with_name(DOCUMENT.name + ".part")
-    side.write_text(MARKS.sub(lambda _: new, text), encoding="utf-8")
+    side.write_text(marks.sub(lambda _: new, DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
     side.replace(DOCUMENT)
 
 
@@ -183,7 +186,7 @@ def main(arguments: list[str] | None = None) -> int:
         f"{len(runs) - len(missed)} of {len(runs)} within reach on {device}, {total:.0f} s; missed: {missed or 'none'}"
     )
     if args.write:
-        write_table(runs, device)
+        rewrite(MARKS, table(runs, device, kept_cells(DOCUMENT.read_text(encoding="utf-8"))))
     if args.plot:
         plot(runs, device, args.plot)
     return 1 if any(run.failure for run in runs) else 0

@@ -60,6 +60,14 @@ def run(command: list[str], folder: Path) -> tuple[str, Path]:
     return ended.stdout, made
 
 
+def test_a_crate_is_carried_onto_the_lift_and_up(simulate) -> None:
+    recording = simulate("conveyor", 4.4, 30.0)
+    names = [body.prim.rsplit("/", 1)[1] for body in recording.world.bodies]
+    crate, ball = recording.body_q[:, names.index("crate"), :3], recording.body_qd[:, names.index("ball")]
+    assert crate[-1] == pytest.approx((1.04, 0.0, 0.5 - 0.002 + 0.7 + 0.2), abs=2e-3)  # at the stop, on the lifted deck
+    assert ball[-1, 0] == pytest.approx(0.7, rel=1e-3)  # it still rolls as it started
+
+
 def test_double_pendulum_keeps_its_energy(simulate) -> None:
     recording = simulate("double_pendulum", 5.0, 60.0)
     potential = recording.scalars["energy/potential"]

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from benchmarks.rigid_cases.case import Bench, G, Track, case
+from benchmarks.rigid_cases.case import Bench, G, Track, case, period
 from wsim.scene import Scene
 
 Array = np.ndarray
@@ -131,3 +131,70 @@ def gyroscope(bench: Bench) -> tuple[float, float]:
     turned = np.unwrap(np.arctan2(place[:, 1], place[:, 0]))
     bench.show("precession [rad]", track.time, turned, rate * track.time)
     return float(turned[-1]), rate
+
+
+LEAN, TOP_SPIN, TOP_ARM = math.radians(30.0), 200.0, 0.2  # of a fast top: start [rad], [rad/s], to its wheel [m]
+
+
+def _top(bench: Bench) -> tuple[Track, Array, Array]:
+    """A wheel of 1 kg on an arm without mass, let go leaning and spinning: its track, lean and precession [rad]."""
+
+    def build(scene: Scene) -> None:
+        axis = np.array([math.sin(LEAN), 0.0, math.cos(LEAN)])
+        scene.cylinder("wheel", radius=0.1, height=0.02, mass=1.0, position=tuple((TOP_ARM * axis).tolist()),
+                       rotation_deg=(0, math.degrees(LEAN), 0),
+                       angular_velocity_deg=tuple(np.degrees(TOP_SPIN * axis).tolist()))  # fmt: skip
+        scene.joint_spherical("pivot", None, "wheel", anchor=(0, 0, 0))
+
+    track = bench.run(build, 2.0, rate=400.0)
+    place = track.position("wheel") / TOP_ARM
+    return track, np.arccos(place[:, 2]), np.unwrap(np.arctan2(place[:, 1], place[:, 0]))
+
+
+def _lagrange(time: Array, parts: int = 10) -> tuple[Array, Array]:
+    """Lean and precession of Lagrange's top that starts without precession, by Runge and Kutta [rad]."""
+    own, across = 0.5 * 0.1**2, 0.1**2 / 4 + 0.02**2 / 12 + TOP_ARM**2
+    kept = own * TOP_SPIN * math.cos(LEAN)
+
+    def change(state: Array) -> Array:
+        lean, rate, _ = state
+        turns = (kept - own * TOP_SPIN * math.cos(lean)) / (across * math.sin(lean) ** 2)
+        pull = turns * math.sin(lean) * (turns * math.cos(lean) - own * TOP_SPIN / across)
+        return np.array([rate, pull + G * TOP_ARM * math.sin(lean) / across, turns])
+
+    state, found, h = np.array([LEAN, 0.0, 0.0]), [(LEAN, 0.0)], (time[1] - time[0]) / parts
+    for _ in time[1:]:
+        for _ in range(parts):
+            a = change(state)
+            b = change(state + 0.5 * h * a)
+            c = change(state + 0.5 * h * b)
+            state = state + h / 6 * (a + 2 * b + 2 * c + change(state + h * c))
+        found.append((float(state[0]), float(state[2])))
+    return np.array(found).T[0], np.array(found).T[1]
+
+
+@case("rad")
+def top_nutation(bench: Bench) -> tuple[float, float]:
+    """A fast top let go at 30° nods down to where Lagrange's equations take it (integrated by Runge and Kutta)."""
+    track, lean, _ = _top(bench)
+    known = _lagrange(track.time)[0]
+    bench.show("lean [rad]", track.time, lean, known)
+    return float(lean.max()) - LEAN, float(known.max()) - LEAN
+
+
+@case("s")
+def top_nutation_period(bench: Bench) -> tuple[float, float]:
+    """It nods as often as they say: 2 π I₁ / (I₃ ω) where it is fast."""
+    track, lean, _ = _top(bench)
+    middle = lean - LEAN
+    known = _lagrange(track.time)[0] - LEAN
+    return period(track.time, middle - middle.mean()), period(track.time, known - known.mean())
+
+
+@case("rad")
+def top_precession(bench: Bench) -> tuple[float, float]:
+    """In 2 s it goes round by as much."""
+    track, _, turned = _top(bench)
+    known = _lagrange(track.time)[1]
+    bench.show("precession [rad]", track.time, turned, known)
+    return float(turned[-1]), float(known[-1])

@@ -16,6 +16,11 @@ PROMPTS = [
     "A red ball and a blue ball collide for 1 second",
     "A ball is thrown at 5 m/s at an angle of 30 degrees for 1.2 seconds",
     "A box is pushed to the left at 2 m/s for 1 second",
+    "A conveyor carries three crates",
+    "A crate rides on a conveyor at 1 m/s and falls onto the floor",
+    "A ball rolls on a treadmill at 2 m/s for 1 second",
+    "A turntable carries a box",
+    "A barrel rolls at 2 m/s",
     "A box falls onto a seesaw",
     "A tower of 2 blocks stands on a table for 1 second",
 ]

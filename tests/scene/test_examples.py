@@ -10,7 +10,7 @@ from wsim.scene.describe import describe
 from wsim.scene.world import World
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-NAMES = ("floating_blocks", "dam_break", "double_pendulum", "stack_and_ball")
+NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 
 
 def build(name: str, folder: Path) -> World:

@@ -23,13 +23,12 @@ def simulate(request, tmp_path):
     return partial(run, tmp_path, request.param)
 
 
-@BOTH
-def test_a_weight_bobs_with_the_period_of_its_spring(simulate, worlds):
+def test_a_weight_bobs_with_the_period_of_its_spring(simulate):
     def build(scene):
         scene.box("weight", size=(0.1,) * 3, mass=2.0, position=(0, 0, 1))
         scene.spring("spring", None, "weight", anchor_a=(0, 0, 2), stiffness=200.0)
 
-    _, q, _ = simulate(build, 6.5, worlds)
+    _, q, _ = simulate(build, 6.5)
     z = q["weight"][:, 2] - (1.0 - 2.0 * G / 200.0)
     assert period(z) == pytest.approx(2 * math.pi * math.sqrt(2.0 / 200.0), rel=1e-4)
     assert z.min() == pytest.approx(-2.0 * G / 200.0, rel=1e-3)
@@ -44,25 +43,26 @@ def test_a_free_pair_swings_by_its_reduced_mass(simulate, worlds):
         scene.sphere("two", radius=0.05, mass=3.0, position=(1, 0, 0))
         scene.spring("spring", "one", "two", stiffness=300.0, rest_length=0.9)
 
-    _, q, _ = simulate(build, 3.0, worlds)
+    seconds = 3.0 if worlds == 1 else 0.2
+    _, q, _ = simulate(build, seconds, worlds)
     apart = q["two"][:, 0] - q["one"][:, 0] - 0.9
-    assert period(apart) == pytest.approx(2 * math.pi * math.sqrt(0.75 / 300.0), rel=1e-4)
+    theory = 0.1 * np.cos(math.sqrt(300.0 / 0.75) * np.arange(len(apart)) / 100.0)
+    assert np.abs(apart - theory).max() < 1e-4
     centre = (q["one"] + 3.0 * q["two"]) / 4.0
     assert np.abs(centre - centre[0]).max() < 1e-5
 
 
-@BOTH
-def test_a_damper_takes_the_swing_out_as_theory_has_it(simulate, worlds):
+def test_a_damper_takes_the_swing_out_as_theory_has_it(simulate):
     def build(scene):
         scene.simulation(gravity=(0, 0, 0))
         scene.box("weight", size=(0.1,) * 3, mass=2.0, position=(0, 0, 1))
         scene.spring("spring", None, "weight", anchor_a=(0, 0, 0), stiffness=200.0, damping=4.0, rest_length=0.9)
 
-    _, q, _ = simulate(build, 2.0, worlds)
+    _, q, _ = simulate(build, 2.0)
     time = np.arange(201) / 100.0
     rate, omega = 4.0 / (2 * 2.0), math.sqrt(200.0 / 2.0 - 1.0)
     theory = 0.1 * np.exp(-rate * time) * (np.cos(omega * time) + rate / omega * np.sin(omega * time))
-    assert np.abs(q["weight"][:, 2] - 0.9 - theory).max() < 1e-3  # a hundredth: steps of the first order in Warp
+    assert np.abs(q["weight"][:, 2] - 0.9 - theory).max() < 1e-3
 
 
 @BOTH
@@ -72,42 +72,50 @@ def test_a_damper_alone_slows_a_body(simulate, worlds):
         scene.box("weight", size=(0.1,) * 3, mass=2.0, position=(1, 0, 0), velocity=(1, 0, 0))
         scene.spring("damper", None, "weight", anchor_a=(0, 0, 0), stiffness=0.0, damping=3.0)
 
-    _, _, v = simulate(build, 1.0, worlds)
-    assert v["weight"][-1, 0] == pytest.approx(math.exp(-3.0 / 2.0), rel=2e-3)
+    seconds = 1.0 if worlds == 1 else 0.1
+    _, _, v = simulate(build, seconds, worlds)
+    assert v["weight"][-1, 0] == pytest.approx(math.exp(-3.0 / 2.0 * seconds), rel=1e-5)
 
 
 @BOTH
-def test_an_overdamped_spring_is_stable(simulate, worlds):
-    """A damper that would stop 10 g in 10 microseconds lets it down at m g / c."""
+def test_a_strong_damper_shortens_the_step(simulate, worlds):
+    """One that takes the speed away in 2 ms lets the weight down at m g / c."""
 
     def build(scene):
         scene.box("weight", size=(0.05,) * 3, mass=0.01, position=(0, 0, 1))
-        scene.spring("damper", None, "weight", anchor_a=(0, 0, 2), stiffness=0.0, damping=1000.0)
+        scene.spring("damper", None, "weight", anchor_a=(0, 0, 2), stiffness=0.0, damping=5.0)
 
-    _, _, v = simulate(build, 0.2, worlds)
-    assert v["weight"][-1, 2] == pytest.approx(-0.01 * G / 1000.0, rel=0.01)
+    dt, _, v = simulate(build, 0.02, worlds)
+    assert 0.9 * 5e-4 < dt <= 5e-4  # a quarter of m / c
+    assert v["weight"][-1, 2] == pytest.approx(-0.01 * G / 5.0, rel=1e-3)
 
 
 def test_a_stiff_spring_shortens_the_step_and_keeps_its_energy(simulate):
-    """A hundred periods at omega = 1000 / s; the amplitude is what is left of the energy."""
+    """A hundred periods at omega = 1000 / s: its speed is what is left of its energy."""
 
     def build(scene):
         scene.simulation(gravity=(0, 0, 0))
         scene.box("weight", size=(0.1,) * 3, mass=1.0, position=(0, 0, 1))
         scene.spring("spring", None, "weight", anchor_a=(0, 0, 0), stiffness=1e6, rest_length=0.99)
 
-    dt, q, _ = simulate(build, 0.63, rate=4000.0)
-    assert dt <= 0.25e-3
-    z = q["weight"][:, 2] - 0.99
-    assert np.abs(z[-300:]).max() == pytest.approx(0.01, rel=5e-3)
-    assert period(z, 4000.0) == pytest.approx(2 * math.pi / 1000.0, rel=1e-4)
+    dt, q, v = simulate(build, 0.63, rate=1000.0)
+    assert dt == pytest.approx(0.25e-3)
+    energy = 0.5 * v["weight"][:, 2] ** 2 + 0.5e6 * (q["weight"][:, 2] - 0.99) ** 2
+    assert energy[-1] == pytest.approx(50.0, rel=0.01)  # a part in 6e5 a step is lost at omega dt = 1 / 4
 
 
-def test_a_spring_that_no_step_can_follow_is_refused_with_the_stiffest(tmp_path):
+@pytest.mark.parametrize(
+    ("stiffness", "damping", "message"),
+    [
+        (1e8, 0.0, r"stiffness = 1e\+08 N/m .* at most 6.3e\+05 N/m, or more mass"),
+        (0.0, 1e3, r"damping = 1000 N s/m .* at most 25 N s/m, or more mass"),
+    ],
+)
+def test_a_spring_that_no_step_can_follow_is_refused_with_the_stiffest(tmp_path, stiffness, damping, message):
     scene = Scene()
     scene.box("chip", size=(0.01,) * 3, mass=1e-3, position=(0, 0, 1))
-    scene.spring("spring", None, "chip", anchor_a=(0, 0, 2), stiffness=1e8)
-    with pytest.raises(UserError, match=r"/World/spring: stiffness = 1e\+08 N/m .* at most 6.2e\+05 N/m, or more mass"):
+    scene.spring("spring", None, "chip", anchor_a=(0, 0, 2), stiffness=stiffness, damping=damping)
+    with pytest.raises(UserError, match="/World/spring: " + message):
         Simulation(scene.save(tmp_path / "stage.usda"), "cpu")
 
 

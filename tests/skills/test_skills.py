@@ -26,9 +26,10 @@ from wsim.scene.world import World
 from wsim.skills import Skill, skills
 
 PATTERNS = {
-    "cameras-and-light", "containers-and-fluid", "control-functions", "floating-bodies", "joints-and-mechanisms",
+    "cameras-and-light", "containers-and-fluid", "control-functions", "conveyors-and-lifts", "floating-bodies",
+    "joints-and-mechanisms",
     "objectives", "parameters", "pendulums-and-springs", "projectiles-and-collisions", "raw-usd", "repairing",
-    "rigid-bodies", "stacks-and-contact", "time-step-and-stability", "waves-and-dam-breaks",
+    "rigid-bodies", "ropes-and-pulleys", "stacks-and-contact", "time-step-and-stability", "waves-and-dam-breaks",
 }  # fmt: skip
 CHECKS = {check.name for check in [*run_checks(), *physics_checks()]} | {"CheckConverged", "ObjectiveFormula"}
 CHECKS |= {check.__name__ for check in OBJECTIVES.values()}

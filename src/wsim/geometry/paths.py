@@ -1,4 +1,4 @@
-"""Smooth motion through key frames: exact at the keys, with a velocity that never jumps and a place that never overshoots.
+"""Smooth motion through key frames: exact at the keys; its velocity never jumps, and its place never overshoots.
 
 Between two keys the place is a cubic of time, with slopes at the keys that keep it monotone in each coordinate (Fritsch
 and Butland 1984, the harmonic mean of the slopes on both sides): what waits between two equal keys stands still. The

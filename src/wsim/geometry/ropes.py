@@ -136,10 +136,10 @@ def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
     angle, first = np.zeros(len(p)), np.zeros(len(p))
     for turn in (1.0, -1.0):
         t0, t1 = bearing[0] + turn * open_[0], bearing[1] - turn * open_[1]
-        # From side to side over the cylinder's own side, direction 0, not over the opposite one.
+        # Over the cylinder's own side, direction 0, and not round it once more, with strands that cross.
         swept = np.mod(turn * (t1 - t0), 2.0 * np.pi)
         middle = t0 + turn * 0.5 * swept
-        off = np.abs(np.mod(middle + np.pi, 2.0 * np.pi) - np.pi)
+        off = swept + np.where(np.cos(middle) >= 0.0, 0.0, 2.0 * np.pi)
         better = off < best
         best = np.where(better, off, best)
         angle, first = np.where(better, turn * swept, angle), np.where(better, t0, first)

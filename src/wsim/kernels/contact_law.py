@@ -32,16 +32,20 @@ def meets(distance: float, speed: float, restitution: float, h: float, threshold
 
 
 @wp.func
-def rebound(distance: float, speed: float, free: float, restitution: float, h: float) -> float:
+def rebound(distance: float, speed: float, free: float, restitution: float, h: float, smooth: bool) -> float:
     """Speed after the step in which surfaces meet, for which the energy of the fall comes back e^2 times [m/s].
 
-    Steps of the first order follow the parabola on which the speed is v + a h / 2: see `wsim.solvers.contact_law`.
+    Steps of the first order follow the parabola on which the speed is v + a h / 2, others that of v: see `rebounds` of
+    `wsim.solvers.contact_law`.
     """
-    half = 0.5 * free * h
+    half = wp.where(smooth, 0.0, 0.5 * free * h)
+    own = wp.where(smooth, free * h, half)
     fall = 2.0 * wp.max(distance, speed * h) * free  # no deeper than this approach has brought it
     before = speed + half
     squared = restitution * restitution * (before * before - fall) + fall
-    return wp.max(wp.sqrt(wp.max(squared, 0.0)) + half, 0.0)
+    if smooth:
+        squared += own * own
+    return wp.max(wp.sqrt(wp.max(squared, 0.0)) + own, 0.0)
 
 
 @wp.func
@@ -130,6 +134,7 @@ def aim(
     contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
+    touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
     sparse: bool,
     nv: int,
     jacobian: wp.array3d(dtype=float),
@@ -165,7 +170,8 @@ def aim(
         touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
-            goal = rebound(distance, speed, pull, pair[1], h)
+            smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
+            goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         elif speed < -threshold * h:
             if distance > 0.0:

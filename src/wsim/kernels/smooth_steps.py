@@ -20,6 +20,18 @@ def find_touching(
 
 
 @wp.kernel(enable_backward=False)
+def count_touching(
+    # Data in:
+    touches: wp.array(dtype=int),
+    # Data out:
+    steps: wp.array(dtype=int),
+):
+    """Count each world's steps in which it touches something, from the last one in which it does not."""
+    world = wp.tid()
+    steps[world] = wp.where(touches[world] == 0, 0, steps[world] + 1)
+
+
+@wp.kernel(enable_backward=False)
 def take_where_free(
     # Data in:
     touches: wp.array(dtype=int),

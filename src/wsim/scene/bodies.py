@@ -11,7 +11,7 @@ from wsim.defaults import BODY_DENSITY
 from wsim.scene.authoring import Handle, note_line, rotation, set_extent, set_pose
 from wsim.scene.materials import Material, Materials, bind
 from wsim.scene.rolling import Round
-from wsim.scene.validate import Call, Vec3
+from wsim.scene.validate import Call, Vec3, shown
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,8 @@ class Bodies(Materials):
         spin = call.spin(options.angular_velocity_deg)
         mass, density = self._mass_or_density(call, options)
         moving = self._moving(call, options, velocity, spin)
+        if not isinstance(options.rolling, bool):
+            call.fail(f"rolling = {shown(options.rolling)} must be True or False; its resistance is rolling_friction")
         if options.rolling and rolls is not None:
             spin = _rolling(call, options, velocity, spin, turn, rolls)
         material = self._surface(

@@ -24,7 +24,7 @@ def motion_problems(stage: Usd.Stage) -> Iterator[str]:
             yield f"{prim.GetPath()}: only a kinematic rigid body has a path; give it physics:kinematicEnabled = 1"
         elif rigid and not _kinematic(prim) and _sampled(prim):
             yield (
-                f"{prim.GetPath()}.xformOp: time samples on a body that is not kinematic would do nothing; remove them, "
+                f"{prim.GetPath()}.xformOp: time samples do nothing on a body that is not kinematic; remove them, "
                 "or give it physics:kinematicEnabled = 1"
             )
         elif _kinematic(prim):
@@ -45,6 +45,8 @@ def _sampled(prim: Usd.Prim) -> bool:
 
 
 def _joint(stage: Usd.Stage, joint: UsdPhysics.Joint, led: set[Sdf.Path]) -> Iterator[str]:
+    if joint.GetExcludeFromArticulationAttr().Get():
+        return  # a constraint holds on to any body
     parent, child = joint_ends(joint)
     if child != WORLD_END and _kinematic(stage.GetPrimAtPath(child)):
         yield (
@@ -68,7 +70,7 @@ def _path(prim: Usd.Prim) -> Iterator[str]:
     if not 2 <= count <= MAX_KEYS:
         yield f"{where}: {count} keys; a path has 2 to {MAX_KEYS}"
     elif not len(path.positions) == len(path.rotations) == count:
-        yield f"{where}: {count} times, {len(path.positions)} positions, {len(path.rotations)} rotations; as many of each"
+        yield f"{where}: {count} times, {len(path.positions)} positions, {len(path.rotations)} rotations; give as many"
     elif not (np.diff(path.times) > 0.0).all() or max(map(abs, path.times)) > MAX_DURATION:
         yield f"{where}: times must rise, and lie within {MAX_DURATION:g} s"
     elif np.abs(path.positions).max() > MAX_POSITION:
@@ -93,6 +95,6 @@ def _speed(where: str, curve: Curve) -> Iterator[str]:
         k = int(np.argmax(values))
         if values[k] > most:
             yield (
-                f"{where}: it would go at {values[k]:.4g} {unit} from {curve.times[k]:g} to {curve.times[k + 1]:g} s, a "
-                f"jump; at most {most:g} {unit}"
+                f"{where}: it would go at {values[k]:.4g} {unit} from {curve.times[k]:g} to {curve.times[k + 1]:g} s, "
+                f"a jump; at most {most:g} {unit}"
             )

@@ -65,6 +65,14 @@ def within(prim: str, owner: str) -> bool:
     return prim == owner or prim.startswith(owner + "/")
 
 
+def largest_friction(world: World) -> float:
+    """The largest friction of any surface or pair, which bounds what friction does."""
+    shapes = [shape for body in world.bodies for shape in body.shapes]
+    shapes += [shape for static in world.statics for shape in static.shapes]
+    stated = [contact.friction for contact in world.contacts if contact.friction is not None]
+    return max([*(friction_of(shape) for shape in shapes), *stated], default=FRICTION)
+
+
 def friction_of(shape: Shape) -> float:
     """A shape's friction, where nothing that it touches has less."""
     return FRICTION if shape.friction is None else shape.friction

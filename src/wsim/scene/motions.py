@@ -10,9 +10,8 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
 from wsim.geometry.paths import Curve
 from wsim.scene import schema
-from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose, world_pose
+from wsim.scene.authoring import Author, Handle, rotation, set_pose, world_pose
 from wsim.scene.limits import MAX_DURATION, MAX_KEYS, MAX_PATH_SPEED, MAX_PATH_SPIN
-from wsim.scene.usd_motion import curve_of, path_of
 from wsim.scene.validate import Call, Vec3, shown
 
 _MOST_SAMPLES = 5000  # of a path, for other tools
@@ -21,6 +20,10 @@ _LARGEST_TURN = 170.0  # [deg], from key to key: of more than half a turn the wa
 
 class Motions(Author):
     """The calls that state a motion."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._paths: dict[str, Curve] = {}
 
     def surface_velocity(self, body: Handle | str, *, velocity: Sequence[float]) -> None:
         """Let the surface of an object move as a conveyor's or a treadmill's does, while the object stays.
@@ -92,7 +95,7 @@ class Motions(Author):
         schema.apply(prim, schema.PATH, values)
         start, q = curve.pose(0.0)
         set_pose(prim, (float(start[0]), float(start[1]), float(start[2])), Gf.Quatd(q[3], Gf.Vec3d(*q[:3])))
-        note_line(prim)
+        self._paths[str(prim.GetPath())] = curve
 
     def _leads(self, call: Call, body: Handle | str) -> Usd.Prim:
         """The kinematic body that an argument means."""
@@ -106,11 +109,10 @@ class Motions(Author):
 
     def _bake_paths(self, duration: float, rate: float) -> None:
         """Author each path as time samples of the body's transform, one a frame, which every USD tool plays."""
-        for prim in self._stage.Traverse():
-            if schema.has(prim, schema.PATH) and prim.HasAPI(UsdPhysics.RigidBodyAPI):
-                path = path_of(prim)
-                if path is not None:
-                    _bake(prim, curve_of(path), round(duration * rate), rate)
+        for path, curve in self._paths.items():
+            prim = self._stage.GetPrimAtPath(path)
+            if prim:
+                _bake(prim, curve, round(duration * rate), rate)
 
 
 def _bake(prim: Usd.Prim, curve: Curve, frames: int, rate: float) -> None:

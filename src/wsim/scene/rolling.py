@@ -40,8 +40,8 @@ class Round:
             axis = turn.Transform(Gf.Vec3d(*(float(letter == self.axis) for letter in "XYZ")))
             if abs(Gf.Dot(axis, ahead)) > _ACROSS:
                 call.fail(
-                    f"rolling = True with velocity = {velocity}, not square to its {self.axis} axis, about which it rolls, and "
-                    f"which points along {_shown(axis)}; give a velocity across that, or turn it"
+                    f"rolling = True with velocity = {velocity}, not square to the {self.axis} axis that it rolls "
+                    f"about, which points along {_shown(axis)}; give a velocity across that, or turn it"
                 )
             normal = Gf.Cross(ahead, axis)
             normal *= math.copysign(1.0, normal[2])

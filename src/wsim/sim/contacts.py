@@ -96,10 +96,7 @@ def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
     surfaces: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
-    drawn = _drawn(world)
     for k, label in enumerate(labels):
-        if label.startswith(drawn):
-            continue
         shape = _of_label(label, known)
         owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
         key = (shape.friction, shape.restitution, shape.rolling, owners)
@@ -118,20 +115,16 @@ def surface_velocities(model: Any, world: World) -> Array:
     """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
     known = _shapes(world)
     count = model.shape_count // max(1, model.world_count)
-    labels, drawn = [str(label) for label in model.shape_label[:count]], _drawn(world)
-    still = (0.0, 0.0, 0.0)
-    moves = [still if label.startswith(drawn) else _of_label(label, known).surface_velocity for label in labels]
-    return np.array(moves).reshape(-1, 3)
-
-
-def _drawn(world: World) -> tuple[str, ...]:
-    """How the labels of what draws springs and ropes start: nothing touches it."""
-    return tuple(f"{cord.prim}/" for cord in world.cords)
+    labels = [str(label) for label in model.shape_label[:count]]
+    return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
 
 
 def _shapes(world: World) -> dict[str, Shape]:
     bodies = [shape for body in world.bodies for shape in body.shapes]
-    return {shape.prim: shape for shape in [*bodies, *(s for static in world.statics for s in static.shapes)]}
+    still = [shape for static in world.statics for shape in static.shapes]
+    # What draws springs and ropes and marks their points: nothing touches it.
+    drawn = [Shape(prim=cord.prim, kind="sphere", size=(cord.radius,), collides=False) for cord in world.cords]
+    return {shape.prim: shape for shape in [*bodies, *still, *drawn]}
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:

@@ -12,7 +12,7 @@ from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
 from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import Body, Joint, World
-from wsim.sim.spring_steps import DRIVE_SHARE, SMALLEST_DRIVE_STEP, is_overdamped_spring, spring_limits
+from wsim.sim.spring_steps import DRIVE_SHARE, SMALLEST_DRIVE_STEP, spring_limits
 
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
 DAMPED_SHARE = 0.5  # of a speed, lost in a step
@@ -76,8 +76,8 @@ def _drive_limits(world: World) -> dict[str, float]:
 
 
 def is_overdamped(world: World, dt: float) -> bool:
-    """Whether damping takes a speed away in about a step, so that only implicit integration can follow it."""
-    return is_overdamped_spring(world, dt, DAMPED_SHARE) or any(
+    """Whether a drive's damping takes a speed away in about a step, so that only implicit integration can follow it."""
+    return any(
         joint.drive is not None and joint.drive.damping * dt > DAMPED_SHARE * driven_inertia(world, joint)
         for joint in world.joints
     )

@@ -80,11 +80,14 @@ def settling(distance: Array, h: float, config: ContactConfig) -> Array:
 def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: float, smooth: Array) -> Array:
     """Speeds after the step in which surfaces meet, for which the energy of the fall comes back e² times [m/s].
 
-    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2 (v² + a h v - 2 a z
-    stays), others that of v. The step of the blow itself goes on by h times the speed after it.
+    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2: they keep
+    v² + a h v - 2 a z. Others follow that of v. The step of the blow itself goes on by h times the speed after it.
 
     Args:
-        distance: Gaps [m]; speed: normal speeds [m/s]; free: accelerations [m/s^2]; restitution: of each pair.
+        distance: Gaps [m].
+        speed: Normal speeds at the step's start [m/s].
+        free: Normal accelerations without constraints [m/s^2].
+        restitution: Of each pair.
         h: Time step [s].
         smooth: Whether the bodies fly by steps of a higher order, (contacts,).
     """

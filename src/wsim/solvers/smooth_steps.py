@@ -10,7 +10,7 @@ from typing import Any
 
 import warp as wp
 
-from wsim.kernels.smooth_steps import find_touching, take_where_free
+from wsim.kernels.smooth_steps import count_touching, find_touching, take_where_free
 
 
 class SmoothStepsWarp:
@@ -21,10 +21,11 @@ class SmoothStepsWarp:
         warp: The module of MuJoCo Warp.
         model: MuJoCo Warp's model.
         data: MuJoCo Warp's data.
+        steps: Of the first order that each world has made since its last smooth one, (worlds,); counted here.
     """
 
-    def __init__(self, mujoco: Any, warp: Any, model: Any, data: Any) -> None:
-        self.mujoco, self.warp = mujoco, warp
+    def __init__(self, mujoco: Any, warp: Any, model: Any, data: Any, steps: Any) -> None:
+        self.mujoco, self.warp, self._steps = mujoco, warp, steps
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         self._kept = [data.qpos, data.qvel, data.qacc_warmstart, data.time]
         with wp.ScopedDevice(data.qpos.device):
@@ -59,6 +60,7 @@ class SmoothStepsWarp:
             inputs=[data.nefc, data.efc.type],
             outputs=[self._touches],
         )
+        wp.launch(count_touching, dim=data.nworld, inputs=[self._touches], outputs=[self._steps])
         for smooth, array in zip(self._smooth, (data.qpos, data.qvel), strict=True):
             wp.launch(take_where_free, dim=array.shape, inputs=[self._touches, smooth], outputs=[array])
         if model.nu:

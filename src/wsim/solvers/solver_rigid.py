@@ -17,6 +17,7 @@ from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 
 Array = np.ndarray
+ALWAYS = 2**30  # steps
 
 
 def _yielding(model: Any) -> Array:
@@ -91,7 +92,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._prepare_warp(geom_class, law, bends)
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
-            self._smooth_steps = SmoothStepsWarp(self._mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data)
+            mujoco, warp = self._mujoco, self._mujoco_warp
+            self._touched_for.zero_()
+            self._smooth_steps = SmoothStepsWarp(mujoco, warp, self.mjw_model, self.mjw_data, self._touched_for)
 
     def move_surfaces(self, velocity: Array) -> None:
         """Let surfaces move as belts do: what touches them slips against that velocity.
@@ -167,6 +170,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._blow = wp.zeros(data.naconmax, dtype=float)
+            self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
             self._slip = wp.zeros(data.naconmax, dtype=float)
 
     def step(
@@ -230,7 +234,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, *self._jacobian(model, efc), config.threshold, config.settle_time,
+                data.qacc_smooth, self._touched_for, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref],

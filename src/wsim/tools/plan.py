@@ -15,9 +15,9 @@ from wsim.tools.base import Arguments, Result, Tool, Workspace
 from wsim.tools.text import number, numbers, table
 
 if TYPE_CHECKING:
-    from wsim.plan.schema import Joint, Plan
+    from wsim.plan.schema import Joint, Plan, PlanObject
 
-Part = Literal["all", "objects", "relations", "joints", "cameras", "objectives", "assumptions", "steps"]
+Part = Literal["all", "objects", "relations", "joints", "contacts", "cameras", "objectives", "assumptions", "steps"]
 SIDE_NAME = "plan.json.new"
 
 
@@ -86,6 +86,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         "relations": _relations,
         "objectives": _objectives,
         "joints": _joints,
+        "contacts": _contacts,
         "cameras": _cameras,
         "assumptions": _assumptions,
         "steps": _steps,
@@ -94,7 +95,7 @@ def _show(plan: Plan, part: Part, name: str) -> list[str]:
         return parts[part](plan, name) or [f"no {part}" + (f" that name {name}" if name else "")]
     run = plan.simulation
     lines = [f"{plan.title}: {number(run.duration)} s at {number(run.frame_rate)} frames/s", *_picture(plan)]
-    for key in ("objects", "relations", "objectives", "joints", "cameras"):
+    for key in ("objects", "relations", "objectives", "joints", "contacts", "cameras"):
         lines += parts[key](plan, name)
     rest = [f"{len(rows)} {key}" for key, rows in (("assumptions", plan.assumptions), ("steps", plan.steps)) if rows]
     lines += [f"not done: {line}" for line in unheeded(plan) if not name]
@@ -123,13 +124,25 @@ def _objects(plan: Plan, name: str) -> list[str]:
             number(weight.mass), numbers(item.size, " x "), numbers(pose.position) if pose else "",
             numbers(pose.rotation_deg) if pose and any(pose.rotation_deg) else "",
             numbers(item.velocity) if any(item.velocity) else "",
-            number(item.material.friction) if item.material and item.primitive != "fluid" else "",
+            *_surface(item),
         ])  # fmt: skip
     head = (
         "object", "what", "state", "material", "kg/m^3", "kg", "size [m]", "place [m]", "turned [deg]", "m/s",
-        "friction",
+        "friction", "restitution", "rolling",
     )  # fmt: skip
     return table(head, rows) if rows else []
+
+
+def _surface(item: PlanObject) -> list[str]:
+    """Friction, and restitution and rolling resistance where the plan states them."""
+    material = item.material
+    if material is None or item.primitive == "fluid":
+        return ["", "", ""]
+    return [
+        number(material.friction),
+        number(material.restitution) if material.restitution else "",
+        number(material.rolling),
+    ]
 
 
 def _relations(plan: Plan, name: str) -> list[str]:
@@ -168,6 +181,15 @@ def _joints(plan: Plan, name: str) -> list[str]:
     return table(head, rows) if rows else []
 
 
+def _contacts(plan: Plan, name: str) -> list[str]:
+    rows = [
+        [each.object, each.ref, number(each.friction), number(each.restitution), number(each.rolling)]
+        for each in plan.contacts
+        if _about(name, each.object, each.ref)
+    ]
+    return table(("contact of", "and", "friction", "restitution", "rolling"), rows) if rows else []
+
+
 def _driven(joint: Joint) -> str:
     given = joint.drive.model_dump() if joint.drive else {}
     return ", ".join(f"{name} {number(value)}" for name, value in given.items() if value)
@@ -199,8 +221,8 @@ def _steps(plan: Plan, name: str) -> list[str]:
 
 TOOLS = (
     Tool(
-        "read_plan", "The plan: objects, where they are, joints, cameras and what must happen, as tables.", ReadPlan,
-        read_plan, narrow="ask for one part, or one object",
+        "read_plan", "The plan: objects, where they are, joints, contacts, cameras and what must happen, as tables.",
+        ReadPlan, read_plan, narrow="ask for one part, or one object",
     ),
     Tool(
         "write_plan", "Check a plan, lay it out and keep it; the answer says what is wrong with it, or its places.",

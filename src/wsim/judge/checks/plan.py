@@ -13,7 +13,7 @@ from wsim.geometry.kinds import PRIMITIVES
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.verdict import RepairTarget
-from wsim.scene.contact import friction_of, restitution_of
+from wsim.scene.contact import friction_of, restitution_of, rolling_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -141,10 +141,11 @@ class CheckPlanPlaces(Check):
 
 @dataclass
 class CheckPlanLooks(Check):
-    """Each object has the plan's colour, and its surface the plan's friction and restitution."""
+    """Each object has the plan's colour, and its surface the plan's friction, restitution and rolling resistance."""
 
     color: float = 0.1  # of linear RGB, in its largest part: what is seen as another shade
     surface: float = 0.1  # of friction or restitution
+    rolling: float = 0.002  # of rolling resistance, which is some thousandths of what is hard
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that differs, or one for none."""
@@ -159,6 +160,7 @@ class CheckPlanLooks(Check):
         for what, value, planned, limit in (
             ("friction", friction_of(shape), material.friction, self.surface),
             ("restitution", restitution_of(shape), material.restitution, self.surface),
+            ("rolling", rolling_of(shape), material.rolling or 0.0, self.rolling),
         ):
             if abs(value - planned) > limit:
                 target = RepairTarget(kind="physical parameter", prim=made.prim, parameter=what, suggested=planned)

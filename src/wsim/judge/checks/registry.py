@@ -18,6 +18,7 @@ from wsim.judge.checks import (
     motion,
     physics,
     plan,
+    plan_contacts,
     plan_joints,
     plan_motion,
     rest,
@@ -30,7 +31,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, energy, contact, rest, joint, cord, mass, plan, plan_joints, plan_motion, fluid, camera,
+    physics, settled, motion, energy, contact, rest, joint, cord, mass, plan, plan_joints, plan_contacts, plan_motion,
+    fluid, camera,
 )  # fmt: skip
 
 

@@ -151,7 +151,8 @@ class CheckCreep(Check):
         span = float(evidence.time[here[-1]] - evidence.time[here[0]])
         found = []
         # What it stands on may be more slippery than it is.
-        mu = min(friction_of(each.shape) for each in evidence.placed) if evidence.placed else 0.0
+        stated = [contact.friction for contact in evidence.world.contacts if contact.friction is not None]
+        mu = min([*(friction_of(each.shape) for each in evidence.placed), *stated], default=0.0)
         for i in np.flatnonzero(~motion.jointed & ~motion.kinematic & motion.touched[here].all(axis=0)):
             shapes = evidence.solid(int(i)).shapes
             flat = all(self._flat(evidence, int(i), shape) for shape in shapes)

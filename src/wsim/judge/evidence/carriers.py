@@ -1,7 +1,7 @@
 """What moves under or against bodies and is moved by none: belts' surfaces, kinematic bodies; and the work they may do.
 
-A contact's force F works F . v on a body whose surface moves at v there, and friction and impacts only take energy in
-the carrier's own frame, F . (v - u) <= 0: what a carrier of velocity u gives is at most u . J, with J the impulse of its
+A contact's force F works F . v on a body whose surface moves at v there, and friction and impacts only take energy
+in the carrier's own frame, F . (v - u) <= 0: what a carrier of velocity u gives is at most u . J, J the impulse of its
 contacts. Where the carrier is all that a body may touch, J is what changed the body's momentum, less gravity's share.
 """
 

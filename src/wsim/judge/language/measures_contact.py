@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.defaults import FRICTION
 from wsim.geometry.kinds import ROUND
 from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.motion import FLOAT32
@@ -24,7 +23,7 @@ from wsim.plan.schema.formula import (
     SupportedBy,
     Touches,
 )
-from wsim.scene.contact import friction_of
+from wsim.scene.contact import largest_friction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -153,7 +152,7 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
     jump = np.linalg.norm(jolt, axis=-1)
     speed = np.linalg.norm(before, axis=-1)
     # What carries a body changes its speed against gravity's, and what rubs on it besides: neither is a collision.
-    carried = math.hypot(1.0, _friction(signals)) * signals.gravity * span
+    carried = math.hypot(1.0, largest_friction(signals.world)) * signals.gravity * span
     floor = CHANGE * signals.speed_scale(moving_size(signals, asked.object, asked.ref))
     scale = np.maximum(speed, floor)
     limit = CHANGE * scale + carried
@@ -179,10 +178,3 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
             )
         )  # fmt: skip
     return found
-
-
-def _friction(signals: Signals) -> float:
-    """The largest friction in the world."""
-    shapes = [shape for body in signals.world.bodies for shape in body.shapes]
-    shapes += [shape for static in signals.world.statics for shape in static.shapes]
-    return max((friction_of(shape) for shape in shapes), default=FRICTION)

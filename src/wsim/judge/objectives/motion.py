@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.defaults import FRICTION
 from wsim.geometry.rotations import rotate
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
-from wsim.scene.contact import friction_of
+from wsim.scene.contact import largest_friction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -241,7 +240,7 @@ class ObjectiveCollidesWith(ObjectiveCheck):
         """What the collision changed, beside what gravity and friction did in the meantime."""
         before, after = max(0, touch - self.frames), min(len(evidence.time) - 1, touch + self.frames)
         span = float(evidence.time[after] - evidence.time[before])
-        rubbed = _friction(evidence) * evidence.gravity * span
+        rubbed = largest_friction(evidence.world) * evidence.gravity * span
         changes = {k: self._jump(evidence, k, before, after, falling=j < 0) - rubbed for k in (i, j) if k >= 0}
         whose = max(changes, key=lambda k: changes[k])
         body = evidence.world.bodies[whose]
@@ -276,7 +275,8 @@ class ObjectiveCollidesWith(ObjectiveCheck):
         v = evidence.body_qd[np.ix_(frames, pair)][:, :, :2]  # (frames, 2 bodies, level)
         scale = float(masses @ np.linalg.norm(v[0], axis=1))
         lost = np.linalg.norm(np.diff(np.einsum("b,tbi->ti", masses, v), axis=0), axis=1)
-        rubbed = _friction(evidence) * evidence.gravity * np.diff(evidence.time[frames]) * float(masses.sum())
+        weight = evidence.gravity * float(masses.sum())
+        rubbed = largest_friction(evidence.world) * weight * np.diff(evidence.time[frames])
         limit = self.share * scale + rubbed
         k = int(np.argmax(lost / limit))
         start, end = float(evidence.time[frames[k]]), float(evidence.time[frames[k + 1]])
@@ -285,13 +285,6 @@ class ObjectiveCollidesWith(ObjectiveCheck):
             float(lost[k]), float(limit[k]), "kg m/s", time=end, span=(start, end), expected=0.0,
             limit_from=f"{self.share:g} of it, and what friction on the ground takes between two frames",
         )  # fmt: skip
-
-
-def _friction(evidence: Evidence) -> float:
-    """The largest friction in the world, which bounds what the ground does to a body."""
-    shapes = [shape for body in evidence.world.bodies for shape in body.shapes]
-    shapes += [shape for static in evidence.world.statics for shape in static.shapes]
-    return max((friction_of(shape) for shape in shapes), default=FRICTION)
 
 
 OBJECTIVES: Objectives = {

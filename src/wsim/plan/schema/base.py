@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, model_serializer
 
 MOST = 1e6  # no length, speed or time in a plan is larger: beyond it a 32-bit simulation has no millimetres left
 Number = Annotated[float, Field(ge=-MOST, le=MOST, allow_inf_nan=False)]
@@ -22,3 +22,11 @@ class Strict(BaseModel):
     """A model that takes no field that it does not know, and no number that is not finite."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class Sparse(Strict):
+    """A model whose open fields are not written, so that a plan without them reads as it always did."""
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in write(self).items() if value is not None}

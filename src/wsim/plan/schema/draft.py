@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from wsim.defaults import DURATION, FRAME_RATE
-from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
+from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
 
@@ -76,6 +76,24 @@ class Joint(Strict):
         return self
 
 
+class Contact(Sparse):
+    """How one pair of objects rubs, bounces and rolls on each other; what is left out their materials decide."""
+
+    object: Name
+    ref: Name
+    friction: NotNegative | None = None
+    restitution: Share | None = None
+    rolling: Share | None = None  # rolling resistance: a torque, of radius times push
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Contact:
+        if self.friction is None and self.restitution is None and self.rolling is None:
+            raise ValueError(
+                f"the contact of {self.object} and {self.ref} states nothing; give friction, restitution or rolling"
+            )
+        return self
+
+
 class CameraPlan(Strict):
     """A camera: from `eye` at `target`, or by a `view` of the scene or of one object, which the layout resolves."""
 
@@ -104,15 +122,7 @@ class SensorPlan(Strict):
     rate: Positive = 30.0  # [1/s]
 
 
-class _Sparse(Strict):
-    """A model whose open fields are not written, so that a plan without them reads as it always did."""
-
-    @model_serializer(mode="wrap")
-    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        return {name: value for name, value in write(self).items() if value is not None}
-
-
-class Step(_Sparse):
+class Step(Sparse):
     """One stage of the implementation, and what it must show when it is done."""
 
     title: Word
@@ -174,7 +184,7 @@ class Outputs(Strict):
 AssumptionKind = Literal["count", "height", "material", "end"]
 
 
-class Assumption(_Sparse):
+class Assumption(Sparse):
     """A choice that the prompt left open, with the default taken.
 
     Attributes:
@@ -208,6 +218,7 @@ class Draft(Strict):
     image: ReferenceImage | None = None
     objects: list[PlanObject] = Field(max_length=10_000)
     joints: list[Joint] = Field(default_factory=list, max_length=10_000)
+    contacts: list[Contact] = Field(default_factory=list, max_length=10_000)
     cameras: list[CameraPlan] = Field(default_factory=list, max_length=100)
     sensors: list[SensorPlan] = Field(default_factory=list, max_length=1000)
     steps: list[Step] = Field(default_factory=list, max_length=1000)
@@ -215,6 +226,11 @@ class Draft(Strict):
     simulation: SimulationPlan = Field(default_factory=SimulationPlan)
     outputs: Outputs = Field(default_factory=Outputs)
     assumptions: list[Assumption] = Field(default_factory=list, max_length=10_000)
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without `contacts` where there are none, so that a plan without them reads as it always did."""
+        return {name: value for name, value in write(self).items() if name != "contacts" or value}
 
     def object(self, name: str) -> PlanObject:
         """The object of that name; KeyError naming the known ones."""

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from wsim.defaults import FRICTION
-from wsim.plan.schema.base import Color, Name, NotNegative, Positive, Share, Strict, Text, Vec3, Word
+from wsim.plan.schema.base import Color, Name, NotNegative, Positive, Share, Sparse, Strict, Text, Vec3, Word
 from wsim.plan.schema.relations import Relation
 
 Role = Literal["rigid_body", "mechanism", "vehicle", "robot", "terrain", "fluid", "container", "sensor", "background"]
@@ -96,13 +96,14 @@ class External(Strict):
 Construction = Annotated[Proxy | FromAsset | External, Field(discriminator="kind")]
 
 
-class Material(Strict):
+class Material(Sparse):
     """Bulk and surface properties."""
 
     name: Word
     density: Positive  # [kg/m^3]
     friction: NotNegative = FRICTION
-    restitution: Share = 0.0
+    restitution: Share = 0.0  # 0 leaves it to what it touches; a contact's 0 is 0
+    rolling: Share | None = None  # rolling resistance: a torque, of radius times push
     color: Color = (0.7, 0.7, 0.7)
     opacity: Share = 1.0
 

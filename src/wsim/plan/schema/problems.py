@@ -24,6 +24,7 @@ def problems(plan: Draft) -> list[str]:
         *support_problems(plan),
         *_groups(plan),
         *_joints(plan),
+        *_contacts(plan),
         *_actuation(plan),
         *_others(plan),
     ]
@@ -128,6 +129,29 @@ def _joints(plan: Draft) -> Iterator[str]:
             yield f"joints.{i}.limits: {joint.limits[0]:g} is above {joint.limits[1]:g}; swap them"
         if joint.limits is not None and joint.kind in ("fixed", "ball"):
             yield f"joints.{i}.limits: a {joint.kind} joint has none; remove them"
+
+
+def _contacts(plan: Draft) -> Iterator[str]:
+    """Two objects that meet, stated once."""
+    items = {item.name: item for item in plan.objects}
+    seen: dict[frozenset[str], int] = {}
+    for i, contact in enumerate(plan.contacts):
+        unknown = [field for field in ("object", "ref") if getattr(contact, field) not in items]
+        for field in unknown:
+            yield f"contacts.{i}.{field}: no object {getattr(contact, field)!r}; the plan has {_known(plan)}"
+        if unknown:
+            continue
+        one, other, pair = items[contact.object], items[contact.ref], frozenset((contact.object, contact.ref))
+        fluid = next((item for item in (one, other) if item.primitive == "fluid"), None)
+        if one is other:
+            yield f"contacts.{i}.ref: {one.name} does not touch itself; name another object"
+        elif fluid is not None:
+            yield f"contacts.{i}: {fluid.name} is a fluid, which has no friction or restitution; name two solids"
+        elif one.state == other.state == "static":
+            yield f"contacts.{i}: {one.name} and {other.name} are both static; they never meet"
+        elif pair in seen:
+            yield f"contacts.{i}: {one.name} and {other.name} are in contacts.{seen[pair]}, too; state the pair once"
+        seen.setdefault(pair, i)
 
 
 def _actuation(plan: Draft) -> Iterator[str]:

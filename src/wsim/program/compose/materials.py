@@ -34,6 +34,8 @@ def _statement(draft: Draft, material: Material, variable: str, *, moving: bool)
     arguments.append(f"friction={number(material.friction)}")
     if material.restitution:
         arguments.append(f"restitution={number(material.restitution)}")
+    if material.rolling is not None:
+        arguments.append(f"rolling={number(material.rolling)}")
     arguments.append(f"color={tuple_of(material.color)}")
     if material.opacity != 1.0:
         arguments.append(f"opacity={number(material.opacity)}")

@@ -25,19 +25,23 @@ _CORD: dict[str, Any] = {"b": None, "anchor_b": (0.0, 0.0, 2.0)}
 _NEEDS: dict[str, dict[str, Any]] = {
     "ground": {}, "box": _SHAPE, "sphere": {"radius": 0.1}, "cylinder": _ROUND, "capsule": _ROUND,
     "tank": {"inner_size": (1.0, 1.0, 1.0)}, "material": {}, "param": {"default": 1.0}, "simulation": {}, "light": {},
+    "contact": {"friction": 0.5, "restitution": 0.5},
     "camera": {"eye": (0.0, -3.0, 1.0), "target": (0.0, 0.0, 0.0)}, "fluid": {}, "asset": {},
+    "surface_velocity": {"velocity": (1.0, 0.0, 0.0)},
+    "path": {"times": (0.0, 1.0), "positions": ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
     "gear": {"ratio": 1.0},
 }  # fmt: skip
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
+ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
 OBJECTS = (*BODIES, "ground", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
-         "joint_a", "joint_b")  # fmt: skip
+         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
@@ -110,7 +114,7 @@ class World:
 
     def note(self, method: str, name: object, *, certain: bool) -> None:
         """Remember the prim that a call makes."""
-        if method in ("simulation", "save"):
+        if method in ("simulation", "save", "contact", *ABOUT):
             return
         if not isinstance(name, str):
             self.open = self.open or method not in ("material", "param")
@@ -198,7 +202,9 @@ class World:
     def _attempt(self, method: str, given: dict[str, Any], *, alone: bool) -> str:
         number = next(self._numbers)
         needs: dict[str, Any] = dict(_NEEDS[method])
-        if method != "simulation":
+        if method in ABOUT:
+            needs["body"] = self._probe.box(f"probe_body_{number}", size=(1.0, 1.0, 1.0), kinematic=True)
+        elif method not in ("simulation", "contact"):
             needs["name"] = f"probe_{number}"
         if method == "fluid":
             edges = given.get("size", (1.0, 1.0, 1.0))
@@ -233,7 +239,7 @@ def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
     if method == "gear":
         ends = {"joint_a": "a", "joint_b": "b"}
         return {key: scene.joint_revolute(f"probe_joint_{number}{e}", None, body(e)) for key, e in ends.items()}
-    return {}
+    return {"a": body("a"), "b": body("b")} if method == "contact" else {}
 
 
 def _no_asset(identifier: object) -> str:

@@ -122,18 +122,11 @@ def _legs(slab: PlanObject, taken: set[str]) -> list[PlanObject]:
         name = f"{slab.name}_{end}_stand"
         taken.add(name)
         pose = Pose(position=(tidy(sign * (length / 2 - 2 * LEG)), 0.0, tidy(tall_ / 2)))
-        stands.append(
-            PlanObject.proxy(
-                name=name,
-                role="background",
-                primitive="box",
-                size=(LEG, round(0.8 * width, 3), round(tall_, 4)),
-                material=material_named("steel"),
-                state="static",
-                pose=pose,
-                words=slab.words,
-            )  # fmt: skip
-        )
+        stand = PlanObject.proxy(
+            name=name, role="background", primitive="box", size=(LEG, round(0.8 * width, 3), round(tall_, 4)),
+            material=material_named("steel"), state="static", pose=pose, words=slab.words,
+        )  # fmt: skip
+        stands.append(stand)
     return stands
 
 
