@@ -168,18 +168,15 @@ def _beyond_the_stop(bench: Bench, speed: float) -> tuple[float, float]:
     return float(bench.run(build, 0.5 / speed + 0.1).position("cart")[:, 0].max()) - 0.5, 0.0
 
 
-def _stops() -> list[Case]:
+def _stops() -> tuple[Case, ...]:
     says = "A slider that meets its stop at {:g} m/s goes 0 beyond it."
     speeds = (1.0, 10.0, 30.0)
     runs = [partial(_beyond_the_stop, speed=speed) for speed in speeds]
     why = "1.2e-7 s times the speed: the impedance of a row"
-    return [
+    return tuple(
         Case(f"stop_at_{speed:g}", says.format(speed), "m", 2e-7 * speed, why, run)
         for speed, run in zip(speeds, runs, strict=True)
-    ]
+    )
 
 
-CASES = [
-    friction_stops_a_flywheel, friction_holds_a_flywheel, friction_in_a_pendulum, gear_train_inertia, gear_train_ratio,
-    rack_and_pinion, link_below_its_strength, link_above_its_strength, driven_crank_slider, weld_under_a_ton, *_stops(),
-]  # fmt: skip
+STOPS = _stops()

@@ -243,7 +243,7 @@ def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
     if method == "gear":
         ends = {"joint_a": "a", "joint_b": "b"}
         return {key: scene.joint_revolute(f"probe_joint_{number}{e}", None, body(e)) for key, e in ends.items()}
-    return {}
+    return {"a": body("a"), "b": body("b")} if method == "contact" else {}
 
 
 def _no_asset(identifier: object) -> str:
