@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from pxr import Gf, Sdf, Usd, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.spanning import WORLD_END, Link, Tree, span
@@ -128,3 +128,12 @@ def _turn_round(joint: UsdPhysics.Joint) -> None:
         body.SetTargets(target)
         place.Set(position)
         turn.Set(rotation * half_turn)
+
+
+def body_frame(prim: Usd.Prim) -> Gf.Matrix4d:
+    """The frame that points of what a prim is part of are in: its body's, or the world's."""
+    body = body_above(prim)
+    if body == WORLD_END:
+        return Gf.Matrix4d(1.0)
+    owner = UsdGeom.Xformable(prim.GetStage().GetPrimAtPath(body))
+    return owner.ComputeLocalToWorldTransform(Usd.TimeCode.Default()).RemoveScaleShear()

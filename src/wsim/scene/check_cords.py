@@ -10,14 +10,8 @@ from pxr import Usd
 from wsim.geometry.ropes import path_length
 from wsim.scene import schema
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
-from wsim.scene.limits import MAX_SIZE
+from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene.world import Guide, Rope, Spring
-
-MAX_STIFFNESS = 1e9  # [N/m]
-MAX_DAMPING = 1e9  # [N s/m]
-FARTHEST = 100.0  # [m] between a spring's ends
-MOST_STRETCH = 10.0  # a spring's length, of its rest: rubber bears less, and steel far less
-TAUT = 1e-4  # [m]: a rope may be that much shorter than its way, by the rounding of what states it
 
 
 def cord_problems(prim: Usd.Prim) -> Iterator[str]:

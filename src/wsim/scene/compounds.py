@@ -14,7 +14,6 @@ from wsim.geometry.rotations import matrices
 from wsim.scene.authoring import Handle, note_line, rotation, set_pose
 from wsim.scene.bodies import BodyOptions, MassProperties, finish_collider
 from wsim.scene.tracks import Tracks
-from wsim.scene.usd_shapes import read_shape, solid
 from wsim.scene.validate import Call, shown
 
 Floats = NDArray[np.float64]
@@ -98,6 +97,9 @@ class Compounds(Tracks):
             None,
             None,
         )
+        # It brings pydantic, and a program without compounds does not wait for it.
+        from wsim.scene.usd_shapes import read_shape, solid
+
         path = self._path(call)
         surfaces = [self._surface(call, p.material, p.friction, p.restitution, p.color) for p in listed]
         densities = [surface.density or BODY_DENSITY for surface in surfaces]

@@ -9,11 +9,10 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.ropes import path_length
 from wsim.scene import schema
+from wsim.scene.articulation import body_frame
 from wsim.scene.authoring import Handle, note_line, world_pose
-from wsim.scene.check_cords import FARTHEST, MAX_DAMPING, MAX_STIFFNESS, MOST_STRETCH, TAUT, cord_problems
-from wsim.scene.describe_cords import body_frame, read_pulley, read_rope, stops_at_start
 from wsim.scene.joints import Joints
-from wsim.scene.limits import MAX_SIZE
+from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene.validate import Call, Vec3, shown
 
 Around = Sequence[Handle | str | tuple[Handle | str, str | Sequence[float]]]
@@ -142,6 +141,10 @@ class Cords(Joints):
 
     def _set_length(self, call: Call, prim: Usd.Prim, given: float | None) -> None:
         """Author a rope's length, its way at the start if none is given; the prim goes where that cannot be."""
+        # They bring pydantic, and a program without ropes does not wait for it.
+        from wsim.scene.check_cords import cord_problems
+        from wsim.scene.describe_cords import read_rope, stops_at_start
+
         way = float(path_length(stops_at_start(read_rope(prim).path, self._stage))[0])
         wrong = f"length = {given:g} m is shorter than its way at the start, {way:.4g} m" if given else ""
         if given is None or given >= way - TAUT:
@@ -195,6 +198,8 @@ class Cords(Joints):
         else:
             way = call.vector(f"{field}: side", side, 1e6, "")
         prim = self._body(call, field, what)
+        from wsim.scene.describe_cords import read_pulley  # brings pydantic, as above
+
         pulley = read_pulley(prim)
         if pulley is None:
             call.fail(f"{field} = {shown(prim.GetName())} has no cylinder that collides; a rope runs round cylinders")

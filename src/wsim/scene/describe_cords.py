@@ -10,11 +10,10 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.ropes import Stop, common_tangent
 from wsim.scene import schema
-from wsim.scene.articulation import WORLD_END, body_above
+from wsim.scene.articulation import WORLD_END, body_above, body_frame
 from wsim.scene.usd_shapes import read_shape, to_vec3
 from wsim.scene.world import Guide, Rope, Spring
 
-_NOW = Usd.TimeCode.Default()
 _SIDE = Gf.Vec3d(0.0, 0.0, 1.0)
 
 
@@ -76,15 +75,6 @@ def read_pulley(prim: Usd.Prim, side: Gf.Vec3d = _SIDE) -> Guide | None:
             shape=shape.prim,
         )
     return None
-
-
-def body_frame(prim: Usd.Prim) -> Gf.Matrix4d:
-    """The frame that points of what a prim is part of are in: its body's, or the world's."""
-    body = body_above(prim)
-    if body == WORLD_END:
-        return Gf.Matrix4d(1.0)
-    owner = UsdGeom.Xformable(prim.GetStage().GetPrimAtPath(body))
-    return owner.ComputeLocalToWorldTransform(_NOW).RemoveScaleShear()
 
 
 def stops_at_start(path: list[Guide], stage: Usd.Stage) -> list[Stop]:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from pxr import Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, body_above
-from wsim.scene.world import Contact
+
+if TYPE_CHECKING:
+    from wsim.scene.world import Contact
 
 COEFFICIENTS = ("friction", "restitution", "rolling")
 
@@ -19,6 +22,8 @@ def read_contacts(prims: Iterable[Usd.Prim]) -> list[Contact]:
 
 
 def _contact(prim: Usd.Prim) -> Contact:
+    from wsim.scene.world import Contact  # it brings pydantic, and what programs call needs the rest of this file alone
+
     first, second = (str(end) for end in ends(prim))
     line = prim.GetCustomDataByKey("wsim:line")
     return Contact(
