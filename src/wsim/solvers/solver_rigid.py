@@ -14,6 +14,7 @@ from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.single_precision import soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 
@@ -140,6 +141,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             else:
                 model.eq_solimp[k, :2] = config.impedance
                 model.eq_solref[k] = -1.0 / (config.settle_time * h), -1.0 / h
+        if not self.use_mujoco_cpu:
+            soften_for_single_precision(self.import_mujoco()[0], model, config)
         if not self.use_mujoco_cpu and model.neq:
             for name in ("eq_solimp", "eq_solref"):
                 array = getattr(self.mjw_model, name)
