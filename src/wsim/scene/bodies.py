@@ -37,6 +37,18 @@ class BodyOptions:
 
 
 @dataclass(frozen=True)
+class Start:
+    """How a solid starts, in the world: position [m], velocity [m/s], spin [deg/s]."""
+
+    position: Vec3
+    turn: Gf.Quatd
+    velocity: Vec3
+    spin: Vec3
+    moving: bool
+    kinematic: bool
+
+
+@dataclass(frozen=True)
 class MassProperties:
     """Mass properties that geometry alone would not give: mass [kg], com [m], principal inertia [kg m^2] and axes."""
 
@@ -81,9 +93,8 @@ class Bodies(Materials):
             rolls: How it rolls, of what is round.
         """
         path = self._path(call)
+        start = self._start(call, options, rolls)
         mass, density = self._mass_or_density(call, options)
-        if not isinstance(options.rolling, bool):
-            call.fail(f"rolling = {shown(options.rolling)} must be True or False; its resistance is rolling_friction")
         material = self._surface(
             call,
             options.material,
@@ -101,35 +112,40 @@ class Bodies(Materials):
             finish_collider(shape, material)
             return mass_properties(mass, density) if mass_properties else None
 
-        return self._body_of(call, options, path, author, mass, density, rolls)
+        return self._body_of(call, start, path, author, mass, density)
 
-    def _body_of(
-        self,
-        call: Call,
-        options: BodyOptions,
-        path: str,
-        author: Callable[[], MassProperties | None],
-        mass: float | None = None,
-        density: float | None = None,
-        rolls: Round | None = None,
-    ) -> Handle:
-        """Author the Xform of a solid, and what `author` puts under it; what that gives weighs before the rest."""
+    def _start(self, call: Call, options: BodyOptions, rolls: Round | None = None) -> Start:
+        """How a solid starts, checked before anything is authored."""
         position = call.position("position", options.position)
         turn = rotation(call.angles(options.rotation_deg))
         velocity = call.velocity(options.velocity)
         spin = call.spin(options.angular_velocity_deg)
         moving = self._moving(call, options, velocity, spin)
+        if not isinstance(options.rolling, bool):
+            call.fail(f"rolling = {shown(options.rolling)} must be True or False; its resistance is rolling_friction")
         if options.rolling and rolls is not None:
             spin = _rolling(call, options, velocity, spin, turn, rolls)
+        return Start(position, turn, velocity, spin, moving, options.kinematic)
+
+    def _body_of(
+        self,
+        call: Call,
+        start: Start,
+        path: str,
+        author: Callable[[], MassProperties | None],
+        mass: float | None = None,
+        density: float | None = None,
+    ) -> Handle:
+        """Author the Xform of a solid, and what `author` puts under it; what that gives weighs before the rest."""
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
-        set_pose(prim, position, turn)
-        if moving:
-            _make_rigid(prim, turn, velocity, spin, kinematic=options.kinematic)
+        set_pose(prim, start.position, start.turn)
+        if start.moving:
+            _make_rigid(prim, start.turn, start.velocity, start.spin, kinematic=start.kinematic)
         properties = author()
-        if moving:
+        if start.moving:
             _set_mass(prim, mass, density, properties)
-        return Handle(name=prim.GetName(), path=path, kind="body" if moving else "static")
+        return Handle(name=prim.GetName(), path=path, kind="body" if start.moving else "static")
 
     def _mass_or_density(self, call: Call, options: BodyOptions) -> tuple[float | None, float | None]:
         mass = None if options.mass is None else call.mass(options.mass)

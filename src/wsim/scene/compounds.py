@@ -100,7 +100,7 @@ class Compounds(Tracks):
         # It brings pydantic, and a program without compounds does not wait for it.
         from wsim.scene.usd_shapes import read_shape, solid
 
-        path = self._path(call)
+        path, start = self._path(call), self._start(call, options)
         surfaces = [self._surface(call, p.material, p.friction, p.restitution, p.color) for p in listed]
         densities = [surface.density or BODY_DENSITY for surface in surfaces]
 
@@ -120,7 +120,7 @@ class Compounds(Tracks):
                 solids.append((np.array(shape.position) + turn @ each.com, inertia))
             return _together(np.array(weights, dtype=np.float64), solids, mass)
 
-        return self._body_of(call, options, path, author)
+        return self._body_of(call, start, path, author)
 
     def _part_geometry(self, call: Call, k: int, part: Part) -> Callable[[str], UsdGeom.Gprim]:
         """What defines a part's Gprim at a path; all numbers are checked now."""
