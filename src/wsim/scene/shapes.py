@@ -226,7 +226,7 @@ class Shapes(Bodies):
         color: Sequence[float] | None = None,
         rolling_friction: float | None = None,
     ) -> Handle:
-        """Make a capsule, a rod with round ends: `radius` and `height` [m], caps not counted. For the rest see `Shapes`."""
+        """Make a capsule, a rod with round ends: `radius`, `height` [m], caps not counted. See `Shapes`."""
         call = Call("capsule", name)
         geometry = self._round(call, UsdGeom.Capsule, radius, height, axis)
         options = BodyOptions(
