@@ -26,19 +26,31 @@ def soften_for_single_precision(mujoco: Any, model: Any, config: ContactConfig) 
     hard = np.flatnonzero(model.eq_solimp[:, 0] == config.impedance) if model.neq else ()
     if not len(hard):
         return
-    data = mujoco.MjData(model)
-    mass = np.zeros((model.nv, model.nv))
+    condition = _condition(mujoco, model)
     for softer in SOFTER:
-        mujoco.mj_forward(model, data)
-        mujoco.mj_fullM(model, data, mass)
-        rows = np.flatnonzero(data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY)
-        jacobian = np.zeros((data.nefc, model.nv))
-        if mujoco.mj_isSparse(model):
-            mujoco.mju_sparse2dense(jacobian, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
-        else:
-            jacobian[:] = data.efc_J.reshape(-1, model.nv)
-        factored = mass + jacobian[rows].T @ (data.efc_D[rows, None] * jacobian[rows])
-        scale = 1.0 / np.sqrt(np.diag(factored))
-        if np.linalg.cond(scale[:, None] * factored * scale) < LARGEST_CONDITION:
+        if condition < LARGEST_CONDITION:
             return
+        before = model.eq_solimp[hard, :2].copy()
         model.eq_solimp[hard, :2] = softer
+        less = _condition(mujoco, model)
+        if less > 0.5 * condition:  # it is not the loops that are at fault
+            model.eq_solimp[hard, :2] = before
+            return
+        condition = less
+
+
+def _condition(mujoco: Any, model: Any) -> float:
+    """Of M + J^T D J as the world starts, its diagonal scaled to one."""
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    rows = np.flatnonzero(data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY)
+    jacobian = np.zeros((data.nefc, model.nv))
+    if mujoco.mj_isSparse(model):
+        mujoco.mju_sparse2dense(jacobian, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
+    else:
+        jacobian[:] = data.efc_J.reshape(-1, model.nv)
+    factored = mass + jacobian[rows].T @ (data.efc_D[rows, None] * jacobian[rows])
+    scale = 1.0 / np.sqrt(np.diag(factored))
+    return float(np.linalg.cond(scale[:, None] * factored * scale))
