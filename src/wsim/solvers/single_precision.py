@@ -15,8 +15,8 @@ LARGEST_CONDITION = 1e7  # of what is factored, its diagonal scaled to one (Demm
 def soften_for_single_precision(mujoco: Any, model: Any, config: ContactConfig) -> None:
     """Give loops the hardest impedance with which MuJoCo Warp can factor what it solves.
 
-    That is M + J^T D J, over the coordinates of trees. A cable whose other end is held is a long tree of light links:
-    at the law's impedance single precision finds no Cholesky factor of it.
+    That is M + J^T D J, over the coordinates that loops bind. A cable whose other end is held is a long tree of light
+    links: at the law's impedance single precision finds no Cholesky factor of it.
 
     Args:
         mujoco: The module.
@@ -51,6 +51,8 @@ def _condition(mujoco: Any, model: Any) -> float:
         mujoco.mju_sparse2dense(jacobian, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
     else:
         jacobian[:] = data.efc_J.reshape(-1, model.nv)
-    factored = mass + jacobian[rows].T @ (data.efc_D[rows, None] * jacobian[rows])
+    held = np.flatnonzero(jacobian[rows].any(axis=0))  # the loops' own coordinates: a world may have thousands
+    loops = jacobian[np.ix_(rows, held)]
+    factored = mass[np.ix_(held, held)] + loops.T @ (data.efc_D[rows, None] * loops)
     scale = 1.0 / np.sqrt(np.diag(factored))
     return float(np.linalg.cond(scale[:, None] * factored * scale))
