@@ -27,7 +27,8 @@ from tests.judge.theory import (
     times,
     with_world,
 )  # fmt: skip
-from wsim.judge.checks.contact import CheckFriction, CheckSupport, CheckTunnelling
+from wsim.judge.checks.contact import CheckSupport, CheckTunnelling
+from wsim.judge.checks.friction import CheckFriction
 from wsim.judge.checks.rest import CheckCreep, CheckJitter, CheckRestForce
 from wsim.scene.world import Shape
 
