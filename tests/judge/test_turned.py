@@ -60,7 +60,7 @@ def simulated(folder, build, seconds):
 
 
 def any_world(seed):
-    """Bodies that slide, roll, swing, stand and fall, on a ground, on a ramp and on a table; one random world a seed."""
+    """Bodies that slide, roll, swing, stand and fall, on a ground and on a ramp; a random world for each seed."""
     rng = np.random.default_rng(seed)
 
     def build(scene):
