@@ -10,11 +10,16 @@ from tests.judge.checks.test_contact import bowled, trembling
 from tests.judge.theory import EDGE, G, bouncing, edited, resting, sliding, swinging, thrown
 from tests.judge.turned import any_turn, turned
 from wsim.judge import judge
+from wsim.judge.language import Signals, evaluate, parse
 from wsim.recording import read
 from wsim.scene import Scene
 from wsim.sim import Simulation
 
 UPSIDE_DOWN, ON_A_WALL = np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5)])
+OBJECTIVES = (
+    "finally (rests_on(mug, ground))", "always (upright(mug))", "finally (rolls_without_slip(ball))",
+    "always (rolls_without_slip(sled_ball, ramp))", "finally (supported_by(mug, ground))",
+)  # fmt: skip
 TURNS = [UPSIDE_DOWN, ON_A_WALL, *(any_turn(seed) for seed in range(3))]
 WORLDS = {
     "thrown": thrown,
@@ -77,6 +82,8 @@ def any_world(seed):
                   rotation_deg=(0, slope, 0), velocity=tuple(along * rng.uniform(0.0, 2.0)))  # fmt: skip
         scene.sphere("ball", radius=size / 2, density=600.0, position=(0, -3, size / 2), friction=mu,
                      velocity=(rng.uniform(2.0, 4.0), 0, 0))  # fmt: skip
+        scene.sphere("sled_ball", radius=0.1, density=600.0, friction=0.9, rolling=True,
+                     position=tuple(ramp - along + 0.1 * up + (0, 0.6, 0)), velocity=tuple(along))  # fmt: skip
         scene.sphere("marble", radius=0.05, density=2500.0, position=(3, -3, rng.uniform(0.3, 1.0)), restitution=0.7)
         scene.cylinder("mug", radius=0.1, height=0.2, density=600.0, position=(-3, 0, 0.1))
         scene.box("rod", size=(0.04, 0.04, 0.6), density=600.0, position=(-3, -3, 1.0), rotation_deg=(0, 50, 0))
@@ -92,6 +99,13 @@ def test_a_random_sound_world_is_accepted_however_it_is_turned(tmp_path, seed):
     assert "CheckFriction" in {f.check for f in judge(upright).findings}
     for q in TURNS:
         assert found(turned(upright, q)) == found(upright)
+        assert weighed(turned(upright, q)) == pytest.approx(weighed(upright), rel=5e-3)
+
+
+def weighed(recording):
+    """By how much some objectives are met that know an up."""
+    signals = Signals.of_recording(recording)
+    return [float(evaluate(parse(text), signals).robustness[0]) for text in OBJECTIVES]
 
 
 @pytest.mark.parametrize(("slope", "mu"), [(0.0, 0.1), (5.0, 0.1), (20.0, 0.3), (40.0, 0.1)])
