@@ -57,17 +57,24 @@ def _topple(reader: Reader, thing: Thing, action: Action) -> None:
     if action.target is not None:
         _strike(reader, thing, action)
         return
-    if not thing.group or action.places:
-        raise NotUnderstood([action.words], "lets a stack topple, but not this:")
+    if thing.noun.family != "solid" or (not thing.group and thing.noun.key != "domino" and thing.count > 1):
+        raise NotUnderstood([action.words], "lets a stack or a row topple, but not this:")
+    for place in action.places:
+        if not common(reader, thing, place):
+            raise NotUnderstood([action.words], "lets a stack or a row topple, but not this:")
+    if not thing.group and thing.count > 1:
+        reader.cast.assume(thing.words, "in a row", "the prompt does not say how they stand")
+        thing.arrangement = "row"
+    put(thing, "ground")
     do(thing, "topple")
 
 
 def _fall(reader: Reader, thing: Thing, action: Action) -> None:
-    if action.verb == "fall" and action.particle in ("over", "down") and thing.group:
+    aimed = [place for place in action.places if place.preposition not in ("time", "toward")]
+    over = action.particle == "over" or (thing.group and not aimed and action.particle != "in")
+    if action.verb == "fall" and (over or (action.particle == "down" and thing.group)):
         _topple(reader, thing, action)
         return
-    if action.particle == "over":
-        raise NotUnderstood([action.words], "lets a stack fall over, but not this")
     _movable(thing, action)
     do(thing, "drop")
     if action.particle == "in":
@@ -180,6 +187,8 @@ def _aim(reader: Reader, thing: Thing, phrase: Phrase, action: Action) -> None:
         thing.target = target
         if not {"roll", "slide", "push", "throw"} & {*thing.does}:
             do(thing, "roll" if thing.round else "slide")
+        if target.group and target.kind == "domino":
+            do(target, "topple")
     if target.group:
         reader.struck = target
 

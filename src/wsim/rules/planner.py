@@ -78,7 +78,8 @@ def _scene(cast: Cast) -> Part:
             )
         scene.add(made)
     if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
-        fixed = Part(objects=scene.objects[1:] if not cast.wet else [], names=scene.names)
+        still = scene.objects[1:] if not cast.wet else []
+        fixed = Part(objects=still, posed=scene.posed, names=scene.names)
         scene.add(build_ground(cast, taken, fixed, behind="tank" if cast.wet else None))
     return scene
 

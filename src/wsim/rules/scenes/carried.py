@@ -59,8 +59,8 @@ def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[s
     row = sum(widths) + GAP * max(0, len(widths) - 1)
     [slab] = bodies(belt, cast, taken)
     given = belt.phrase.length is not None or "x" in belt.phrase.measures
-    length = slab.size[0] if given or not way else round(row + way + (EDGE if falls else 2 * EDGE), 2)
-    if length < row + (EDGE if falls else way + 2 * EDGE):
+    length = slab.size[0] if given or not way else math.ceil(100 * (row + way + (EDGE if falls else 2 * EDGE)) - 1e-6) / 100
+    if length < row + (EDGE if falls else way + 2 * EDGE) - 1e-6:
         raise UserError(
             f"{belt.words!r}: {length:g} m is too short for its load to go {way:.3g} m; leave the length out"
         )
@@ -85,7 +85,7 @@ def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[s
         _belt_objectives(thing, item, slab, 0.0 if runs else way, part)
         if "drop" in thing.does:  # tumbling takes it on by about its size
             gone = way + speed * fall_time(HEIGHT) + 1.5 * across
-            part.goes[item.name] = (round(gone, 3), 0.0, -HEIGHT)
+            part.goes[item.name] = [(round(gone, 3), 0.0, -HEIGHT)]
         part.names.setdefault(id(thing), []).append(item.name)
 
 
@@ -98,7 +98,7 @@ def _belt_speed(belt: Thing, riders: list[Thing], cast: Cast) -> float:
         return BELT_SPEED
     if not 0.0 < given[0] <= MOST_BELT_SPEED:
         raise UserError(
-            f"{belt.words!r}: {given[0]:g} m/s is outside 0 to {MOST_BELT_SPEED:g} m/s, the planner's range of belts"
+            f"{belt.words!r}: {given[0]:g} m/s is not above 0 and up to {MOST_BELT_SPEED:g} m/s, the planner's range of belts"
         )
     return given[0]
 
