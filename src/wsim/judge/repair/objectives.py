@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.contact import distance
 from wsim.judge.repair.asked import ref_of
 from wsim.judge.repair.rule import (
     Rule,
@@ -25,12 +26,13 @@ from wsim.judge.repair.rule import (
 )
 from wsim.judge.repair.run import leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
-from wsim.scene.contact import friction_of
+from wsim.scene.contact import friction_of, pair_law
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.scene.world import Fluid
 
+NEAR = 0.1  # of a body's smallest extent: a gap below is that of what stands on something
 SAME = 0.01  # share by which two densities differ by rounding alone
 
 
@@ -165,6 +167,27 @@ def stays_on(finding: Finding, evidence: Evidence) -> RepairTarget:
 def _slope(rotation: tuple[float, float, float, float]) -> float:
     normal = rotate(np.array(rotation, dtype=np.float64), np.array([0.0, 0.0, 1.0]))
     return math.acos(min(1.0, abs(float(normal[2]))))
+
+
+def settles(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What has slid down what it started on came to rest elsewhere, if at all: time does not help; else it may."""
+    return slides_off(finding, evidence) or settled(finding, evidence)
+
+
+def slides_off(finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """The target of what starts on a slope, at rest, that is too steep for the friction there; None for others."""
+    body = evidence.body(finding.prim or "")
+    if np.linalg.norm(body.velocity) > 0.0 or not body.shapes:
+        return None
+    reach = NEAR * evidence.solid(evidence.index(body.prim)).smallest
+    for static in evidence.world.statics:
+        slope = _slope(static.shapes[0].rotation) if static.shapes else 0.0
+        laws = [pair_law(evidence.world, one, other) for one in body.shapes for other in static.shapes]
+        held = max((law.friction for law in laws), default=math.inf)
+        if slope > 0.01 and math.tan(slope) > held and distance(evidence, body.prim, static.prim)[0] < reach:
+            why = f"it slides on a slope of {math.degrees(slope):.3g} degrees, where friction is below the tangent"
+            return friction(finding, evidence, "raise", math.tan(slope), why)
+    return None
 
 
 def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, why: str) -> RepairTarget:
@@ -337,7 +360,7 @@ OBJECTIVES: dict[str, Rule] = {
     "ObjectiveStaysOn": stays_on,
     "ObjectiveStaysInside": stays_inside,
     "ObjectiveTopples": topples,
-    "ObjectiveSettles": settled,
+    "ObjectiveSettles": settles,
     "ObjectiveSwings": swings,
     "ObjectiveTilts": tilts,
     "ObjectiveMoves": moves,
