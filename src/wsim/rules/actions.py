@@ -100,6 +100,33 @@ def _land(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
         support(reader, thing, at)
 
 
+def _bounce(reader: Reader, thing: Thing, action: Action) -> None:
+    """Off the ground or what it falls on; off a wall, which it rolls into."""
+    _movable(thing, action)
+    if thing.noun.primitive != "sphere":
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets balls bounce, but not this:")
+    walls = []
+    for place in action.places:
+        on = place.preposition in ("on", "onto", "off", "against")
+        at = where(reader, place.phrase) if place.phrase is not None and on else None
+        if place.preposition == "from" and place.length is not None:
+            thing.drop_height = place.length
+        elif isinstance(at, Thing) and place.preposition in ("off", "against") and at.noun.key == "wall":
+            walls.append(place)
+        elif isinstance(at, Thing):
+            support(reader, thing, at)
+        elif at == "ground":
+            put(thing, "ground")
+        elif at is not None or not common(reader, thing, place):
+            raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
+    do(thing, "bounce")
+    if walls and walls[0].phrase is not None:
+        _aim(reader, thing, walls[0].phrase, action)
+    elif not {"drop", "throw"} & {*thing.does}:
+        put(thing, "ground")
+        do(thing, "drop")
+
+
 # ---- along
 def _roll(reader: Reader, thing: Thing, action: Action) -> None:
     _go(reader, thing, action, "roll")
@@ -314,7 +341,7 @@ def _refused(_reader: Reader, thing: Thing, action: Action) -> None:
 
 _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "float": _in_water, "sink": _in_water, "submerge": _in_water,
-    "topple": _topple, "fall": _fall, "drop": _fall,
+    "topple": _topple, "fall": _fall, "drop": _fall, "bounce": _bounce,
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
     "carry": _carry, "ride": _ride, "run": _run,

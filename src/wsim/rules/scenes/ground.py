@@ -7,7 +7,8 @@ from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
-from wsim.rules.scenes.motion import hit, meet, move, struck, throw_height
+from wsim.rules.scenes.bounce import bounce, bounces
+from wsim.rules.scenes.motion import ground_object, hit, meet, move, struck, throw_height
 from wsim.rules.scenes.part import Part, fall_time, tall
 from wsim.rules.scenes.tip import tipped
 from wsim.rules.sizes import bodies
@@ -126,6 +127,10 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
             part.goes[item.name] = [(0.0, 0.0, -height)]
         part.objects.append(item.related(rows + item.relations))
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
+        if bounces(thing):
+            surface = next((o for o in [*part.objects, ground_object()] if o.name == (below or "ground")))
+            part.objectives.append(bounce(thing, item, surface, part, cast))
+            continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
 
 

@@ -20,6 +20,7 @@ EDGE = 0.08  # from the ramp's upper end to what starts on it [m]
 PLAY = 0.25  # of its smallest extent, which what rests may be off its place
 START_GAP = 0.001  # between the ramp and what starts on it [m]
 LEAST_WAY, WAY = 0.3, 0.6  # of a ramp's length, which what is on it has before it: at least, and usually
+SAFE = 0.9  # of the way that it has before it, which is asked of it at most
 SPHERE = 2 / 7  # of tan(angle): the least friction with which a ball rolls without slipping, and a ball's share of g
 
 
@@ -92,7 +93,9 @@ def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]]
     given = ramp.phrase.angle
     if given is not None:
         if not FLATTEST <= given <= STEEPEST:
-            raise UserError(f"{ramp.words!r}: {given:g} degrees is outside {FLATTEST:g} to {STEEPEST:g}, the planner's range")
+            raise UserError(
+                f"{ramp.words!r}: {given:g} degrees is outside {FLATTEST:g} to {STEEPEST:g}, the planner's range"
+            )
         for thing, item in riders:
             _warn(thing, item, slab, given, cast)
         return given
@@ -183,7 +186,8 @@ def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, p
     turn, name = math.radians(angle), item.name
     friction = pair_friction(item, slab, thing.said("friction", thing.path))
     # The rest is where it starts, and the foot.
-    way = round(min(WAY * slab.size[0], slab.size[0] - EDGE - _along(item)), 3)
+    room = slab.size[0] - EDGE - _along(item)
+    way = round(min(WAY * slab.size[0], SAFE * room), 3)
     if "roll" in thing.does:
         pull = GRAVITY * math.sin(turn) * (1 - SPHERE)
         sentence = f"{name} rolls down {slab.name}."
@@ -199,9 +203,12 @@ def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, p
         part.objectives += _rest(item, slab)
         pull = 0.0
     speed = thing.speed or 0.0
-    time = (math.sqrt(speed**2 + 2 * slab.size[0] * pull) - speed) / pull if pull > 0.1 else 1.0
-    part.duration = max(part.duration, round(time + (2.0 if thing.target is not None else 0.5), 1))
-    if pull > 0.1 and thing.target is None:  # past the foot it goes on at the speed that it has there
+    # What is as long as half of the ramp is watched until its front is at the foot: there it would lie across the bend.
+    long = room < slab.size[0] / 2 and thing.target is None
+    time = (math.sqrt(speed**2 + 2 * (room if long else slab.size[0]) * pull) - speed) / pull if pull > 0.1 else 1.0
+    after = 2.0 if thing.target is not None else 0.0 if long and pull > 0.1 else 0.5
+    part.duration = max(part.duration, round(time + after, 1))
+    if pull > 0.1 and not long and thing.target is None:  # past the foot it goes on at the speed that it has there
         beyond = (speed + pull * time) * math.cos(turn) * (part.duration - time)
         way = slab.size[0] * math.cos(turn) + beyond
         part.goes[name] = [(round(way, 3), 0.0, round(-slab.size[0] * math.sin(turn), 3))]

@@ -9,6 +9,7 @@ from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
+from wsim.rules.scenes.bounce import returned
 from wsim.rules.scenes.part import DIRECTIONS, MOST_SPEED, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
 
@@ -43,13 +44,15 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
         return item
     _check_round(thing)
     carrier = next((o for o in part.objects if o.name == below), _GROUND)
-    speed = _speed(thing, item, carrier, how, cast)
+    friction = pair_friction(item, carrier, thing.said("friction", thing.support))
+    speed = _speed(thing, item, carrier, how, friction, cast)
     direction = thing.direction or "front"
     if thing.direction is None:
         cast.assume(thing.words, "towards +X", "the prompt gives no direction")
     moving = started(item, times(DIRECTIONS[direction], speed), rolls=how == "roll")
-    part.objectives += _way(thing, moving, carrier, how, speed, direction)
-    friction = pair_friction(item, carrier)
+    part.objectives += _way(thing, moving, carrier, how, speed, friction, direction)
+    if not friction and how != "roll":
+        raise UserError(f"{thing.words!r}: without friction it slides for ever; give a friction above 0")
     stop = speed / (friction * GRAVITY)
     time = max(1.5, ROLL_WAY / speed) if how == "roll" else 1.0 + stop
     part.duration = max(part.duration, round(min(time, 3.0) if how == "roll" else time, 1))
@@ -73,29 +76,31 @@ def _check_round(thing: Thing) -> None:
     if "roll" in thing.does and thing.noun.primitive not in ROUND:
         raise UserError(f"{thing.words!r}: the builtin planner rolls balls, barrels and the like")
     if thing.speed is not None and not 0.0 < thing.speed <= MOST_SPEED:
-        raise UserError(f"{thing.words!r}: {thing.speed:g} m/s is not above 0 and up to {MOST_SPEED:g} m/s, the planner's range")
+        raise UserError(
+            f"{thing.words!r}: {thing.speed:g} m/s is not above 0 and up to {MOST_SPEED:g} m/s, the planner's range"
+        )
 
 
-def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, cast: Cast) -> float:
+def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, friction: float, cast: Cast) -> float:
     if thing.speed is not None:
         return thing.speed
     speed = {"roll": ROLL_SPEED, "slide": SLIDE_SPEED, "push": PUSH_SPEED}[how]
     if how in ("slide", "push") and thing.off and carrier.size:
         way = carrier.size[0] / 2 + item.size[0]  # so that its middle is over the edge with speed to spare
-        speed = math.ceil(10 * 1.3 * math.sqrt(2 * pair_friction(item, carrier) * GRAVITY * way)) / 10
+        speed = math.ceil(10 * 1.3 * math.sqrt(2 * friction * GRAVITY * way)) / 10
     cast.assume(thing.words, f"starts at {speed:g} m/s", "the prompt gives no speed")
     return speed
 
 
 def _way(
-    thing: Thing, item: PlanObject, carrier: PlanObject, how: str, speed: float, direction: str
+    thing: Thing, item: PlanObject, carrier: PlanObject, how: str, speed: float, friction: float, direction: str
 ) -> list[Objective]:
     name = item.name
     if thing.off:
         return [Objective(kind="topples", object=name, sentence=f"{name} leaves {carrier.name} and falls.")]
     if how == "roll":
         return []
-    way = round(SHARE * stopping_distance(speed, pair_friction(item, carrier)), 3)
+    way = round(SHARE * stopping_distance(speed, friction), 3)
     if how == "slide" and not thing.round:
         return [Objective(kind="slides", object=name, value=way, sentence=f"{name} slides {way:g} m or more.")]
     sentence = f"{name} moves {way:g} m or more."
@@ -125,7 +130,7 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         speed = thing.speed or HIT_SPEED
         if thing.speed is None:
             cast.assume(thing.words, f"starts at {speed:g} m/s along +X", "the prompt gives no speed")
-        distance = _run_up(slides, speed, pair_friction(item, _GROUND))
+        distance = _run_up(slides, speed, pair_friction(item, _GROUND, thing.said("friction", None)))
         item = started(item, (speed, 0.0, 0.0), rolls=not slides)
     cast.assume(thing.words, f"starts {distance:g} m from {target.words}", "the prompt gives no distance")
     rows = [base, Relation(predicate="BACK-OF", ref=first, gap=distance)]
@@ -134,9 +139,11 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
     part.duration = max(part.duration, 4.0 if target.group else 2.0)
     if "throw" not in thing.does:
         aimed = _met(item, [first, *rest], target, part)
-        stop = stopping_distance(item.velocity[0], pair_friction(item, _GROUND))
+        stop = stopping_distance(item.velocity[0], pair_friction(item, _GROUND, thing.said("friction", None)))
         last = [first, *rest][-1]
         part.goes[last] = [(round(tall(_item(last, part)) + min(GOES_ON, stop), 3), 0.0, 0.0)]
+    if "bounce" in thing.does:
+        returned(thing, item, _item(aimed, part), target, cast)
     if "topple" not in target.does:  # which says more than that it is hit
         _collision(item.name, aimed, part)
 
@@ -239,7 +246,11 @@ def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObjec
     part.duration = max(part.duration, round(time + 1.0, 1))
     # Where it lands it goes on: a ball rolls on at 5/7 of its level speed, a box slides to its stop.
     rest = max(0.0, (cast.duration or part.duration) - time)
-    after = 5 / 7 * along * rest if thing.round else stopping_distance(along, pair_friction(item, _GROUND))
+    after = (
+        5 / 7 * along * rest
+        if thing.round
+        else stopping_distance(along, pair_friction(item, _GROUND, thing.said("friction", None)))
+    )
     level = times(DIRECTIONS[direction], 1.0)
     part.goes[name] = _arc(level, along, up, time) + [times(level, round(along * time + after, 3))]
     return item.model_copy(update={"velocity": (tidy(x), tidy(y), tidy(up))})

@@ -74,7 +74,9 @@ def pair_friction(a: PlanObject, b: PlanObject, said: float | None = None) -> fl
 
 
 def stopping_distance(speed: float, friction: float) -> float:
-    """How far something slides on the level: v^2 / (2 mu g) [m]."""
+    """How far something slides on the level: v^2 / (2 mu g) [m]; without friction it has no end."""
+    if friction == 0.0:
+        return math.inf
     return speed**2 / (2 * friction * GRAVITY)
 
 

@@ -21,7 +21,9 @@ def tipped(thing: Thing, made: list[PlanObject], part: Part, cast: Cast) -> list
         UserError: A row of them is too low for one to reach and tip the next; or they are round.
     """
     if any(item.primitive not in ("box", "cylinder") for item in made) or thing.noun.lies:
-        raise UserError(f"{thing.words!r}: the builtin planner tips boxes and what stands upright; say what else hits it")
+        raise UserError(
+            f"{thing.words!r}: the builtin planner tips boxes and what stands upright; say what else hits it"
+        )
     falling = made if thing.arrangement == "stack" else made[:1]
     height, depth = sum(tall(item) for item in falling), _deep(made[0])
     if height < SLIMMEST * depth:
