@@ -69,7 +69,7 @@ def test_a_ramp_is_longer_than_what_is_on_it():
     made = plan("A plank slides down a ramp of 30 degrees.")
     check_clear(made)
     assert made.object("ramp").size[0] >= made.object("plank").size[0] + made.objectives[0].value
-    with pytest.raises(UserError, match="1.5 m is too short for what is on it, 2 m long"):
+    with pytest.raises(UserError, match=r"1\.5 m is too short for what is on it, 2 m long"):
         plan("A plank slides down a 1.5 m long ramp")
 
 
@@ -124,7 +124,7 @@ def test_a_stack_that_topples_is_pushed_as_one(prompt):
 
 
 def test_what_is_too_low_to_topple_is_refused():
-    with pytest.raises(UserError, match="0.14 m high and 0.2 m deep, it does not topple by itself"):
+    with pytest.raises(UserError, match=r"0\.14 m high and 0\.2 m deep, it does not topple by itself"):
         plan("A row of six wooden blocks topples.")
 
 
@@ -132,7 +132,7 @@ def test_what_is_too_low_to_topple_is_refused():
     ("prompt", "expected"),
     [
         ("A ball rolls at 3 m/s and hits a row of three steel balls.", [("collides_with", "ball", "steel_ball_1")]),
-        ("A steel ball drops from 2 m on a stack of three crates.", [("collides_with", "steel_ball", "crate_3")]),
+        ("A steel ball drops from 2 m on a stack of three crates.", [("formula", "steel_ball", None)]),
         ("A ball hits a row of 3 dominoes", [("topples", f"domino_{k}", None) for k in (1, 2, 3)]),
         ("A 40 cm ball hits a stack of three 20 cm boxes", [("collides_with", "ball", "box_2")]),
     ],

@@ -1,4 +1,4 @@
-"""What bounces, and what a prompt says of surfaces and of pairs: contacts, where the materials would have it otherwise."""
+"""What bounces, and what a prompt says of surfaces and pairs: contacts, where the materials have it otherwise."""
 
 from __future__ import annotations
 

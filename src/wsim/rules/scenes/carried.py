@@ -102,7 +102,7 @@ def _belt_speed(belt: Thing, riders: list[Thing], cast: Cast) -> float:
         return BELT_SPEED
     if not 0.0 < given[0] <= MOST_BELT_SPEED:
         raise UserError(
-            f"{belt.words!r}: {given[0]:g} m/s is not above 0 and up to {MOST_BELT_SPEED:g} m/s, the planner's range of belts"
+            f"{belt.words!r}: {given[0]:g} m/s is not above 0 and up to {MOST_BELT_SPEED:g} m/s, a belt's range"
         )
     return given[0]
 

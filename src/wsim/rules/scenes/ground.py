@@ -5,6 +5,7 @@ from __future__ import annotations
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation
+from wsim.plan.schema.formula import CollidesWith
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
@@ -128,7 +129,7 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         part.objects.append(item.related(rows + item.relations))
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
         if bounces(thing):
-            surface = next((o for o in [*part.objects, ground_object()] if o.name == (below or "ground")))
+            surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))
             part.objectives.append(bounce(thing, item, surface, part, cast))
             continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
@@ -219,7 +220,12 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
         if item.primitive in ("box", "cylinder") and not thing.noun.lies:
             return [Objective(kind="rests_on", object=name, ref=lower, sentence=f"{name} comes to rest on {lower}.")]
         onto = thing.support
-        if onto is not None and (onto.noun.family == "furniture" or onto.group) and "drop" in thing.does:
+        if onto is not None and onto.group and "drop" in thing.does and lower is not None:
+            # The kind compares level speeds where both are free; the formula all three parts.
+            falls = CollidesWith(object=name, ref=lower)
+            sentence = f"{name} falls on {lower}."
+            return [Objective(kind="formula", object=name, sentence=sentence, formula=falls)]
+        if onto is not None and onto.noun.family == "furniture" and "drop" in thing.does:
             return [Objective(kind="collides_with", object=name, ref=lower, sentence=f"{name} falls on {lower}.")]
         cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
         return []

@@ -252,7 +252,7 @@ def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObjec
         else stopping_distance(along, pair_friction(item, _GROUND, thing.said("friction", None)))
     )
     level = times(DIRECTIONS[direction], 1.0)
-    part.goes[name] = _arc(level, along, up, time) + [times(level, round(along * time + after, 3))]
+    part.goes[name] = [*_arc(level, along, up, time), times(level, round(along * time + after, 3))]
     return item.model_copy(update={"velocity": (tidy(x), tidy(y), tidy(up))})
 
 
