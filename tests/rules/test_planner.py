@@ -91,7 +91,7 @@ def test_what_was_left_open_is_an_assumption():
         ("A ball knocks over a stack of five boxes", [("topples", "box_5", None)]),
         ("A ball rolls into a stack of five boxes and knocks it over", [("topples", "box_5", None)]),
         ("A ball hits a stack of five boxes and it falls over", [("topples", "box_5", None)]),
-        ("A red ball hits the tower of 2 blocks", []),
+        ("A red ball hits the tower of 2 blocks", [("collides_with", "red_ball", "block_1")]),
         ("A box drops onto a block", [("rests_on", "block", "ground"), ("rests_on", "box", "block")]),
         (
             "A wooden cube and a red ball drop onto the ground",

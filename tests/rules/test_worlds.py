@@ -23,14 +23,32 @@ PROMPTS = [
     "A barrel rolls at 2 m/s",
     "A box falls onto a seesaw",
     "A tower of 2 blocks stands on a table for 1 second",
+    "A wooden block rests on a ramp",
+    "A ball rolls at 2 m/s down a ramp of 10 degrees",
+    "A stack of four crates topples",
+    "A steel ball with a restitution of 0.8 drops from 0.3 m for 1 second",
 ]
+
+
+def judged_world(prompt, folder):
+    made = plan(prompt)
+    (folder / "program.py").write_text(compose(made))
+    return made, Iteration.of(folder / "program.py", folder, made, Settings(device="cpu", pictures=False)).run()
 
 
 @pytest.mark.parametrize("prompt", PROMPTS)
 def test_a_world_is_accepted(prompt, tmp_path):
-    made = plan(prompt)
-    (tmp_path / "program.py").write_text(compose(made))
-    verdict = Iteration.of(tmp_path / "program.py", tmp_path, made, Settings(device="cpu", pictures=False)).run()
+    made, verdict = judged_world(prompt, tmp_path)
     assert verdict.status == "accepted", verdict.summary
     judged = {finding.objective for finding in verdict.findings if finding.objective}
     assert judged == {objective.sentence for objective in made.objectives}
+
+
+def test_what_slides_off_its_ramp_and_lies_still_has_not_rested_on_it(tmp_path):
+    """By 3 s it is on the ground, at rest: more time, as advice, would change nothing; friction would."""
+    _, verdict = judged_world("A wooden block rests on a ramp of 40 degrees for 3 seconds", tmp_path)
+    assert verdict.status == "rejected"
+    wrong = [finding for finding in verdict.findings if not finding.passed]
+    assert {finding.check for finding in wrong} >= {"ObjectiveFormula"}
+    assert {(finding.target.parameter, finding.target.direction) for finding in wrong} == {("friction", "raise")}
+    assert wrong[0].target.suggested == pytest.approx(0.839, abs=1e-3)  # tan 40 degrees

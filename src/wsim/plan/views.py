@@ -7,7 +7,7 @@ A view is named for the side of the box where the camera stands: `side_plus_x` s
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 
 from wsim.defaults import FIELD_OF_VIEW
@@ -42,36 +42,49 @@ def bounds(plan: Plan) -> tuple[Vec3, Vec3]:
     return box.low, box.high
 
 
-def cameras(plan: Plan, above: float | None = None, goes: Mapping[str, Vec3] | None = None) -> list[CameraPlan]:
+def cameras(
+    plan: Plan, above: float | None = None, goes: Mapping[str, Sequence[Vec3]] | None = None
+) -> list[CameraPlan]:
     """A view from the side, a little off the axis, and one from the top.
 
     Args:
         plan: A plan with poses.
         above: A height that the side view looks across from slightly higher up, such as a water surface [m].
-        goes: How far from its start an object gets, by its name [m].
+        goes: From its start to where else an object comes, by its name [m].
     """
-    box = union([Box(*bounds(plan)), *(_shifted(around(plan.object(name)), way) for name, way in (goes or {}).items())])
+    ways = [(around(plan.object(name)), way) for name, ways in (goes or {}).items() for way in ways]
+    box = union([Box(*bounds(plan)), *(_shifted(start, way, _ground(plan)) for start, way in ways)])
     low, high = box.low, box.high
     centre = box.center
     width, depth, height = box.size
-    distance = _distance(width, height) + depth / 2
     level = above if above is not None else centre[2]
-    side = CameraPlan(
-        name="side",
-        eye=_rounded(centre[0] - 0.18 * distance, centre[1] - distance, level + RAISED * distance),
-        target=_rounded(centre[0], centre[1], centre[2]),
-    )
-    up = _distance(width, depth) + high[2]
-    top = CameraPlan(
-        name="top",
-        eye=_rounded(centre[0], centre[1] - OFF_AXIS * up, up),
-        target=_rounded(centre[0], centre[1], low[2]),
-    )
-    return [side, top]
+    distance = _distance(width, height) + depth / 2
+    up = _distance(width, depth)
+
+    def from_side(back: float) -> Vec3:
+        return (centre[0] - 0.18 * back, centre[1] - back, level + RAISED * back)
+
+    def from_top(back: float) -> Vec3:
+        return (centre[0], centre[1] - OFF_AXIS * (high[2] + back), high[2] + back)
+
+    views = (("side", from_side, distance, centre), ("top", from_top, up, (centre[0], centre[1], low[2])))
+    made = []
+    for name, eye, back, target in views:
+        while not _sees(eye(back), target, box):
+            back *= STEP
+        made.append(CameraPlan(name=name, eye=_rounded(*eye(back)), target=_rounded(*target)))
+    return made
 
 
-def _shifted(box: Box, way: Vec3) -> Box:
-    low, high = ((at[0] + way[0], at[1] + way[1], at[2] + way[2]) for at in (box.low, box.high))
+def _ground(plan: Plan) -> float:
+    """Height of the ground, below which nothing comes [m]."""
+    grounds = [item for item in plan.objects if item.primitive == "ground"]
+    return max((item.pose.position[2] if item.pose is not None else 0.0 for item in grounds), default=-math.inf)
+
+
+def _shifted(box: Box, way: Vec3, floor: float) -> Box:
+    rise = max(way[2], floor - box.low[2])
+    low, high = ((at[0] + way[0], at[1] + way[1], at[2] + rise) for at in (box.low, box.high))
     return Box(low, high)
 
 
@@ -162,14 +175,14 @@ def _from_side(box: Box, view: str) -> tuple[Vec3, Vec3]:
         else:
             eye[2] += RAISED * distance
         seen_from = (eye[0], eye[1], eye[2])
-        if _sees(seen_from, box):
+        if _sees(seen_from, box.center, box):
             return seen_from, box.center
         distance *= STEP
 
 
-def _sees(eye: Vec3, box: Box) -> bool:
-    """Whether a camera that looks at a box's middle has all of its corners in the picture."""
-    f = _unit([b - a for a, b in zip(eye, box.center, strict=True)])
+def _sees(eye: Vec3, target: Vec3, box: Box) -> bool:
+    """Whether a camera has all corners of a box in the picture."""
+    f = _unit([b - a for a, b in zip(eye, target, strict=True)])
     right = _unit([f[1], -f[0], 0.0])
     up = (right[1] * f[2] - right[2] * f[1], right[2] * f[0] - right[0] * f[2], right[0] * f[1] - right[1] * f[0])
     for corner in product(*zip(box.low, box.high, strict=True)):

@@ -57,17 +57,24 @@ def _topple(reader: Reader, thing: Thing, action: Action) -> None:
     if action.target is not None:
         _strike(reader, thing, action)
         return
-    if not thing.group or action.places:
-        raise NotUnderstood([action.words], "lets a stack topple, but not this:")
+    if thing.noun.family != "solid" or (not thing.group and thing.noun.key != "domino" and thing.count > 1):
+        raise NotUnderstood([action.words], "lets a stack or a row topple, but not this:")
+    for place in action.places:
+        if not common(reader, thing, place):
+            raise NotUnderstood([action.words], "lets a stack or a row topple, but not this:")
+    if not thing.group and thing.count > 1:
+        reader.cast.assume(thing.words, "in a row", "the prompt does not say how they stand")
+        thing.arrangement = "row"
+    put(thing, "ground")
     do(thing, "topple")
 
 
 def _fall(reader: Reader, thing: Thing, action: Action) -> None:
-    if action.verb == "fall" and action.particle in ("over", "down") and thing.group:
+    aimed = [place for place in action.places if place.preposition not in ("time", "toward")]
+    over = action.particle == "over" or (thing.group and not aimed and action.particle != "in")
+    if action.verb == "fall" and (over or (action.particle == "down" and thing.group)):
         _topple(reader, thing, action)
         return
-    if action.particle == "over":
-        raise NotUnderstood([action.words], "lets a stack fall over, but not this")
     _movable(thing, action)
     do(thing, "drop")
     if action.particle == "in":
@@ -91,6 +98,33 @@ def _land(reader: Reader, thing: Thing, action: Action, place: Place) -> None:
         put_inside(reader, thing, at)
     else:
         support(reader, thing, at)
+
+
+def _bounce(reader: Reader, thing: Thing, action: Action) -> None:
+    """Off the ground or what it falls on; off a wall, which it rolls into."""
+    _movable(thing, action)
+    if thing.noun.primitive != "sphere":
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets balls bounce, but not this:")
+    walls = []
+    for place in action.places:
+        on = place.preposition in ("on", "onto", "off", "against")
+        at = where(reader, place.phrase) if place.phrase is not None and on else None
+        if place.preposition == "from" and place.length is not None:
+            thing.drop_height = place.length
+        elif isinstance(at, Thing) and place.preposition in ("off", "against") and at.noun.key == "wall":
+            walls.append(place)
+        elif isinstance(at, Thing):
+            support(reader, thing, at)
+        elif at == "ground":
+            put(thing, "ground")
+        elif at is not None or not common(reader, thing, place):
+            raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
+    do(thing, "bounce")
+    if walls and walls[0].phrase is not None:
+        _aim(reader, thing, walls[0].phrase, action)
+    elif not {"drop", "throw"} & {*thing.does}:
+        put(thing, "ground")
+        do(thing, "drop")
 
 
 # ---- along
@@ -180,6 +214,8 @@ def _aim(reader: Reader, thing: Thing, phrase: Phrase, action: Action) -> None:
         thing.target = target
         if not {"roll", "slide", "push", "throw"} & {*thing.does}:
             do(thing, "roll" if thing.round else "slide")
+        if target.group and target.kind == "domino":
+            do(target, "topple")
     if target.group:
         reader.struck = target
 
@@ -305,7 +341,7 @@ def _refused(_reader: Reader, thing: Thing, action: Action) -> None:
 
 _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "float": _in_water, "sink": _in_water, "submerge": _in_water,
-    "topple": _topple, "fall": _fall, "drop": _fall,
+    "topple": _topple, "fall": _fall, "drop": _fall, "bounce": _bounce,
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
     "carry": _carry, "ride": _ride, "run": _run,

@@ -42,6 +42,18 @@ class Thing:
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
     direction: str | None = None
     rod: Phrase | None = None  # what it hangs on
+    spin: float | None = None  # of what turns [deg/s]
+    surface: dict[str, float] = field(default_factory=dict)  # "friction", "restitution": as it touches anything
+    pairs: list[tuple[Thing | None, str, float]] = field(default_factory=list)  # the same, against one; None: ground
+
+    def said(self, name: str, other: Thing | None) -> float | None:
+        """What the prompt says of a coefficient between this and another thing, or the ground."""
+        for first, second in ((self, other), (other, self)):
+            for partner, what, value in first.pairs if first is not None else ():
+                if what == name and partner is second:
+                    return value
+        own = [one.surface[name] for one in (self, other) if one is not None and name in one.surface]
+        return min(own, default=None)
 
     @property
     def kind(self) -> str:

@@ -162,7 +162,7 @@ class _Tokens:
             if unit is not None:
                 return self._token(unit[0], float(self.words[at]) * unit[1], at, len(words) + 1)
         if not self.words[at].isdigit():
-            return None
+            return self._token("NUMBER", float(self.words[at]), at, 1)
         return self._token("COUNT", int(self.words[at]), at, 1)
 
     def _edges(self, at: int) -> tuple[Token, int] | None:
@@ -266,6 +266,8 @@ class _Clauses(Transformer):
     def sized(self, _meta: Any, children: list[Any]) -> Any:
         return children[-1]
 
+    weighed = sized
+
     def made(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         return children[0], {"material": _meaning(children[-1])}
 
@@ -340,7 +342,8 @@ class _Clauses(Transformer):
         return Place("from", length=_meaning(children[1]), words=self._words(meta))
 
     def at_speed(self, meta: Any, children: list[Any]) -> Place:
-        return Place("speed", value=_meaning(children[1]), words=self._words(meta))
+        kind = "spin" if children[1].type == "SPIN" else "speed"
+        return Place(kind, value=_meaning(children[1]), words=self._words(meta))
 
     def at_angle(self, meta: Any, children: list[Any]) -> Place:
         return Place("angle", value=_meaning(children[1]), words=self._words(meta))
@@ -350,6 +353,11 @@ class _Clauses(Transformer):
 
     def toward(self, meta: Any, children: list[Any]) -> Place:
         return Place("toward", direction=_meaning(children[0]), words=self._words(meta))
+
+    def surfaced(self, meta: Any, children: list[Any]) -> Place:
+        things = [*(child for child in children if isinstance(child, Phrase)), None, None]
+        value = float(_meaning(children[1]))
+        return Place(_meaning(children[0]), things[0], things[1], value=value, words=self._words(meta))
 
     def bare(self, _meta: Any, children: list[Any]) -> Place:
         return Place("bare", words=str(children[0]))

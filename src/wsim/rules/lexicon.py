@@ -154,6 +154,9 @@ def _relations(made: Lexicon, data: dict[str, Any]) -> None:
     for key, all_words in data["preposition"].items():
         for words in all_words:
             made.add(words, "PREP", key)
+    for key, all_words in data["surface"].items():
+        for words in all_words:
+            made.add(words, "SURFACE", key)
     for key, all_words in data["direction"].items():
         for words in all_words:
             made.add(words, "DIRECTION", key)

@@ -144,6 +144,7 @@ def _check_used(thing: Thing) -> None:
         (phrase.angle is not None and family != "ramp", "inclines a ramp, but not this"),
         (phrase.filled, "fills a tank, a bucket or a bowl with water, but not this"),
         (thing.speed is not None and not moving and not carries, "needs to be told how this moves"),
+        (thing.spin is not None and family != "turntable", "turns a turntable at a rate, but not this"),
         (bool(thing.beside) and bool(posed or ill), "cannot place this beside something, with what else it does"),
         (
             family == "pendulum" and bool(set(phrase.measures) - {"x", "z", "mass"}),

@@ -37,12 +37,12 @@ class Phrase:
 class Place:
     """Where something is, goes to or comes from, how fast, and for how long."""
 
-    preposition: str  # a key of the lexicon, or "side", "between", "speed", "angle", "time", "toward", "bare"
+    preposition: str  # a key of the lexicon, or "side", "between", "speed", "spin", "angle", "time", ...
     phrase: Phrase | None = None
-    other: Phrase | None = None  # the second of "between"
+    other: Phrase | None = None  # the second of "between", or of a "friction" or "restitution" between two
     side: Side | None = None
     length: float | None = None  # [m]: "from 0.5 m", "0.2 m in front of"
-    value: float | None = None  # [m/s], [deg] or [s]
+    value: float | None = None  # [m/s], [deg/s], [deg], [s] or [1]
     direction: str | None = None
     words: str = ""
 

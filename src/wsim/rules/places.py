@@ -8,6 +8,7 @@ from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
 from wsim.rules.phrases import Phrase, Place
 from wsim.rules.reader import Reader
 
+SURFACES = {"friction": 2.0, "restitution": 1.0}  # what of a surface may be said, and its most
 SIDES = ("LEFT-OF", "RIGHT-OF", "FRONT-OF", "BACK-OF")
 
 
@@ -57,11 +58,30 @@ def common(reader: Reader, thing: Thing, place: Place) -> bool:
         reader.cast.duration = place.value
     elif place.preposition == "speed":
         thing.speed = place.value
+    elif place.preposition == "spin":
+        thing.spin = place.value
+    elif place.preposition in SURFACES:
+        _surface(reader, thing, place)
     elif place.preposition == "angle" and thing.noun.family == "ramp":
         thing.phrase.angle = place.value
     else:
         return False
     return True
+
+
+def _surface(reader: Reader, thing: Thing, place: Place) -> None:
+    """How a thing, or two, rub or bounce."""
+    value, most = place.value or 0.0, SURFACES[place.preposition]
+    if value > most:
+        raise UserError(f"{place.words!r}: a {place.preposition} of {value:g} is outside 0 to {most:g}")
+    if place.phrase is None or place.other is None:
+        thing.surface[place.preposition] = value
+        return
+    pair = [where(reader, phrase) for phrase in (place.phrase, place.other)]
+    things = [one for one in pair if isinstance(one, Thing)]
+    if "water" in pair or not things:
+        raise NotUnderstood([place.words], "knows of a friction or a restitution between solid things, not so:")
+    things[0].pairs.append((things[1] if len(things) > 1 else None, place.preposition, value))
 
 
 def _beside(reader: Reader, thing: Thing, place: Place) -> None:

@@ -20,6 +20,7 @@ from wsim.rules.cast import Cast
 from wsim.rules.grammar import NotUnderstood, parse
 from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
+from wsim.rules.scenes.bounce import contacts
 from wsim.rules.scenes.carried import build_carried
 from wsim.rules.scenes.ground import build_ground
 from wsim.rules.scenes.incline import build_inclines
@@ -57,6 +58,7 @@ def plan(prompt: str) -> Plan:
     return Plan.model_validate(
         {
             **whole.model_dump(),
+            "contacts": contacts(cast, scene.names, whole),
             "objectives": scene.objectives,
             "cameras": cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
@@ -78,7 +80,8 @@ def _scene(cast: Cast) -> Part:
             )
         scene.add(made)
     if any(thing.place == "ground" and id(thing) not in scene.names for thing in cast.things) and not cast.pour:
-        fixed = Part(objects=scene.objects[1:] if not cast.wet else [], names=scene.names)
+        still = scene.objects[1:] if not cast.wet else []
+        fixed = Part(objects=still, posed=scene.posed, names=scene.names)
         scene.add(build_ground(cast, taken, fixed, behind="tank" if cast.wet else None))
     return scene
 

@@ -25,16 +25,18 @@ def material_of(thing: Thing, cast: Cast) -> Material:
     material = material_named(word)
     if thing.phrase.color is not None:
         material = material.model_copy(update={"color": lexicon().colors[thing.phrase.color], "opacity": 1.0})
-    if word in ("wood", "wooden"):
+    weighed = bool({"mass", "density"} & set(thing.phrase.measures))
+    if word in ("wood", "wooden") and not weighed:
         cast.assume(thing.words, f"wood of {material.density:g} kg/m^3", "the prompt does not say which wood")
     density = thing.phrase.measures.get("density")
-    return material if density is None else material.model_copy(update={"density": density})
+    own = {} if density is None else {"density": density}
+    return material.model_copy(update={**own, **thing.surface}) if own or thing.surface else material
 
 
 def _default_material(thing: Thing) -> str:
     if "float" in thing.does or thing.noun.primitive == "box" or thing.noun.lies:
         return "steel" if "sink" in thing.does or "submerge" in thing.does else "wood"
-    return "steel" if "roll" in thing.does or thing.place == "water" else "rubber"
+    return "steel" if ("roll" in thing.does and "bounce" not in thing.does) or thing.place == "water" else "rubber"
 
 
 def size_of(thing: Thing, material: Material, water_density: float, cast: Cast) -> tuple[float, ...]:
@@ -137,6 +139,7 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
     material = material_of(thing, cast)
     size = size_of(thing, material, 1000.0, cast)
     proxy = Proxy(primitive=noun.primitive, size=size)
+    mass = _mass(thing, size)
     static = noun.family in ("furniture", "ramp", "vessel", "belt", "turntable")
     if noun.asset is not None:
         cast.assume(thing.words, f"a {noun.primitive} stands for it", "the builtin planner builds with plain shapes")
@@ -152,9 +155,12 @@ def bodies(thing: Thing, cast: Cast, taken: set[str]) -> list[PlanObject]:
         construction=proxy if noun.asset is None else External(candidate=noun.asset, stand_in=proxy),
         material=None if noun.family == "vessel" else material,
         state="static" if static else "dynamic",
-        registration=Registration(mass=None if static else _mass(thing, size)),
+        registration=Registration(mass=None if static else mass),
         words=thing.words,
     )
+    if "mass" in thing.phrase.measures and not static and made.density is not None:
+        why = f"the prompt gives its mass; solid {material.name} has {material.density:g}"
+        cast.assume(thing.words, f"{made.density:.3g} kg/m^3 on average", why)
     rows = [Relation(predicate="LIES-ALONG-Y")] if noun.lies else []
     return [made.model_copy(update={"name": name}).related(rows) for name in names(thing, taken)]
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import Camera, World
 
 Color = tuple[float, float, float]
+FRAMED = 0.8  # of half of what a camera has in its frame, which a scene that fills it takes up
 
 
 @dataclass(frozen=True)
@@ -183,7 +184,9 @@ class CameraRenderer:
     def _look(self, camera: Camera) -> Any:
         style = self.style
         low, high = render_views.bounds(self.world)
-        radius = 0.5 * float(np.linalg.norm(high - low))
+        # As large as the scene is, or as what the camera has in its frame: a small thing may fly far.
+        seen = float(np.linalg.norm(np.subtract(camera.target, camera.eye))) * np.tan(np.radians(camera.fov / 2))
+        radius = max(0.5 * float(np.linalg.norm(high - low)), FRAMED * seen)
         look = sky.Look()
         look.sun_direction = wp.vec3(*self._sun)
         look.sun_color = wp.vec3(*style.sun_color)

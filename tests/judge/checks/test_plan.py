@@ -24,7 +24,7 @@ from wsim.judge.checks.camera import CheckInFrame, CheckSeen
 from wsim.judge.checks.mass import CheckMass
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_joints import CheckPlanJoints
-from wsim.plan.schema import Plan
+from wsim.plan.schema import Objective, Plan
 from wsim.recording.recording import SeenTrack
 from wsim.scene.world import Motor, Parameter
 
@@ -290,6 +290,19 @@ def test_a_camera_that_looks_away_is_found():
     two = with_world(a_world(), cameras=[camera(), camera(target=(0.0, -10.0, 1.0), name="other")])
     assert {f.prim for f in ask(CheckInFrame(), two) if not f.passed} == {"/World/other"}
     assert ask(CheckInFrame(), a_world()) == []
+
+
+@pytest.mark.parametrize(("asked", "passes"), [("ball", False), ("box", True)])
+def test_what_is_asked_for_and_gone_most_of_the_time_is_found(asked, passes):
+    """A ball that is out of the picture after a tenth of the run: none shows what the ball was asked to do."""
+    t = times(2.0)
+    place = np.tile(np.array(((0.0, 0.0, 0.05), (1.0, 0.0, 0.1))), (len(t), 1, 1))
+    place[t > 0.2, 1, 0] += 50.0
+    bodies = [box(size=SIZE, mass=BOX_KG), ball(mass=BALL_KG)]
+    still = record(bodies, place, np.zeros((len(t), 2, 3)), t, statics=[ground()])
+    plan = a_plan().model_copy(update={"objectives": [Objective(kind="settles", object=asked)]})
+    found = ask(CheckInFrame(), with_world(still, cameras=[camera()]), plan)
+    assert {f.prim for f in found if not f.passed} == (set() if passes else {"/World/ball"})
 
 
 @pytest.mark.parametrize(

@@ -23,14 +23,18 @@ if TYPE_CHECKING:
 
 MOMENTS = 48  # frames that are looked at
 ONCE = "what the world is about is to be seen, once at least"
+ASKED = "what the plan asks something of is to be seen as it does it, not only where it starts"
 
 
 @dataclass
 class CheckInFrame(Check):
     """Every camera has something that moves in frame, and everything that moves is in frame of some camera.
 
-    At some time: what is hit or thrown may leave the picture for most of it, and a finding says for how much.
+    At some time: what is hit may leave the picture for most of it, and a finding says for how much. What the plan asks
+    something of is in frame for a part of the time that it takes to do that.
     """
+
+    asked: float = 0.25  # of the time, for an object of the plan's objectives
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each camera and each object that is out of frame too long, or one for none."""
@@ -46,23 +50,45 @@ class CheckInFrame(Check):
             target = RepairTarget(kind="camera", prim=camera.prim, parameter="target", direction="change")
             found += self._out(evidence, frames, anything, camera.prim, "has nothing that moves in frame", target)
         anywhere: Bools = np.asarray(np.any(list(inside.values()), axis=0))
+        plan = evidence.plan
+        asked = {evidence.prim(objective.object) for objective in plan.objectives} if plan is not None else set()
         for prim, shown in zip(things, anywhere.T, strict=True):
             target = RepairTarget(kind="camera", prim=world.cameras[0].prim, parameter="target", direction="change")
             found += self._out(evidence, frames, shown, prim, "is in frame of no camera", target)
-        least = int(np.argmin(anywhere.mean(axis=0)))
-        share = float(anywhere[:, least].mean())
+            if prim in asked and shown.any():
+                found += self._briefly(evidence, frames, shown, prim, target)
+        shares = anywhere.mean(axis=0)
+        limits = np.array([self.asked if prim in asked else 1.0 / len(frames) for prim in things])
+        least = int(np.argmin(shares / limits))
+        share = float(shares[least])
         return found or [
             self.measured(
                 f"Everything that moves is in frame, {things[least]} least, at {share:.0%} of the times",
                 share,
-                1.0 / len(frames),
+                float(limits[least]),
                 "share of time",
                 at_most=False,
                 prim=things[least],
                 line=None,  # where nothing is wrong, none is to be looked at
-                limit_from=ONCE,
+                limit_from=ASKED if things[least] in asked else ONCE,
             )
         ]
+
+    def _briefly(
+        self, evidence: Evidence, frames: NDArray[np.intp], seen: Bools, prim: str, target: RepairTarget
+    ) -> list[Finding]:
+        """The finding of what the plan asks something of, and no camera shows for long enough."""
+        share = float(seen.mean())
+        if share >= self.asked:
+            return []
+        why = "it goes out of every picture: frame its way from its start to where it ends"
+        return [
+            self.measured(
+                f"{prim} is in frame at {share:.0%} of the times only", share, self.asked, "share of time",
+                at_most=False, prim=prim, time=float(evidence.time[frames[int(np.argmin(seen))]]), limit_from=ASKED,
+                target=target.model_copy(update={"why": why}),
+            )
+        ]  # fmt: skip
 
     def _out(
         self, evidence: Evidence, frames: NDArray[np.intp], seen: Bools, prim: str, what: str, target: RepairTarget

@@ -12,6 +12,8 @@ from wsim.judge.repair.objectives import (
     fallen_through,
     floats,
     friction,
+    settles,
+    slides_off,
     stays_inside,
     submerged,
     swings,
@@ -87,6 +89,14 @@ def apart(finding: Finding, evidence: Evidence) -> RepairTarget:
     )
 
 
+def stays_within(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It slides away, or goes too far."""
+    why = "it gets too far: hold it, or start it slower or nearer"
+    return slides_off(finding, evidence) or RepairTarget(
+        kind="settlement", prim=finding.prim, parameter="position", direction="change", unit="m", why=why
+    )
+
+
 def upright(finding: Finding, evidence: Evidence) -> RepairTarget:
     """A wider foot tips later: the angle at which it does is that of its middle over its edge."""
     why = "it tips where its middle is over its edge: a wider or a lower body, or a weaker push"
@@ -151,7 +161,7 @@ def fills_to(finding: Finding, evidence: Evidence) -> RepairTarget:
 
 RULES: dict[str, Rule] = {
     "reaches": reaches,
-    "stays_within": apart,
+    "stays_within": stays_within,
     "rests_on": rests,
     "supported_by": rests,
     "contained_in": stays_inside,
@@ -167,7 +177,7 @@ RULES: dict[str, Rule] = {
     "crosses": reaches,
     "swings": swings,
     "rolls_without_slip": grips,
-    "settles": settled,
+    "settles": settles,
     "conserves": conserves,
     "collides_with": collides,
     "fills_to": fills_to,

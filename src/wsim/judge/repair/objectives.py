@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.repair.asked import ref_of
 from wsim.judge.repair.rule import (
@@ -25,12 +26,13 @@ from wsim.judge.repair.rule import (
 )
 from wsim.judge.repair.run import leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
-from wsim.scene.contact import friction_of
+from wsim.scene.contact import friction_of, pair_law
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Fluid
+    from wsim.scene.world import Fluid, Static
 
+NEAR = 0.1  # of a body's smallest extent: a gap below is that of what stands on something
 SAME = 0.01  # share by which two densities differ by rounding alone
 
 
@@ -155,19 +157,39 @@ def tunnelled(finding: Finding, evidence: Evidence, prim: str, ref: str) -> Repa
 
 def stays_on(finding: Finding, evidence: Evidence) -> RepairTarget:
     """It slides off: on a slope friction must be more than its tangent."""
-    slope = _slope(finding, evidence)
+    slope = _slope(finding, evidence, evidence.static(ref_of(finding, evidence)))
     steepest = f"a body stays on a slope of {math.degrees(slope):.3g} degrees where friction is above its tangent"
     why = steepest if slope > 0.01 else "it slides or is carried off: more friction holds it"
     return friction(finding, evidence, "raise", math.tan(slope) if slope > 0.01 else None, why)
 
 
-def _slope(finding: Finding, evidence: Evidence) -> float:
-    """Of the face of the objective's static object that the finding's body is over [rad]; 0 of what is not static."""
-    static = evidence.static(ref_of(finding, evidence))
+def _slope(finding: Finding, evidence: Evidence, static: Static | None) -> float:
+    """Of the face of a static object that the finding's body is over [rad]; 0 of what is not static."""
     if static is None or not static.shapes:
         return 0.0
     points = evidence.body_q[:, evidence.index(finding.prim or ""), :3]
     return math.acos(min(1.0, abs(float(normal_under(static.shapes, points, evidence.up) @ evidence.up))))
+
+
+def settles(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What has slid down what it started on came to rest elsewhere, if at all: time does not help; else it may."""
+    return slides_off(finding, evidence) or settled(finding, evidence)
+
+
+def slides_off(finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """The target of what starts on a slope, at rest, that is too steep for the friction there; None for others."""
+    body = evidence.body(finding.prim or "")
+    if np.linalg.norm(body.velocity) > 0.0 or not body.shapes:
+        return None
+    reach = NEAR * evidence.solid(evidence.index(body.prim)).smallest
+    for static in evidence.world.statics:
+        slope = _slope(finding, evidence, static)
+        laws = [pair_law(evidence.world, one, other) for one in body.shapes for other in static.shapes]
+        held = max((law.friction for law in laws), default=math.inf)
+        if slope > 0.01 and math.tan(slope) > held and distance(evidence, body.prim, static.prim)[0] < reach:
+            why = f"it slides on a slope of {math.degrees(slope):.3g} degrees, where friction is below the tangent"
+            return friction(finding, evidence, "raise", math.tan(slope), why)
+    return None
 
 
 def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, why: str) -> RepairTarget:
@@ -259,7 +281,7 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
 
 def _tangent(finding: Finding, evidence: Evidence) -> float | None:
     """The tangent of the slope that a finding's objective names; None where it names none."""
-    slope = _slope(finding, evidence)
+    slope = _slope(finding, evidence, evidence.static(ref_of(finding, evidence)))
     return math.tan(slope) if slope > 0.01 else None
 
 
@@ -339,7 +361,7 @@ OBJECTIVES: dict[str, Rule] = {
     "ObjectiveStaysOn": stays_on,
     "ObjectiveStaysInside": stays_inside,
     "ObjectiveTopples": topples,
-    "ObjectiveSettles": settled,
+    "ObjectiveSettles": settles,
     "ObjectiveSwings": swings,
     "ObjectiveTilts": tilts,
     "ObjectiveMoves": moves,

@@ -7,6 +7,7 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose, Vec3
+from wsim.plan.schema.formula import Reaches
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.part import Part, fall_time, pair_friction, tall, tidy
@@ -22,7 +23,8 @@ GAP, EDGE = 0.25, 0.15  # between what rides on a belt, and from it to the belt'
 LEG = 0.08  # thickness of what holds a belt up [m]
 START_GAP = 0.001  # between what carries and its load [m]
 SHARE = 0.8  # of the way that it is carried, which what rides must make at least
-SPUN_SHARE = 0.6  # of its radius, at which a load stands on a turntable
+SPUN_SHARE, LEAST_SHARE = 0.6, 0.2  # of its radius, at which a load stands on a turntable: usually, and at least
+MOST_SPIN = 1080.0  # that the prompt may give [deg/s]
 HELD = 0.5  # of the friction, which going round may take
 
 
@@ -59,8 +61,10 @@ def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[s
     row = sum(widths) + GAP * max(0, len(widths) - 1)
     [slab] = bodies(belt, cast, taken)
     given = belt.phrase.length is not None or "x" in belt.phrase.measures
-    length = slab.size[0] if given or not way else round(row + way + (EDGE if falls else 2 * EDGE), 2)
-    if length < row + (EDGE if falls else way + 2 * EDGE):
+    length = (
+        slab.size[0] if given or not way else math.ceil(100 * (row + way + (EDGE if falls else 2 * EDGE)) - 1e-6) / 100
+    )
+    if length < row + (EDGE if falls else way + 2 * EDGE) - 1e-6:
         raise UserError(
             f"{belt.words!r}: {length:g} m is too short for its load to go {way:.3g} m; leave the length out"
         )
@@ -85,7 +89,7 @@ def _belt(belt: Thing, riders: list[Thing], part: Part, cast: Cast, taken: set[s
         _belt_objectives(thing, item, slab, 0.0 if runs else way, part)
         if "drop" in thing.does:  # tumbling takes it on by about its size
             gone = way + speed * fall_time(HEIGHT) + 1.5 * across
-            part.goes[item.name] = (round(gone, 3), 0.0, -HEIGHT)
+            part.goes[item.name] = [(round(gone, 3), 0.0, -HEIGHT)]
         part.names.setdefault(id(thing), []).append(item.name)
 
 
@@ -98,7 +102,7 @@ def _belt_speed(belt: Thing, riders: list[Thing], cast: Cast) -> float:
         return BELT_SPEED
     if not 0.0 < given[0] <= MOST_BELT_SPEED:
         raise UserError(
-            f"{belt.words!r}: {given[0]:g} m/s is outside 0 to {MOST_BELT_SPEED:g} m/s, the planner's range of belts"
+            f"{belt.words!r}: {given[0]:g} m/s is not above 0 and up to {MOST_BELT_SPEED:g} m/s, a belt's range"
         )
     return given[0]
 
@@ -184,13 +188,18 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
     [disc] = bodies(table, cast, taken)
     radius, thick = disc.size
     ring = SPUN_SHARE * radius
-    friction = min((pair_friction(item, disc) for _, item in loads), default=1.0)
+    friction = min((pair_friction(item, disc, one.said("friction", table)) for one, item in loads), default=1.0)
+    if table.spin:  # nearer to the middle, where that is what friction holds
+        held = HELD * friction * GRAVITY / math.radians(table.spin) ** 2
+        ring = round(min(ring, max(held, LEAST_SHARE * radius)), 3)
     most = math.degrees(math.sqrt(HELD * friction * GRAVITY / ring))
     spin = tidy(min(TURN_SPEED, 5.0 * math.floor(most / 5.0)))
     given = next((one.speed for one in (table, *riders) if one.speed is not None), None)
     if given is not None:
-        raise UserError(f"{table.words!r}: the builtin planner turns it by {spin:g} degrees a second; give no speed")
-    cast.assume(table.words, f"turns by {spin:g} degrees a second", "the prompt gives no speed")
+        raise UserError(
+            f"{table.words!r}: {given:g} m/s is no rate of turning; say it as 30 rpm or 180 degrees a second"
+        )
+    spin = _said_spin(table, spin, math.degrees(math.sqrt(friction * GRAVITY / ring)), bool(loads), cast)
     widest = max((max(item.size[:2]) if item.primitive == "box" else 2 * item.size[0] for _, item in loads), default=0)
     if any(item.primitive == "sphere" for _, item in loads):
         raise UserError(f"{table.words!r}: the builtin planner carries what does not roll on it; give no balls")
@@ -211,10 +220,26 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
     )  # fmt: skip
     part.objects += [foot, disc]
     part.names[id(table)] = [disc.name]
-    part.duration = round(180.0 / spin, 1)
+    halves = 2 * math.floor(spin / 360.0) + 1  # half turns, an odd number: it ends on the far side
+    part.duration = round(halves * 180.0 / spin, 2 if spin > 180.0 else 1)
+    turned = math.radians(spin) * (cast.duration or part.duration)
     for number, (thing, item) in enumerate(loads):
         angle = 2 * math.pi * number / len(loads)
         _spun(thing, item, disc, ring, angle, spin, part)
+        part.objectives += _round(item, part.posed[-1].pose, disc, ring, turned)
+
+
+def _said_spin(table: Thing, usual: float, most: float, loaded: bool, cast: Cast) -> float:
+    """The rate of turning [deg/s]: the prompt's, with a warning where friction does not hold the load, or the usual."""
+    if table.spin is None:
+        cast.assume(table.words, f"turns by {usual:g} degrees a second", "the prompt gives no rate")
+        return usual
+    if not 1.0 <= table.spin <= MOST_SPIN:
+        raise UserError(f"{table.words!r}: {table.spin:g} degrees a second is outside 1 to {MOST_SPIN:g}")
+    if loaded and table.spin > most:
+        why = f"friction holds it there up to {most:.3g} degrees a second"
+        cast.assume(table.words, f"warning: at {table.spin:g} degrees a second its load slides off", why)
+    return tidy(table.spin)
 
 
 def _spun(thing: Thing, item: PlanObject, disc: PlanObject, ring: float, angle: float, spin: float, part: Part) -> None:
@@ -227,8 +252,18 @@ def _spun(thing: Thing, item: PlanObject, disc: PlanObject, ring: float, angle: 
     motion = {"velocity": (tidy(-rate * y), tidy(rate * x), 0.0), "angular_velocity_deg": (0.0, 0.0, spin)}
     part.posed.append(item.related([]).model_copy(update={"pose": pose, **motion}))
     part.names.setdefault(id(thing), []).append(item.name)
-    way = round(SHARE * 2 * ring, 3)
-    part.objectives += [
-        Objective(kind="moves", object=item.name, value=way, sentence=f"{item.name} is carried round to the far side."),
-        Objective(kind="stays_on", object=item.name, ref=disc.name, sentence=f"{item.name} stays on {disc.name}."),
-    ]
+
+
+def _round(item: PlanObject, pose: Pose | None, disc: PlanObject, ring: float, turned: float) -> list[Objective]:
+    """It goes round as far as the table turns [rad], and stays on it."""
+    name, chord = item.name, 2 * ring * abs(math.sin(turned / 2))
+    stays = Objective(kind="stays_on", object=name, ref=disc.name, sentence=f"{name} stays on {disc.name}.")
+    if turned < math.pi or chord > 2 * SHARE * ring or pose is None:
+        far = " to the far side" if chord > 2 * SHARE * ring else ""
+        way, sentence = round(SHARE * chord, 3), f"{name} is carried round{far}."
+        return [Objective(kind="moves", object=name, value=way, sentence=sentence), stays]
+    # It may end where it began: it is asked to have been on the far side.
+    x, y, z = pose.position
+    formula = Reaches(object=name, target=(-x + 0.0, -y + 0.0, z), within=round((1 - SHARE) * 2 * ring, 3))
+    sentence = f"{name} is carried round by the far side."
+    return [Objective(kind="formula", object=name, sentence=sentence, formula=formula), stays]

@@ -5,10 +5,13 @@ from __future__ import annotations
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation
+from wsim.plan.schema.formula import CollidesWith
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
-from wsim.rules.scenes.motion import hit, meet, move, struck, throw_height
+from wsim.rules.scenes.bounce import bounce, bounces
+from wsim.rules.scenes.motion import ground_object, hit, meet, move, struck, throw_height
 from wsim.rules.scenes.part import Part, fall_time, tall
+from wsim.rules.scenes.tip import tipped
 from wsim.rules.sizes import bodies
 
 GAP = 0.15  # between neighbours on the ground [m]
@@ -41,7 +44,7 @@ def build_ground(cast: Cast, taken: set[str], scene: Part, behind: str | None = 
             hit(thing, cast, taken, part)
     for thing in cast.things:
         if thing.target is not None and thing.path is not None:
-            struck(thing, part)
+            struck(thing, part, scene)
     return part
 
 
@@ -112,6 +115,8 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
     height = _drop_height(thing, cast, part)
     made = bodies(thing, cast, taken)
     part.names[id(thing)] = [item.name for item in made]
+    if "topple" in thing.does and not _hit(thing, cast):
+        made = tipped(thing, made, part, cast)
     for index, item in enumerate(made):
         stacked = thing.arrangement == "stack" and index > 0
         lower = made[index - 1].name if stacked else below
@@ -119,8 +124,14 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         rows = [start, *(_in_plane(thing, made, index, part, ends) if not stacked else [])]
         rows += [] if stacked else _facing(thing, part)
         item = move(thing, item, cast, part, below)
+        if height is not None and "drop" in thing.does:
+            part.goes[item.name] = [(0.0, 0.0, -height)]
         part.objects.append(item.related(rows + item.relations))
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
+        if bounces(thing):
+            surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))
+            part.objectives.append(bounce(thing, item, surface, part, cast))
+            continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
 
 
@@ -198,7 +209,8 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
         return [Objective(kind="stays_on", object=name, ref=on, sentence=f"{name} stays on the {on}.")]
     if _hit(thing, cast):
         if last:
-            cast.assume(thing.words, "nothing is asked of it", "the prompt says that it is hit, not what comes of that")
+            why = "the prompt says that it is hit, not what comes of that"
+            cast.assume(thing.words, "nothing is asked of it but to be hit", why)
         return []
     if thing.inside is not None:
         return [Objective(kind="stays_inside", object=name, ref=lower, sentence=f"{name} stays inside {lower}.")]
@@ -207,7 +219,13 @@ def _objectives(thing: Thing, item: PlanObject, lower: str | None, last: bool, c
     if item.primitive == "sphere" or thing.noun.lies or "drop" in thing.does:
         if item.primitive in ("box", "cylinder") and not thing.noun.lies:
             return [Objective(kind="rests_on", object=name, ref=lower, sentence=f"{name} comes to rest on {lower}.")]
-        if thing.support is not None and thing.support.noun.family == "furniture" and "drop" in thing.does:
+        onto = thing.support
+        if onto is not None and onto.group and "drop" in thing.does and lower is not None:
+            # The kind compares level speeds where both are free; the formula all three parts.
+            falls = CollidesWith(object=name, ref=lower)
+            sentence = f"{name} falls on {lower}."
+            return [Objective(kind="formula", object=name, sentence=sentence, formula=falls)]
+        if onto is not None and onto.noun.family == "furniture" and "drop" in thing.does:
             return [Objective(kind="collides_with", object=name, ref=lower, sentence=f"{name} falls on {lower}.")]
         cast.assume(thing.words, "nothing is asked of it", f"what is round may stay on {lower} or roll off")
         return []

@@ -6,17 +6,21 @@ import math
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import Objective, PlanObject, Pose
+from wsim.plan.schema import Objective, PlanObject, Pose, Proxy
+from wsim.plan.schema.formula import StaysWithin
 from wsim.rules.cast import Cast, Thing
-from wsim.rules.scenes.part import Part, pair_friction, tall, tidy
+from wsim.rules.scenes.part import MOST_SPEED, Part, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
 BARE_DURATION = 1.0  # of a scene with a ramp and nothing on it: that long it is seen to stand [s]
 ROLLING_ANGLE = 20.0  # [deg], where the prompt gives none
 ABOVE, BELOW = 8.0, 6.0  # from the angle of friction to that of what slides, or of what rests [deg]
-STEEPEST = 60.0  # [deg]
+FLATTEST, STEEPEST = 1.0, 60.0  # [deg]
 EDGE = 0.08  # from the ramp's upper end to what starts on it [m]
+PLAY = 0.25  # of its smallest extent, which what rests may be off its place
 START_GAP = 0.001  # between the ramp and what starts on it [m]
+LEAST_WAY, WAY = 0.3, 0.6  # of a ramp's length, which what is on it has before it: at least, and usually
+SAFE = 0.9  # of the way that it has before it, which is asked of it at most
 SPHERE = 2 / 7  # of tan(angle): the least friction with which a ball rolls without slipping, and a ball's share of g
 
 
@@ -38,6 +42,7 @@ def build_inclines(cast: Cast, taken: set[str]) -> Part:
     if len(made) < len(riders):
         raise UserError(f"{ramp.words!r}: the builtin planner puts single things on a ramp; give one of each")
     [slab] = bodies(ramp, cast, taken)
+    slab = _long_enough(ramp, slab, list(made.values()), cast)
     angle = _angle(ramp, slab, [(thing, made[id(thing)]) for thing in riders], cast)
     turn, (length, _, thick) = math.radians(angle), slab.size
     pose = Pose(
@@ -55,44 +60,83 @@ def build_inclines(cast: Cast, taken: set[str]) -> Part:
     return part
 
 
+def _long_enough(ramp: Thing, slab: PlanObject, items: list[PlanObject], cast: Cast) -> PlanObject:
+    """The ramp, longer than usual where what is on it would reach its foot, or be there after a step.
+
+    Raises:
+        UserError: The prompt gives a length on which it has no way to go.
+    """
+    length, width, thick = slab.size
+    longest = max((_along(item) for item in items), default=0.0)
+    if EDGE + longest + LEAST_WAY * length <= length:
+        return slab
+    if ramp.phrase.length is not None or "x" in ramp.phrase.measures or ramp.phrase.edges:
+        raise UserError(
+            f"{ramp.words!r}: {length:g} m is too short for what is on it, {longest:g} m long; make it "
+            f"{(EDGE + longest) / (1 - LEAST_WAY):.2g} m or more, or leave its length out"
+        )
+    longer = math.ceil(10 * (EDGE + longest + WAY * length)) / 10
+    size = (longer, width, thick)
+    told = " x ".join(f"{edge:g}" for edge in slab.size) + " m"
+    cast.assumptions = [one for one in cast.assumptions if (one.subject, one.choice) != (ramp.words, told)]
+    cast.assume(ramp.words, " x ".join(f"{edge:g}" for edge in size) + " m", "room for what is on it, and its way")
+    return slab.model_copy(update={"construction": Proxy(primitive="box", size=size)})
+
+
+def _along(item: PlanObject) -> float:
+    """How much of a ramp's length a thing takes up [m]."""
+    return 2 * item.size[0] if item.primitive == "sphere" else item.size[0]
+
+
 def _angle(ramp: Thing, slab: PlanObject, riders: list[tuple[Thing, PlanObject]], cast: Cast) -> float:
     """The prompt's angle; else one at which the riders do what they are to do."""
     given = ramp.phrase.angle
     if given is not None:
-        if not 1.0 <= given <= STEEPEST:
-            raise UserError(f"{ramp.words!r}: {given:g} degrees is outside 1 to {STEEPEST:g}, the planner's range")
+        if not FLATTEST <= given <= STEEPEST:
+            raise UserError(
+                f"{ramp.words!r}: {given:g} degrees is outside {FLATTEST:g} to {STEEPEST:g}, the planner's range"
+            )
         for thing, item in riders:
             _warn(thing, item, slab, given, cast)
         return given
     angle, why = ROLLING_ANGLE, "the prompt gives no angle"
     for thing, item in riders:
-        friction = pair_friction(item, slab)
+        friction = pair_friction(item, slab, thing.said("friction", ramp))
         limit = math.degrees(math.atan(friction))
         if "slide" in thing.does:
             angle = 5.0 * math.ceil((limit + ABOVE) / 5)
             why = f"steeper than the angle of friction, {limit:.1f} degrees at a friction of {friction:g}"
         elif "roll" in thing.does:
-            why = (
-                f"a friction of {friction:g} is above 2/7 tan({angle:g} degrees) = "
-                f"{SPHERE * math.tan(math.radians(angle)):.2f}, so that a ball rolls and does not slip"
-            )
+            rolls = math.degrees(math.atan(friction / SPHERE))
+            angle = ROLLING_ANGLE if rolls > ROLLING_ANGLE else max(FLATTEST, math.floor(rolls - 1.0))
+            if rolls >= angle:
+                why = (
+                    f"a friction of {friction:g} is above 2/7 tan({angle:g} degrees) = "
+                    f"{SPHERE * math.tan(math.radians(angle)):.3f}, so that a ball rolls and does not slip"
+                )
         else:
             angle = max(2.0, 5.0 * math.floor((limit - BELOW) / 5))
             why = f"flatter than the angle of friction, {limit:.1f} degrees at a friction of {friction:g}"
     if angle > STEEPEST:
         raise UserError(f"{ramp.words!r}: to slide there would take {angle:g} degrees; give smoother materials")
     cast.assume(ramp.words, f"inclined by {angle:g} degrees", why)
+    for thing, item in riders:
+        _warn(thing, item, slab, angle, cast)
     return angle
 
 
 def _warn(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, cast: Cast) -> None:
-    friction = pair_friction(item, slab)
-    slips = math.tan(math.radians(angle)) > friction
+    friction = pair_friction(item, slab, thing.said("friction", thing.path))
+    slope = math.tan(math.radians(angle))
+    slips = slope > friction
     text = f"at {angle:g} degrees and a friction of {friction:g}"
     if "slide" in thing.does and not slips:
         cast.assume(thing.words, f"warning: {text} it stays", "the plan asks for what the prompt says")
     elif "rest" in thing.does and slips and not thing.round:
         cast.assume(thing.words, f"warning: {text} it slides", "the plan asks for what the prompt says")
+    elif "roll" in thing.does and SPHERE * slope > friction:
+        least = f"a ball rolls without slipping where friction is above 2/7 tan(slope), here {SPHERE * slope:.2g}"
+        cast.assume(thing.words, f"warning: {text} it slips as it rolls", least)
 
 
 def _across(slab: PlanObject, items: list[PlanObject], ramp: Thing) -> list[float]:
@@ -115,7 +159,7 @@ def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: fl
     if item.primitive not in ("box", "sphere"):
         raise UserError(f"{thing.words!r}: the builtin planner puts balls and boxes on a ramp")
     half = tall(item) / 2
-    along = item.size[0] if item.primitive == "sphere" else item.size[0] / 2
+    along = _along(item) / 2
     s, h = -length / 2 + EDGE + along, thick / 2 + half + START_GAP
     assert slab.pose is not None
     x0, _, z0 = slab.pose.position
@@ -128,15 +172,22 @@ def _rider(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, y: fl
     speed = thing.speed or 0.0
     velocity = (tidy(speed * math.cos(turn)), 0.0, tidy(-speed * math.sin(turn)))
     pose = Pose(position=position, rotation_deg=rotation)
-    part.posed.append(item.model_copy(update={"pose": pose, "velocity": velocity}))
+    if thing.speed is not None and not 0.0 < speed <= MOST_SPEED:
+        raise UserError(
+            f"{thing.words!r}: {speed:g} m/s is not above 0 and up to {MOST_SPEED:g} m/s, the planner's range"
+        )
+    rolls = {"rolling": True} if speed and "roll" in thing.does else {}
+    part.posed.append(item.model_copy(update={"pose": pose, "velocity": velocity, **rolls}))
     part.names[id(thing)] = [item.name]
-    _objective(thing, item, slab, angle, part, cast)
+    _objective(thing, part.posed[-1], slab, angle, part, cast)
 
 
 def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, part: Part, cast: Cast) -> None:
     turn, name = math.radians(angle), item.name
-    friction = pair_friction(item, slab)
-    way = round(0.6 * slab.size[0], 3)  # the rest is where it starts, and the foot
+    friction = pair_friction(item, slab, thing.said("friction", thing.path))
+    # The rest is where it starts, and the foot.
+    room = slab.size[0] - EDGE - _along(item)
+    way = round(min(WAY * slab.size[0], SAFE * room), 3)
     if "roll" in thing.does:
         pull = GRAVITY * math.sin(turn) * (1 - SPHERE)
         sentence = f"{name} rolls down {slab.name}."
@@ -149,11 +200,28 @@ def _objective(thing: Thing, item: PlanObject, slab: PlanObject, angle: float, p
         cast.assume(thing.words, "nothing is asked of it", "what is round does not rest on a ramp")
         pull = GRAVITY * math.sin(turn) * (1 - SPHERE)
     else:
-        part.objectives.append(Objective(kind="settles", object=name, sentence=f"{name} stays at rest on {slab.name}."))
+        part.objectives += _rest(item, slab)
         pull = 0.0
-    time = math.sqrt(2 * slab.size[0] / pull) if pull > 0.1 else 1.0
-    part.duration = max(part.duration, round(time + (2.0 if thing.target is not None else 0.5), 1))
-    if pull > 0.1 and thing.target is None:  # past the foot it goes on at the speed that it has there
-        beyond = pull * time * math.cos(turn) * (part.duration - time)
+    speed = thing.speed or 0.0
+    # What is as long as half of the ramp is watched until its front is at the foot: there it would lie across the bend.
+    long = room < slab.size[0] / 2 and thing.target is None
+    time = (math.sqrt(speed**2 + 2 * (room if long else slab.size[0]) * pull) - speed) / pull if pull > 0.1 else 1.0
+    after = 2.0 if thing.target is not None else 0.0 if long and pull > 0.1 else 0.5
+    part.duration = max(part.duration, round(time + after, 1))
+    if pull > 0.1 and not long and thing.target is None:  # past the foot it goes on at the speed that it has there
+        beyond = (speed + pull * time) * math.cos(turn) * (part.duration - time)
         way = slab.size[0] * math.cos(turn) + beyond
-        part.goes[name] = (round(way, 3), 0.0, round(-slab.size[0] * math.sin(turn), 3))
+        part.goes[name] = [(round(way, 3), 0.0, round(-slab.size[0] * math.sin(turn), 3))]
+
+
+def _rest(item: PlanObject, slab: PlanObject) -> list[Objective]:
+    """It is where it was all the time, and at rest in the end: what has slid off lies still, too."""
+    assert item.pose is not None
+    size = [2 * item.size[0]] if item.primitive == "sphere" else item.size
+    radius = round(PLAY * min(size), 3)
+    stays = StaysWithin(object=item.name, center=item.pose.position, radius=radius)
+    sentence = f"{item.name} stays in its place on {slab.name}, to {radius:g} m."
+    return [
+        Objective(kind="formula", object=item.name, sentence=sentence, formula=stays),
+        Objective(kind="settles", object=item.name, sentence=f"{item.name} is at rest on {slab.name}."),
+    ]

@@ -68,6 +68,8 @@ def build_pendulum(cast: Cast, taken: set[str]) -> Part:
         part.objectives.append(Objective(kind="settles", object=bob.name, sentence=f"{bob.name} hangs still."))
     part.duration = round(PERIODS * 2 * math.pi * math.sqrt(length / GRAVITY), 1)
     part.names[id(thing)] = [bob.name]
+    x, drop = tidy(length * math.sin(turn)), tidy(length * (1.0 - math.cos(turn)))
+    part.goes[bob.name] = [(-x, 0.0, -drop), (-2 * x, 0.0, 0.0)]  # through its lowest point to the other side
     return part
 
 

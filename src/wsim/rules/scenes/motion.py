@@ -9,7 +9,8 @@ from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
-from wsim.rules.scenes.part import DIRECTIONS, Part, pair_friction, stopping_distance, tall, tidy, times
+from wsim.rules.scenes.bounce import returned
+from wsim.rules.scenes.part import DIRECTIONS, MOST_SPEED, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
 
 HIT_SPEED = 3.0  # [m/s]
@@ -21,7 +22,7 @@ ROLL_WAY = 3.0  # that a ball rolls while one looks [m]
 MEET_SPEED, MEET_DISTANCE = 1.0, 0.8  # of two that come at each other [m/s], [m]
 THROW_SPEED, THROW_ANGLE, THROW_HEIGHT = 4.0, 45.0, 1.0  # [m/s], [deg], [m]
 AIM_DISTANCE = 1.5  # from what is thrown to what it is thrown at [m]
-MOST_SPEED = 50.0  # that the prompt may give [m/s]
+GOES_ON = 0.5  # that what is hit goes on with what hit it, which the cameras show [m]
 SHARE = 0.5  # of the way that theory gives, which what moves must make at least
 FOOT_DISTANCE = 0.3  # from a ramp's foot to what is hit there [m]
 _GROUND = PlanObject.proxy(name="ground", role="terrain", primitive="ground", material=GROUND_LOOK, state="static")
@@ -43,18 +44,20 @@ def move(thing: Thing, item: PlanObject, cast: Cast, part: Part, below: str | No
         return item
     _check_round(thing)
     carrier = next((o for o in part.objects if o.name == below), _GROUND)
-    speed = _speed(thing, item, carrier, how, cast)
+    friction = pair_friction(item, carrier, thing.said("friction", thing.support))
+    speed = _speed(thing, item, carrier, how, friction, cast)
     direction = thing.direction or "front"
     if thing.direction is None:
         cast.assume(thing.words, "towards +X", "the prompt gives no direction")
     moving = started(item, times(DIRECTIONS[direction], speed), rolls=how == "roll")
-    part.objectives += _way(thing, moving, carrier, how, speed, direction)
-    friction = pair_friction(item, carrier)
+    part.objectives += _way(thing, moving, carrier, how, speed, friction, direction)
+    if not friction and how != "roll":
+        raise UserError(f"{thing.words!r}: without friction it slides for ever; give a friction above 0")
     stop = speed / (friction * GRAVITY)
     time = max(1.5, ROLL_WAY / speed) if how == "roll" else 1.0 + stop
     part.duration = max(part.duration, round(min(time, 3.0) if how == "roll" else time, 1))
     way = speed * (cast.duration or part.duration) if how == "roll" else stopping_distance(speed, friction)
-    part.goes[item.name] = times(DIRECTIONS[direction], round(way, 3))
+    part.goes[item.name] = [times(DIRECTIONS[direction], round(way, 3))]
     return moving
 
 
@@ -73,29 +76,31 @@ def _check_round(thing: Thing) -> None:
     if "roll" in thing.does and thing.noun.primitive not in ROUND:
         raise UserError(f"{thing.words!r}: the builtin planner rolls balls, barrels and the like")
     if thing.speed is not None and not 0.0 < thing.speed <= MOST_SPEED:
-        raise UserError(f"{thing.words!r}: {thing.speed:g} m/s is outside 0 to {MOST_SPEED:g} m/s, the planner's range")
+        raise UserError(
+            f"{thing.words!r}: {thing.speed:g} m/s is not above 0 and up to {MOST_SPEED:g} m/s, the planner's range"
+        )
 
 
-def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, cast: Cast) -> float:
+def _speed(thing: Thing, item: PlanObject, carrier: PlanObject, how: str, friction: float, cast: Cast) -> float:
     if thing.speed is not None:
         return thing.speed
     speed = {"roll": ROLL_SPEED, "slide": SLIDE_SPEED, "push": PUSH_SPEED}[how]
     if how in ("slide", "push") and thing.off and carrier.size:
         way = carrier.size[0] / 2 + item.size[0]  # so that its middle is over the edge with speed to spare
-        speed = math.ceil(10 * 1.3 * math.sqrt(2 * pair_friction(item, carrier) * GRAVITY * way)) / 10
+        speed = math.ceil(10 * 1.3 * math.sqrt(2 * friction * GRAVITY * way)) / 10
     cast.assume(thing.words, f"starts at {speed:g} m/s", "the prompt gives no speed")
     return speed
 
 
 def _way(
-    thing: Thing, item: PlanObject, carrier: PlanObject, how: str, speed: float, direction: str
+    thing: Thing, item: PlanObject, carrier: PlanObject, how: str, speed: float, friction: float, direction: str
 ) -> list[Objective]:
     name = item.name
     if thing.off:
         return [Objective(kind="topples", object=name, sentence=f"{name} leaves {carrier.name} and falls.")]
     if how == "roll":
         return []
-    way = round(SHARE * stopping_distance(speed, pair_friction(item, carrier)), 3)
+    way = round(SHARE * stopping_distance(speed, friction), 3)
     if how == "slide" and not thing.round:
         return [Objective(kind="slides", object=name, value=way, sentence=f"{name} slides {way:g} m or more.")]
     sentence = f"{name} moves {way:g} m or more."
@@ -112,9 +117,6 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
     if target.support is not None or target.inside is not None or thing.support is not None or thing.direction:
         raise UserError(f"{thing.words!r}: the builtin planner lets things on the ground be hit, from behind")
     first, *rest = part.names[id(target)]
-    if thing.path is not None:
-        struck(thing, part)
-        return
     _check_round(thing)
     [item] = bodies(thing, cast, taken)
     slides = "slide" in thing.does or "push" in thing.does
@@ -128,14 +130,21 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         speed = thing.speed or HIT_SPEED
         if thing.speed is None:
             cast.assume(thing.words, f"starts at {speed:g} m/s along +X", "the prompt gives no speed")
-        distance = _run_up(slides, speed, pair_friction(item, _GROUND))
+        distance = _run_up(slides, speed, pair_friction(item, _GROUND, thing.said("friction", None)))
         item = started(item, (speed, 0.0, 0.0), rolls=not slides)
     cast.assume(thing.words, f"starts {distance:g} m from {target.words}", "the prompt gives no distance")
     rows = [base, Relation(predicate="BACK-OF", ref=first, gap=distance)]
     part.objects.append(item.related(rows + item.relations))
     part.names[id(thing)] = [item.name]
     part.duration = max(part.duration, 4.0 if target.group else 2.0)
-    if not target.group or "throw" in thing.does:
+    if "throw" not in thing.does:
+        aimed = _met(item, [first, *rest], target, part)
+        stop = stopping_distance(item.velocity[0], pair_friction(item, _GROUND, thing.said("friction", None)))
+        last = [first, *rest][-1]
+        part.goes[last] = [(round(tall(_item(last, part)) + min(GOES_ON, stop), 3), 0.0, 0.0)]
+    if "bounce" in thing.does:
+        returned(thing, item, _item(aimed, part), target, cast)
+    if "topple" not in target.does:  # which says more than that it is hit
         _collision(item.name, aimed, part)
 
 
@@ -146,7 +155,7 @@ def _run_up(slides: bool, speed: float, friction: float) -> float:
     return max(ROLL_DISTANCE, round(APPROACH * speed, 2))
 
 
-def struck(thing: Thing, part: Part) -> None:
+def struck(thing: Thing, part: Part, ramps: Part) -> None:
     """Stand a target before the foot of the ramp that something comes down."""
     target = thing.target
     assert target is not None and thing.path is not None
@@ -156,8 +165,21 @@ def struck(thing: Thing, part: Part) -> None:
         if item.name == first:
             rows = [row for row in item.relations if row.predicate not in ("LEFT-OF", "FRONT-OF")]
             part.objects[index] = item.related([*rows, Relation(predicate="FRONT-OF", ref=ramp, gap=FOOT_DISTANCE)])
-    if not target.group:
-        _collision(part.names[id(thing)][0], first, part)
+    if "topple" not in target.does:
+        item = next(item for item in ramps.posed if item.name == part.names[id(thing)][0])
+        _collision(item.name, _met(item, part.names[id(target)], target, part), part)
+
+
+def _met(item: PlanObject, names: list[str], target: Thing, part: Part) -> str:
+    """Which of a target's objects something on the ground meets: the first of a row, of a stack that at its middle."""
+    if target.arrangement != "stack":
+        return names[0]
+    middle = item.size[0] if item.primitive == "sphere" else tall(item) / 2
+    return names[min(int(middle / tall(_item(names[0], part))), len(names) - 1)]
+
+
+def _item(name: str, part: Part) -> PlanObject:
+    return next(item for item in part.objects if item.name == name)
 
 
 def _collision(name: str, ref: str, part: Part) -> None:
@@ -222,7 +244,24 @@ def _thrown(thing: Thing, item: PlanObject, cast: Cast, part: Part) -> PlanObjec
         ),
     ]
     part.duration = max(part.duration, round(time + 1.0, 1))
+    # Where it lands it goes on: a ball rolls on at 5/7 of its level speed, a box slides to its stop.
+    rest = max(0.0, (cast.duration or part.duration) - time)
+    after = (
+        5 / 7 * along * rest
+        if thing.round
+        else stopping_distance(along, pair_friction(item, _GROUND, thing.said("friction", None)))
+    )
+    level = times(DIRECTIONS[direction], 1.0)
+    part.goes[name] = [*_arc(level, along, up, time), times(level, round(along * time + after, 3))]
     return item.model_copy(update={"velocity": (tidy(x), tidy(y), tidy(up))})
+
+
+def _arc(level: Vec3, along: float, up: float, time: float) -> list[Vec3]:
+    """From the start of a throw to its highest point, and to where it lands after a time [m]."""
+    top = max(0.0, min(up / GRAVITY, time))
+    return [
+        (tidy(level[0] * along * t), tidy(level[1] * along * t), tidy(up * t - GRAVITY * t**2 / 2)) for t in (top, time)
+    ]
 
 
 def throw_height(thing: Thing, cast: Cast) -> float:
@@ -248,13 +287,13 @@ def _aimed(thing: Thing, item: PlanObject, aimed: str, cast: Cast, part: Part) -
     velocity: Vec3 = (speed, 0.0, tidy(up))
     cast.assume(thing.words, f"at {speed:g} m/s level and {up:.2f} m/s up", "so that it hits the middle of its target")
     moving = item.model_copy(update={"velocity": velocity})
+    part.goes[item.name] = _arc((1.0, 0.0, 0.0), speed, up, time)
     return moving, Relation(predicate="SPAWNED-ABOVE", value=height)
 
 
 def _middle(name: str, part: Part) -> float:
     """Height of the centre of something that stands on the ground, or on others that do [m]."""
-    item = next(item for item in part.objects if item.name == name)
-    return _top(name, part) - tall(item) / 2
+    return _top(name, part) - tall(_item(name, part)) / 2
 
 
 def _top(name: str, part: Part) -> float:

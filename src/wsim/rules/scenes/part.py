@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from wsim.defaults import GRAVITY
 from wsim.plan.schema import Joint, Objective, PlanObject, Vec3
 
+MOST_SPEED = 50.0  # that the prompt may give [m/s]
 DIRECTIONS: dict[str, Vec3] = {
     "front": (1.0, 0.0, 0.0),
     "back": (-1.0, 0.0, 0.0),
@@ -29,7 +30,7 @@ class Part:
         names: Of each thing's objects, lowest first, by the thing's identity.
         spacing: Of its fluid's particles [m]; 0 without a fluid.
         surface: Height that the side camera looks across [m].
-        goes: How far from its start an object gets, which the cameras are to show, too [m].
+        goes: From its start to where else an object comes, which the cameras are to show, too [m].
     """
 
     objects: list[PlanObject] = field(default_factory=list)
@@ -40,7 +41,7 @@ class Part:
     names: dict[int, list[str]] = field(default_factory=dict)
     spacing: float = 0.0
     surface: float | None = None
-    goes: dict[str, Vec3] = field(default_factory=dict)
+    goes: dict[str, list[Vec3]] = field(default_factory=dict)
 
     def add(self, other: Part) -> None:
         """Take in another part."""
@@ -65,13 +66,17 @@ def tall(item: PlanObject) -> float:
     return item.size[-1] if len(item.size) > 1 else 2 * item.size[0]
 
 
-def pair_friction(a: PlanObject, b: PlanObject) -> float:
-    """Friction between two things: the smaller of the two (`wsim.scene.contact`)."""
+def pair_friction(a: PlanObject, b: PlanObject, said: float | None = None) -> float:
+    """Friction between two things: what the prompt says of the pair, else the smaller of the two's own."""
+    if said is not None:
+        return said
     return min((item.material.friction for item in (a, b) if item.material is not None), default=0.5)
 
 
 def stopping_distance(speed: float, friction: float) -> float:
-    """How far something slides on the level: v^2 / (2 mu g) [m]."""
+    """How far something slides on the level: v^2 / (2 mu g) [m]; without friction it has no end."""
+    if friction == 0.0:
+        return math.inf
     return speed**2 / (2 * friction * GRAVITY)
 
 
