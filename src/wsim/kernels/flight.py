@@ -25,14 +25,14 @@ def turned_by(vector: wp.vec3d) -> wp.quatd:
 
 
 @wp.func
-def free_turn(spin: wp.vec3d, moments: wp.vec3d, h: wp.float64) -> wp.quatd:
-    """How a rigid body turns in `h` [s] if nothing acts on it, from its spin; all along its principal axes.
+def free_turn(principal: wp.quatd, moments: wp.vec3d, spin: wp.vec3d, h: wp.float64) -> wp.quatd:
+    """How a rigid body turns in `h` [s] if nothing acts on it, from its spin, in its own axes.
 
     The energy is |L|^2 / 2 I_2 plus a part of L_1 and one of L_3 alone, the moments in rising order. Each part turns
     the body about one axis, that of the first about L itself; these turns, put together symmetrically (Touma and Wisdom
     1994), keep the momentum and add no energy over time, and of a body with two equal moments they are the motion.
     """
-    momentum = wp.cw_mul(moments, spin)
+    momentum = wp.cw_mul(moments, wp.quat_rotate_inv(principal, spin))
     turning = wp.length(spin) * h / LARGEST_TURN
     parts = MOST_PARTS
     if turning < wp.float64(MOST_PARTS):
@@ -52,7 +52,8 @@ def free_turn(spin: wp.vec3d, moments: wp.vec3d, h: wp.float64) -> wp.quatd:
         c = about(first, k1 * momentum[0])
         momentum = wp.quat_rotate_inv(c, momentum)
         turn = turn * a * b * c
-    return turn * turned_by(momentum * (h / moments[1]))
+    turn = turn * turned_by(momentum * (h / moments[1]))
+    return principal * turn * wp.quat_inverse(principal)
 
 
 @wp.func
@@ -138,18 +139,20 @@ def tumble(
     h: wp.float64,
     true_qd: wp.array2d(dtype=wp.float64),
     # Data out:
-    turn: wp.array2d(dtype=wp.quatd),
+    change: wp.array2d(dtype=wp.vec3d),  # of the spin, by its own turning [rad/s^2]
     bias: wp.array2d(dtype=Any),
 ):
-    """Put in place of the gyroscopic torque at a step's start that which gives the spin of its end."""
+    """Put in place of the gyroscopic torque at a step's start that which gives the spin of its end.
+
+    Both spins are along the body's axes as they are at the start: that is where contacts see them.
+    """
     world, k = wp.tid()
     first = freedom[k] + 3
     spin, axes = three(true_qd, world, first), principal[k]
-    own = free_turn(wp.quat_rotate_inv(axes, spin), moments[k], h)
-    whole = axes * own * wp.quat_inverse(axes)
-    turn[world, k] = whole
-    change = (spin_after(axes, moments[k], spin, whole) - spin) / h
-    torque = in_axes(axes, moments[k], change) + wp.cross(spin, in_axes(axes, moments[k], spin))
+    turn = free_turn(axes, moments[k], spin, h)
+    gain = (wp.quat_rotate(turn, spin_after(axes, moments[k], spin, turn)) - spin) / h
+    change[world, k] = gain
+    torque = in_axes(axes, moments[k], gain) + wp.cross(spin, in_axes(axes, moments[k], spin))
     for i in range(3):
         bias[world, first + i] = bias[world, first + i] - bias.dtype(torque[i])
 
@@ -163,7 +166,7 @@ def fly(
     principal: wp.array(dtype=wp.quatd),
     moments: wp.array(dtype=wp.vec3d),
     h: wp.float64,
-    turn: wp.array2d(dtype=wp.quatd),
+    change: wp.array2d(dtype=wp.vec3d),
     qacc: wp.array2d(dtype=Any),
     held: wp.array2d(dtype=Any),  # what constraints push with
     # Data out:
@@ -172,36 +175,38 @@ def fly(
     qpos: wp.array2d(dtype=Any),
     qvel: wp.array2d(dtype=Any),
 ):
-    """Advance the loose bodies, those that nothing holds by their true turn about their centre of mass."""
+    """Advance the loose bodies: what pushes them changes their spin at the step's start, then they turn freely.
+
+    Where nothing holds a body its centre of mass goes straight, else its origin, whose velocity contacts have seen.
+    """
     world, k = wp.tid()
-    p, f = place[k], freedom[k]
+    p, f, c = place[k], freedom[k], center[k]
     v, w, x = three(true_qd, world, f), three(true_qd, world, f + 3), three(true_q, world, p)
     q = wp.normalize(wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3]))
-    push, change = wp.vec3d(), wp.vec3d()
+    push, twist = wp.vec3d(), wp.vec3d()
     free = bool(True)
     for i in range(3):
         push[i] = wp.float64(qacc[world, f + i])
-        change[i] = wp.float64(qacc[world, f + 3 + i])
+        twist[i] = wp.float64(qacc[world, f + 3 + i])
         free = free and held[world, f + i] == held.dtype(0.0) and held[world, f + 3 + i] == held.dtype(0.0)
-    after = w + h * change
+    kicked = w + h * (twist - change[world, k])
+    turn = free_turn(principal[k], moments[k], kicked, h)
+    after = spin_after(principal[k], moments[k], kicked, turn)
+    end = wp.normalize(q * turn)
     if free:
-        c, start = center[k], q
-        gained = after - spin_after(principal[k], moments[k], w, turn[world, k])
-        q = wp.normalize(q * turn[world, k] * turned_by(h * gained))
-        whole = push + wp.quat_rotate(start, wp.cross(change, c) + wp.cross(w, wp.cross(w, c)))
-        way = v + wp.quat_rotate(start, wp.cross(w, c)) + h * whole
-        x += wp.quat_rotate(start, c) + h * way - wp.quat_rotate(q, c)
-        v = way - wp.quat_rotate(q, wp.cross(after, c))
+        pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
+        way = v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull
+        x += wp.quat_rotate(q, c) + h * way - wp.quat_rotate(end, c)
+        v = way - wp.quat_rotate(end, wp.cross(after, c))
     else:
         v += h * push
         x += h * v
-        q = wp.normalize(q * turned_by(h * after))
     for i in range(3):
         true_q[world, p + i] = x[i]
-        true_q[world, p + 4 + i] = q[i]
+        true_q[world, p + 4 + i] = end[i]
         true_qd[world, f + i] = v[i]
         true_qd[world, f + 3 + i] = after[i]
-    true_q[world, p + 3] = q[3]
+    true_q[world, p + 3] = end[3]
     for i in range(7):
         qpos[world, p + i] = qpos.dtype(true_q[world, p + i])
     for i in range(6):

@@ -48,7 +48,7 @@ class Flight:
             self._center = wp.array(center, dtype=wp.vec3d)
             self._principal = wp.array(principal, dtype=wp.quatd)
             self._moments = wp.array(moments, dtype=wp.vec3d)
-            self._turn = wp.zeros(shape, dtype=wp.quatd)
+            self._change = wp.zeros(shape, dtype=wp.vec3d)
             self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
             self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
         self.forget()
@@ -86,9 +86,9 @@ class Flight:
         """Mend the bias of loose bodies, between what hangs on velocities and the accelerations."""
         wp.launch(
             tumble,
-            dim=self._turn.shape,
+            dim=self._change.shape,
             inputs=[self._freedom, self._principal, self._moments, wp.float64(h), self._true[1]],
-            outputs=[self._turn, self._bias],
+            outputs=[self._change, self._bias],
             device=self.model.device,
         )
 
@@ -96,10 +96,10 @@ class Flight:
         """Advance the loose bodies by `h` [s] in place of MuJoCo, which has."""
         wp.launch(
             fly,
-            dim=self._turn.shape,
+            dim=self._change.shape,
             inputs=[
-                self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._turn, self._qacc,
-                self._held,
+                self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
+                self._qacc, self._held,
             ],
             outputs=[*self._true, self._qpos, self._qvel],
             device=self.model.device,

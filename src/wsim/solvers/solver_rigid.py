@@ -105,7 +105,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
             self._touched_for.zero_()
-            self._smooth_steps = SmoothStepsWarp(mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data, self._touched_for)
+            self._smooth_steps = SmoothStepsWarp(
+                mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data, self._touched_for
+            )
 
     def move_surfaces(self, velocity: Array) -> None:
         """Let surfaces move as belts do: what touches them slips against that velocity.
