@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from wsim.solvers.breaking import BreakingC
+from wsim.solvers.flight import Flight
 from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
@@ -160,6 +161,7 @@ class ContactLawC:
     Args:
         mujoco: The module.
         model: MuJoCo's model.
+        flight: Steps the loose bodies.
         geom_class: Class of each geom, (geoms,).
         law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
         curvature: Of each geom's round side [1/m], (geoms,); 0 for a flat one.
@@ -173,6 +175,7 @@ class ContactLawC:
         self,
         mujoco: Any,
         model: Any,
+        flight: Flight,
         geom_class: Array,
         law: Array,
         curvature: Array,
@@ -181,7 +184,7 @@ class ContactLawC:
         breaking: BreakingC | None = None,
         touching: SurfaceContacts | None = None,
     ) -> None:
-        self.breaking = breaking
+        self.breaking, self.flight = breaking, flight
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law, self.curvature = geom_class, law, curvature
         self.touching, self._bow = touching, np.zeros(0)
@@ -192,6 +195,7 @@ class ContactLawC:
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
+        self.first_that_jumps = int(rows.mjCNSTR_FRICTION_DOF)  # after equalities come dry friction, stops and contacts
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         tilt_cylinders(mujoco, model)
 
@@ -212,6 +216,7 @@ class ContactLawC:
             self.touched = 0
         else:
             mujoco.mj_implicit(model, data)
+            self.flight.fly(model.opt.timestep)
             self.touched += 1
         if model.nu:
             self._tell_efforts(data)
@@ -220,10 +225,14 @@ class ContactLawC:
         """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
         mujoco, model = self.mujoco, self.model
         self._position(data)
+        touching = bool((data.efc_type >= self.first_that_jumps).any())
         mujoco.mj_fwdVelocity(model, data)
+        if touching or not self.smooth:
+            self.flight.tumble(model.opt.timestep)
         mujoco.mj_fwdActuation(model, data)
         mujoco.mj_fwdAcceleration(model, data)
-        return self._solve(data)
+        self._solve(data)
+        return touching
 
     def _position(self, data: Any) -> None:
         """What hangs on the pose, contacts with what MuJoCo does not know among it."""
@@ -251,8 +260,8 @@ class ContactLawC:
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
 
-    def _solve(self, data: Any) -> bool:
-        """Constraint forces; whether a contact, a stop or dry friction may be among them."""
+    def _solve(self, data: Any) -> None:
+        """Constraint forces."""
         kinds = data.efc_type
         stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
@@ -267,7 +276,6 @@ class ContactLawC:
             self._solve_contacts(data, chosen, first[chosen], h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
-        return bool(len(stops) or len(rubbing) or len(chosen))
 
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact

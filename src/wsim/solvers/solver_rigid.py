@@ -15,6 +15,7 @@ from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.flight import Flight
 from wsim.solvers.single_precision import soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
@@ -68,6 +69,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         **options: Any,
     ) -> None:
         self.contact_config = config or ContactConfig()
+        self._flight: Flight | None = None
         super().__init__(
             model,
             use_mujoco_cpu=on_c,
@@ -92,19 +94,21 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
+        mujoco = self.import_mujoco()[0]
+        self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data)
         if on_c:
-            mujoco = self.import_mujoco()[0]
             config = self.contact_config
             self._law_c = ContactLawC(
-                mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking, touching
+                mujoco, self.mj_model, self._flight, geom_class, law, bends, smooth, config, self.breaking, touching
             )
         elif may_touch or not smooth:
             self._prepare_warp(geom_class, law, bends)
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
-            mujoco, warp = self._mujoco, self._mujoco_warp
             self._touched_for.zero_()
-            self._smooth_steps = SmoothStepsWarp(mujoco, warp, self.mjw_model, self.mjw_data, self._touched_for)
+            self._smooth_steps = SmoothStepsWarp(
+                mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data, self._touched_for
+            )
 
     def move_surfaces(self, velocity: Array) -> None:
         """Let surfaces move as belts do: what touches them slips against that velocity.
@@ -206,6 +210,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self, state_in: Any, state_out: Any, control: Any, contacts: Any, dt: float, *, observables: Any = None
     ) -> None:
         """Advance by `dt` [s]; see `newton.solvers.SolverMuJoCo.step`."""
+        self._dt = dt
         if self._touching:
             self._touching.find(state_in, dt)
         if not self.use_mujoco_cpu:
@@ -221,6 +226,24 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._update_newton_state(self.model, state_out, self.mj_data, state_prev=state_in, observables=observables)
         self._step += 1
 
+    def reset(self, state: Any, *args: Any, **options: Any) -> None:
+        """Start anew from `state`; see `newton.solvers.SolverMuJoCo.reset`."""
+        super().reset(state, *args, **options)
+        if self._flight:
+            self._flight.forget()
+
+    def _update_mjc_data(self, mj_data: Any, model: Any, state: Any = None, *args: Any, **options: Any) -> None:
+        super()._update_mjc_data(mj_data, model, state, *args, **options)
+        if self._flight and state is not None:
+            self._flight.recall(state)
+
+    def _update_newton_state(self, model: Any, state: Any, mj_data: Any, *args: Any, **options: Any) -> None:
+        if self._flight:
+            self._flight.keep()
+        super()._update_newton_state(model, state, mj_data, *args, **options)
+        if self._flight:
+            self._flight.tell(state)
+
     def _mujoco_warp_step(self) -> None:
         """MuJoCo Warp's step, with the law between its halves."""
         model, data = self.mjw_model, self.mjw_data
@@ -232,6 +255,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._smooth_steps.before(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
+        if self._flight:
+            self._flight.tumble(self._dt)
         warp.fwd_actuation(model, data)
         warp.fwd_acceleration(model, data)
         self._aim(model, data)
@@ -243,6 +268,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self.breaking.give_way(model, data)
             warp.solve(model, data)
         warp.implicit(model, data)
+        if self._flight:
+            self._flight.fly(self._dt)
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
 

@@ -1,0 +1,139 @@
+"""Loose bodies in flight: how they turn, and where they are, beyond what MuJoCo's step and single precision give.
+
+MuJoCo takes a body's gyroscopic torque at the step's start and makes it implicit, which costs a body that tumbles its
+energy, by the square of what it turns in a step. Here the spin of the step's end follows from the free motion over the
+step; contacts see it as a smooth force. Newton's state is in single precision, where a kilometre has steps of 0.06 mm:
+what is true between two steps is kept beside it in double, for as long as nobody else writes the state.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import newton
+import numpy as np
+import warp as wp
+
+from wsim.kernels.flight import fly, keep, recall, tumble
+
+Array = np.ndarray
+
+
+class Flight:
+    """What a solver's joints are at, and the steps of its loose bodies.
+
+    Args:
+        mujoco: The module of MuJoCo in C.
+        solver: Newton's MuJoCo solver.
+        data: MuJoCo's data that it steps, in C or in Warp.
+    """
+
+    def __init__(self, mujoco: Any, solver: Any, data: Any) -> None:
+        model = solver.model
+        self.model, self._qpos, self._qvel = model, _rows(data.qpos), _rows(data.qvel)
+        self._qacc, self._bias, self._held = _rows(data.qacc), _rows(data.qfrc_bias), _rows(data.qfrc_constraint)
+        kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
+        place, freedom = solver.mj_q_start.numpy(), solver.mj_qd_start.numpy()
+        self.joints = len(place)
+        ours = ~kinematic[model.joint_child.numpy()[: self.joints]] & (place >= 0)
+        loose = _loose(mujoco, solver.mj_model, place[ours])
+        center, principal, moments = _inertia(mujoco, solver.mj_model, loose)
+        jnt = solver.mj_model.body_jntadr[loose]
+        shape = self._qpos.shape[0], len(loose)
+        with wp.ScopedDevice(model.device):
+            self._joints = [wp.array(np.where(ours, start, -1), dtype=int) for start in (place, freedom)]
+            self._place = wp.array(solver.mj_model.jnt_qposadr[jnt], dtype=int)
+            self._freedom = wp.array(solver.mj_model.jnt_dofadr[jnt], dtype=int)
+            self._center = wp.array(center, dtype=wp.vec3d)
+            self._principal = wp.array(principal, dtype=wp.quatd)
+            self._moments = wp.array(moments, dtype=wp.vec3d)
+            self._change = wp.zeros(shape, dtype=wp.vec3d)
+            self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
+            self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
+        self.forget()
+
+    def forget(self) -> None:
+        """Start from the state, whatever was told."""
+        for told in self._told:
+            told.fill_(math.nan)
+
+    def recall(self, state: Any) -> None:
+        """Put what is true of `state` into MuJoCo's data, which has it in single precision."""
+        model = self.model
+        wp.launch(
+            recall,
+            dim=(self._qpos.shape[0], self.joints),
+            inputs=[
+                state.joint_q, state.joint_qd, *self._told, self.joints, model.joint_q_start, model.joint_qd_start,
+                *self._joints,
+            ],
+            outputs=[*self._true, self._qpos, self._qvel],
+            device=model.device,
+        )  # fmt: skip
+
+    def tell(self, state: Any) -> None:
+        """Note what `state` says of MuJoCo's data."""
+        for told, array in zip(self._told, (state.joint_q, state.joint_qd), strict=True):
+            wp.copy(told, array)
+
+    def keep(self) -> None:
+        """Note what MuJoCo's data say at a step's end."""
+        for true, array in zip(self._true, (self._qpos, self._qvel), strict=True):
+            wp.launch(keep, dim=array.shape, inputs=[array], outputs=[true], device=self.model.device)
+
+    def tumble(self, h: float) -> None:
+        """Mend the bias of loose bodies, between what hangs on velocities and the accelerations."""
+        wp.launch(
+            tumble,
+            dim=self._change.shape,
+            inputs=[self._freedom, self._principal, self._moments, wp.float64(h), self._true[1]],
+            outputs=[self._change, self._bias],
+            device=self.model.device,
+        )
+
+    def fly(self, h: float) -> None:
+        """Advance the loose bodies by `h` [s] in place of MuJoCo, which has."""
+        wp.launch(
+            fly,
+            dim=self._change.shape,
+            inputs=[
+                self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
+                self._qacc, self._held,
+            ],
+            outputs=[*self._true, self._qpos, self._qvel],
+            device=self.model.device,
+        )  # fmt: skip
+
+
+def _rows(values: Any) -> Any:
+    """MuJoCo's numbers as an array of Warp's, a row a world; those of C are shared, not copied."""
+    return wp.array(values[None], dtype=wp.float64, device="cpu", copy=False) if isinstance(values, Array) else values
+
+
+def _loose(mujoco: Any, model: Any, places: Array) -> Array:
+    """MuJoCo's bodies on a free joint that nothing hangs on by another, (bodies,); `places` are joints' in qpos."""
+    freedoms = np.bincount(model.dof_treeid[model.dof_treeid >= 0], minlength=model.ntree)
+    free = model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)
+    alone = freedoms[model.dof_treeid[model.jnt_dofadr]] == 6
+    return np.asarray(model.jnt_bodyid[free & alone & np.isin(model.jnt_qposadr, places)])
+
+
+def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Array]:
+    """Of each body with what is fixed to it, in its axes: centre of mass [m], principal axes and moments [kg m^2].
+
+    Moments rise; the axes are a turn xyzw.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_crb(model, data)
+    axes = data.xmat[bodies].reshape(-1, 3, 3)
+    center = np.einsum("nji,nj->ni", axes, data.subtree_com[bodies] - data.xpos[bodies])
+    around = data.crb[bodies][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+    moments, principal = np.linalg.eigh(np.einsum("nji,njk,nkl->nil", axes, around, axes))
+    principal[:, :, 2] *= np.sign(np.linalg.det(principal))[:, None]
+    turns = np.zeros((len(bodies), 4))
+    for turn, matrix in zip(turns, principal, strict=True):
+        mujoco.mju_mat2Quat(turn, matrix.flatten())
+    return center, turns[:, [1, 2, 3, 0]], moments
