@@ -34,6 +34,7 @@ from typing import Any
 import numpy as np
 
 from wsim.solvers.breaking import BreakingC
+from wsim.solvers.drives import DrivesC
 from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
@@ -167,6 +168,7 @@ class ContactLawC:
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
         touching: Finds contacts with what MuJoCo does not know.
+        drives: The drives that damp, if there are any.
     """
 
     def __init__(
@@ -180,8 +182,9 @@ class ContactLawC:
         config: ContactConfig,
         breaking: BreakingC | None = None,
         touching: SurfaceContacts | None = None,
+        drives: DrivesC | None = None,
     ) -> None:
-        self.breaking = breaking
+        self.breaking, self.drives = breaking, drives
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law, self.curvature = geom_class, law, curvature
         self.touching, self._bow = touching, np.zeros(0)
@@ -193,6 +196,8 @@ class ContactLawC:
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
+        touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
+        self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -211,7 +216,7 @@ class ContactLawC:
             model.opt.disableflags &= ~self.unilateral
             self.touched = 0
         else:
-            mujoco.mj_implicit(model, data)
+            self._implicit(data)
             self.touched += 1
         if model.nu:
             self._tell_efforts(data)
@@ -220,10 +225,23 @@ class ContactLawC:
         """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
         mujoco, model = self.mujoco, self.model
         self._position(data)
+        touching = bool(np.isin(data.efc_type, self.jumping).any())
+        if self.drives is not None:
+            self.drives.choose(data, are_rows=touching or not self.smooth)
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
+        if self.drives is not None:
+            self.drives.take_over(data)
         mujoco.mj_fwdAcceleration(model, data)
-        return self._solve(data)
+        self._solve(data)
+        return touching
+
+    def _implicit(self, data: Any) -> None:
+        """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
+        off = int(self.mujoco.mjtDisableBit.mjDSBL_ACTUATION) if self.drives is not None else 0
+        self.model.opt.disableflags |= off
+        self.mujoco.mj_implicit(self.model, data)
+        self.model.opt.disableflags &= ~off
 
     def _position(self, data: Any) -> None:
         """What hangs on the pose, contacts with what MuJoCo does not know among it."""
@@ -251,8 +269,8 @@ class ContactLawC:
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
 
-    def _solve(self, data: Any) -> bool:
-        """Constraint forces; whether a contact, a stop or dry friction may be among them."""
+    def _solve(self, data: Any) -> None:
+        """Constraint forces."""
         kinds = data.efc_type
         stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
@@ -267,7 +285,6 @@ class ContactLawC:
             self._solve_contacts(data, chosen, first[chosen], h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
-        return bool(len(stops) or len(rubbing) or len(chosen))
 
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
