@@ -111,6 +111,7 @@ class Cords(Joints):
             b: The other.
             around: Cylinders that it runs round on its way, from `a` to `b`: each an object with a cylinder, which it
                 passes above, or (object, side) with "over", "under" or a direction (x, y, z) from the cylinder's axis.
+                It may do so by half a turn, and by more while its strands do not come together.
             length: [m]; as long as its way at the start, taut, if not given. More is slack.
             anchor_a: Where it is fixed to `a`.
             anchor_b: Where it is fixed to `b`.
