@@ -82,7 +82,11 @@ class Cables(Fluids, Cords):
         between = [Gf.Vec3d(*call.position(f"through[{k}]", point)) for k, point in enumerate(through)]
         way = np.array([ends[0].point, *between, ends[1].point], dtype=np.float64)
         points = self._laid(call, way, length, links, thick)
-        mass = None if mass_per_length is None else call.positive("mass_per_length", mass_per_length, MAX_MASS, "kg/m", low=_LIGHTEST)
+        mass = (
+            None
+            if mass_per_length is None
+            else call.positive("mass_per_length", mass_per_length, MAX_MASS, "kg/m", low=_LIGHTEST)
+        )
         look = self._surface(call, material, friction, None, HEMP if material is None and color is None else color)
         made = self._links(name, points, thick, mass or math.pi * thick**2 * (look.density or _DENSITY), look)
         tied = [end.prim.GetName() if end.prim else None for end in ends]

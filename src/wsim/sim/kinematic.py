@@ -86,7 +86,9 @@ class Kinematic:
                 outputs=[state.body_q, state.joint_q, self._step],
                 device=device,
             )
-        if self._hanging is not None:  # the solver leaves kinematic bodies where they were, and hung these on them there
+        if (
+            self._hanging is not None
+        ):  # the solver leaves kinematic bodies where they were, and hung these on them there
             newton.eval_fk(self.model, state.joint_q, state.joint_qd, state, joint_mask=self._hanging)
 
     def reset(self, state: Any) -> None:

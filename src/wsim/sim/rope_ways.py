@@ -36,7 +36,7 @@ def lost_ropes(world: World, bodies: Array, model: Any, body_q: Array) -> list[s
         for place, angle in strayed(moving_stops(rope.path, held)):
             if angle.any():
                 found.append(
-                    f"{rope.prim} runs round <{rope.path[place].owner}> by {np.degrees(angle.max()):.0f} degrees, where "
-                    "its strands come together: the simulator follows a rope by half a turn; let it end elsewhere"
+                    f"{rope.prim} runs round <{rope.path[place].owner}> by {np.degrees(angle.max()):.0f} degrees, "
+                    "where its strands come together: the simulator follows a rope by half a turn; let it end elsewhere"
                 )
     return found
