@@ -176,10 +176,10 @@ def test_a_rope_whose_strands_come_together_past_half_a_turn_ends_the_run(tmp_pa
 
 
 def test_a_rope_may_run_round_a_little_more_than_half_a_turn():
-    """As long as its strands do not come together: an end left or right of where they would cross the wheel's width."""
+    """As long as neither end is between the other's strand and where that would be on the wheel's other side."""
     wheel = Stop(np.zeros((1, 3)), 0.2, np.array([[0.0, 1.0, 0.0]]), np.array([[0.0, 0.0, 1.0]]))
-    lean = [math.asin(0.2 / math.hypot(x, z)) - math.atan(x / z) for x, z in ((0.19, 8.0), (-0.1, 1.0))]
-    for x, too_far in ((0.19, 0.0), (-0.1, math.pi + sum(lean))):
+    lean = [math.asin(0.2 / math.hypot(x, z)) - math.atan(x / z) for x, z in ((0.19, 8.0), (0.1, 1.0))]
+    for x, too_far in ((0.19, 0.0), (0.1, math.pi + sum(lean))):
         ends = np.array([[-0.19, 0.0, -8.0], [x, 0.0, -1.0]])
         ((place, angle),) = strayed([Stop(ends[:1]), wheel, Stop(ends[1:])])
         assert place == 1
