@@ -57,6 +57,21 @@ def bounded_torque(bench: Bench) -> tuple[float, float]:
     return float(track.spin("wheel")[-1, 1]), 2.0 / 0.225
 
 
+@case("s")
+def bounded_torque_of_a_stiff_motor(bench: Bench) -> tuple[float, float]:
+    """A motor of 0.025 N m at most, c h / I = 5, has its wheel at 2.5 rad/s in I ω / τ."""
+    inertia, torque, speed, step = 0.5 * 1.0 * 0.1**2, 0.025, 2.5, 1.25e-3
+
+    def build(scene: Scene) -> None:
+        scene.cylinder("wheel", radius=0.1, height=0.05, mass=1.0, position=(0, 0, 1))
+        motor = Drive(velocity=math.degrees(speed), damping=5.0 * inertia / step, max_force=torque)
+        scene.joint_revolute("axle", None, "wheel", axis="Z", drive=motor)
+
+    track = bench.run(build, 0.6)
+    spin = track.spin("wheel")[:, 2]
+    return float(np.interp(0.99 * speed, spin, track.time)) / 0.99, inertia * speed / torque
+
+
 @case("m")
 def sag(bench: Bench) -> tuple[float, float]:
     """5 kg on a drive of 1000 N/m, 100 N s/m comes to rest m g / k below its target."""

@@ -2,9 +2,11 @@ import math
 import re
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
-from wsim.scene import Drive, Scene, SceneError
+from wsim.scene import Drive, Part, Scene, SceneError
+from wsim.scene.check_joints import joint_problems
 
 NAN, INF = math.nan, math.inf
 UNIT = (1.0, 1.0, 1.0)
@@ -61,6 +63,27 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
         lambda s: s.fluid("w", size=UNIT, position=(0.5, 0, 0.52), spacing=0.1, container="tank"),
         "outside the hollow of",
     ),
+    (lambda s: s.compound("n", parts=[Part("sphere", radius=1)], mass=-1.0), "mass = -1 must be > 0 kg"),
+    (lambda s: s.compound("n", parts=[Part("sphere", radius=1)], mass=NAN), "mass = nan must be finite"),
+    (lambda s: s.compound("n", parts=[Part("sphere", radius=1)], mass=True), "mass = True must be a number"),
+    (lambda s: s.compound("n", parts=[Part("sphere", radius=1)], mass="x"), 'mass = "x" must be a number'),  # type: ignore[arg-type]
+    (lambda s: s.compound("n", parts=[Part("sphere", radius=1, density=1e-30)]), "density = 1e-30 must be >= 0.001"),
+    (lambda s: s.box("b", size=UNIT, mass=10**400), "mass must be finite in kg"),
+    (lambda s: s.box("b", size=UNIT, mass=1e-30), "mass = 1e-30 must be >= 1e-12 kg"),
+    (lambda s: s.box("b", size=UNIT, static="no"), 'static = "no" must be True or False'),  # type: ignore[arg-type]
+    (lambda s: s.rope("r", "block", None, anchor_b=UNIT, around=None), "around = None must be a list"),  # type: ignore[arg-type]
+    (lambda s: s.rope("r", "block", None, anchor_b=UNIT, around="w"), 'around = "w" must be a list'),  # type: ignore[arg-type]
+    (lambda s: s.cable("c", "block", None, anchor_b=UNIT, through=1.0), "through = 1.0 must be points"),  # type: ignore[arg-type]
+    (lambda s: s.cable("c", "block", None, anchor_b=UNIT, loose="no"), 'loose = "no" must be True'),  # type: ignore[arg-type]
+    (lambda s: s.cable("c", "block", None, anchor_b=UNIT, loose=np.ones(2)), "loose = array([1., 1.]) must be True"),  # type: ignore[arg-type]
+    (lambda s: s.cable("c", "block", None, anchor_b=UNIT, mass_per_length=1e-300), "must be >= 1e-09 kg/m"),
+    (lambda s: s.track("t", pieces=[("line", 1.0)], wall=1e-300), "wall = 1e-300 must be >= 0.0001 m"),
+    (lambda s: s.track("t", pieces=[("line", 1.0)], profile=np.ones(2)), "profile = array([1., 1.]) must be one of"),  # type: ignore[arg-type]
+    (
+        lambda s: s.height_field("f", heights=[[0, 0], [0, 1]], size=(1, 1), cells=(2, 2)),
+        "cells = (2, 2) beside heights",
+    ),
+    (lambda s: s.joint_revolute("j", None, "block", axis=None), 'axis = None must be "X", "Y", "Z"'),  # type: ignore[arg-type]
     (lambda s: s.material("m", density=0), "density = 0 must be > 0"),
     (lambda s: s.material("wood"), "already used"),
     (lambda s: s.material("m", opacity=1.5), "opacity = 1.5 must be <= 1"),
@@ -176,3 +199,26 @@ def test_bad_joints_are_named(make: Callable[[Scene], object], message: str) -> 
     scene.joint_revolute("loose", None, "e", break_force=1.0)
     with pytest.raises(SceneError, match=re.escape(message)):
         make(scene)
+
+
+def test_gears_in_a_ring_that_contradict_are_refused() -> None:
+    scene = Scene()
+    for i in range(3):
+        scene.box(f"b{i}", size=(0.1, 0.1, 0.1), position=(i, 0.0, 0.0))
+        scene.joint_revolute(f"j{i}", None, f"b{i}")
+    scene.gear("first", "j0", "j1", ratio=-2.0)
+    scene.gear("second", "j1", "j2", ratio=-0.5)
+    with pytest.raises(SceneError, match=r'gear\("third"\): ratio = -1, and other gears couple the two by 1'):
+        scene.gear("third", "j2", "j0", ratio=-1.0)
+    scene.gear("third", "j2", "j0", ratio=1.0)
+    assert list(joint_problems(scene.stage)) == []
+    scene.stage.GetPrimAtPath("/World/third").GetAttribute("wsim:ratio").Set(-1.0)
+    problems = list(joint_problems(scene.stage))
+    assert [problem for problem in problems if "all would lock" in problem]
+
+
+def test_a_path_repeats_or_does_not() -> None:
+    scene = Scene()
+    scene.box("lift", size=(1, 1, 0.1), kinematic=True)
+    with pytest.raises(SceneError, match=r"repeat = array\(\[1, 2\]\) must be True or False"):
+        scene.path("lift", times=[0, 1], positions=[(0, 0, 0), (0, 0, 1)], repeat=np.array([1, 2]))  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ import pytest
 
 from tests.sim.cord_runs import period, run
 from wsim.geometry.catenary import hanging
-from wsim.geometry.ropes import Stop, path_length
+from wsim.geometry.ropes import Stop, path_length, strayed
 from wsim.judge import judge
 from wsim.recording import read
 from wsim.scene import Scene
@@ -150,3 +150,37 @@ def test_the_judge_sees_a_rope_that_is_cut(tmp_path):
     cut.rigid.solver.mj_model.tendon_range[:, 1] = 100.0
     cut.run(tmp_path / "cut.rrd")
     assert "CheckRopes" in {finding.check for finding in judge(read(tmp_path / "cut.rrd")).failures}
+
+
+@BOTH
+def test_a_rope_whose_strands_come_together_past_half_a_turn_ends_the_run(tmp_path, worlds):
+    """MuJoCo would let go of the wheel there, with a jump of the rope's way: the run says at which angle."""
+    radius, length = 0.2, 1.8
+    scene = Scene()
+    scene.simulation(frame_rate=200.0)
+    scene.cylinder("wheel", radius=radius, height=0.1, axis="Y", static=True)
+    scene.sphere("heavy", radius=0.05, mass=1.0, position=(-radius, 0, -8))
+    scene.sphere("light", radius=0.05, mass=1.0, position=(radius, 0, -length), velocity=(-2.0, 0, 0))
+    scene.rope("rope", "heavy", "light", around=["wheel"])
+    simulation = Simulation(scene.save(tmp_path / "stage.usda"), "cpu", worlds)
+    rows = simulation.built.bodies
+    for _ in range(40):
+        simulation.advance_frame()
+        if simulation.problems():
+            break
+        ends = simulation.state.body_q.numpy()[rows, :3].astype(float)
+        wheel = Stop(np.zeros((1, 3)), radius, np.array([[0.0, 1.0, 0.0]]), np.array([[0.0, 0.0, 1.0]]))
+        way = path_length([Stop(ends[:1]), wheel, Stop(ends[1:])])
+        assert way == pytest.approx(simulation.world.ropes[0].length, abs=2e-4)
+    assert "/World/rope runs round </World/wheel> by 18" in simulation.problems()[0]
+
+
+def test_a_rope_may_run_round_a_little_more_than_half_a_turn():
+    """As long as neither end is between the other's strand and where that would be on the wheel's other side."""
+    wheel = Stop(np.zeros((1, 3)), 0.2, np.array([[0.0, 1.0, 0.0]]), np.array([[0.0, 0.0, 1.0]]))
+    lean = [math.asin(0.2 / math.hypot(x, z)) - math.atan(x / z) for x, z in ((0.19, 8.0), (0.1, 1.0))]
+    for x, too_far in ((0.19, 0.0), (0.1, math.pi + sum(lean))):
+        ends = np.array([[-0.19, 0.0, -8.0], [x, 0.0, -1.0]])
+        ((place, angle),) = strayed([Stop(ends[:1]), wheel, Stop(ends[1:])])
+        assert place == 1
+        assert angle[0] == pytest.approx(too_far, abs=1e-9)

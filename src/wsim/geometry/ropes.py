@@ -35,6 +35,7 @@ class _Wrap:
     angle: Array  # (T,) that it turns through, signed [rad]; 0 where it passes by
     before: Array  # (T,), length of the straight part before it, in the plane [m]
     climb: Array  # (T,), along the axis, a metre of way in the plane
+    strays: Array  # (T,), whether a simulation would take another way
     frame: tuple[Array, Array, Array]  # (T, 3) axes of the plane, and the cylinder's own
 
 
@@ -47,6 +48,21 @@ def path_length(stops: list[Stop]) -> Array:
         else:
             total += _wrap(before.position, after.position, stop).length
     return total
+
+
+def strayed(stops: list[Stop]) -> list[tuple[int, Array]]:
+    """Where a rope runs round a cylinder by more than MuJoCo follows.
+
+    Returns:
+        Of each cylinder its place in the list and, at each moment, the angle [rad] if it is too large, else 0, (T,).
+    """
+    found = []
+    for before, stop, after in _legs(stops):
+        if stop is not None:
+            wrap = _wrap(before.position, after.position, stop)
+            place = next(k for k, other in enumerate(stops) if other is stop)
+            found.append((place, np.where(wrap.strays, np.abs(wrap.angle), 0.0)))
+    return found
 
 
 def path_points(stops: list[Stop]) -> Array:
@@ -134,6 +150,7 @@ def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
     open_ = [np.arccos(np.clip(r / np.maximum(x, 1e-12), -1.0, 1.0)) for x in far]
     best = np.full(len(p), np.inf)
     angle, first = np.zeros(len(p)), np.zeros(len(p))
+    crossed = []
     for turn in (1.0, -1.0):
         t0, t1 = bearing[0] + turn * open_[0], bearing[1] - turn * open_[1]
         # Over the cylinder's own side, direction 0, and not round it once more, with strands that cross.
@@ -143,14 +160,35 @@ def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
         better = off < best
         best = np.where(better, off, best)
         angle, first = np.where(better, turn * swept, angle), np.where(better, t0, first)
+        crossed.append(_cross(p, _on_circle(r, t0), q, _on_circle(r, t1)))
     share = np.clip(-((q - p) * p).sum(axis=1) / np.maximum(straight**2, 1e-24), 0.0, 1.0)
     nearest = p + share[:, None] * (q - p)
     past = (np.linalg.norm(nearest, axis=1) > r) & (nearest[:, 0] >= 0.0)
     past |= (far[0] < r) | (far[1] < r)
     flat = np.where(past, straight, lines[0] + r * np.abs(angle) + lines[1])
-    touch = np.where(past[:, None], p, r * np.stack([np.cos(first), np.sin(first)], axis=1))
+    touch = np.where(past[:, None], p, _on_circle(r, first))
     climb = rise / np.maximum(flat, 1e-12)
-    return _Wrap(np.hypot(flat, rise), touch, np.where(past, 0.0, angle), lines[0], climb, frame)
+    # MuJoCo takes the side by the middle between the two ends of the arc, which past a half turn is on the other side,
+    # unless the strands cross on that way and not on this one.
+    own, other = (np.where(angle > 0.0, *pair) for pair in (crossed, crossed[::-1]))
+    strays = ~past & (np.abs(angle) > np.pi) & (own | ~other)
+    return _Wrap(np.hypot(flat, rise), touch, np.where(past, 0.0, angle), lines[0], climb, strays, frame)
+
+
+def _on_circle(radius: float, angle: Array) -> Array:
+    points: Array = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return points
+
+
+def _cross(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Whether the lines from a to b and from c to d meet, (T,), all (T, 2)."""
+
+    def side(p: Array, q: Array, x: Array) -> Array:
+        area: Array = (q[:, 0] - p[:, 0]) * (x[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (x[:, 0] - p[:, 0])
+        return area
+
+    meets: Array = (side(a, b, c) * side(a, b, d) < 0.0) & (side(c, d, a) * side(c, d, b) < 0.0)
+    return meets
 
 
 def _arc(before: Stop, stop: Stop, wrap: _Wrap) -> Array:

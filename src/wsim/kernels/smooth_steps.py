@@ -3,6 +3,7 @@
 import warp as wp
 
 FIRST_THAT_JUMPS = wp.constant(1)  # mjtConstraint: after equalities come dry friction, stops and contacts
+DRIVE = wp.constant(2)  # mjCNSTR_FRICTION_TENDON, which jumps not
 
 
 @wp.kernel(enable_backward=False)
@@ -15,7 +16,7 @@ def find_touching(
 ):
     """Mark the worlds with dry friction, a stop or a contact among their constraint rows."""
     world, row = wp.tid()
-    if row < rows[world] and kind[world, row] >= FIRST_THAT_JUMPS:
+    if row < rows[world] and kind[world, row] >= FIRST_THAT_JUMPS and kind[world, row] != DRIVE:
         touches[world] = 1
 
 

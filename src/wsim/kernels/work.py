@@ -24,8 +24,7 @@ def accumulate_push(
 @wp.kernel(enable_backward=False)
 def accumulate_drive(
     # Data in:
-    effort: wp.array(dtype=wp.float32),  # of the drives: at the step's end, or at its start
-    at_end: bool,
+    effort: wp.array(dtype=wp.float32),  # of the drives at the step's end
     joint_f: wp.array(dtype=wp.float32),  # of the controller
     before: wp.array(dtype=wp.float32),
     after: wp.array(dtype=wp.float32),
@@ -37,17 +36,13 @@ def accumulate_drive(
 ):
     """Add a step's work [J] on each degree of freedom, and what the effort's change in the step leaves open of it.
 
-    Known at both ends, the effort is taken as their mean (trapezoidal rule), which is right but for the product of
-    both changes; known at the start alone, it may be wrong by its change.
+    The effort is taken as the mean of both ends (trapezoidal rule), which is right but for the product of both changes.
     """
     dof = wp.tid()
     change = effort[dof] - last[dof]
     mean = 0.5 * (before[dof] + after[dof])
-    push = effort[dof]
-    open_ = wp.abs(change * mean)
-    if at_end:
-        push = push - 0.5 * change
-        open_ = wp.abs(change * (after[dof] - before[dof]))
+    push = effort[dof] - 0.5 * change
+    open_ = wp.abs(change * (after[dof] - before[dof]))
     work[dof] = work[dof] + dt * (push + joint_f[dof]) * mean
     unsure[dof] = unsure[dof] + dt * open_
     last[dof] = effort[dof]

@@ -136,6 +136,8 @@ class Bodies(Materials):
         turn = rotation(call.angles(options.rotation_deg))
         velocity = call.velocity(options.velocity)
         spin = call.spin(options.angular_velocity_deg)
+        for field in ("static", "kinematic"):
+            call.flag(field, getattr(options, field))
         moving = self._moving(call, options, velocity, spin)
         if not isinstance(options.rolling, bool):
             call.fail(f"rolling = {shown(options.rolling)} must be True or False; its resistance is rolling_friction")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +18,7 @@ from wsim.scene.validate import Call, shown
 
 _LINKS, _MOST_LINKS = 30, 200
 _SLENDER = 4.0  # a link's length over its radius, at least: shorter ones would touch the next but one
+_LIGHTEST = 1e-9  # [kg/m], a tenth of a thread of a spider's silk
 _DENSITY = 1000.0  # [kg/m^3], wet hemp and most plastics
 
 Array = np.ndarray
@@ -71,7 +72,9 @@ class Cables(Fluids, Cords):
         call = Call("cable", name)
         self._path(call)
         thick = call.size("radius", radius)
-        if loose and b is not None:
+        if isinstance(through, (str, bytes)) or not isinstance(through, Iterable):
+            call.fail(f"through = {shown(through)} must be points (x, y, z) in m, in a list")
+        if call.flag("loose", loose) and b is not None:
             call.fail(f"b = {shown(b)} and loose=True: an end that is tied to something is not loose")
         if loose and anchor_b is None:
             call.fail("loose=True needs anchor_b, where the loose end is at the start [m]")
@@ -79,7 +82,11 @@ class Cables(Fluids, Cords):
         between = [Gf.Vec3d(*call.position(f"through[{k}]", point)) for k, point in enumerate(through)]
         way = np.array([ends[0].point, *between, ends[1].point], dtype=np.float64)
         points = self._laid(call, way, length, links, thick)
-        mass = None if mass_per_length is None else call.positive("mass_per_length", mass_per_length, MAX_MASS, "kg/m")
+        mass = (
+            None
+            if mass_per_length is None
+            else call.positive("mass_per_length", mass_per_length, MAX_MASS, "kg/m", low=_LIGHTEST)
+        )
         look = self._surface(call, material, friction, None, HEMP if material is None and color is None else color)
         made = self._links(name, points, thick, mass or math.pi * thick**2 * (look.density or _DENSITY), look)
         tied = [end.prim.GetName() if end.prim else None for end in ends]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from pxr import Usd
 
-from wsim.geometry.ropes import path_length
+from wsim.geometry.ropes import path_length, strayed
 from wsim.scene import schema
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
 from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
@@ -83,6 +83,13 @@ def _rope(rope: Rope, prim: Usd.Prim) -> Iterator[str]:
                 where = _name(rope.path[near])
                 yield f"{rope.prim}: {where} lies inside the cylinder of <{guide.owner}> that it runs round"
                 return
+    for k, angle in strayed(stops):
+        if angle[0]:
+            yield (
+                f"{rope.prim}: it runs round <{rope.path[k].owner}> by {np.degrees(angle[0]):.0f} degrees, where its "
+                "strands come together; half a turn can be simulated: move an end, or give another side"
+            )
+            return
     way = float(path_length(stops)[0])
     if not 0.0 < rope.length <= MAX_SIZE:
         yield f"{rope.prim}.wsim:length: {rope.length:g} m must be > 0 and <= {MAX_SIZE:g} m"

@@ -12,6 +12,7 @@ from pxr import Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.articulation import dry_friction, geared_joints, is_kinematic, joint_ends, joints_of, may_break
+from wsim.scene.gears import contradicts, meshes_of
 from wsim.scene.spanning import WORLD_END
 
 _CLOSING = (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)
@@ -40,6 +41,11 @@ def joint_problems(stage: Usd.Stage) -> Iterator[str]:
     for prim in stage.Traverse():
         if schema.has(prim, schema.GEAR):
             yield from _gear(prim)
+    meshes = meshes_of(stage)
+    for k, mesh in enumerate(meshes):
+        there = contradicts(meshes[:k], mesh)
+        if there is not None:
+            yield f"{mesh[1]}: a gear couples it to <{mesh[0]}> by {mesh[2]:g}, and others by {there:g}: all would lock"
 
 
 def _numbers(joint: UsdPhysics.Joint) -> Iterator[str]:

@@ -97,6 +97,7 @@ class Compounds(Tracks):
             None,
             None,
         )
+        whole = None if mass is None else call.mass(mass)
         # It brings pydantic, and a program without compounds does not wait for it.
         from wsim.scene.usd_shapes import read_shape, solid
 
@@ -118,7 +119,7 @@ class Compounds(Tracks):
                 turn = matrices(np.array(shape.rotation))
                 inertia = turn @ each.inertia @ turn.T * (weights[-1] / each.volume)
                 solids.append((np.array(shape.position) + turn @ each.com, inertia))
-            return _together(np.array(weights, dtype=np.float64), solids, mass)
+            return _together(np.array(weights, dtype=np.float64), solids, whole)
 
         return self._body_of(call, start, path, author)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
@@ -111,6 +111,7 @@ class Cords(Joints):
             b: The other.
             around: Cylinders that it runs round on its way, from `a` to `b`: each an object with a cylinder, which it
                 passes above, or (object, side) with "over", "under" or a direction (x, y, z) from the cylinder's axis.
+                It may do so by half a turn, and by more while its strands do not come together.
             length: [m]; as long as its way at the start, taut, if not given. More is slack.
             anchor_a: Where it is fixed to `a`.
             anchor_b: Where it is fixed to `b`.
@@ -122,6 +123,8 @@ class Cords(Joints):
         ends = self._ends(call, a, b, anchor_a, anchor_b)
         drawn = call.size("radius", radius)
         look = HEMP if color is None else call.color("color", color)
+        if isinstance(around, (str, bytes)) or not isinstance(around, Iterable):
+            call.fail(f'around = {shown(around)} must be a list of objects, or of (object, "under")')
         rounds = [self._round_of(call, k, item) for k, item in enumerate(around)]
         paths = [prim.GetPath() for prim, _ in rounds]
         if len(set(paths)) < len(paths):

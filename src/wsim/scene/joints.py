@@ -11,6 +11,7 @@ from pxr import Gf, Sdf, Usd, UsdPhysics
 from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, mark_articulations, may_break
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
+from wsim.scene.gears import contradicts, meshes_of
 from wsim.scene.limits import MAX_POSITION
 from wsim.scene.validate import Call, shown
 
@@ -151,6 +152,8 @@ class Joints(Author):
         axis: str | Sequence[float] | None,
     ) -> Usd.Prim:
         path = self._path(call)
+        if axis is None and kind is not UsdPhysics.FixedJoint:
+            call.fail('axis = None must be "X", "Y", "Z" or a direction (x, y, z)')
         child_prim = self._body(call, "child", child)
         if not child_prim.HasAPI(UsdPhysics.RigidBodyAPI):
             call.fail(f"child = {shown(child_prim.GetName())} is static; a joint's child must be a body that moves")
@@ -214,7 +217,7 @@ class Joints(Author):
                 -0.5 about parallel axes, a rack on a wheel of radius r has r or -r [m/rad].
 
         Raises:
-            SceneError: If a joint is no hinge or slider, or may break, or the ratio is 0.
+            SceneError: If a joint is no hinge or slider, or may break, or the ratio is 0 or not that of other gears.
         """
         call = Call("gear", name)
         path = self._path(call)
@@ -224,6 +227,10 @@ class Joints(Author):
         value = call.within("ratio", ratio, -1e6, 1e6)
         if abs(value) < 1e-6:
             call.fail(f"ratio = {value:g} must not be 0")
+        one, other = (str(end.GetPath()) for end in ends)
+        there = contradicts(meshes_of(self._stage), (one, other, value))
+        if there is not None:
+            call.fail(f"ratio = {value:g}, and other gears couple the two by {there:g}: all would lock; leave one out")
         prim = self._stage.DefinePrim(path, "Scope")
         schema.apply(prim, schema.GEAR, {"ratio": (Sdf.ValueTypeNames.Double, value)})
         for key, end in zip(("wsim:joint0", "wsim:joint1"), ends, strict=True):

@@ -5,7 +5,9 @@ from __future__ import annotations
 MAX_POSITION = 1e4  # [m]
 MIN_SIZE = 1e-4  # [m]
 MAX_SIZE = 1e3  # [m]
+MIN_MASS = 1e-12  # [kg]; MuJoCo takes nothing below 1e-15
 MAX_MASS = 1e5  # [kg]
+MIN_DENSITY = 1e-3  # [kg/m^3]; hydrogen has 0.09
 MAX_DENSITY = 1e5  # [kg/m^3]
 MAX_FRICTION = 10.0
 MAX_SPEED = 1e4  # [m/s]

@@ -83,7 +83,7 @@ class Motions(Author):
         places = [there] * len(when) if positions is None else _vectors(call, "positions", positions, len(when))
         if rotations_deg is not None:
             here = _turns(call, _vectors(call, "rotations_deg", rotations_deg, len(when)))
-        if repeat and (places[0] != places[-1] or abs(Gf.Dot(here[0], here[-1])) < 1.0 - 1e-9):
+        if call.flag("repeat", repeat) and (places[0] != places[-1] or abs(Gf.Dot(here[0], here[-1])) < 1.0 - 1e-9):
             call.fail(f"repeat = True, and the last key, {places[-1]}, is not the first, {places[0]}; end as it begins")
         turned = [[*q.GetImaginary(), q.GetReal()] for q in here]
         curve = Curve.through(when, places, turned, repeat)

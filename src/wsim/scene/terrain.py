@@ -31,7 +31,7 @@ class Terrain(Compounds):
         *,
         heights: Sequence[Sequence[float]] | NDArray[np.float64] | Callable[[float, float], float],
         size: Sequence[float],
-        cells: Sequence[int] = (50, 50),
+        cells: Sequence[int] | None = None,
         position: Sequence[float] = (0.0, 0.0, 0.0),
         thickness: float = 0.2,
         smooth_deg: float = 20.0,
@@ -47,7 +47,7 @@ class Terrain(Compounds):
             heights: Rows x columns of heights [m], columns along +X and rows along +Y, from the corner of least x
                 and y; or a function of x and y [m], counted from the field's middle, that is sampled.
             size: (x, y) of the field [m].
-            cells: How many cells a function is sampled in, along x and y.
+            cells: How many cells a function is sampled in, along x and y; (50, 50) if not given.
             position: Of the field's middle at height 0 [m].
             thickness: How far the ground goes on below its lowest point [m].
             smooth_deg: Where cells meet at a smaller angle they stand for a curve; 0: all are flat [deg].
@@ -95,8 +95,11 @@ def _edges(call: Call, size: Sequence[float]) -> tuple[float, float]:
     return call.size("size[0]", size[0]), call.size("size[1]", size[1])
 
 
-def _field(call: Call, heights: object, across: tuple[float, float], cells: Sequence[int]) -> Floats:
+def _field(call: Call, heights: object, across: tuple[float, float], cells: Sequence[int] | None) -> Floats:
+    if not callable(heights) and cells is not None:
+        call.fail(f"cells = {shown(cells)} beside heights that are listed; leave it out")
     if callable(heights):
+        cells = (50, 50) if cells is None else cells
         if isinstance(cells, (str, bytes)) or not isinstance(cells, (Sequence, np.ndarray)) or len(cells) != 2:
             call.fail(f"cells = {shown(cells)} must be 2 whole numbers, along x and y")
         nx, ny = (call.integer(f"cells[{k}]", n, 1, _MOST - 1) for k, n in enumerate(cells))

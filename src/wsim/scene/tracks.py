@@ -199,7 +199,7 @@ def _through(call: Call, points: Sequence[Sequence[float]]) -> list[Stretch]:
 
 
 def _sections(call: Call, profile: str, width: float, wall: float | None, thickness: float) -> list[Section]:
-    if profile not in PROFILES:
+    if not isinstance(profile, str) or profile not in PROFILES:
         call.fail(f"profile = {shown(profile)} must be one of {', '.join(PROFILES)}")
     w, t = call.size("width", width), call.size("thickness", thickness)
     if profile == "rails":
@@ -210,7 +210,8 @@ def _sections(call: Call, profile: str, width: float, wall: float | None, thickn
         return rails(w, t)
     if profile == "round":
         return round_(w, w / 2.0 if wall is None else call.positive("wall", wall, 0.95 * w, "m", low=1e-4), t)
-    return flat(w, 0.0 if wall is None else call.within("wall", wall, 0.0, MAX_SIZE, "m"), t)
+    high = 0.0 if wall is None else call.within("wall", wall, 0.0, MAX_SIZE, "m")
+    return flat(w, call.size("wall", high) if high else 0.0, t)
 
 
 def _swept(

@@ -19,6 +19,8 @@ from wsim.scene.limits import (
     MAX_SIZE,
     MAX_SPEED,
     MAX_SPIN,
+    MIN_DENSITY,
+    MIN_MASS,
     MIN_SIZE,
 )
 
@@ -68,6 +70,8 @@ class Call:
             number = float(cast(Number, value))
         except (TypeError, ValueError):
             self.fail(f"{field} = {shown(value)} must be a number{_of(unit)}")
+        except OverflowError:
+            self.fail(f"{field} must be finite{_of(unit)}; a number of that many digits is not")
         if not math.isfinite(number):
             self.fail(f"{field} = {number} must be finite{_of(unit)}")
         return number
@@ -132,11 +136,11 @@ class Call:
 
     def density(self, value: object) -> float:
         """A density [kg/m^3]."""
-        return self.positive("density", value, MAX_DENSITY, "kg/m^3")
+        return self.positive("density", value, MAX_DENSITY, "kg/m^3", low=MIN_DENSITY)
 
     def mass(self, value: object) -> float:
         """A mass [kg]."""
-        return self.positive("mass", value, MAX_MASS, "kg")
+        return self.positive("mass", value, MAX_MASS, "kg", low=MIN_MASS)
 
     def friction(self, value: object) -> float:
         """A coefficient of friction."""
@@ -152,6 +156,12 @@ class Call:
         if number != int(number):
             self.fail(f"{field} = {number:g} must be a whole number{_of(unit)}")
         return int(number)
+
+    def flag(self, field: str, value: object) -> bool:
+        """True or False."""
+        if not isinstance(value, bool) and type(value).__name__ not in ("bool", "bool_"):  # NumPy's
+            self.fail(f"{field} = {shown(value)} must be True or False")
+        return bool(value)
 
     def axis(self, value: object) -> str:
         """X, Y or Z."""

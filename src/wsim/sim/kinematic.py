@@ -48,6 +48,8 @@ class Kinematic:
             self._target = wp.zeros(len(led), dtype=wp.transform)
             self._step = wp.zeros(1, dtype=int)
             self._curves = _arrays([curve_of(path) for path in paths.values()]) if led else []
+            hangs = _hang(model, kinematic)
+            self._hanging = wp.array(hangs, dtype=bool) if hangs.any() else None
 
     def before(self, state: Any) -> None:
         """Set the bodies on paths where a step starts, with the velocity that they have in it."""
@@ -84,11 +86,25 @@ class Kinematic:
                 outputs=[state.body_q, state.joint_q, self._step],
                 device=device,
             )
+        if (
+            self._hanging is not None
+        ):  # the solver leaves kinematic bodies where they were, and hung these on them there
+            newton.eval_fk(self.model, state.joint_q, state.joint_qd, state, joint_mask=self._hanging)
 
     def reset(self, state: Any) -> None:
         """Start the paths anew; `state` is where the next step starts."""
         self._step.zero_()
         self.before(state)
+
+
+def _hang(model: Any, kinematic: Array) -> Array:
+    """Which joints hang, over others or not, on a kinematic body, (joints,)."""
+    child, ancestor = model.joint_child.numpy(), model.joint_ancestor.numpy()
+    hangs = np.zeros(len(child), dtype=bool)
+    for j in range(len(child)):  # a joint stands after its ancestors
+        above = ancestor[j]
+        hangs[j] = above >= 0 and (hangs[above] or kinematic[child[above]])
+    return hangs
 
 
 def _arrays(curves: list[Any]) -> list[Any]:

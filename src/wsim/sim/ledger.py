@@ -32,13 +32,12 @@ class Ledger:
 
     Args:
         model: The Newton model; only its first world is read.
-        observables: The solver's, with `qfrc_actuator`, where the model has drives.
-        at_end: Whether that is the effort at the end of a step, as Runge-Kutta's last stage has it, or at its start.
+        observables: The solver's, with `qfrc_actuator` at the end of a step, where the model has drives.
     """
 
-    def __init__(self, model: Any, observables: Any | None, at_end: bool) -> None:
+    def __init__(self, model: Any, observables: Any | None) -> None:
         worlds = max(1, model.world_count)
-        self.model, self.observables, self.at_end = model, observables, at_end
+        self.model, self.observables = model, observables
         self.bodies, self.dofs = model.body_count // worlds, model.joint_dof_count // worlds
         with wp.ScopedDevice(model.device):
             self._twist = wp.zeros(model.body_count, dtype=wp.spatial_vector)
@@ -72,7 +71,7 @@ class Ledger:
         wp.launch(
             accumulate_drive,
             dim=self.dofs,
-            inputs=[effort, self.at_end, control.joint_f, self._rate, state.joint_qd, dt],
+            inputs=[effort, control.joint_f, self._rate, state.joint_qd, dt],
             outputs=[self._last, self._drives, self._unsure],
             device=device,
         )

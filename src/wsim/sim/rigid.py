@@ -15,6 +15,7 @@ from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
 from wsim.sim.contacts import contact_law, surface_velocities
 from wsim.sim.devices import steps_in_c
+from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
 from wsim.sim.time_step import is_overdamped
@@ -97,7 +98,7 @@ class RigidBodies:
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
         law = contact_law(model, world)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
-        rows = rows_a_contact * capacity + constraint_rows(world) + len(world.ropes) + 64
+        rows = rows_a_contact * capacity + constraint_rows(world) + drive_count(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
         self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, touching=touching, **sizes)
         self.solver.move_surfaces(surface_velocities(model, world))
@@ -111,7 +112,7 @@ class RigidBodies:
         self.observables: Any = self.solver.observables(kinds) if kinds else None
         self._kinematic = Kinematic(model, world, dt)
         pushed = driven or controlled or model.particle_count > 0
-        self.ledger = Ledger(model, self.observables if driven else None, self.on_c or smooth) if pushed else None
+        self.ledger = Ledger(model, self.observables if driven else None) if pushed else None
 
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""

@@ -24,6 +24,7 @@ from wsim.sim.model import build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
 from wsim.sim.rigid import RigidBodies
+from wsim.sim.rope_ways import lost_ropes
 from wsim.sim.starts import start_joints
 from wsim.solvers.solver_sph import SolverSPH
 
@@ -172,6 +173,8 @@ class Simulation:
         for name, array in arrays.items():
             if array is not None and not np.isfinite(array.numpy()).all():
                 found.append(f"{name} is not finite")
+        if self.world.ropes and not found:
+            found += lost_ropes(self.world, self.built.bodies, self.model, self.state.body_q.numpy())
         return found
 
     def run(

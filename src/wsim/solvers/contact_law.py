@@ -34,7 +34,11 @@ from typing import Any
 import numpy as np
 
 from wsim.solvers.breaking import BreakingC
+<<<<<<< HEAD
 from wsim.solvers.flight import Flight
+=======
+from wsim.solvers.drives import DrivesC
+>>>>>>> joints2
 from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
@@ -169,6 +173,7 @@ class ContactLawC:
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
         touching: Finds contacts with what MuJoCo does not know.
+        drives: The drives that damp, if there are any.
     """
 
     def __init__(
@@ -183,8 +188,13 @@ class ContactLawC:
         config: ContactConfig,
         breaking: BreakingC | None = None,
         touching: SurfaceContacts | None = None,
+        drives: DrivesC | None = None,
     ) -> None:
+<<<<<<< HEAD
         self.breaking, self.flight = breaking, flight
+=======
+        self.breaking, self.drives = breaking, drives
+>>>>>>> joints2
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law, self.curvature = geom_class, law, curvature
         self.touching, self._bow = touching, np.zeros(0)
@@ -197,6 +207,8 @@ class ContactLawC:
         rows = mujoco.mjtConstraint
         self.first_that_jumps = int(rows.mjCNSTR_FRICTION_DOF)  # after equalities come dry friction, stops and contacts
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
+        touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
+        self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -215,8 +227,12 @@ class ContactLawC:
             model.opt.disableflags &= ~self.unilateral
             self.touched = 0
         else:
+<<<<<<< HEAD
             mujoco.mj_implicit(model, data)
             self.flight.fly(model.opt.timestep)
+=======
+            self._implicit(data)
+>>>>>>> joints2
             self.touched += 1
         if model.nu:
             self._tell_efforts(data)
@@ -225,14 +241,32 @@ class ContactLawC:
         """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
         mujoco, model = self.mujoco, self.model
         self._position(data)
+<<<<<<< HEAD
         touching = bool((data.efc_type >= self.first_that_jumps).any())
+=======
+        touching = bool(np.isin(data.efc_type, self.jumping).any())
+        if self.drives is not None:
+            self.drives.choose(data, are_rows=touching or not self.smooth)
+>>>>>>> joints2
         mujoco.mj_fwdVelocity(model, data)
         if touching or not self.smooth:
             self.flight.tumble(model.opt.timestep)
         mujoco.mj_fwdActuation(model, data)
+        if self.drives is not None:
+            self.drives.take_over(data)
         mujoco.mj_fwdAcceleration(model, data)
         self._solve(data)
         return touching
+<<<<<<< HEAD
+=======
+
+    def _implicit(self, data: Any) -> None:
+        """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
+        off = int(self.mujoco.mjtDisableBit.mjDSBL_ACTUATION) if self.drives is not None else 0
+        self.model.opt.disableflags |= off
+        self.mujoco.mj_implicit(self.model, data)
+        self.model.opt.disableflags &= ~off
+>>>>>>> joints2
 
     def _position(self, data: Any) -> None:
         """What hangs on the pose, contacts with what MuJoCo does not know among it."""

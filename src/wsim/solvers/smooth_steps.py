@@ -26,7 +26,9 @@ class SmoothStepsWarp:
 
     def __init__(self, mujoco: Any, warp: Any, model: Any, data: Any, steps: Any) -> None:
         self.mujoco, self.warp, self._steps = mujoco, warp, steps
-        self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
+        bits = mujoco.mjtDisableBit
+        # Dry friction is none of its own steps' either; without it, drives are MuJoCo's actuators.
+        self.unilateral = int(bits.mjDSBL_CONTACT | bits.mjDSBL_LIMIT | bits.mjDSBL_FRICTIONLOSS)
         self._kept = [data.qpos, data.qvel, data.qacc_warmstart, data.time]
         with wp.ScopedDevice(data.qpos.device):
             self._start = [wp.empty_like(array) for array in self._kept]
@@ -63,14 +65,3 @@ class SmoothStepsWarp:
         wp.launch(count_touching, dim=data.nworld, inputs=[self._touches], outputs=[self._steps])
         for smooth, array in zip(self._smooth, (data.qpos, data.qvel), strict=True):
             wp.launch(take_where_free, dim=array.shape, inputs=[self._touches, smooth], outputs=[array])
-        if model.nu:
-            self._tell_efforts(model, data)
-
-    def _tell_efforts(self, model: Any, data: Any) -> None:
-        """What the drives give at the step's end, which the books need, whichever way the step was made."""
-        warp = self.warp
-        warp.kinematics(model, data)
-        warp.com_pos(model, data)
-        warp.transmission(model, data)
-        warp.fwd_velocity(model, data)
-        warp.fwd_actuation(model, data)

@@ -15,7 +15,11 @@ from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
+<<<<<<< HEAD
 from wsim.solvers.flight import Flight
+=======
+from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
+>>>>>>> joints2
 from wsim.solvers.single_precision import soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
@@ -94,15 +98,29 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
+<<<<<<< HEAD
         mujoco = self.import_mujoco()[0]
         self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data)
         if on_c:
             config = self.contact_config
             self._law_c = ContactLawC(
                 mujoco, self.mj_model, self._flight, geom_class, law, bends, smooth, config, self.breaking, touching
+=======
+        driven = drive_rows(self._mujoco, self.mj_model)
+        self._drives: Any = None
+        if on_c:
+            mujoco, config = self._mujoco, self.contact_config
+            drives = DrivesC(mujoco, self.mj_model, driven) if driven else None
+            self._law_c = ContactLawC(
+                mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking, touching, drives
+>>>>>>> joints2
             )
         elif may_touch or not smooth:
             self._prepare_warp(geom_class, law, bends)
+            with wp.ScopedDevice(model.device):
+                self._drives = DrivesWarp(self.mj_model, driven, self.mjw_data.nworld) if driven else None
+        else:  # Runge and Kutta's stages take drives as MuJoCo does
+            self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
             self._touched_for.zero_()
@@ -258,8 +276,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self._flight:
             self._flight.tumble(self._dt)
         warp.fwd_actuation(model, data)
+        if self._drives:
+            self._drives.take_over(data)
         warp.fwd_acceleration(model, data)
         self._aim(model, data)
+        if self._drives:
+            self._drives.aim(model, data)
         for k in range(self.contact_config.solutions):
             if k:
                 self._aim_again(model, data)
@@ -267,11 +289,33 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.give_way(model, data)
             warp.solve(model, data)
+<<<<<<< HEAD
         warp.implicit(model, data)
         if self._flight:
             self._flight.fly(self._dt)
+=======
+        self._implicit(model, data)
+>>>>>>> joints2
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
+        if model.nu:
+            self._tell_efforts(model, data)
+
+    def _implicit(self, model: Any, data: Any) -> None:
+        """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
+        flags = model.opt.disableflags
+        model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_ACTUATION) if self._drives else 0
+        self._mujoco_warp.implicit(model, data)
+        model.opt.disableflags = flags
+
+    def _tell_efforts(self, model: Any, data: Any) -> None:
+        """What the drives give at the step's end, which the books need, whichever way the step was made."""
+        warp = self._mujoco_warp
+        warp.kinematics(model, data)
+        warp.com_pos(model, data)
+        warp.transmission(model, data)
+        warp.fwd_velocity(model, data)
+        warp.fwd_actuation(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
         config, efc, contact = self.contact_config, data.efc, data.contact

@@ -50,7 +50,9 @@ class CheckExplosion(Check):
         up = evidence.up
         tops += [float(np.array(fluid.center) @ up + np.array(fluid.size) @ np.abs(up) / 2) for fluid in world.fluids]
         lows = _lows(evidence)
-        if not lows:  # nothing to land on: they fall for as long as the run lasts
+        bottoms = [float(evidence.ends(i)[0][0]) for i in range(len(world.bodies))]
+        # Nothing to land on, or not for what hangs under it: they fall for as long as the run lasts.
+        if min(lows, default=math.inf) > min(bottoms, default=math.inf) or not lows:
             lows = [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
             lows += [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))

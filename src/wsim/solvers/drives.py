@@ -1,0 +1,136 @@
+"""Drives that damp, as constraint rows: their effort is that of the speed at the step's end, and is bounded.
+
+MuJoCo takes a drive's damping into its implicit step after the constraints are solved, and leaves it there where the
+effort is clipped: a motor at its largest effort F would give F / (1 + c h / I), and a gear or a stop would be solved
+for accelerations that are not made. As a row of dry friction a drive gives clip(f - c h a), f its effort at the step's
+start and a the acceleration of the step: implicit in the speed, at most F, and solved together with all else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from wsim.kernels.drives import aim_drives, take_over
+
+
+@dataclass(frozen=True)
+class DriveRow:
+    """A drive under MuJoCo's numbers of its tendon, which gives the row, its degree of freedom and its actuators."""
+
+    tendon: int
+    dof: int
+    actuators: tuple[int, ...]
+    damping: float  # [N s/m or N m s/rad]
+
+
+def drive_rows(mujoco: Any, model: Any) -> list[DriveRow]:
+    """The drives to which `wsim.sim.drives` gave a tendon.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model.
+    """
+    found = []
+    for tendon in range(model.ntendon):
+        first = model.tendon_adr[tendon]
+        if model.wrap_type[first] != mujoco.mjtWrap.mjWRAP_JOINT:
+            continue
+        joint = model.wrap_objid[first]
+        drives = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (model.actuator_trnid[:, 0] == joint)
+        actuators = np.flatnonzero(drives)
+        damping = -float(model.actuator_biasprm[actuators, 2].sum())
+        found.append(DriveRow(tendon, int(model.jnt_dofadr[joint]), tuple(actuators.tolist()), damping))
+    return found
+
+
+class DrivesC:
+    """Drives as rows of MuJoCo in C, in steps of the first order alone.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model.
+        rows: Its drives.
+    """
+
+    def __init__(self, mujoco: Any, model: Any, rows: list[DriveRow]) -> None:
+        self.mujoco, self.model, self._rows = mujoco, model, rows
+        self._dofs = np.array([row.dof for row in rows])
+        self._of_tendon = {row.tendon: k for k, row in enumerate(rows)}
+        self._damping = np.array([row.damping for row in rows])
+        self._moment = np.zeros((len(rows), model.nu))
+        for k, row in enumerate(rows):
+            self._moment[k, list(row.actuators)] = 1.0
+        self._off, self._are_rows = int(mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS), True
+
+    def choose(self, data: Any, are_rows: bool) -> None:
+        """Let the drives be rows in this step, or else MuJoCo's actuators, as Runge and Kutta's stages take them."""
+        if are_rows == self._are_rows:
+            return
+        self._are_rows = are_rows
+        self.model.opt.disableflags ^= self._off
+        self.mujoco.mj_makeConstraint(self.model, data)
+        self.mujoco.mj_island(self.model, data)
+        self.mujoco.mj_projectConstraint(self.model, data)
+
+    def take_over(self, data: Any) -> None:
+        """Give the rows their law, and take the drives out of what is applied."""
+        if not self._are_rows:
+            return
+        data.qfrc_actuator[self._dofs] = 0.0
+        rows = np.flatnonzero(data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON)
+        order = [self._of_tendon[tendon] for tendon in data.efc_id[rows].tolist()]
+        weight = self._damping[order] * self.model.opt.timestep
+        data.efc_D[rows], data.efc_R[rows] = weight, 1.0 / weight
+        if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+            copies = data.map_efc2iefc[rows]
+            data.iefc_D[copies], data.iefc_R[copies] = weight, 1.0 / weight
+        data.efc_aref[rows] = (self._moment @ data.actuator_force)[order] / weight
+
+
+class DrivesWarp:
+    """Drives as rows of MuJoCo Warp, in the law's steps.
+
+    Args:
+        model: MuJoCo's model.
+        rows: Its drives.
+        worlds: How many there are.
+    """
+
+    def __init__(self, model: Any, rows: list[DriveRow], worlds: int) -> None:
+        damping, dofs = np.zeros(model.ntendon), np.zeros(model.ntendon, dtype=int)
+        for row in rows:
+            damping[row.tendon], dofs[row.tendon] = row.damping, row.dof
+        pairs = [(*row.actuators, -1)[:2] for row in rows]
+        self._count = len(rows)
+        self._dof = wp.array([row.dof for row in rows], dtype=int)
+        self._tendon = wp.array([row.tendon for row in rows], dtype=int)
+        self._actuator = wp.array(np.array(pairs), dtype=int)
+        self._of_tendon = [wp.array(damping, dtype=float), wp.array(model.tendon_invweight0, dtype=float),
+                           wp.array(dofs, dtype=int)]  # fmt: skip
+        self._effort = wp.zeros((worlds, model.ntendon), dtype=float)
+
+    def take_over(self, data: Any) -> None:
+        """Take the drives out of what is applied."""
+        wp.launch(
+            take_over,
+            dim=(data.nworld, self._count),
+            inputs=[self._dof, self._tendon, self._actuator, data.actuator_force],
+            outputs=[self._effort, data.qfrc_actuator],
+        )
+
+    def aim(self, model: Any, data: Any) -> None:
+        """Give the rows their law."""
+        efc = data.efc
+        wp.launch(
+            aim_drives,
+            dim=(data.nworld, data.njmax),
+            inputs=[
+                data.nefc, efc.type, efc.id, *self._of_tendon, self._effort, efc.frictionloss, data.qacc_smooth,
+                data.qacc_warmstart, model.opt.timestep,
+            ],
+            outputs=[efc.D, efc.aref],
+        )  # fmt: skip
