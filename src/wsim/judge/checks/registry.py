@@ -13,6 +13,7 @@ from wsim.judge.checks import (
     cord,
     energy,
     fluid,
+    forces,
     joint,
     mass,
     motion,
@@ -31,8 +32,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, energy, contact, rest, joint, cord, mass, plan, plan_joints, plan_contacts, plan_motion,
-    fluid, camera,
+    physics, settled, motion, forces, energy, contact, rest, joint, cord, mass, plan, plan_joints, plan_contacts,
+    plan_motion, fluid, camera,
 )  # fmt: skip
 
 
