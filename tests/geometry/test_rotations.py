@@ -5,7 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from wsim.geometry.rotations import conjugate, line_of_sight, matrices, mean_rotation, multiply, rotate, tilt
+from wsim.geometry.rotations import (
+    conjugate,
+    level,
+    line_of_sight,
+    matrices,
+    mean_rotation,
+    multiply,
+    rotate,
+    sides_of,
+    tilt,
+)
 
 
 def about(axis: int, degrees: float) -> np.ndarray:
@@ -54,3 +64,11 @@ def test_a_tilt_is_since_the_start_and_a_yaw_is_none() -> None:
     lying = about(0, 90.0)
     q = np.stack([lying, multiply(about(2, 50.0), lying), multiply(about(0, 30.0), lying)])
     assert tilt(q) == pytest.approx([0.0, 0.0, 30.0], abs=1e-5)
+
+
+def test_level_axes_are_square_to_up_and_x_and_y_where_it_is_z():
+    assert np.array_equal(sides_of(np.array([0.0, 0.0, 1.0])), np.eye(3)[:2])
+    for up in (np.array([0.6, 0.0, 0.8]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, -1.0])):
+        axes = np.vstack([sides_of(up), up])
+        assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12) and np.linalg.det(axes) == pytest.approx(1.0)
+        assert level(np.array([[1.0, 2.0, 3.0]]), up) @ up == pytest.approx(0.0, abs=1e-12)

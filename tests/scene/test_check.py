@@ -56,6 +56,7 @@ SPOILT: list[tuple[Callable[[Usd.Stage], None], str]] = [
     (_attribute("/World/water", "wsim:size", Gf.Vec3f(1, -1, 1)), "/World/water.wsim:size: -1 must be > 0 m"),
     (_attribute("/World/tank", "wsim:innerSize", Gf.Vec3f(1, 1, 0)), "/World/tank.wsim:innerSize: 0 must be > 0 m"),
     (_attribute("/World/PhysicsScene", "wsim:duration", 1e9), "wsim:duration: 1e+09 must be <= 3600 s"),
+    (_attribute("/World/PhysicsScene", "wsim:timeStep", 1e-12), "wsim:timeStep: 1e-12 must be >= 1e-05 s, or 0"),
     (_attribute("/World/hinge", "physics:localPos0", Gf.Vec3f(math.inf, 0, 0)), "physics:localPos0: inf"),
     (_attribute("/World/hinge", "physics:lowerLimit", math.nan), "physics:lowerLimit: nan must be finite"),
     (_nan_point, "/World/mesh.points: nan must be finite"),

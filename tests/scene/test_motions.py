@@ -96,6 +96,35 @@ def test_what_cannot_roll_is_refused(kind, given, said):
         getattr(Scene(), kind)("thing", rolling=True, **given)
 
 
+@pytest.mark.parametrize("late", [False, True])
+@pytest.mark.parametrize(
+    ("gravity", "spin"),
+    [((0, 0, -9.81), (-10, 0, 0)), ((9.81, 0, 0), (0, 0, -10)), ((0, 0, 1.6), (10, 0, 0)), ((0, 0, 0), (-10, 0, 0))],
+)
+def test_what_rolls_rolls_on_what_gravity_presses_it_to(late, gravity, spin):
+    """n x v / r, n against gravity, wherever in the program that is stated; without any, up is Z."""
+    scene = Scene()
+    if not late:
+        scene.simulation(gravity=gravity)
+    scene.sphere("ball", radius=0.1, velocity=(0, 1, 0), rotation_deg=(20, 30, 40), rolling=True)
+    scene.simulation(gravity=gravity)
+    (ball,) = describe(scene.stage).bodies
+    assert np.array(ball.angular_velocity) == pytest.approx(np.array(spin), abs=1e-5)
+
+
+def test_a_gravity_along_which_a_ball_was_to_roll_is_refused():
+    scene = Scene()
+    scene.sphere("ball", radius=0.1, velocity=(0, 1, 0), rolling=True)
+    with pytest.raises(SceneError, match=r'sphere\("ball"\): rolling = True .* would roll on a wall'):
+        scene.simulation(gravity=(0, 9.81, 0))
+
+
+def test_a_body_has_one_path(scene):
+    scene.path("lift", **KEYS)
+    with pytest.raises(SceneError, match='body = "lift" has a path already; give it one'):
+        scene.path("lift", **KEYS)
+
+
 def test_a_stage_by_other_means_is_checked(scene, tmp_path):
     """Keys out of order."""
     scene.path("lift", **KEYS)

@@ -21,7 +21,7 @@ Isolation = Annotated[
 Pictures = Annotated[bool, typer.Option("--pictures/--no-pictures", help="Render camera frames and the video.")]
 TimeStep = Annotated[
     float | None,
-    typer.Option("--time-step", min=1e-7, max=0.1, help="Upper bound of the time step [s]; default: chosen."),
+    typer.Option("--time-step", min=1e-5, max=0.1, help="Upper bound of the time step [s]; default: chosen."),
 ]
 Verify = Annotated[
     bool,

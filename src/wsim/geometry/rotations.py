@@ -47,16 +47,43 @@ def matrices(q: Floats) -> Floats:
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def upwards(gravity: ArrayLike) -> Floats:
+    """The unit vector against gravity (3,); +Z where there is none."""
+    pull = np.asarray(gravity, dtype=np.float64)
+    strength = float(np.linalg.norm(pull))
+    return -pull / strength if strength > 0.0 else UP.copy()
+
+
+def level(vectors: Floats, up: Floats) -> Floats:
+    """What vectors (..., 3) have across a unit vector (3,)."""
+    along: Floats = vectors - (vectors @ up)[..., None] * up
+    return along
+
+
+def sides_of(up: Floats) -> Floats:
+    """Two level unit vectors (2, 3), square to each other: X and Y where Z is up, else turned with it the shortest way.
+
+    Upside down, X and -Y.
+    """
+    if up[2] < -1.0 + 1e-12:
+        return np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    q = np.array([-up[1], up[0], 0.0, 1.0 + up[2]])  # (Z x up, 1 + Z . up), of the half angle
+    return rotate(q / np.linalg.norm(q), np.eye(3)[:2])
+
+
 def mean_rotation(q: Floats) -> Floats:
     """The mean (4,) of rotations (T, 4): the eigenvector of the summed outer products (Markley et al. 2007)."""
     _, vectors = np.linalg.eigh(q.T @ q)
     return np.asarray(vectors[:, -1], dtype=np.float64)
 
 
-def tilt(q: Floats) -> Floats:
+def tilt(q: Floats, up: Floats = UP) -> Floats:
     """The angle between what pointed up at the first of rotations (T, 4) and up, (T,) [deg]."""
-    up = rotate(conjugate(q[0]), np.array([0.0, 0.0, 1.0]))
-    cosine = rotate(q, np.broadcast_to(up, (len(q), 3)))[:, 2]
+    own = rotate(conjugate(q[0]), up)
+    cosine = rotate(q, np.broadcast_to(own, (len(q), 3))) @ up
     return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 

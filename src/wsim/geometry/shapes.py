@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wsim.geometry.kinds import KINDS, Kind, mesh
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import UP, conjugate, multiply, rotate
 from wsim.geometry.surfaces import Surface
 
 Floats = NDArray[np.float64]
@@ -59,31 +59,30 @@ def into(shape: Described, points: Floats) -> Floats:
     return rotate(conjugate(np.array(shape.rotation)), points - np.array(shape.position))
 
 
-def reach(shape: Described, q: Floats) -> tuple[Floats, Floats]:
-    """How far a shape reaches below and above its body's origin along the world's Z [m].
+def reach(shape: Described, q: Floats, up: Floats = UP) -> tuple[Floats, Floats]:
+    """How far a shape reaches below and above its body's origin [m].
 
     Args:
         shape: In its body's frame.
         q: The body's rotations (T, 4).
+        up: The unit vector (3,) along which it is measured, in the world.
 
     Returns:
-        Lowest and highest z relative to the origin, (T,) each.
+        Lowest and highest relative to the origin, (T,) each.
     """
-    centre = rotate(q, np.array(shape.position, dtype=np.float64))[:, 2]
+    centre = rotate(q, np.array(shape.position, dtype=np.float64)) @ up
     full = multiply(q, np.broadcast_to(np.array(shape.rotation, dtype=np.float64), q.shape))
-    # Row 2 of the rotation matrix: the world's Z in the shape's frame.
-    up = rotate(conjugate(full), np.broadcast_to(np.array([0.0, 0.0, 1.0]), (len(q), 3)))
-    low, high = kind_of(shape).heights(up)
+    low, high = kind_of(shape).heights(rotate(conjugate(full), np.broadcast_to(up, (len(q), 3))))
     return centre + low, centre + high
 
 
-def top_under(shape: Described, points: Floats) -> Floats:
-    """The height of a shape's highest point on the vertical lines through points, (N,) [m]; -inf where none is met.
+def top_under(shape: Described, points: Floats, up: Floats = UP) -> Floats:
+    """The height of a shape's highest point on the lines along up through points, (N,) [m]; -inf where none is met.
 
-    Shape and points (N, 3) are in one frame whose Z is up: the world's, of a static shape.
+    Shape, points (N, 3) and the unit vector up (3,) are in one frame: the world's, of a static shape.
     """
-    up = rotate(conjugate(np.array(shape.rotation, dtype=np.float64)), np.array([0.0, 0.0, 1.0]))
-    return points[:, 2] + kind_of(shape).leaves(into(shape, points), up)
+    own = rotate(conjugate(np.array(shape.rotation, dtype=np.float64)), up)
+    return points @ up + kind_of(shape).leaves(into(shape, points), own)
 
 
 class Solid(Generic[S]):
@@ -94,9 +93,9 @@ class Solid(Generic[S]):
         self.surfaces = [surface_of(shape) for shape in self.shapes]
         self.volume = sum(surface.volume for surface in self.surfaces)
 
-    def reach(self, q: Floats) -> tuple[Floats, Floats]:
-        """Lowest and highest z relative to the body's origin, (T,) each [m]."""
-        ends = [reach(shape, q) for shape in self.shapes]
+    def reach(self, q: Floats, up: Floats = UP) -> tuple[Floats, Floats]:
+        """Lowest and highest along a unit vector (3,) relative to the body's origin, (T,) each [m]."""
+        ends = [reach(shape, q, up) for shape in self.shapes]
         return np.min([low for low, _ in ends], axis=0), np.max([high for _, high in ends], axis=0)
 
     def volume_below(self, q: Floats, z: float, height: float) -> float:

@@ -116,11 +116,22 @@ def _carried_on(surface: Surface, at: wp.vec3, along: wp.vec3, normal: wp.vec3, 
 
 
 @wp.func
+def _lies_along(
+    shape: Convex, planes: wp.array(dtype=wp.vec4), pose: wp.transform, corner: wp.vec3, along: wp.vec3, third: wp.vec3
+) -> bool:
+    """Whether from a corner at an edge on a shape goes on along the face: flat against it, it touches all of the face."""
+    inward = wp.normalize(third - wp.dot(third, along) * along)
+    there = signed(shape, planes, wp.transform_point(wp.transform_inverse(pose), corner + 2.0 * GUARD * inward))
+    return there[3] < 0.2 * GUARD
+
+
+@wp.func
 def _touch_face(
     surface: Surface,
     face: int,
     shape: Convex,
     corners: wp.array(dtype=wp.vec3),
+    planes: wp.array(dtype=wp.vec4),
     pose: wp.transform,
     middle: wp.vec3,
     com: wp.vec3,
@@ -182,8 +193,9 @@ def _touch_face(
                 along = wp.normalize(to - from_)
                 off = (foot - from_) - wp.dot(foot - from_, along) * along
                 third = surface.points[surface.corners[face, (e + 2) % 3]]
-                if wp.length(off) < GUARD and not _carried_on(surface, foot - off, along, side * normal, third):
-                    near = float(1.0)
+                if wp.length(off) < GUARD and not _lies_along(shape, planes, pose, centre + arm, along, third - from_):
+                    if not _carried_on(surface, foot - off, along, side * normal, third):
+                        near = float(1.0)
         if near > 0.0:
             continue
         lever = centre - com
@@ -363,7 +375,22 @@ def touch(
         if spared[row, surface.part[face]] != 0:
             continue
         _touch_face(
-            surface, face, shape, corners, pose, middle, com, velocity, spin, reach, deepest, deepest, h, probe, found
+            surface,
+            face,
+            shape,
+            corners,
+            planes,
+            pose,
+            middle,
+            com,
+            velocity,
+            spin,
+            reach,
+            deepest,
+            deepest,
+            h,
+            probe,
+            found,
         )
         for e in range(3):
             kind = surface.edge[face, e]

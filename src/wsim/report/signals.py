@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate, tilt
+from wsim.geometry.rotations import conjugate, level, rotate, tilt
 from wsim.judge.evidence.contact import distance, overlaps
 from wsim.judge.objectives.motion import downhill
 from wsim.judge.objectives.objective import support_of
@@ -180,9 +180,9 @@ def _beside(evidence: Evidence, i: int, ref: str) -> Iterator[Signal]:
 def _ways(evidence: Evidence, i: int, ref: str | None) -> Iterator[Signal]:
     """How far from where it started."""
     moved = evidence.body_q[:, i, :3] - evidence.body_q[0, i, :3]
-    if ref and _slopes(evidence, ref):
-        yield Signal("Way down the slope", "m", evidence.time, moved @ downhill(evidence, ref.rsplit("/", 1)[-1]))
-    yield Signal("Way from the start", "m", evidence.time, np.linalg.norm(moved[:, :2], axis=1))
+    if ref and _slopes(evidence, ref, i):
+        yield Signal("Way down the slope", "m", evidence.time, moved @ downhill(evidence, ref.rsplit("/", 1)[-1], i))
+    yield Signal("Way from the start", "m", evidence.time, np.linalg.norm(level(moved, evidence.up), axis=1))
     for title, axis, sign in (("front", 0, 1), ("back", 0, -1), ("left", 1, 1), ("right", 1, -1)):
         yield Signal(f"Way to the {title}", "m", evidence.time, sign * moved[:, axis])
     t = (evidence.time - evidence.time[0])[:, None]
@@ -190,9 +190,9 @@ def _ways(evidence: Evidence, i: int, ref: str | None) -> Iterator[Signal]:
     yield Signal("Off the parabola of its start", "m", evidence.time, np.linalg.norm(moved - flight, axis=1))
 
 
-def _slopes(evidence: Evidence, ref: str) -> bool:
+def _slopes(evidence: Evidence, ref: str, i: int) -> bool:
     try:
-        downhill(evidence, ref.rsplit("/", 1)[-1])
+        downhill(evidence, ref.rsplit("/", 1)[-1], i)
     except LookupError:
         return False
     return True
@@ -245,7 +245,7 @@ def _energies(evidence: Evidence, i: int) -> Iterator[Signal]:
 
 
 def _tilt(evidence: Evidence, i: int) -> Iterator[Signal]:
-    yield Signal("Tilt since the start", "deg", evidence.time, tilt(evidence.body_q[:, i, 3:]))
+    yield Signal("Tilt since the start", "deg", evidence.time, tilt(evidence.body_q[:, i, 3:], evidence.up))
 
 
 def _turning(evidence: Evidence, i: int) -> Iterator[Signal]:

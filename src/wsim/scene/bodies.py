@@ -12,7 +12,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from wsim.defaults import BODY_DENSITY
 from wsim.scene.authoring import Handle, note_line, rotation, set_extent, set_pose
 from wsim.scene.materials import Material, Materials, bind
-from wsim.scene.rolling import Round
+from wsim.scene.rolling import RollingStart, Round
 from wsim.scene.validate import Call, Vec3, shown
 
 
@@ -75,6 +75,11 @@ class MassProperties:
 class Bodies(Materials):
     """Writes a solid: an Xform with the body's physics, and one child with its geometry."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._up = Gf.Vec3d.ZAxis()  # against gravity
+        self._rolling: list[RollingStart] = []
+
     def _solid(
         self,
         call: Call,
@@ -112,7 +117,18 @@ class Bodies(Materials):
             finish_collider(shape, material)
             return mass_properties(mass, density) if mass_properties else None
 
-        return self._body_of(call, start, path, author, mass, density)
+        made = self._body_of(call, start, path, author, mass, density)
+        if options.rolling and rolls is not None:
+            prim = self._stage.GetPrimAtPath(path)
+            self._rolling.append(RollingStart(call, prim, rolls, start.velocity, start.turn))
+        return made
+
+    def _turn_up(self, up: Gf.Vec3d) -> None:
+        """Say which way is up; what was made to start rolling rolls by that. SceneError where it then cannot."""
+        spins = [(start.prim, start.spin(up)) for start in self._rolling if start.prim]
+        self._up = up
+        for prim, spin in spins:
+            UsdPhysics.RigidBodyAPI(prim).GetAngularVelocityAttr().Set(spin)
 
     def _start(self, call: Call, options: BodyOptions, rolls: Round | None = None) -> Start:
         """How a solid starts, checked before anything is authored."""
@@ -124,7 +140,7 @@ class Bodies(Materials):
         if not isinstance(options.rolling, bool):
             call.fail(f"rolling = {shown(options.rolling)} must be True or False; its resistance is rolling_friction")
         if options.rolling and rolls is not None:
-            spin = _rolling(call, options, velocity, spin, turn, rolls)
+            spin = self._spin_of(call, options, velocity, spin, turn, rolls)
         return Start(position, turn, velocity, spin, moving, options.kinematic)
 
     def _body_of(
@@ -162,14 +178,18 @@ class Bodies(Materials):
             call.fail(f"{field} = {value} on a static object; leave it out, or static=True")
         return not options.static
 
-
-def _rolling(call: Call, options: BodyOptions, velocity: Vec3, spin: Vec3, turn: Gf.Quatd, rolls: Round) -> Vec3:
-    """The spin with which it starts, where it is to roll."""
-    if options.static or options.kinematic:
-        call.fail(f"rolling = True on a {'static' if options.static else 'kinematic'} object; only a loose body rolls")
-    if any(spin):
-        call.fail(f"rolling = True and angular_velocity_deg = {spin} are both given; rolling gives the spin: keep one")
-    return rolls.spin(call, velocity, turn)
+    def _spin_of(
+        self, call: Call, options: BodyOptions, velocity: Vec3, spin: Vec3, turn: Gf.Quatd, rolls: Round
+    ) -> Vec3:
+        """The spin with which it starts, where it is to roll."""
+        if options.static or options.kinematic:
+            what = "static" if options.static else "kinematic"
+            call.fail(f"rolling = True on a {what} object; only a loose body rolls")
+        if any(spin):
+            call.fail(
+                f"rolling = True and angular_velocity_deg = {spin} are both given; rolling gives the spin: keep one"
+            )
+        return rolls.spin(call, velocity, turn, self._up)
 
 
 def _make_rigid(prim: Usd.Prim, turn: Gf.Quatd, velocity: Vec3, spin: Vec3, *, kinematic: bool) -> None:

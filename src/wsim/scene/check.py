@@ -35,6 +35,7 @@ from wsim.scene.limits import (
     MAX_PRIMS,
     MAX_SIZE,
     MAX_SPEED,
+    MIN_TIME_STEP,
 )
 
 _NOW = Usd.TimeCode.Default()
@@ -258,7 +259,7 @@ def _wsim(prim: Usd.Prim) -> Iterator[str]:
     if schema.has(prim, schema.SCENE):
         for name, limit, unit in (("duration", MAX_DURATION, "s"), ("frameRate", MAX_FRAME_RATE, "Hz")):
             yield from _bounded(prim.GetAttribute(f"wsim:{name}"), limit, unit)
-        yield from _bounded(prim.GetAttribute("wsim:timeStep"), 1.0, "s", zero=True)
+        yield from _bounded(prim.GetAttribute("wsim:timeStep"), 1.0, "s", zero=True, low=MIN_TIME_STEP)
     if schema.has(prim, schema.FLUID):
         yield from _fluid(prim)
     if schema.has(prim, schema.SURFACE_VELOCITY):
@@ -285,8 +286,10 @@ def _fluid(prim: Usd.Prim) -> Iterator[str]:
             yield f"{prim.GetPath()}.wsim:spacing: {spacing:g} m gives {count:.3g} particles; at most {MAX_COUNT:.3g}"
 
 
-def _bounded(attribute: Usd.Attribute, high: float, unit: str, *, zero: bool = False) -> Iterator[str]:
-    """Problems of an authored number, or vector of numbers, that must be > 0 (or >= 0) and <= high."""
+def _bounded(
+    attribute: Usd.Attribute, high: float, unit: str, *, zero: bool = False, low: float = 0.0
+) -> Iterator[str]:
+    """Problems of an authored number, or vector of numbers, that must be > 0 (or >= 0), >= low and <= high."""
     if not attribute or not attribute.HasAuthoredValue():
         return
     numbers = _as_array(attribute.Get())
@@ -297,6 +300,8 @@ def _bounded(attribute: Usd.Attribute, high: float, unit: str, *, zero: bool = F
             yield f"{attribute.GetPath()}: {number:g} must be {'>=' if zero else '>'} 0 {unit}"
         elif number > high:
             yield f"{attribute.GetPath()}: {number:g} must be <= {high:g} {unit}"
+        elif 0.0 < number < low:
+            yield f"{attribute.GetPath()}: {number:g} must be >= {low:g} {unit}{', or 0' if zero else ''}"
 
 
 def _within(attribute: Usd.Attribute, limit: float, unit: str) -> Iterator[str]:

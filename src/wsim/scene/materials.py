@@ -96,7 +96,8 @@ class Materials(Author):
             color=call.color("color", color),
             opacity=call.fraction("opacity", opacity),
         )
-        return self._author_material(material)
+        self._materials[name] = self._author_material(material)
+        return material
 
     def _author_material(self, material: Material, look: Look | None = None) -> Material:
         look = look or Look()
@@ -123,7 +124,6 @@ class Materials(Author):
         if material.density is not None:
             physics.CreateDensityAttr(material.density)
         note_line(usd.GetPrim())
-        self._materials[material.name] = material
         return material
 
     def _surface(

@@ -68,10 +68,13 @@ class Motions(Author):
             repeat: Start anew after the last key, which must then equal the first; else it holds there.
 
         Raises:
-            SceneError: If the body is not kinematic, keys are missing or out of order, or it would jump.
+            SceneError: If the body is not kinematic, has a path already, keys are missing or out of order, or it would
+                jump.
         """
         call = Call("path", getattr(body, "name", body))
         prim = self._leads(call, body)
+        if str(prim.GetPath()) in self._paths:
+            call.fail(f'body = "{prim.GetName()}" has a path already; give it one, with all of its keys')
         when = _times(call, times)
         if positions is None and rotations_deg is None:
             call.fail("neither positions nor rotations_deg is given; give one, or both")

@@ -17,7 +17,7 @@ from wsim.scene.catalogued import Catalogued
 from wsim.scene.check_joints import joint_problems
 from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
-from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE
+from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE, MIN_TIME_STEP
 from wsim.scene.motions import Motions
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.views import Views
@@ -117,7 +117,8 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         Args:
             duration: Simulated time [s]; 5 if never given.
             frame_rate: Recorded frames a second; 30.
-            time_step: Upper bound [s]; the simulator takes a shorter one where the world needs it. 0: none.
+            time_step: Upper bound [s], 1e-5 or longer; the simulator takes a shorter one where the world needs it. 0:
+                none.
             seed: 0.
             gravity: (x, y, z) [m/s^2]; (0, 0, -9.81).
 
@@ -130,6 +131,8 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         if frame_rate is not None:
             self._frame_rate = call.positive("frame_rate", frame_rate, MAX_FRAME_RATE, "Hz")
         step = None if time_step is None else call.within("time_step", time_step, 0.0, 1.0, "s")
+        if step and step < MIN_TIME_STEP:
+            call.fail(f"time_step = {step:g} must be >= {MIN_TIME_STEP:g} s, or 0 for the simulator's choice")
         number = None if seed is None else call.integer("seed", seed, 0, _MAX_SEED)
         if gravity is not None:
             self._set_gravity(call.vector("gravity", gravity, 1e3, "m/s^2"))
@@ -184,6 +187,7 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         vector = Gf.Vec3d(*gravity)
         magnitude = vector.GetLength()
         direction = vector / magnitude if magnitude > 0.0 else Gf.Vec3d(0.0, 0.0, -1.0)
+        self._turn_up(-direction)
         scene = UsdPhysics.Scene(self._stage.GetPrimAtPath(PHYSICS_SCENE))
         scene.CreateGravityDirectionAttr(Gf.Vec3f(direction))
         scene.CreateGravityMagnitudeAttr(magnitude)

@@ -26,8 +26,8 @@ from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 CONTACTS_A_PAIR = 8  # box on box gives up to eight points
 ROWS_A_CONTACT = 3  # push and friction; where rolling is resisted, 6
 SMALLEST_CONTACTS = 64
-# A line search that single precision cannot make any better is no overflow.
-STAGNATED = int(OverflowType.LS_ITERATIONS)
+# A search that single precision cannot make any better is no overflow: MuJoCo in C stops as silently at its last step.
+STAGNATED = int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
 FAR = 1e8  # a joint's limit beyond this is none [rad or m]
 
 
@@ -159,8 +159,10 @@ class RigidBodies:
     def problems(self) -> list[str]:
         """What the solver warned of since the start: each fails the run."""
         if not self.on_c:
-            worlds = np.flatnonzero(self.overflow_seen.numpy() & ~STAGNATED)
-            return [f"contact buffers overflowed in worlds {worlds[:8].tolist()}"] if len(worlds) else []
+            seen = self.overflow_seen.numpy() & ~STAGNATED
+            worlds = np.flatnonzero(seen)
+            which = OverflowType(int(np.bitwise_or.reduce(seen, initial=0)))
+            return [f"contact buffers overflowed in worlds {worlds[:8].tolist()}: {which.name}"] if len(worlds) else []
         mujoco = self.solver.import_mujoco()[0]
         found = []
         for kind in range(len(self.solver.mj_data.warning)):

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from wsim.errors import UserError
+from wsim.scene.limits import MIN_TIME_STEP
 from wsim.scene.world import Body, Guide, Spring, World
 
 DRIVE_SHARE = 0.25  # of 1 / omega of a drive or a spring: its force is taken at the step's start
-SMALLEST_DRIVE_STEP = 1e-5  # [s]
 
 
 def spring_limits(world: World) -> dict[str, float]:
@@ -22,7 +22,7 @@ def spring_limits(world: World) -> dict[str, float]:
     3.17 leaves a tendon's damping out of the implicit step of a loose body.
 
     Raises:
-        UserError: If a spring is so stiff that no step of `SMALLEST_DRIVE_STEP` or more can follow it.
+        UserError: If a spring is so stiff that no step of `MIN_TIME_STEP` or more can follow it.
     """
     bodies = {body.prim: body for body in world.bodies}
     rows = {spring.prim: _rows(spring, bodies) for spring in world.springs}
@@ -39,8 +39,8 @@ def spring_limits(world: World) -> dict[str, float]:
             if value <= 0.0 or rate <= 0.0:
                 continue
             step = DRIVE_SHARE / rate
-            if step < SMALLEST_DRIVE_STEP:
-                most = value * (step / SMALLEST_DRIVE_STEP) ** (1.0 / power)
+            if step < MIN_TIME_STEP:
+                most = value * (step / MIN_TIME_STEP) ** (1.0 / power)
                 raise UserError(
                     f"{spring.prim}: {name} = {value:.4g} {unit} on what it moves would need a time step of "
                     f"{step:.1e} s; give at most {most:.2g} {unit}, or more mass"

@@ -10,9 +10,10 @@ import numpy as np
 from wsim.errors import UserError
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
+from wsim.scene.limits import MIN_TIME_STEP
 from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import Body, Joint, World
-from wsim.sim.spring_steps import DRIVE_SHARE, SMALLEST_DRIVE_STEP, spring_limits
+from wsim.sim.spring_steps import DRIVE_SHARE, spring_limits
 
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
 DAMPED_SHARE = 0.5  # of a speed, lost in a step
@@ -37,7 +38,7 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
         given: A step from the caller or the stage [s]: one more upper bound.
 
     Raises:
-        UserError: If a drive or a spring is so stiff that no step of `SMALLEST_DRIVE_STEP` or more can follow it.
+        UserError: If a drive or a spring is so stiff that no step of `MIN_TIME_STEP` or more can follow it.
     """
     limits = {"rigid bodies": LARGEST_RIGID_STEP}
     crossing = _crossing_time(world)
@@ -64,8 +65,8 @@ def _drive_limits(world: World) -> dict[str, float]:
             continue
         inertia = driven_inertia(world, joint)
         step = DRIVE_SHARE * math.sqrt(inertia / joint.drive.stiffness)
-        if step < SMALLEST_DRIVE_STEP:
-            most = inertia * (DRIVE_SHARE / SMALLEST_DRIVE_STEP) ** 2
+        if step < MIN_TIME_STEP:
+            most = inertia * (DRIVE_SHARE / MIN_TIME_STEP) ** 2
             unit = "N/m" if joint.kind == "prismatic" else "N m/rad"
             raise UserError(
                 f"{joint.prim}: drive.stiffness = {joint.drive.stiffness:.4g} {unit} on what it moves would need a "

@@ -12,6 +12,7 @@ from mujoco_warp import OverflowType
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
+from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.single_precision import soften_for_single_precision
@@ -166,7 +167,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
 
     def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
         device, data = self.model.device, self.mjw_data
-        self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS)
+        self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
         # the contacts of a box that slides, on an H200 in one step of some 300.
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
@@ -184,9 +185,22 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
             self._slip = wp.zeros(data.naconmax, dtype=float)
             self._bow = wp.zeros(data.naconmax, dtype=float)
+        self.mjw_model.callback.contactfilter = self._mend_contacts
+
+    def _mend_contacts(self, model: Any, data: Any) -> None:
+        """After MuJoCo Warp's search for contacts: those that it finds only nearly, and those that it cannot know."""
+        contact = data.contact
+        wp.launch(
+            settle_round_on_flat,
+            dim=data.naconmax,
+            inputs=[
+                model.geom_type, model.geom_size, data.nacon, contact.worldid, contact.geom, data.geom_xpos,
+                data.geom_xmat,
+            ],
+            outputs=[contact.pos, contact.dist, contact.frame],
+        )  # fmt: skip
         if self._touching:
-            found, bow = self._touching, self._bow
-            self.mjw_model.callback.contactfilter = lambda model, data: found.add_to_warp(model, data, bow)
+            self._touching.add_to_warp(model, data, self._bow)
 
     def step(
         self, state_in: Any, state_out: Any, control: Any, contacts: Any, dt: float, *, observables: Any = None

@@ -159,7 +159,7 @@ BODY = {
     "velocity": _Kind("m/s", lambda e, i: e.body_qd[:, i, :3], XYZ),
     "speed": _Kind("m/s", lambda e, i: np.linalg.norm(e.body_qd[:, i, :3], axis=1)),
     "rotation": _Kind("deg", _rotation, ("roll", "pitch", "yaw")),
-    "tilt": _Kind("deg", lambda e, i: tilt(e.body_q[:, i, 3:])),
+    "tilt": _Kind("deg", lambda e, i: tilt(e.body_q[:, i, 3:], e.up)),
     "angular_velocity": _Kind("rad/s", lambda e, i: e.body_qd[:, i, 3:], XYZ),
     "kinetic_energy": _Kind("J", lambda e, i: e.motion.kinetic[:, i]),
     "contact_force": _Kind("N", lambda e, i: np.asarray(e.recording.contact_force[:, i], np.float64), XYZ),

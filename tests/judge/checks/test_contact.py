@@ -27,7 +27,8 @@ from tests.judge.theory import (
     times,
     with_world,
 )  # fmt: skip
-from wsim.judge.checks.contact import CheckFriction, CheckSupport, CheckTunnelling
+from wsim.judge.checks.contact import CheckSupport, CheckTunnelling
+from wsim.judge.checks.friction import CheckFriction
 from wsim.judge.checks.rest import CheckCreep, CheckJitter, CheckRestForce
 from wsim.scene.world import Shape
 
@@ -243,6 +244,16 @@ def test_a_mug_that_stands_on_its_end_creeps_as_a_box_does_and_one_on_its_side_m
     q[:, 0, 0] += 0.02 * right.time.astype(np.float32)
     findings = ask(CheckCreep(), replace(with_world(right, bodies=[body]), body_q=q))
     assert [f.passed for f in findings] == ([False] if asked else [])
+
+
+@pytest.mark.parametrize("after", [1.02, 1.1, 1.3])
+def test_a_box_that_stops_within_the_last_second_does_not_creep(after):
+    """From 1 s on it goes some more millimetres under a friction far above the least in the world, and stands."""
+    stopping = sliding(0.5 * G, speed=0.5 * G * after)
+    slippery = slab("ice", (1.0, 1.0, 0.1), (0.0, 9.0, -0.05))
+    slippery.shapes[0].friction = 0.05
+    statics = [*stopping.world.statics, slippery]
+    assert only(ask(CheckCreep(), with_world(stopping, statics=statics))).passed
 
 
 def test_a_box_that_slides_and_is_slowed_does_not_creep():

@@ -227,3 +227,13 @@ def test_a_contact_that_flips_from_step_to_step_may_give_what_it_hides():
     shaken = edited(right, "body_qd", (slice(None), 0, 0), 0.5 * share)
     assert ask(CheckEnergy(), shaken)[0].passed
     assert not ask(CheckEnergy(), replace(shaken, contact_force=np.zeros_like(right.contact_force)))[0].passed
+
+
+def test_a_body_that_stays_where_there_is_no_gravity_is_sound():
+    """Nothing may move it at all, and nothing does: no limit, and no division by it."""
+    t = times(1.0)
+    still = with_world(record([box()], np.zeros((len(t), 3)), np.zeros((len(t), 3)), t), gravity=(0.0, 0.0, 0.0))
+    with np.errstate(all="raise"):
+        assert [f.passed for f in ask(CheckContinuity(), still)] == [True, True]
+    jumps = edited(still, "body_q", (slice(10, None), 0, 0), 0.01)
+    assert [f.passed for f in ask(CheckContinuity(), jumps)] == [False, True]

@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.judge.theory import ask, resting, with_world
 from wsim.judge.checks.plan_contacts import CheckPlanContacts
 from wsim.plan.schema import Material, Plan, PlanObject, Pose
 from wsim.program.compose import compose
@@ -9,17 +10,6 @@ from wsim.scene import Scene
 from wsim.scene.describe import describe
 
 _GROUND, _POSE = Pose(position=(0.0, 0.0, 0.0)), Pose(position=(0.0, 0.0, 0.1))
-
-
-class _Seen:
-    """What the check asks of the evidence."""
-
-    def __init__(self, plan, world):
-        self.plan, self.world = plan, world
-
-    @staticmethod
-    def prim(name):
-        return f"/World/{name}"
 
 
 def _plan(**contact):
@@ -37,7 +27,7 @@ def _found(plan, text):
     space: dict[str, object] = {}
     exec(compile(text, "program.py", "exec"), space)
     space["build"](scene)
-    return CheckPlanContacts().evaluate(_Seen(plan, describe(scene.stage)))
+    return ask(CheckPlanContacts(), with_world(resting(), **dict(describe(scene.stage))), plan)
 
 
 @pytest.mark.parametrize("contact", [{"friction": 0.1}, {"restitution": 0.0, "rolling": 0.02}, {"restitution": 0.9}])

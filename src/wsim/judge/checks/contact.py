@@ -1,4 +1,4 @@
-"""Checks of solids against solids: no wall is passed through, friction holds and no more."""
+"""Checks of solids against solids: no wall is passed through, and nothing is pressed on by what is not there."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
 from wsim.judge.verdict import RepairTarget
-from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -165,99 +164,4 @@ def _nearest(evidence: Evidence, i: int, frames: Indices, limit: Floats) -> Floa
     return nearest
 
 
-@dataclass
-class CheckFriction(Check):
-    """What slides on level ground is slowed by mu g: it has friction, and no more than its materials give.
-
-    A ball slides where its lowest point moves; rolling, it has none to lose.
-    """
-
-    least: float = 0.6  # of mu g: a pyramid of friction gives 1 / sqrt(2) of it aslant
-    most: float = 1.25  # of mu g: a box that pitches as it slides presses unevenly
-    fewest: int = 3  # intervals
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding for each body that slides on a level static surface, touching nothing else."""
-        motion = evidence.motion
-        if len(motion.h) == 0 or evidence.gravity <= 0.0:
-            return []
-        loose = ~motion.jointed & ~motion.kinematic
-        found = []
-        for i in np.flatnonzero(loose):
-            kinds = [shape.kind for shape in evidence.solid(int(i)).shapes]
-            if kinds != ["sphere"] and any(kind not in ("box", "mesh") for kind in kinds):
-                continue  # what else is round may roll some way and slide another
-            finding = self._slides(evidence, int(i), kinds == ["sphere"])
-            if finding is not None:
-                found.append(finding)
-        return found
-
-    def _slides(self, evidence: Evidence, i: int, rolls: bool) -> Finding | None:
-        motion, h = evidence.motion, evidence.motion.h
-        slip, turning, hold = motion.v[:, i, :2], np.linalg.norm(motion.w[:, i], axis=1) * motion.radius[i], 2.0
-        if rolls:  # friction turns a ball until its lowest point stands
-            lowest = np.cross(motion.w[:, i], [0.0, 0.0, -motion.radius[i]])[:, :2]
-            slip, turning = slip + lowest, np.zeros(len(slip))
-            hold = 1.0 + float(motion.mass[i] * motion.radius[i] ** 2 / max(motion.inertia[i, 0, 0], 1e-12))
-        across = np.linalg.norm(slip, axis=1)
-        # Over the whole interval: on the surface, level, faster than friction could stop it, and not turning.
-        level = (np.abs(motion.v[:, i, 2]) < 0.1 * across) & (turning < 0.2 * across)
-        sliding = level[1:] & level[:-1] & ~motion.meets[:, i] & motion.touched[1:, i] & motion.touched[:-1, i]
-        support = self._support(evidence, i, np.flatnonzero(sliding))
-        if support is None:
-            return None
-        k, mu = support
-        k = k[np.minimum(across[k], across[k + 1]) > hold * mu * evidence.gravity * h[k]]
-        if len(k) < self.fewest or mu <= 0.0:
-            return None
-        way = slip[k] / across[k, None]
-        slowed = -float(np.einsum("ki,ki->k", motion.acceleration[k, i, :2], way).mean())
-        return self._finding(evidence, i, k, mu, slowed)
-
-    @staticmethod
-    def _support(evidence: Evidence, i: int, k: Indices) -> tuple[Indices, float] | None:
-        """Those of the intervals in which body i stands on one level static surface alone, and their friction."""
-        low = evidence.ends(i)[0]
-        under = np.zeros(len(k), dtype=int)
-        beside = np.zeros(len(k), dtype=bool)
-        supports = []
-        for shape in evidence.placed:
-            if shape.body >= 0 or shape.shape.kind not in ("plane", "box") or any(shape.shape.surface_velocity):
-                continue  # on a belt it is carried, not slowed
-            upright = rotate(shape.rotation[:1], np.array([[0.0, 0.0, 1.0]]))[0, 2] > 1.0 - 1e-6
-            top = shape.position[0, 2] + (shape.shape.size[2] / 2 if shape.shape.kind == "box" else 0.0)
-            local = rotate(conjugate(shape.rotation[k]), evidence.motion.com[k, i] - shape.position[k])
-            over = np.ones(len(k), dtype=bool)
-            near = np.ones(len(k), dtype=bool)
-            if shape.shape.kind == "box":
-                half = np.array(shape.shape.size) / 2
-                reach = evidence.motion.radius[i] + evidence.motion.reach[k, i]
-                over = np.all(np.abs(local[:, :2]) < half[:2], axis=1)
-                near = np.all(np.abs(local) < half + reach[:, None], axis=1)
-            stands = over & (np.abs(low[k] - top) < 0.05 * evidence.solid(i).smallest) & upright
-            under += stands
-            beside |= near & ~stands & ((low[k] < top - 0.05 * evidence.solid(i).smallest) | (not upright))
-            if stands.any():
-                supports.append(shape.shape)
-        chosen = k[(under == 1) & ~beside]
-        if not len(chosen):
-            return None
-        pairs = [pair_law(evidence.world, own, support) for own in evidence.solid(i).shapes for support in supports]
-        return chosen, max(pair.friction for pair in pairs)
-
-    def _finding(self, evidence: Evidence, i: int, k: Indices, mu: float, slowed: float) -> Finding:
-        body, full = evidence.world.bodies[i], mu * evidence.gravity
-        target = RepairTarget(
-            kind="physical parameter", prim=body.prim, parameter="friction", suggested=mu,
-            why="it is not slowed as its friction has it",
-        )  # fmt: skip
-        return self.between(
-            f"{body.prim} slides, and is slowed by {slowed:.3g} m/s^2; its friction of {mu:g} gives {full:.3g}",
-            slowed, (full * self.least, full * self.most), "m/s^2", expected=full, prim=body.prim,
-            time=float(evidence.time[k[0]]), span=(float(evidence.time[k[0]]), float(evidence.time[k[-1] + 1])),
-            limit_from=f"{self.most if slowed > full else self.least:g} mu g, mu the smaller of the two surfaces'",
-            target=target,
-        )  # fmt: skip
-
-
-CHECKS: Checks = (CheckTunnelling, CheckSupport, CheckFriction)
+CHECKS: Checks = (CheckTunnelling, CheckSupport)

@@ -163,7 +163,7 @@ class CheckEnergy(Check):
         parts = [energy[:, rows].sum(axis=1) for energy in (motion.kinetic, motion.potential, motion.elastic)]
         scale = float(max(parts[0].max(), np.ptp(parts[1]), np.ptp(parts[2])))
         size = np.array([evidence.solid(int(i)).smallest for i in rows])
-        height = np.abs(motion.com[:, rows, 2]).max(axis=0)
+        height = (np.abs(motion.com[:, rows]) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
         settles = self.settling * size * (motion.touched[:, rows].any(axis=0) | ~motion.jointed[rows])
         lift = float((motion.mass[rows] * g * (settles + 4.0 * FLOAT32 * height)).sum())

@@ -72,7 +72,8 @@ class CheckContinuity(Check):
         return handed
 
     def _worst(self, evidence: Evidence, value: Floats, limit: Floats, unit: str, verb: str, source: str) -> Finding:
-        share = np.where(evidence.motion.kinematic, 0.0, value / limit)
+        share = np.divide(value, limit, out=np.where(value > 0.0, np.inf, 0.0), where=limit > 0.0)
+        share = np.where(evidence.motion.kinematic, 0.0, share)
         return _strangest(
             self, evidence, value, limit, unit, share=share, limit_from=source, expected=0.0 if unit == "m" else None,
             story=f"{{prim}} {verb} {{value:.3g}} {unit} more than its velocity gives, at {{time:.3f}} s",

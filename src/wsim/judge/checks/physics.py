@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import UP, rotate
 from wsim.geometry.shapes import reach
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.carriers import surface_speed
@@ -46,11 +47,12 @@ class CheckExplosion(Check):
         """sqrt(v0^2 + 2 g dz): the speed of the fastest thing at the start after the longest fall there is [m/s]."""
         world = evidence.world
         tops = [float(evidence.ends(i)[1][0]) for i in range(len(world.bodies))]
-        tops += [fluid.center[2] + fluid.size[2] / 2 for fluid in world.fluids]
+        up = evidence.up
+        tops += [float(np.array(fluid.center) @ up + np.array(fluid.size) @ np.abs(up) / 2) for fluid in world.fluids]
         lows = _lows(evidence)
         if not lows:  # nothing to land on: they fall for as long as the run lasts
             lows = [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
-            lows += [float(evidence.track(fluid).position[:, :, 2].min()) for fluid in world.fluids]
+            lows += [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
         start = max((float(np.linalg.norm(body.velocity)) for body in world.bodies), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
@@ -96,7 +98,7 @@ class CheckExplosion(Check):
         square = np.einsum("tni,tni->tn", track.velocity, track.velocity)
         # What is under everything solid has left the world, and falls on and on: that is a leak, and counted as one.
         floor = min(_lows(evidence), default=-math.inf) - fluid.spacing
-        fastest = np.sqrt(np.where(track.position[:, :, 2] < floor, 0.0, square).max(axis=1))
+        fastest = np.sqrt(np.where(track.position @ evidence.up < floor, 0.0, square).max(axis=1))
         frame = int(np.argmax(fastest))
         value, time = float(fastest[frame]), float(track.time[frame])
         return self.measured(
@@ -112,15 +114,17 @@ class CheckExplosion(Check):
 
 
 def _lows(evidence: Evidence) -> list[float]:
-    """Height of the lowest point of each static shape [m]."""
-    return [_lowest(shape) for static in evidence.world.statics for shape in static.shapes]
+    """Height of the lowest point of each static shape [m]; none where a plane goes down without end."""
+    lows = [_lowest(shape, evidence.up) for static in evidence.world.statics for shape in static.shapes]
+    return lows if all(math.isfinite(low) for low in lows) else []
 
 
-def _lowest(shape: Shape) -> float:
-    """Height of a static shape's lowest point; a plane's own height [m]."""
+def _lowest(shape: Shape, up: Floats) -> float:
+    """Height of a static shape's lowest point; a level plane's own height [m]."""
     if shape.kind == "plane":
-        return shape.position[2]
-    low, _ = reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]))
+        tilted = abs(rotate(np.array(shape.rotation, dtype=np.float64), UP) @ up) < 1.0 - 1e-6
+        return -math.inf if tilted else float(np.array(shape.position) @ up)
+    low, _ = reach(shape, np.array([[0.0, 0.0, 0.0, 1.0]]), up)
     return float(low[0])
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import level, rotate
 from wsim.judge.checks.check import Check, Checks, listed
 from wsim.judge.checks.plan import pairs, quaternion
 from wsim.judge.verdict import RepairTarget
@@ -46,14 +46,14 @@ class CheckPlanMotion(Check):
     def _motion(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
         body = next((body for body in evidence.world.bodies if body.prim == made.prim), None)
         if body is not None and not evidence.varied:
-            yield from self._spin(body, item)
+            yield from self._spin(evidence, body, item)
         if item.surface_velocity is not None or any(any(shape.surface_velocity) for shape in made.shapes):
             yield from self._belt(made, item, fixed=body is None)
 
-    def _spin(self, body: Body, item: PlanObject) -> Iterator[Finding]:
+    def _spin(self, evidence: Evidence, body: Body, item: PlanObject) -> Iterator[Finding]:
         spin = np.array(body.angular_velocity)
         if item.rolling and item.primitive in ROLLS:
-            slip = float(np.linalg.norm(np.array(body.velocity) - _rolled(body, spin, item.size[0])))
+            slip = float(np.linalg.norm(np.array(body.velocity) - _rolled(body, spin, item.size[0], evidence.up)))
             speed = float(np.linalg.norm(body.velocity))
             if slip > self.share * speed:
                 message = f"{body.prim} starts rolling, and its surface slips by {slip:.3g} m/s at {speed:.3g} m/s"
@@ -93,11 +93,11 @@ class CheckPlanMotion(Check):
         )  # fmt: skip
 
 
-def _rolled(body: Body, spin: Floats, radius: float) -> Floats:
+def _rolled(body: Body, spin: Floats, radius: float, up: Floats) -> Floats:
     """The velocity that a spin gives what rolls, on what is as upright as its velocity lets it be [m/s]."""
     velocity = np.array(body.velocity)
     ahead = velocity / max(float(np.linalg.norm(velocity)), 1e-12)
-    normal = np.array([0.0, 0.0, 1.0]) - ahead * ahead[2]
+    normal = level(up, ahead)
     rolled: Floats = radius * np.cross(spin, normal / max(float(np.linalg.norm(normal)), 1e-12))
     return rolled
 

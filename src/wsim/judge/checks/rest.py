@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import level, rotate
 from wsim.judge.checks.check import Check, Checks, worst
 from wsim.judge.evidence.carriers import rides
 from wsim.judge.evidence.motion import FLOAT32
@@ -159,16 +159,18 @@ class CheckCreep(Check):
             if not flat or mu <= 0.0 or self._carried(evidence, int(i)) or self._afloat(evidence, int(i)):
                 continue
             way = motion.com[here[-1], i] - motion.com[here[0], i]
-            speed = float(np.linalg.norm(way)) / span
-            # By the places, whose drift is what is asked: a half of the window against the other.
-            middle = motion.com[here[len(here) // 2], i]
-            halves = np.linalg.norm([middle - motion.com[here[0], i], motion.com[here[-1], i] - middle], axis=1)
-            steady = abs(halves[1] - halves[0]) / (span / 2) < self.slowed * mu * evidence.gravity * span / 2
-            # Down a slope as steep as its friction's angle it slides: its weight pays for the friction.
-            steady &= bool(-way[2] <= self.steep * mu * np.linalg.norm(way[:2]))
+            # By the places, whose drift is what is asked: a half of the window against the other. What slides and stops
+            # within it stands in the slower half.
+            ends = here[[0, len(here) // 2, -1]]
+            speeds = np.linalg.norm(np.diff(motion.com[ends, i], axis=0), axis=1) / np.diff(evidence.time[ends])
+            # Down a slope its weight pays for the friction: as steep as that's angle, for all of it.
+            ahead = way / max(float(np.linalg.norm(way)), 1e-12)
+            rubs, pulls = mu * float(np.linalg.norm(level(motion.gravity, ahead))), float(motion.gravity @ ahead)
+            steady = abs(speeds[1] - speeds[0]) < self.slowed * (rubs - pulls) * span / 2
+            steady &= pulls <= self.steep * rubs
             size = evidence.solid(int(i)).smallest
             limit = self.share * size + 8.0 * FLOAT32 * float(np.abs(motion.com[here, i]).max()) / span
-            found.append(self._finding(evidence, int(i), speed if steady else 0.0, limit))
+            found.append(self._finding(evidence, int(i), float(speeds.min()) if steady else 0.0, limit))
         return worst(found)
 
     def _flat(self, evidence: Evidence, i: int, shape: Shape) -> bool:
@@ -176,7 +178,7 @@ class CheckCreep(Check):
         if shape.kind != "cylinder":
             return shape.kind in ("box", "mesh")
         axis = rotate(np.array(shape.rotation), np.array([0.0, 0.0, 1.0]))
-        up = np.abs(rotate(evidence.body_q[evidence.window, i, 3:], axis[None])[:, 2])
+        up = np.abs(rotate(evidence.body_q[evidence.window, i, 3:], axis[None]) @ evidence.up)
         return bool(up.min() > math.cos(math.radians(self.upright)))
 
     @staticmethod

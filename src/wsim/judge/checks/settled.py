@@ -42,7 +42,7 @@ class CheckSettled(Check):
         body, solid = evidence.world.bodies[i], evidence.solid(i)
         vertical = bool(evidence.world.fluids) or any(shape.kind in ROUND for shape in solid.shapes)
         v = evidence.body_qd[evidence.last(self.seconds), i, :3]
-        speed = math.sqrt(float(np.mean(v[:, 2] ** 2 if vertical else np.sum(v**2, axis=1))))
+        speed = math.sqrt(float(np.mean((v @ evidence.up) ** 2 if vertical else np.sum(v**2, axis=1))))
         limit = self.factor * evidence.velocity_scale(solid.smallest)
         return self.measured(
             f"{body.prim} has {'a vertical speed' if vertical else 'a speed'} of {speed:.3g} m/s (rms) at the end",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import mean_rotation
+from wsim.geometry.rotations import mean_rotation, upwards
 from wsim.geometry.shapes import Solid
 from wsim.judge.evidence.containment import Containment, local
 from wsim.judge.evidence.placed import placed_shapes
@@ -79,6 +79,11 @@ class Recorded:
     def gravity(self) -> float:
         """The strength of gravity [m/s^2]."""
         return float(np.linalg.norm(self.world.gravity))
+
+    @cached_property
+    def up(self) -> Floats:
+        """Against gravity (3,): what heights are along; +Z where there is none."""
+        return upwards(self.world.gravity)
 
     @property
     def varied(self) -> bool:
@@ -151,8 +156,8 @@ class Recorded:
     def ends(self, i: int) -> tuple[Floats, Floats]:
         """Height of a body's lowest and highest point, (T,) each [m]."""
         if i not in self._ends:
-            low, high = self.solid(i).reach(self.body_q[:, i, 3:])
-            z = self.body_q[:, i, 2]
+            low, high = self.solid(i).reach(self.body_q[:, i, 3:], self.up)
+            z = self.body_q[:, i, :3] @ self.up
             self._ends[i] = (z + low, z + high)
         return self._ends[i]
 

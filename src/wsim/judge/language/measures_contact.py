@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.kinds import ROUND
-from wsim.geometry.rotations import rotate
+from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import gap, moving_size, touch_reach
@@ -115,7 +115,7 @@ def _rolls(asked: RollsWithoutSlip, signals: Signals) -> list[Measure]:
     if not round_:
         raise MissingError("it is not round: only a sphere, a cylinder or a capsule rolls")
     radius = max(shape.size[0] for shape in round_)
-    normal = _normal(signals, asked.on)
+    normal = _normal(signals, asked.object, asked.on)
     twist = signals.qd(asked.object)
     under = signals.velocity(asked.on) if asked.on else 0.0
     v, w = twist[..., :3] - under, twist[..., 3:]
@@ -130,13 +130,13 @@ def _rolls(asked: RollsWithoutSlip, signals: Signals) -> list[Measure]:
     return [Measure(what, prim, value, limit, "m/s", limit, source, expected=0.0)]
 
 
-def _normal(signals: Signals, on: str | None) -> Floats:
-    """What the ground of a fixed object faces (3,): up, or its first shape's own Z."""
+def _normal(signals: Signals, name: str, on: str | None) -> Floats:
+    """What a body rolls on faces (3,): up, or as the face of a fixed object that it is over."""
     if on is None or signals.moves(on):
         return signals.up
     prim = signals.prim(on)
-    shape = next(static.shapes[0] for static in signals.world.statics if static.prim == prim)
-    return rotate(np.array(shape.rotation, dtype=np.float64), np.array([0.0, 0.0, 1.0]))
+    shapes = next(static.shapes for static in signals.world.statics if static.prim == prim)
+    return normal_under(shapes, signals.centre(name).reshape(-1, 3), signals.up)
 
 
 @measures(CollidesWith)

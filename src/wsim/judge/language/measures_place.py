@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, multiply, rotate
-from wsim.geometry.shapes import reach
+from wsim.geometry.rotations import conjugate, rotate, sides_of
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
@@ -66,16 +65,12 @@ def _stays_within(asked: StaysWithin, signals: Signals) -> list[Measure]:
 def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
     prim, container = signals.prim(asked.object), signals.container(asked.ref)
     q, solid = signals.frames(asked.object).body_q[:, 0], signals.solid(asked.object)
-    back = conjugate(np.array(container.rotation, dtype=np.float64))
+    axes = rotate(np.array(container.rotation, dtype=np.float64), np.eye(3))
     local = Evidence.local(container, q[:, :3])
     room = []
     for axis, half in enumerate(np.array(container.inner_size) / 2):
-        # The extents along an axis of the container are those along Z after that axis was turned to Z.
-        turned = multiply(np.broadcast_to(multiply(_TO_Z[axis], back), q[:, 3:].shape), q[:, 3:])
-        ends = [reach(shape, turned) for shape in solid.shapes]
-        low = local[:, axis] + np.min([e[0] for e in ends], axis=0)
-        high = local[:, axis] + np.max([e[1] for e in ends], axis=0)
-        room += [half - high, half + low]
+        low, high = solid.reach(q[:, 3:], axes[axis])
+        room += [half - local[:, axis] - high, half + local[:, axis] + low]
     value = signals.fold(np.min(room, axis=0))
     tolerance = LASTING * solid.smallest if asked.within is None else asked.within
     source = f"{LASTING:g} of its smallest extent, as the check of penetration has it"
@@ -85,14 +80,6 @@ def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
             source if asked.within is None else "the objective's", at_most=False,
         )
     ]  # fmt: skip
-
-
-_HALF = math.sqrt(0.5)
-_TO_Z = (  # quaternions that turn X, Y and Z to Z
-    np.array([0.0, -_HALF, 0.0, _HALF]),
-    np.array([_HALF, 0.0, 0.0, _HALF]),
-    np.array([0.0, 0.0, 0.0, 1.0]),
-)
 
 
 @measures(StaysInside)
@@ -139,12 +126,11 @@ def _tipping(signals: Signals, name: str) -> tuple[float, str]:
     """The tilt at which a body's middle is over the edge that it tips about [deg]: beyond it, it falls."""
     solid = signals.solid(name)
     q = signals.frames(name).body_q[:1, 0, 3:]
-    low, high = solid.reach(q)
-    halves = []
-    for axis in (0, 1):
-        ends = [reach(shape, multiply(_TO_Z[axis][None], q)) for shape in solid.shapes]
-        halves.append(float(np.max([e[1] for e in ends]) - np.min([e[0] for e in ends])) / 2)
-    half, middle = min(halves), float(high[0] - low[0]) / 2
+    *halves, middle = (
+        float(high[0] - low[0]) / 2
+        for low, high in (solid.reach(q, axis) for axis in (*sides_of(signals.up), signals.up))
+    )
+    half = min(halves)
     angle = math.degrees(math.atan2(half, middle))
     return angle, f"atan({half:.3g} m / {middle:.3g} m): there its middle is over the edge that it tips about"
 

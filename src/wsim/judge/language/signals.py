@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.rotations import conjugate, rotate, upwards
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.recording.recording import Recording
@@ -97,8 +97,7 @@ class Signals:
     @cached_property
     def up(self) -> Floats:
         """Against gravity (3,); +Z where there is none."""
-        pull = np.array(self.world.gravity, dtype=np.float64)
-        return -pull / self.gravity if self.gravity > 0.0 else np.array([0.0, 0.0, 1.0])
+        return upwards(self.world.gravity)
 
     def speed_scale(self, length: float) -> float:
         """The speed sqrt(g L) that gravity gives over a length [m/s]."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, level, multiply, rotate
 from wsim.judge.evidence.pendulum import swing_stretch
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
@@ -155,13 +155,13 @@ class ObjectiveTilts(ObjectiveCheck):
         prim = evidence.prim(self.objective.object)
         i, j = evidence.index(prim), evidence.index(evidence.prim(self.ref()))
         side = evidence.body_q[0, j, :3] - evidence.body_q[0, i, :3]
-        side[2] = 0.0
+        side = level(side, evidence.up)
         if np.linalg.norm(side) < 1e-6:
             raise MissingError(f"{self.ref()} starts over the middle of {self.objective.object}: no side goes down")
         q = evidence.body_q[:, i, 3:]
         since = multiply(q, np.broadcast_to(conjugate(q[0]), q.shape))
         turned = rotate(since, np.broadcast_to(side / np.linalg.norm(side), (len(q), 3)))
-        below = np.degrees(np.arcsin(np.clip(-turned[:, 2], -1.0, 1.0)))
+        below = np.degrees(np.arcsin(np.clip(-turned @ evidence.up, -1.0, 1.0)))
         value = float(below.max())
         limit = self.objective.tolerance or self.angle
         return [

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import level
 from wsim.judge.evidence.contact import distance
+from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 from wsim.scene.contact import largest_friction
@@ -47,7 +48,7 @@ class ObjectiveMoves(ObjectiveCheck):
         elif direction is not None:
             way, where = moved[:, :2] @ np.array(DIRECTIONS[direction]), f"to the {direction}"
         else:
-            way, where = np.linalg.norm(moved[:, :2], axis=1), "from where it was"
+            way, where = np.linalg.norm(level(moved, evidence.up), axis=1), "from where it was"
         wanted = self.objective.value
         limit = wanted if wanted is not None else self.share * evidence.solid(i).smallest
         # Down a ramp it may come back from what it hits; else it is the end that counts.
@@ -70,7 +71,7 @@ class ObjectiveSlides(ObjectiveMoves):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The way made [m], and how much of it is rolling [1]."""
         i = evidence.index(evidence.prim(self.objective.object))
-        along = downhill(evidence, self.ref()) if self.objective.ref is not None else None
+        along = downhill(evidence, self.ref(), i) if self.objective.ref is not None else None
         return [self._way(evidence, i, self.objective.direction, along), self._turning(evidence, i, rolls=False)]
 
     def _turning(self, evidence: Evidence, i: int, rolls: bool) -> Finding:
@@ -106,7 +107,7 @@ class ObjectiveRollsDown(ObjectiveSlides):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The way made [m], how much of it is rolling [1], and for a ball let go the acceleration [m/s^2]."""
         i = evidence.index(evidence.prim(self.objective.object))
-        along = downhill(evidence, self.ref())
+        along = downhill(evidence, self.ref(), i)
         found = [self._way(evidence, i, None, along), self._turning(evidence, i, rolls=True)]
         body = evidence.world.bodies[i]
         here = self._frames(evidence, i) & self._on_ramp(evidence, body)
@@ -115,7 +116,7 @@ class ObjectiveRollsDown(ObjectiveSlides):
             return found
         radius = body.shapes[0].size[0]
         inertia = float(np.trace(np.array(body.inertia).reshape(3, 3))) / 3
-        pull = evidence.gravity * float(-along[2])
+        pull = float(evidence.motion.gravity @ along)
         expected = pull / (1 + inertia / (body.mass * radius**2))
         way = (evidence.body_q[here, i, :3] - evidence.body_q[0, i, :3]) @ along
         # From rest s = a t^2 / 2, so that the speed at s tells a = v^2 / 2 s, whenever it was let go.
@@ -143,14 +144,13 @@ class ObjectiveRollsDown(ObjectiveSlides):
         return here
 
 
-def downhill(evidence: Evidence, name: str) -> Floats:
-    """The unit vector down the slope of a static object's first box (3,); MissingError where it has none."""
+def downhill(evidence: Evidence, name: str, i: int) -> Floats:
+    """The unit vector (3,) down the slope of the static object's face that body i is over; MissingError without one."""
     prim = evidence.prim(name)
     static = evidence.static(prim)
     if static is None or not static.shapes:
         raise MissingError(f"the world has no static object {prim} to go down")
-    normal = rotate(np.array(static.shapes[0].rotation, dtype=np.float64), np.array([0.0, 0.0, 1.0]))
-    slope = np.array([0.0, 0.0, -1.0]) + normal[2] * normal
+    slope = level(-evidence.up, normal_under(static.shapes, evidence.body_q[:, i, :3], evidence.up))
     steepness = float(np.linalg.norm(slope))
     if steepness < DOWNHILL_LEAST:
         raise MissingError(f"{prim} is level: nothing goes down it")
@@ -267,12 +267,12 @@ class ObjectiveCollidesWith(ObjectiveCheck):
             return float(
                 np.linalg.norm(jump - np.array(evidence.world.gravity) * np.diff(evidence.time[[before, after]]))
             )
-        return float(np.linalg.norm(jump[:2]))
+        return float(np.linalg.norm(level(jump, evidence.up)))
 
     def _momentum(self, evidence: Evidence, pair: tuple[int, int], frames: list[int]) -> Finding:
         """What the two do to each other leaves their momentum as it is: the time between frames that takes most."""
         masses = np.array([evidence.world.bodies[k].mass for k in pair])
-        v = evidence.body_qd[np.ix_(frames, pair)][:, :, :2]  # (frames, 2 bodies, level)
+        v = level(evidence.body_qd[np.ix_(frames, pair)][:, :, :3], evidence.up)  # (frames, 2 bodies, 3)
         scale = float(masses @ np.linalg.norm(v[0], axis=1))
         lost = np.linalg.norm(np.diff(np.einsum("b,tbi->ti", masses, v), axis=0), axis=1)
         weight = evidence.gravity * float(masses.sum())

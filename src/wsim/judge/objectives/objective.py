@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import rotate, sides_of
 from wsim.geometry.shapes import top_under
 from wsim.judge.checks.check import Check
 from wsim.judge.evidence.recorded import MissingError
@@ -80,24 +80,26 @@ def support_of(evidence: Evidence, i: int, prim: str) -> Support:
         half = np.array(container.inner_size) / 2
         over = (np.abs(p[:, 0]) <= half[0]) & (np.abs(p[:, 1]) <= half[1])
         fluid = next((f for f in evidence.world.fluids if f.container == prim), None)
-        return Support(np.full(frames, container.inner_center[2] - half[2]), over, fluid, "the inner floor of " + prim)
+        floor = np.array(container.inner_center) - rotate(np.array(container.rotation), np.array([0.0, 0.0, half[2]]))
+        return Support(np.full(frames, floor @ evidence.up), over, fluid, "the inner floor of " + prim)
     static = evidence.static(prim)
     if static is not None:
-        return _on_static(static, where, evidence.ends(i)[1])
+        return _on_static(static, where, evidence.ends(i)[1], evidence.up)
     j = evidence.index(prim)
     top = evidence.ends(j)[1]
     low, high = _footprint(evidence, j)
-    over = np.all((where[:, :2] >= low) & (where[:, :2] <= high), axis=1)
+    at = where @ sides_of(evidence.up).T
+    over = np.all((at >= low) & (at <= high), axis=1)
     return Support(top, over, None, prim)
 
 
-def _on_static(static: Static, where: Floats, high: Floats) -> Support:
+def _on_static(static: Static, where: Floats, high: Floats, up: Floats) -> Support:
     """The highest that a static object's shapes reach at each position.
 
     But for those that end above the body, for a shelf has boards; where all of them do, it is the highest.
     """
     shapes = [shape for shape in static.shapes if shape.collides] or static.shapes
-    tops = np.stack([np.full(len(where), -np.inf), *(top_under(shape, where) for shape in shapes)])
+    tops = np.stack([np.full(len(where), -np.inf), *(top_under(shape, where, up) for shape in shapes)])
     below = np.max(np.where(tops <= high, tops, -np.inf), axis=0)
     top = np.where(np.isfinite(below), below, np.max(tops, axis=0))
     return Support(top, np.isfinite(top), None, static.prim)
@@ -108,7 +110,7 @@ def _footprint(evidence: Evidence, j: int) -> tuple[Floats, Floats]:
     q = evidence.body_q[:, j]
     lows, highs = [], []
     for surface in evidence.solid(j).surfaces:
-        points = rotate(q[:, None, 3:], surface.vertices[None])[:, :, :2] + q[:, None, :2]
+        points = (rotate(q[:, None, 3:], surface.vertices[None]) + q[:, None, :3]) @ sides_of(evidence.up).T
         lows.append(points.min(axis=1))
         highs.append(points.max(axis=1))
     return np.min(lows, axis=0), np.max(highs, axis=0)

@@ -65,7 +65,7 @@ class ObjectiveRestsOn(ObjectiveCheck):
 
     def _force(self, evidence: Evidence, i: int, support: Support) -> Finding | None:
         """The mean contact force against weight less buoyancy; None where no force was recorded."""
-        force = np.asarray(evidence.recording.contact_force[evidence.window, i, 2], dtype=np.float64)
+        force = np.asarray(evidence.recording.contact_force[evidence.window, i], dtype=np.float64) @ evidence.up
         if not np.any(evidence.recording.contact_force):
             return None
         body = evidence.world.bodies[i]
@@ -148,7 +148,7 @@ class ObjectiveTopples(ObjectiveCheck):
         body = evidence.world.bodies[i]
         low, high = evidence.ends(i)
         height = float((high - low)[0])
-        tilts = tilt(evidence.body_q[:, i, 3:])
+        tilts = tilt(evidence.body_q[:, i, 3:], evidence.up)
         if all(shape.kind == "sphere" for shape in evidence.solid(i).shapes):
             tilts = np.zeros_like(tilts)  # a ball has no upright
         fall = low[0] - low

@@ -62,7 +62,7 @@ def rests(finding: Finding, evidence: Evidence) -> RepairTarget:
     predicate = decider(finding, evidence)
     ref = evidence.prim(getattr(predicate[0], "ref", "")) if predicate is not None else ""
     i = evidence.index(finding.prim or "")
-    fall = -float(evidence.body_qd[evidence.window, i, 2].mean())
+    fall = -float((evidence.body_qd[evidence.window, i, :3] @ evidence.up).mean())
     if fall > 0.0 and evidence.static(ref) is not None:
         return fallen_through(finding, evidence, finding.prim or "", ref)
     return longer_run(evidence, None, "it is not there yet, or stands on something else")

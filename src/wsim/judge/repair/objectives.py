@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.faces import normal_under
 from wsim.judge.repair.asked import ref_of
 from wsim.judge.repair.rule import (
     Rule,
@@ -117,7 +117,7 @@ def rests_on(finding: Finding, evidence: Evidence) -> RepairTarget:
     if fluid is not None and density(evidence, prim) < fluid.density:
         return submerged(finding, evidence)
     i = evidence.index(prim)
-    fall = -float(evidence.body_qd[evidence.window, i, 2].mean())
+    fall = -float((evidence.body_qd[evidence.window, i, :3] @ evidence.up).mean())
     if fall > 0.0:
         wanted = float(evidence.time[-1]) + finding.value / fall
         return longer_run(evidence, wanted, f"it is still coming down at {fall:.2g} m/s")
@@ -155,16 +155,19 @@ def tunnelled(finding: Finding, evidence: Evidence, prim: str, ref: str) -> Repa
 
 def stays_on(finding: Finding, evidence: Evidence) -> RepairTarget:
     """It slides off: on a slope friction must be more than its tangent."""
-    static = evidence.static(ref_of(finding, evidence))
-    slope = _slope(static.shapes[0].rotation) if static is not None and static.shapes else 0.0
+    slope = _slope(finding, evidence)
     steepest = f"a body stays on a slope of {math.degrees(slope):.3g} degrees where friction is above its tangent"
     why = steepest if slope > 0.01 else "it slides or is carried off: more friction holds it"
     return friction(finding, evidence, "raise", math.tan(slope) if slope > 0.01 else None, why)
 
 
-def _slope(rotation: tuple[float, float, float, float]) -> float:
-    normal = rotate(np.array(rotation, dtype=np.float64), np.array([0.0, 0.0, 1.0]))
-    return math.acos(min(1.0, abs(float(normal[2]))))
+def _slope(finding: Finding, evidence: Evidence) -> float:
+    """Of the face of the objective's static object that the finding's body is over [rad]; 0 of what is not static."""
+    static = evidence.static(ref_of(finding, evidence))
+    if static is None or not static.shapes:
+        return 0.0
+    points = evidence.body_q[:, evidence.index(finding.prim or ""), :3]
+    return math.acos(min(1.0, abs(float(normal_under(static.shapes, points, evidence.up) @ evidence.up))))
 
 
 def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, why: str) -> RepairTarget:
@@ -256,8 +259,7 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
 
 def _tangent(finding: Finding, evidence: Evidence) -> float | None:
     """The tangent of the slope that a finding's objective names; None where it names none."""
-    static = evidence.static(ref_of(finding, evidence))
-    slope = _slope(static.shapes[0].rotation) if static is not None and static.shapes else 0.0
+    slope = _slope(finding, evidence)
     return math.tan(slope) if slope > 0.01 else None
 
 
@@ -290,7 +292,7 @@ def flies(finding: Finding, evidence: Evidence) -> RepairTarget:
         why = f"a flight of {limit:g} s takes {rise:.3g} m/s upwards, or as much height"
         return RepairTarget(
             kind="physical parameter", prim=prim, parameter="velocity.z", direction="raise",
-            current=evidence.body(prim).velocity[2], suggested=rise, unit="m/s", why=why,
+            current=float(np.array(evidence.body(prim).velocity) @ evidence.up), suggested=rise, unit="m/s", why=why,
         )  # fmt: skip
     step, last = time_step(evidence), float(evidence.time[-1])
     if step is not None and 0.0 < limit < value <= evidence.gravity * step * last:

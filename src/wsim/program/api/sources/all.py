@@ -54,7 +54,8 @@ def _scene() -> Iterator[Entry]:
 
     package = Package("wsim", "wsim")
     names = ("wsim.scene", "wsim.program.control_world", "wsim.assets")
-    yield from _without(package.entries(*names, private=True), ("wsim.scene.check", "wsim.scene.describe"))
+    own = tuple(f"wsim.scene.{module}" for module in ("check", "describe", "curves", "sections"))
+    yield from _without(package.entries(*names, private=True), own)
     yield Entry("wsim", "module", "wsim")
     yield from package._member("wsim.run", package.modules["wsim.run"])
 

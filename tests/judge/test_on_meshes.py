@@ -1,0 +1,39 @@
+"""Faults planted in what moves on static meshes: on a track, and on a height field."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from tests.judge.test_turned import failing, simulated
+from tests.judge.theory import edited
+
+SLOPE = math.radians(20.0)
+
+
+def rolls(scene):
+    scene.track("run", pieces=[("line", 3.0)], start=(0, 0, 1), slope_deg=-5, profile="round", width=0.16, friction=0.5)
+    a = math.radians(5.0)
+    scene.sphere("ball", radius=0.05, position=(0.3, 0, 1 - 0.3 * math.tan(a) + 0.05 / math.cos(a)), friction=0.5)
+
+
+def slides(scene):
+    scene.height_field("slope", heights=lambda x, y: x * math.tan(SLOPE), size=(8, 4), cells=(40, 20), friction=0.2)
+    at = (2 - 0.15 * math.sin(SLOPE), 0, 2 * math.tan(SLOPE) + 0.15 * math.cos(SLOPE))
+    scene.box("crate", size=(0.3,) * 3, density=400, position=at, rotation_deg=(0, -20, 0), friction=0.2)
+
+
+def test_a_ball_beside_its_track_is_carried_by_nothing(tmp_path):
+    sound = simulated(tmp_path, rolls, 1.0)
+    assert failing(sound) == set()
+    assert failing(edited(sound, "body_q", (slice(None), 0, 1), 0.3)) == {"CheckSupport"}
+
+
+def test_a_crate_that_hovers_or_slides_up_a_height_field_is_found(tmp_path):
+    sound = simulated(tmp_path, slides, 1.0)
+    assert failing(sound) == set()
+    assert failing(edited(sound, "body_q", (slice(None), 0, 2), 0.1)) == {"CheckSupport"}
+    q, qd = sound.body_q.copy(), sound.body_qd.copy()
+    q[:, 0, :3] = 2 * q[0, 0, :3] - q[:, 0, :3]
+    qd[:, 0, :3] *= np.float32(-1)
+    assert "CheckEnergy" in failing(replace(sound, body_q=q, body_qd=qd))
