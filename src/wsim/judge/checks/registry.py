@@ -13,6 +13,7 @@ from wsim.judge.checks import (
     cord,
     energy,
     fluid,
+    forces,
     friction,
     joint,
     mass,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints, plan_contacts,
+    physics, settled, motion, forces, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints, plan_contacts,
     plan_motion, fluid, camera,
 )  # fmt: skip
 

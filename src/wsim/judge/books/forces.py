@@ -1,0 +1,115 @@
+"""What contacts and joints may do: the impulses that a world can exert, as columns of a small linear problem.
+
+Columns are impulses on bodies, 6 rows a body: momentum and angular momentum about its own centre of mass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import rotate
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.books.touching import Contacts, Touching
+
+    Floats = NDArray[np.float64]
+
+EDGES = 8  # of the friction cone, which it is cut around
+STILL = 0.02  # [m/s]: below this, and what friction stops within the interval, a slip may come and go
+ONE_WAY = 0.9  # cosine between the slips at both ends of an interval that lasts
+
+
+@dataclass(frozen=True)
+class Poses:
+    """All bodies at one instant; (B, …)."""
+
+    q: Floats  # (B, 7) of the bodies' origins [m; xyzw]
+    com: Floats  # (B, 3) [m]
+    v: Floats  # (B, 3), of the centres of mass [m/s]
+    w: Floats  # (B, 3) [rad/s]
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Impulses of strength one: on the bodies of two rows, c of them; a row below 0 is the world, which takes any."""
+
+    one: NDArray[np.intp]  # (c,)
+    two: NDArray[np.intp]
+    on_one: Floats  # (c, 6)
+    on_two: Floats
+    both: NDArray[np.bool_]  # (c,) whether it may act both ways, or only as it is
+
+    @staticmethod
+    def of(parts: list[Columns]) -> Columns:
+        """All of several."""
+        return Columns(*(np.concatenate([getattr(part, name) for part in parts])
+                         for name in ("one", "two", "on_one", "on_two", "both")))  # fmt: skip
+
+
+def slip(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:
+    """Velocity of the second body's surface over the first's at each contact, (n, 3) [m/s]."""
+    return _surface(touching, contacts, poses, 1) - _surface(touching, contacts, poses, 0)
+
+
+def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) -> Floats:
+    rows = contacts.two if side else contacts.one
+    moving = rows >= 0
+    at = np.maximum(rows, 0)
+    if not len(poses.v):
+        return np.zeros((len(rows), 3))
+    velocity = poses.v[at] + np.cross(poses.w[at], contacts.point - poses.com[at])
+    belts = touching.surface_velocity[contacts.shapes[:, side]]
+    turn = np.where(moving[:, None], poses.q[at, 3:], (0.0, 0.0, 0.0, 1.0))
+    found: Floats = np.where(moving[:, None], velocity, 0.0) + rotate(turn, belts)
+    return found
+
+
+def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, rolling: Floats) -> Columns:
+    """The impulses of contacts: inside the cone, or on its edge where `along` (n, 3) says which way a slip lasts.
+
+    Args:
+        contacts: n of them, at the
+        poses: that their arms are taken from.
+        friction: (n,).
+        along: Unit way of the lasting slip of the second body over the first; 0 where there is none.
+        rolling: Torque that resists turning, for a push of one, (n,) [m].
+    """
+    n, lasting = contacts.normal, np.any(along != 0.0, axis=1)
+    other = np.where(np.abs(n[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    t1 = np.cross(n, other)
+    t1 /= np.linalg.norm(t1, axis=1, keepdims=True)
+    t2 = np.cross(n, t1)
+    angle = 2.0 * np.pi * np.arange(EDGES) / EDGES
+    ring = (np.cos(angle)[:, None, None] * t1 + np.sin(angle)[:, None, None] * t2) / np.cos(np.pi / EDGES)
+    cone = (n + friction[:, None] * ring).reshape(-1, 3)
+    which = np.tile(np.arange(len(n)), EDGES)
+    keep = ~lasting[which]
+    edge = (n - friction[:, None] * along)[lasting]
+    force = np.concatenate([cone[keep], edge])
+    which = np.concatenate([which[keep], np.flatnonzero(lasting)])
+    spin = np.zeros_like(force)
+    turns = np.flatnonzero(rolling > 0.0)
+    for axis in (n, t1, t2):
+        for way in (-1.0, 1.0):
+            force = np.concatenate([force, (n - friction[:, None] * along)[turns]])
+            spin = np.concatenate([spin, way * (rolling[:, None] * axis)[turns]])
+            which = np.concatenate([which, turns])
+    arms = [contacts.point - poses.com[np.maximum(rows, 0)] for rows in (contacts.one, contacts.two)]
+    on_two = np.concatenate([force, np.cross(arms[1][which], force) + spin], axis=1)
+    on_one = np.concatenate([-force, -np.cross(arms[0][which], force) - spin], axis=1)
+    return Columns(contacts.one[which], contacts.two[which], on_one, on_two, np.zeros(len(which), dtype=bool))
+
+
+def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torques: Floats) -> Columns:
+    """A joint's impulses: forces (f, 3) at its anchor, `arms` (3,) from both centres of mass, and torques (t, 3)."""
+    twist = np.concatenate([np.zeros_like(torques), torques], axis=1)
+    on_two = np.concatenate([np.concatenate([forces, np.cross(arms[1], forces)], axis=1), twist])
+    on_one = -np.concatenate([np.concatenate([forces, np.cross(arms[0], forces)], axis=1), twist])
+    count = len(on_two)
+    rows = np.full(count, one, dtype=np.intp), np.full(count, two, dtype=np.intp)
+    return Columns(*rows, on_one, on_two, np.ones(count, dtype=bool))

@@ -1,0 +1,118 @@
+"""What ties bodies together: joints by the ways that they hold, springs by their line."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import rotate
+from wsim.judge.books.forces import Columns, holds
+from wsim.judge.books.touching import WORLD
+from wsim.judge.evidence.joints import AXES, broken
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Guide, Joint, Spring
+
+    Floats = NDArray[np.float64]
+
+
+class Ties:
+    """The impulses of all joints and springs of a world in any interval between frames."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._evidence = evidence
+        world = evidence.world
+        self._row = {body.prim: i for i, body in enumerate(world.bodies)}
+        geared = {prim for gear in world.gears for prim in (gear.first, gear.second)}
+        self._joints = [
+            (joint, self._may_act(joint, joint.prim in geared), broken(evidence, joint))
+            for joint in world.joints
+            if joint.parent_anchor is not None and joint.child_anchor is not None
+        ]
+
+    @staticmethod
+    def _may_act(joint: Joint, geared: bool) -> bool:
+        """Whether anything may act along the joint's own motion: a drive, a stop, friction, a gear."""
+        return (
+            geared or joint.drive is not None or joint.friction > 0.0 or joint.low is not None or joint.high is not None
+        )
+
+    @cached_property
+    def arms(self) -> Floats:
+        """How far from its centre of mass each body is held, at most, (B,) [m]."""
+        world = self._evidence.world
+        far = np.zeros(len(world.bodies))
+        held = [(joint.parent, joint.parent_anchor) for joint in world.joints]
+        held += [(joint.child, joint.child_anchor) for joint in world.joints]
+        held += [
+            (guide.body, guide.position) for spring in world.springs for guide in (spring.path[0], spring.path[-1])
+        ]
+        for prim, place in held:
+            if prim in self._row and place is not None:
+                row = self._row[prim]
+                far[row] = max(far[row], float(np.linalg.norm(np.subtract(place, world.bodies[row].com))))
+        return far
+
+    def columns(self, k: int) -> list[Columns]:
+        """What may act between frames k and k + 1."""
+        found = [self._joint(joint, free, k) for joint, free, gone in self._joints if not gone[k]]
+        return found + [self._spring(spring, k) for spring in self._evidence.world.springs]
+
+    def _joint(self, joint: Joint, acts: bool, k: int) -> Columns:
+        one, two = self._row.get(joint.parent or "", WORLD), self._row[joint.child]
+        anchors = [self._place(two, joint.child_anchor or (0.0, 0.0, 0.0), frame) for frame in (k, k + 1)]
+        arms = self._arm(one, anchors, k), self._arm(two, anchors, k)
+        axes = self._axes(one, joint, k)
+        along = AXES[joint.axis]
+        across = np.delete(axes, along, axis=0)
+        forces, torques = axes, np.zeros((0, 3))
+        if joint.kind == "fixed":
+            torques = axes
+        elif joint.kind == "revolute":
+            torques = axes if acts else across
+        elif joint.kind == "prismatic":
+            forces, torques = (axes if acts else across), axes
+        elif acts:
+            torques = axes
+        return holds(one, two, arms, forces, torques)
+
+    def _spring(self, spring: Spring, k: int) -> Columns:
+        ends = [[self._guide(guide, frame) for frame in (k, k + 1)] for guide in (spring.path[0], spring.path[-1])]
+        rows = [self._row.get(guide.body or "", WORLD) for guide in (spring.path[0], spring.path[-1])]
+        line = np.mean(ends[1], axis=0) - np.mean(ends[0], axis=0)
+        line /= max(float(np.linalg.norm(line)), 1e-12)
+        arms = self._arm(rows[0], ends[0], k), self._arm(rows[1], ends[1], k)
+        return holds(rows[0], rows[1], arms, line[None], np.zeros((0, 3)))
+
+    def _guide(self, guide: Guide, frame: int) -> Floats:
+        return self._place(self._row.get(guide.body or "", WORLD), guide.position, frame)
+
+    def _place(self, row: int, position: tuple[float, float, float], frame: int) -> Floats:
+        if row < 0:
+            return np.array(position)
+        q = self._evidence.body_q[frame, row]
+        place: Floats = q[:3] + rotate(q[3:], np.array(position))
+        return place
+
+    def _arm(self, row: int, places: list[Floats], k: int) -> Floats:
+        """From a body's centre of mass to a point, halfway between two frames."""
+        if row < 0:
+            return np.zeros(3)
+        com = self._evidence.motion.com
+        arm: Floats = 0.5 * (places[0] - com[k, row] + places[1] - com[k + 1, row])
+        return arm
+
+    def _axes(self, one: int, joint: Joint, k: int) -> Floats:
+        """The parent anchor's axes in the world, halfway, as rows (3, 3)."""
+        own = rotate(np.array(joint.parent_turn), np.eye(3))
+        if one < 0:
+            return np.asarray(own)
+        q = self._evidence.body_q
+        axes = rotate(q[k, one, 3:], own) + rotate(q[k + 1, one, 3:], own)
+        found: Floats = axes / np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
+        return found

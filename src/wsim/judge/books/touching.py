@@ -1,0 +1,145 @@
+"""Where the shapes of a world touch, or are about to, at any poses of its bodies: by their geometry alone.
+
+MuJoCo's search for contacts is asked, in double precision and with none of the simulator's own contacts, so that it
+serves the trajectories of any engine. Bodies are without mass there; nothing is stepped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wsim.scene.contact import Pair, pair_law
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Joint, Shape, World
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
+
+WORLD = -1  # row of what never moves
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Pairs of points that are near each other, n of them."""
+
+    one: Rows  # row of a body, or WORLD
+    two: Rows
+    shapes: Rows  # (n, 2), of `Touching.shapes`
+    point: Floats  # (n, 3) [m], halfway
+    normal: Floats  # (n, 3), from one to two
+    gap: Floats  # (n,) [m], negative where they are in each other
+
+    def __len__(self) -> int:
+        return len(self.gap)
+
+    def only(self, chosen: NDArray[Any]) -> Contacts:
+        """Some of them."""
+        return Contacts(*(getattr(self, name)[chosen] for name in ("one", "two", "shapes", "point", "normal", "gap")))
+
+
+def together(parts: list[Contacts]) -> Contacts:
+    """All contacts of several poses."""
+    return Contacts(*(np.concatenate([getattr(part, name) for part in parts])
+                      for name in ("one", "two", "shapes", "point", "normal", "gap")))  # fmt: skip
+
+
+class Touching:
+    """The shapes of a world that collide, but for static meshes, whose triangles MuJoCo does not know."""
+
+    def __init__(self, world: World) -> None:
+        import mujoco  # heavy, and wanted where there are bodies alone
+
+        self.world = world
+        self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
+        self._laws: dict[tuple[int, int], Pair] = {}
+        spec = mujoco.MjSpec()
+        for row, body in enumerate(world.bodies):
+            item = spec.worldbody.add_body(name=f"b{row}", mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
+            item.add_freejoint()
+            for shape in body.shapes:
+                self._add(mujoco, spec, item, row, body.prim, shape)
+        for static in world.statics:
+            for shape in static.shapes:
+                self._add(mujoco, spec, spec.worldbody, WORLD, static.prim, shape)
+        self._mujoco = mujoco
+        self._model = spec.compile()
+        self._data = mujoco.MjData(self._model)
+        names = [self._model.geom(k).name for k in range(self._model.ngeom)]
+        self._shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
+        self._row_of_shape = np.array([row for row, _, _ in self.shapes], dtype=np.intp)
+        self._tied = _tied(world)
+        self._owner_of_shape = [owner for _, owner, _ in self.shapes]
+
+    def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
+        if not shape.collides or shape.exact:
+            return
+        kinds = mujoco.mjtGeom
+        x, y, z, w = shape.rotation
+        fields: dict[str, Any] = {"pos": shape.position, "quat": (w, x, y, z), "name": f"s{len(self.shapes)}"}
+        if shape.kind == "box":
+            fields |= {"type": kinds.mjGEOM_BOX, "size": [0.5 * edge for edge in shape.size]}
+        elif shape.kind == "sphere":
+            fields |= {"type": kinds.mjGEOM_SPHERE, "size": [shape.size[0], 0, 0]}
+        elif shape.kind in ("cylinder", "capsule"):
+            kind = kinds.mjGEOM_CYLINDER if shape.kind == "cylinder" else kinds.mjGEOM_CAPSULE
+            fields |= {"type": kind, "size": [shape.size[0], 0.5 * shape.size[1], 0]}
+        elif shape.kind == "plane":
+            fields |= {"type": kinds.mjGEOM_PLANE, "size": [0, 0, 1]}
+        else:
+            mesh = f"m{len(self.shapes)}"
+            spec.add_mesh(name=mesh, uservert=np.ravel(shape.vertices), userface=np.ravel(shape.triangles))
+            fields |= {"type": kinds.mjGEOM_MESH, "meshname": mesh}
+        item.add_geom(**fields)
+        self.shapes.append((row, owner, shape))
+
+    def at(self, poses: Floats, reach: float) -> Contacts:
+        """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
+        model, data = self._model, self._data
+        model.geom_margin[:] = model.body_margin[:] = 0.5 * reach
+        data.qpos[:] = poses[:, [0, 1, 2, 6, 3, 4, 5]].ravel()
+        self._mujoco.mj_kinematics(model, data)
+        self._mujoco.mj_comPos(model, data)
+        self._mujoco.mj_collision(model, data)
+        found = data.contact
+        shapes = self._shape_of_geom[np.asarray(found.geom).reshape(-1, 2)]
+        rows = self._row_of_shape[shapes]
+        contacts = Contacts(
+            rows[:, 0], rows[:, 1], shapes, np.array(found.pos).reshape(-1, 3),
+            np.array(found.frame).reshape(-1, 9)[:, :3], np.array(found.dist).reshape(-1),
+        )  # fmt: skip
+        if not self._tied:
+            return contacts
+        owners = [self._owner_of_shape[k] for k in range(len(self.shapes))]
+        free = [frozenset((owners[a], owners[b])) not in self._tied for a, b in shapes]
+        return contacts.only(np.array(free, dtype=bool))
+
+    def law(self, one: int, two: int) -> Pair:
+        """What holds between two shapes."""
+        key = (one, two)
+        if key not in self._laws:
+            self._laws[key] = pair_law(self.world, self.shapes[one][2], self.shapes[two][2])
+        return self._laws[key]
+
+    @cached_property
+    def surface_velocity(self) -> Floats:
+        """Of each shape [m/s], in its body's axes, (shapes, 3)."""
+        from wsim.geometry.rotations import rotate
+
+        stated = [rotate(np.array(shape.rotation), np.array(shape.surface_velocity)) for _, _, shape in self.shapes]
+        return np.array(stated, dtype=np.float64).reshape(-1, 3)
+
+
+def _tied(world: World) -> set[frozenset[str]]:
+    """Pairs of objects that a joint ties, which do not touch."""
+    return {frozenset((end, joint.child)) for joint in world.joints if (end := _other_end(joint)) is not None}
+
+
+def _other_end(joint: Joint) -> str | None:
+    return joint.parent or joint.fixture
