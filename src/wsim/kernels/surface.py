@@ -119,7 +119,7 @@ def _carried_on(surface: Surface, at: wp.vec3, along: wp.vec3, normal: wp.vec3, 
 def _lies_along(
     shape: Convex, planes: wp.array(dtype=wp.vec4), pose: wp.transform, corner: wp.vec3, along: wp.vec3, third: wp.vec3
 ) -> bool:
-    """Whether a shape goes on along the face from its corner at an edge: flat against it, it touches all of the face."""
+    """Whether a shape goes on along the face from its corner at an edge: it is flat against it then."""
     inward = wp.normalize(third - wp.dot(third, along) * along)
     there = signed(shape, planes, wp.transform_point(wp.transform_inverse(pose), corner + 2.0 * GUARD * inward))
     return there[3] < 0.2 * GUARD

@@ -34,11 +34,8 @@ from typing import Any
 import numpy as np
 
 from wsim.solvers.breaking import BreakingC
-<<<<<<< HEAD
-from wsim.solvers.flight import Flight
-=======
 from wsim.solvers.drives import DrivesC
->>>>>>> joints2
+from wsim.solvers.flight import Flight
 from wsim.solvers.surface_contacts import SurfaceContacts
 
 Array = np.ndarray
@@ -190,11 +187,7 @@ class ContactLawC:
         touching: SurfaceContacts | None = None,
         drives: DrivesC | None = None,
     ) -> None:
-<<<<<<< HEAD
-        self.breaking, self.flight = breaking, flight
-=======
-        self.breaking, self.drives = breaking, drives
->>>>>>> joints2
+        self.breaking, self.drives, self.flight = breaking, drives, flight
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.geom_class, self.law, self.curvature = geom_class, law, curvature
         self.touching, self._bow = touching, np.zeros(0)
@@ -205,7 +198,6 @@ class ContactLawC:
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
-        self.first_that_jumps = int(rows.mjCNSTR_FRICTION_DOF)  # after equalities come dry friction, stops and contacts
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
@@ -227,12 +219,8 @@ class ContactLawC:
             model.opt.disableflags &= ~self.unilateral
             self.touched = 0
         else:
-<<<<<<< HEAD
-            mujoco.mj_implicit(model, data)
-            self.flight.fly(model.opt.timestep)
-=======
             self._implicit(data)
->>>>>>> joints2
+            self.flight.fly(model.opt.timestep)
             self.touched += 1
         if model.nu:
             self._tell_efforts(data)
@@ -241,13 +229,9 @@ class ContactLawC:
         """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
         mujoco, model = self.mujoco, self.model
         self._position(data)
-<<<<<<< HEAD
-        touching = bool((data.efc_type >= self.first_that_jumps).any())
-=======
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
             self.drives.choose(data, are_rows=touching or not self.smooth)
->>>>>>> joints2
         mujoco.mj_fwdVelocity(model, data)
         if touching or not self.smooth:
             self.flight.tumble(model.opt.timestep)
@@ -257,8 +241,6 @@ class ContactLawC:
         mujoco.mj_fwdAcceleration(model, data)
         self._solve(data)
         return touching
-<<<<<<< HEAD
-=======
 
     def _implicit(self, data: Any) -> None:
         """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
@@ -266,7 +248,6 @@ class ContactLawC:
         self.model.opt.disableflags |= off
         self.mujoco.mj_implicit(self.model, data)
         self.model.opt.disableflags &= ~off
->>>>>>> joints2
 
     def _position(self, data: Any) -> None:
         """What hangs on the pose, contacts with what MuJoCo does not know among it."""

@@ -15,11 +15,8 @@ from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
-<<<<<<< HEAD
-from wsim.solvers.flight import Flight
-=======
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
->>>>>>> joints2
+from wsim.solvers.flight import Flight
 from wsim.solvers.single_precision import soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
@@ -98,22 +95,25 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
-<<<<<<< HEAD
         mujoco = self.import_mujoco()[0]
         self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data)
-        if on_c:
-            config = self.contact_config
-            self._law_c = ContactLawC(
-                mujoco, self.mj_model, self._flight, geom_class, law, bends, smooth, config, self.breaking, touching
-=======
-        driven = drive_rows(self._mujoco, self.mj_model)
+        driven = drive_rows(mujoco, self.mj_model)
         self._drives: Any = None
         if on_c:
-            mujoco, config = self._mujoco, self.contact_config
+            config = self.contact_config
             drives = DrivesC(mujoco, self.mj_model, driven) if driven else None
             self._law_c = ContactLawC(
-                mujoco, self.mj_model, geom_class, law, bends, smooth, config, self.breaking, touching, drives
->>>>>>> joints2
+                mujoco,
+                self.mj_model,
+                self._flight,
+                geom_class,
+                law,
+                bends,
+                smooth,
+                config,
+                self.breaking,
+                touching,
+                drives,
             )
         elif may_touch or not smooth:
             self._prepare_warp(geom_class, law, bends)
@@ -289,13 +289,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.give_way(model, data)
             warp.solve(model, data)
-<<<<<<< HEAD
-        warp.implicit(model, data)
+        self._implicit(model, data)
         if self._flight:
             self._flight.fly(self._dt)
-=======
-        self._implicit(model, data)
->>>>>>> joints2
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
         if model.nu:

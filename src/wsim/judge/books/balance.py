@@ -43,7 +43,7 @@ class Books:
     force: Floats  # (T - 1, B, 3), of momentum over the interval's length and the mass [m/s^2]
     torque: Floats  # (T - 1, B, 3), of angular momentum over m R and the interval's length [m/s^2]
     blow: Floats  # (T - 1, B) change of velocity, of its surface too, that was to be explained [m/s]
-    turned: Floats  # (T - 1, B, 2): what may be missing of both, as bodies turn while they pass impulses on [m/s^2]
+    turned: Floats  # (T - 1, B, 2): what may be missing of both, as bodies turn while they are held [m/s^2]
     judged: Bools  # (T - 1, B)
 
 
@@ -93,7 +93,7 @@ class Balance:
         return np.asarray(out)
 
     def _interval(self, k: int, change: Floats, blow: Floats, judged: Bools) -> tuple[Floats, Floats]:
-        """What is left of a change (B, 6) over one interval, and how much was passed on by all together, (B, 2)."""
+        """What is left of a change (B, 6) over one interval, and how much ties passed on, (B, 2)."""
         hit = judged & (blow > SOFT * max(self._pull, 1.0) * float(self._motion.h[k]))
         rest, passed = self._explained(k, change, judged, hit, hit)
         odd = np.linalg.norm(rest, axis=1) > AGAIN * max(self._pull, 1.0)
@@ -109,20 +109,21 @@ class Balance:
             return rest, passed
         all_ = Columns.of(columns)
         for bodies, chosen in _groups(all_, judged):
-            number = {int(body): n for n, body in enumerate(bodies)}
-            matrix = np.zeros((6 * len(bodies), len(chosen)))
+            number = np.full(len(judged) + 1, -1)  # the last is the world's
+            number[bodies] = np.arange(len(bodies))
+            columns6 = np.zeros((len(chosen), len(bodies), 6))
             for which, on in ((all_.one, all_.on_one), (all_.two, all_.on_two)):
-                for c, column in enumerate(chosen):
-                    n = number.get(int(which[column]))
-                    if n is not None:
-                        matrix[6 * n : 6 * n + 6, c] += on[column]
+                n = number[which[chosen]]
+                ours = np.flatnonzero(n >= 0)
+                columns6[ours, n[ours]] += on[chosen[ours]]
             scale = np.repeat(1.0 / self._motion.mass[bodies], 6).reshape(-1, 6)
             scale[:, 3:] /= self.size[bodies][:, None]
-            matrix *= scale.reshape(-1, 1)
+            matrix = (columns6 * scale).reshape(len(chosen), -1).T
             wanted = rest[bodies].ravel()
             strength = _least(matrix, wanted, all_.both[chosen])
             rest[bodies] = (wanted - matrix @ strength).reshape(-1, 6)
-            each = (np.abs(matrix) @ np.abs(strength)).reshape(-1, 6) / scale
+            ties = all_.both[chosen]
+            each = (np.abs(matrix[:, ties]) @ np.abs(strength[ties])).reshape(-1, 6) / scale
             most = np.array([each[:, :3].max(), each[:, 3:].max()])  # an error of one body's arm ends at any other
             passed[bodies] = most * scale[:, [0, 3]]
         return rest, passed
@@ -144,8 +145,11 @@ class Balance:
         if not found:
             return []
         lasting = self._lasting(found, ends, hit, h)
-        return [pushes(contacts, moved, self._friction(contacts), along, self._rolling(contacts))
-                for (contacts, moved, _), along in zip(found, lasting, strict=True)]  # fmt: skip
+        columns = []
+        for (contacts, moved, _), along in zip(found, lasting, strict=True):
+            friction, rolling = self._touching.laws(contacts.shapes)
+            columns.append(pushes(contacts, moved, friction, along, self._rolling(contacts, rolling, friction)))
+        return columns
 
     def _within_reach(self, contacts: Contacts, poses: Poses, h: float, share: float, between: Bools) -> Bools:
         """Contacts whose gap may close within the part of the interval that a pose stands for."""
@@ -161,40 +165,31 @@ class Balance:
     ) -> list[Floats]:
         """The unit way of each contact's slip where its pair slips one way from one frame to the next, else 0."""
         flat = []
-        for contacts, _, side in found:
-            u = slip(self._touching, contacts, ends[side])
+        for contacts, _, end in found:
+            u = slip(self._touching, contacts, ends[end])
             flat.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
-        every = together([contacts for contacts, _, _ in found])
-        side = np.concatenate([np.full(len(contacts), s) for contacts, _, s in found])
-        all_flat = np.concatenate(flat)
-        lasting = []
-        for (contacts, _, s), own in zip(found, flat, strict=True):
-            along = np.zeros_like(own)
-            for n in range(len(contacts)):
-                one, two = contacts.one[n], contacts.two[n]
-                if (one >= 0 and hit[one]) or (two >= 0 and hit[two]):
-                    continue
-                there = (side != s) & (every.one == one) & (every.two == two)
-                if not there.any():
-                    continue
-                then = all_flat[there].mean(axis=0)
-                slow = 3.0 * self._touching.law(*contacts.shapes[n]).friction * max(self._pull, 1.0) * h + STILL
-                a, b = float(np.linalg.norm(own[n])), float(np.linalg.norm(then))
-                if min(a, b) > slow and own[n] @ then > ONE_WAY * a * b:
-                    along[n] = own[n] / a
-            lasting.append(along)
-        return lasting
+        every, own = together([contacts for contacts, _, _ in found]), np.concatenate(flat)
+        side = np.repeat([end for _, _, end in found], [len(contacts) for contacts, _, _ in found])
+        pair, which = np.unique(np.stack([every.one, every.two], axis=1), axis=0, return_inverse=True)
+        which = which.ravel()
+        mean, count = np.zeros((2, len(pair), 3)), np.zeros((2, len(pair)))
+        np.add.at(mean, (side, which), own)
+        np.add.at(count, (side, which), 1.0)
+        then = (mean / np.maximum(count, 1.0)[..., None])[1 - side, which]
+        speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
+        friction, _ = self._touching.laws(every.shapes)
+        slow = 3.0 * friction * max(self._pull, 1.0) * h + STILL
+        lasts = (np.minimum(speed, speed_then) > slow) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
+        rows = np.stack([every.one, every.two])
+        lasts &= ~(hit[np.maximum(rows, 0)] & (rows >= 0)).any(axis=0)
+        along = np.where(lasts[:, None], own / np.maximum(speed, 1e-300)[:, None], 0.0)
+        return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 
-    def _friction(self, contacts: Contacts) -> Floats:
-        return np.array([self._touching.law(*pair).friction for pair in contacts.shapes])
-
-    def _rolling(self, contacts: Contacts) -> Floats:
+    def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats) -> Floats:
         """The torque that resists turning, for a push of one [m]: rolling's, or spinning's, which is the greater."""
-        size = np.where(
-            contacts.two >= 0, self.size[np.maximum(contacts.two, 0)], self.size[np.maximum(contacts.one, 0)]
-        )
-        laws = [self._touching.law(*pair) for pair in contacts.shapes]
-        return np.array([max(law.rolling, np.pi * law.friction * law.rolling) for law in laws]) * size
+        rows = np.where(contacts.two >= 0, contacts.two, contacts.one)
+        found: Floats = np.maximum(rolling, np.pi * friction * rolling) * self.size[rows]
+        return found
 
     # ---- poses
     def _poses(self, frame: int) -> Poses:

@@ -120,12 +120,17 @@ class Touching:
         free = [frozenset((owners[a], owners[b])) not in self._tied for a, b in shapes]
         return contacts.only(np.array(free, dtype=bool))
 
-    def law(self, one: int, two: int) -> Pair:
-        """What holds between two shapes."""
-        key = (one, two)
-        if key not in self._laws:
-            self._laws[key] = pair_law(self.world, self.shapes[one][2], self.shapes[two][2])
-        return self._laws[key]
+    def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
+        """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""
+        pairs, which = np.unique(shapes, axis=0, return_inverse=True)
+        laws = [self._law(int(one), int(two)) for one, two in pairs]
+        both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which.ravel()]
+        return both[:, 0], both[:, 1]
+
+    def _law(self, one: int, two: int) -> Pair:
+        if (one, two) not in self._laws:
+            self._laws[one, two] = pair_law(self.world, self.shapes[one][2], self.shapes[two][2])
+        return self._laws[one, two]
 
     @cached_property
     def surface_velocity(self) -> Floats:

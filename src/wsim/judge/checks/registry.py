@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, forces, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints, plan_contacts,
-    plan_motion, fluid, camera,
+    physics, settled, motion, forces, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints,
+    plan_contacts, plan_motion, fluid, camera,
 )  # fmt: skip
 
 
