@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsim.geometry.rotations import rotate
 from wsim.scene.contact import Pair, pair_law
 
 if TYPE_CHECKING:
@@ -135,8 +136,6 @@ class Touching:
     @cached_property
     def surface_velocity(self) -> Floats:
         """Of each shape [m/s], in its body's axes, (shapes, 3)."""
-        from wsim.geometry.rotations import rotate
-
         stated = [rotate(np.array(shape.rotation), np.array(shape.surface_velocity)) for _, _, shape in self.shapes]
         return np.array(stated, dtype=np.float64).reshape(-1, 3)
 
