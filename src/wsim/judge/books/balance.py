@@ -3,8 +3,7 @@
 The change of momentum and of angular momentum of each body, less gravity and what fluid and control gave it, must be a
 sum of impulses that the world can exert: of contacts where shapes touch or may have met in the interval, pushing only
 and inside the cone of the pair's friction, on its edge against a slip that lasts; of joints and springs along what they
-hold. Non-negative least squares (Lawson and Hanson 1974) finds them, for what hangs together in the interval at once;
-what is left over is the finding.
+hold. What no sum of them gives is the finding.
 """
 
 from __future__ import annotations
@@ -13,9 +12,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import nnls
 
 from wsim.geometry.rotations import multiply, rotate
+from wsim.judge.books.admissible import explain
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
@@ -28,11 +27,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
 
 NEAR = 2e-3  # [m]: what is nearer than this touches
 PARTS = 4  # of an interval with a blow in it: where shapes meet is looked for at each
 SOFT = 2.0  # times gravity's pull over the interval: what changes a velocity by less is no blow
+ENOUGH = 0.005  # of gravity: a rest that is as good as none
 AGAIN = 0.03  # of gravity: where more is left, contacts are looked for between the frames
+CHUNK = 64  # intervals worked out at once
 FAST = 0.3  # [m]: no blow is looked for beyond
 
 
@@ -55,7 +57,7 @@ class Balance:
         self._touching = Touching(evidence.world)
         self._ties = Ties(evidence)
         motion = self._motion
-        self._pull = float(np.linalg.norm(motion.gravity))
+        self._unit = max(float(np.linalg.norm(motion.gravity)), 1.0)  # [m/s^2]
         self.size = np.maximum(np.maximum(motion.radius, self._ties.arms), 1e-4)
 
     def books(self) -> Books:
@@ -68,11 +70,20 @@ class Balance:
         blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
         judged = ~self._left_out()
         left, turned = np.concatenate([force, torque], axis=2), np.zeros((*blow.shape, 2))
-        rate = np.linalg.norm(motion.w, axis=2)
-        for k in range(len(motion.h)):
-            left[k], passed = self._interval(k, left[k], blow[k], judged[k])
-            turn = float(np.max(np.maximum(rate[k], rate[k + 1]) * motion.h[k], initial=0.0))
-            turned[k] = turn**2 / 12.0 * passed  # the error of an arm taken halfway
+        hit = judged & (blow > SOFT * self._unit * motion.h[:, None])
+        for start in range(0, len(motion.h), CHUNK):
+            ks = np.arange(start, min(start + CHUNK, len(motion.h)))
+            change = left[ks]
+            left[ks], turned[ks] = self._explained(ks, change, judged[ks], hit[ks], hit[ks])
+            odd = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & ~hit[ks]
+            again = odd.any(axis=1)
+            if again.any():  # they may have touched between the frames alone
+                some = ks[again]
+                between = hit[some] | odd[again]
+                left[some], turned[some] = self._explained(some, change[again], judged[some], hit[some], between)
+        rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
+        turn = np.maximum(rate[1:], rate[:-1]) * motion.h
+        turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
         return Books(left[..., :3], left[..., 3:], blow, turned, judged)
 
     def _left_out(self) -> Bools:
@@ -92,53 +103,37 @@ class Balance:
                 out |= np.minimum(apart[1:], apart[:-1]) < reach
         return np.asarray(out)
 
-    def _interval(self, k: int, change: Floats, blow: Floats, judged: Bools) -> tuple[Floats, Floats]:
-        """What is left of a change (B, 6) over one interval, and how much ties passed on, (B, 2)."""
-        hit = judged & (blow > SOFT * max(self._pull, 1.0) * float(self._motion.h[k]))
-        rest, passed = self._explained(k, change, judged, hit, hit)
-        odd = np.linalg.norm(rest, axis=1) > AGAIN * max(self._pull, 1.0)
-        if not (odd & ~hit).any():
-            return rest, passed
-        return self._explained(k, change, judged, hit, hit | odd)  # they may have touched between the frames alone
+    def _explained(self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
+        """What is left of the changes (K, B, 6) of some intervals, and how much ties passed on, (K, B, 2).
 
-    def _explained(self, k: int, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
-        """The same, with contacts looked for `between` the frames too for some bodies, of which some are `hit`."""
-        columns = [*self._pushes(k, hit, between), *self._ties.columns(k)]
-        rest, passed = np.where(judged[:, None], change, 0.0), np.zeros((len(change), 2))
-        if not columns:
-            return rest, passed
-        all_ = Columns.of(columns)
-        for bodies, chosen in _groups(all_, judged):
-            number = np.full(len(judged) + 1, -1)  # the last is the world's
-            number[bodies] = np.arange(len(bodies))
-            columns6 = np.zeros((len(chosen), len(bodies), 6))
-            for which, on in ((all_.one, all_.on_one), (all_.two, all_.on_two)):
-                n = number[which[chosen]]
-                ours = np.flatnonzero(n >= 0)
-                columns6[ours, n[ours]] += on[chosen[ours]]
-            scale = np.repeat(1.0 / self._motion.mass[bodies], 6).reshape(-1, 6)
-            scale[:, 3:] /= self.size[bodies][:, None]
-            matrix = (columns6 * scale).reshape(len(chosen), -1).T
-            wanted = rest[bodies].ravel()
-            strength = _least(matrix, wanted, all_.both[chosen])
-            rest[bodies] = (wanted - matrix @ strength).reshape(-1, 6)
-            ties = all_.both[chosen]
-            each = (np.abs(matrix[:, ties]) @ np.abs(strength[ties])).reshape(-1, 6) / scale
-            most = np.array([each[:, :3].max(), each[:, 3:].max()])  # an error of one body's arm ends at any other
-            passed[bodies] = most * scale[:, [0, 3]]
-        return rest, passed
+        Contacts are looked for `between` the frames, too, of some bodies, of which some are `hit`, (K, B). A body in an
+        interval is one of K B, so that all intervals are worked out at once.
+        """
+        count, bodies = judged.shape
+        rest = np.where(judged[..., None], change, 0.0).reshape(-1, 6)
+        passed = np.zeros((len(rest), 2))
+        columns = self._pushes(ks, hit, between)
+        for n, k in enumerate(ks) if self._ties.any else ():
+            columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
+        if columns:
+            all_ = Columns.of(columns)
+            scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
+            scale[:, 3:] /= self.size[:, None]
+            scale = np.tile(scale, (count, 1))
+            rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
+        return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
 
     # ---- contacts
-    def _pushes(self, k: int, hit: Bools, between: Bools) -> list[Columns]:
-        h = float(self._motion.h[k])
-        ends = self._poses(k), self._poses(k + 1)
-        fastest = float(np.max(self._motion.reach[k], initial=0.0))
+    def _pushes(self, ks: Rows, hit: Bools, between: Bools) -> list[Columns]:
+        h = self._motion.h[ks]
+        ends = self._poses(ks), self._poses(ks + 1)
+        fastest = NEAR + np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
         shares = np.linspace(0.0, 1.0, PARTS + 1) if between.any() else np.array([0.0])
         found = []
         for side, end in enumerate(ends):
             for share in shares:
-                moved = self._moved(end, (share if side == 0 else -share) * h)
-                contacts = self._touching.at(moved.q, NEAR + min(fastest, FAST))
+                moved = _moved(end, np.repeat((share if side == 0 else -share) * h, hit.shape[1]))
+                contacts = self._touching.of_many(moved.q.reshape(len(ks), -1, 7), fastest)
                 contacts = contacts.only(self._within_reach(contacts, moved, h, share, between))
                 if len(contacts):
                     found.append((contacts, moved, side))
@@ -151,17 +146,16 @@ class Balance:
             columns.append(pushes(contacts, moved, friction, along, self._rolling(contacts, rolling, friction)))
         return columns
 
-    def _within_reach(self, contacts: Contacts, poses: Poses, h: float, share: float, between: Bools) -> Bools:
+    def _within_reach(self, contacts: Contacts, poses: Poses, h: Floats, share: float, between: Bools) -> Bools:
         """Contacts whose gap may close within the part of the interval that a pose stands for."""
         speed = np.linalg.norm(slip(self._touching, contacts, poses), axis=1)
-        part = h / PARTS if share > 0.0 else h
-        close = contacts.gap <= NEAR + (speed + max(self._pull, 1.0) * h) * part
-        rows = np.stack([contacts.one, contacts.two])
-        asked = (between[np.maximum(rows, 0)] & (rows >= 0)).any(axis=0)
-        return np.asarray(close & (asked | (share == 0.0)))
+        length = h[np.maximum(contacts.one, contacts.two) // between.shape[1]]
+        part = length / PARTS if share > 0.0 else length
+        close = contacts.gap <= NEAR + (speed + self._unit * length) * part
+        return np.asarray(close & (_any(between, contacts) | (share == 0.0)))
 
     def _lasting(
-        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, h: float
+        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, h: Floats
     ) -> list[Floats]:
         """The unit way of each contact's slip where its pair slips one way from one frame to the next, else 0."""
         flat = []
@@ -178,53 +172,41 @@ class Balance:
         then = (mean / np.maximum(count, 1.0)[..., None])[1 - side, which]
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         friction, _ = self._touching.laws(every.shapes)
-        slow = 3.0 * friction * max(self._pull, 1.0) * h + STILL
+        length = h[np.maximum(every.one, every.two) // hit.shape[1]]
+        slow = 3.0 * friction * self._unit * length + STILL
         lasts = (np.minimum(speed, speed_then) > slow) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
-        rows = np.stack([every.one, every.two])
-        lasts &= ~(hit[np.maximum(rows, 0)] & (rows >= 0)).any(axis=0)
+        lasts &= ~_any(hit, every)
         along = np.where(lasts[:, None], own / np.maximum(speed, 1e-300)[:, None], 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 
     def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats) -> Floats:
         """The torque that resists turning, for a push of one [m]: rolling's, or spinning's, which is the greater."""
         rows = np.where(contacts.two >= 0, contacts.two, contacts.one)
-        found: Floats = np.maximum(rolling, np.pi * friction * rolling) * self.size[rows]
+        found: Floats = np.maximum(rolling, np.pi * friction * rolling) * self.size[rows % len(self.size)]
         return found
 
-    # ---- poses
-    def _poses(self, frame: int) -> Poses:
+    def _poses(self, frames: Rows) -> Poses:
         motion = self._motion
-        return Poses(self._evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
-
-    def _moved(self, poses: Poses, dt: float) -> Poses:
-        """Where bodies are `dt` [s] on, by their velocities and gravity."""
-        if dt == 0.0:
-            return poses
-        angle = poses.w * dt
-        size = np.linalg.norm(angle, axis=1, keepdims=True)
-        turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
-        rotation = multiply(turn, poses.q[:, 3:])
-        arm = poses.q[:, :3] - poses.com
-        com = poses.com + poses.v * dt
-        return Poses(np.concatenate([com + rotate(turn, arm), rotation], axis=1), com, poses.v, poses.w)
+        q, com, v, w = self._evidence.body_q[frames], motion.com[frames], motion.v[frames], motion.w[frames]
+        return Poses(q.reshape(-1, 7), com.reshape(-1, 3), v.reshape(-1, 3), w.reshape(-1, 3))
 
 
-def _least(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
-    """Strengths that leave least of what is wanted; those that do not act both ways are not negative."""
-    length = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
-    matrix = matrix / length
-    free, pushing = matrix[:, both], matrix[:, ~both]
-    strength = np.zeros(len(both))
-    if pushing.shape[1]:
-        # What acts both ways takes all within its span: the others are asked for what is outside.
-        basis, size, _ = np.linalg.svd(free, full_matrices=False) if free.shape[1] else (free, np.zeros(0), None)
-        span = basis[:, : int((size > 1e-9 * size.max(initial=0.0)).sum())]
-        outside = pushing - span @ (span.T @ pushing)
-        strength[~both] = nnls(outside, wanted - span @ (span.T @ wanted), maxiter=100 * len(both))[0]
-    if free.shape[1]:
-        strength[both] = np.linalg.lstsq(free, wanted - pushing @ strength[~both], rcond=1e-9)[0]
-    found: Floats = strength / length
-    return found
+def _moved(poses: Poses, dt: Floats) -> Poses:
+    """Where bodies are by their velocities `dt` (B,) [s] on."""
+    if not dt.any():
+        return poses
+    angle = poses.w * dt[:, None]
+    size = np.linalg.norm(angle, axis=1, keepdims=True)
+    turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
+    com = poses.com + poses.v * dt[:, None]
+    place = com + rotate(turn, poses.q[:, :3] - poses.com)
+    return Poses(np.concatenate([place, multiply(turn, poses.q[:, 3:])], axis=1), com, poses.v, poses.w)
+
+
+def _any(bodies: Bools, contacts: Contacts) -> Bools:
+    """Whether either body of a contact is one of some (K, B)."""
+    rows = np.stack([contacts.one, contacts.two])
+    return np.asarray((bodies.ravel()[np.maximum(rows, 0)] & (rows >= 0)).any(axis=0))
 
 
 def rounding(evidence: Evidence) -> Floats:
@@ -238,20 +220,3 @@ def rounding(evidence: Evidence) -> Floats:
 def _hollow(shapes: list) -> bool:
     """Whether a body has a mesh: what collides of it need not be its hull."""
     return any(shape.kind == "mesh" and shape.collides for shape in shapes)
-
-
-def _groups(columns: Columns, judged: Bools) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
-    """Bodies that pass impulses to each other, and their columns; what is not judged passes nothing on."""
-    count = len(judged)
-    label = np.arange(count)
-    inner = (columns.one >= 0) & (columns.two >= 0)
-    inner[inner] &= judged[columns.one[inner]] & judged[columns.two[inner]]
-    for a, b in {(int(a), int(b)) for a, b in zip(columns.one[inner], columns.two[inner], strict=True)}:
-        if label[a] != label[b]:
-            label[label == label[b]] = label[a]
-    owner = np.full(len(columns.one), -1)
-    for which in (columns.one, columns.two):
-        own = (which >= 0) & judged[np.maximum(which, 0)]
-        owner[own] = label[which[own]]
-    return [(np.flatnonzero((label == group) & judged), np.flatnonzero(owner == group))
-            for group in np.unique(owner[owner >= 0])]  # fmt: skip

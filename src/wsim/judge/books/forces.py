@@ -44,6 +44,11 @@ class Columns:
     on_two: Floats
     both: NDArray[np.bool_]  # (c,) whether it may act both ways, or only as it is
 
+    def shifted(self, by: int) -> Columns:
+        """The same on bodies whose rows are higher."""
+        one, two = (np.where(rows >= 0, rows + by, rows) for rows in (self.one, self.two))
+        return Columns(one, two, self.on_one, self.on_two, self.both)
+
     @staticmethod
     def of(parts: list[Columns]) -> Columns:
         """All of several."""

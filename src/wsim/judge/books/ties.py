@@ -42,6 +42,11 @@ class Ties:
             geared or joint.drive is not None or joint.friction > 0.0 or joint.low is not None or joint.high is not None
         )
 
+    @property
+    def any(self) -> bool:
+        """Whether there are any."""
+        return bool(self._joints or self._evidence.world.springs)
+
     @cached_property
     def arms(self) -> Floats:
         """How far from its centre of mass each body is held, at most, (B,) [m]."""

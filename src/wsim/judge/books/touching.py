@@ -6,7 +6,7 @@ serves the trajectories of any engine. Bodies are without mass there; nothing is
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -120,6 +120,15 @@ class Touching:
         owners = [self._owner_of_shape[k] for k in range(len(self.shapes))]
         free = [frozenset((owners[a], owners[b])) not in self._tied for a, b in shapes]
         return contacts.only(np.array(free, dtype=bool))
+
+    def of_many(self, poses: Floats, reach: Floats) -> Contacts:
+        """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of K B."""
+        parts = []
+        for n, (q, far) in enumerate(zip(poses, reach, strict=True)):
+            found, by = self.at(q, float(far)), n * poses.shape[1]
+            one, two = (np.where(rows >= 0, rows + by, rows) for rows in (found.one, found.two))
+            parts.append(replace(found, one=one, two=two))
+        return together(parts)
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""

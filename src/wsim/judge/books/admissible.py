@@ -1,0 +1,155 @@
+"""The admissible impulses that leave least of a change of momentum.
+
+Bodies that pass impulses to each other make one small problem each; there are thousands in a recording. Where all
+impulses are one-sided, alternating projections between "they make the change" and "they only push" (von Neumann;
+Bauschke and Borwein 1996) explain all that rests or slides in a few products of stacked matrices. What they do not
+explain is left to non-negative least squares (Lawson and Hanson 1974), one problem after another.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import lsq_linear, nnls
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.books.forces import Columns
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
+
+ROUNDS = 12  # of alternating projections
+ALIKE = 16  # columns of problems that are solved at once differ by less
+LARGE = 24  # bodies: beyond, a problem is its own
+
+
+@dataclass(frozen=True)
+class Problems:
+    """Bodies that pass impulses to each other, and their columns, g problems."""
+
+    bodies: list[Rows]
+    columns: list[Rows]
+
+    @classmethod
+    def of(cls, columns: Columns, judged: Bools) -> Problems:
+        """What is not judged passes nothing on."""
+        ours = [(which >= 0) & judged[np.maximum(which, 0)] for which in (columns.one, columns.two)]
+        inner = ours[0] & ours[1]
+        links = coo_matrix((np.ones(int(inner.sum())), (columns.one[inner], columns.two[inner])), (len(judged),) * 2)
+        _, label = connected_components(links, directed=False)
+        owner = np.where(ours[1], label[np.maximum(columns.two, 0)], label[np.maximum(columns.one, 0)])
+        known = np.flatnonzero(ours[0] | ours[1])
+        by_owner = known[np.argsort(owner[known], kind="stable")]
+        groups, first = np.unique(owner[by_owner], return_index=True)
+        members = np.flatnonzero(judged)
+        by_label = members[np.argsort(label[members], kind="stable")]
+        starts, ends = (np.searchsorted(label[by_label], groups, side) for side in ("left", "right"))
+        bodies = [by_label[start:end] for start, end in zip(starts, ends, strict=True)]
+        return cls(bodies, np.split(by_owner, first[1:]))
+
+
+def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float) -> tuple[Floats, Floats]:
+    """What is left of changes (N, 6) of N bodies, to within `enough`, and the most that ties passed on, (N, 2).
+
+    Args:
+        columns: Impulses that the world can exert.
+        judged: (N,).
+        wanted: Changes, (N, 6), already by `scale`.
+        scale: (N, 6), what an impulse on a body counts for.
+        enough: A rest of a body that is as good as none.
+    """
+    rest, passed = wanted.copy(), np.zeros((len(wanted), 2))
+    problems = Problems.of(columns, judged)
+    hard = _easy(columns, problems, rest, scale, enough)
+    for bodies, chosen in ((problems.bodies[k], problems.columns[k]) for k in hard):
+        matrix = _matrices(columns, bodies[None], [chosen], scale)[0]
+        ties = columns.both[chosen]
+        strength = least(matrix, rest[bodies].ravel(), ties)
+        rest[bodies] -= (matrix @ strength).reshape(-1, 6)
+        if ties.any():
+            each = (np.abs(matrix[:, ties]) @ np.abs(strength[ties])).reshape(-1, 6) / scale[bodies]
+            most = np.array([each[:, :3].max(), each[:, 3:].max()])  # an error of one body's arm ends at any other
+            passed[bodies] = most * scale[bodies][:, [0, 3]]
+    return rest, passed
+
+
+def least(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
+    """Strengths (c,) that leave least of what is wanted (r,); those that do not act both ways are not negative."""
+    length = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+    matrix = matrix / length
+    free, pushing = matrix[:, both], matrix[:, ~both]
+    strength = np.zeros(len(both))
+    if pushing.shape[1]:
+        # What acts both ways takes all within its span: the others are asked for what is outside.
+        basis, size, _ = np.linalg.svd(free, full_matrices=False) if free.shape[1] else (free, np.zeros(0), None)
+        span = basis[:, : int((size > 1e-9 * size.max(initial=0.0)).sum())]
+        outside = pushing - span @ (span.T @ pushing)
+        strength[~both] = _not_negative(outside, wanted - span @ (span.T @ wanted))
+    if free.shape[1]:
+        strength[both] = np.linalg.lstsq(free, wanted - pushing @ strength[~both], rcond=1e-9)[0]
+    found: Floats = strength / length
+    return found
+
+
+def _not_negative(matrix: Floats, wanted: Floats) -> Floats:
+    try:
+        found: Floats = nnls(matrix, wanted, maxiter=10 * matrix.shape[1])[0]
+    except RuntimeError:  # where many columns are alike it may go round in circles
+        found = lsq_linear(matrix, wanted, (0.0, np.inf)).x
+    return found
+
+
+def _easy(columns: Columns, problems: Problems, rest: Floats, scale: Floats, enough: float) -> list[int]:
+    """Take from the rest what projections explain, where they explain all; the problems that are left."""
+    tied = [bool(columns.both[chosen].any()) or len(chosen) == 0 for chosen in problems.columns]
+    hard = []
+    alike: dict[tuple[int, int], list[int]] = {}
+    for k, (bodies, chosen) in enumerate(zip(problems.bodies, problems.columns, strict=True)):
+        if tied[k] or len(bodies) > LARGE:
+            hard.append(k)
+        else:
+            alike.setdefault((len(bodies), -(-len(chosen) // ALIKE)), []).append(k)
+    for group in alike.values():
+        at = np.stack([problems.bodies[k] for k in group])  # (g, b)
+        matrices = _matrices(columns, at, [problems.columns[k] for k in group], scale)
+        left = _projected(matrices, rest[at].reshape(len(group), -1)).reshape(*at.shape, 6)
+        small = np.linalg.norm(left, axis=2).max(axis=1) <= enough
+        rest[at[small]] = left[small]
+        hard += [k for k, done in zip(group, small, strict=True) if not done]
+    return sorted(hard)
+
+
+def _projected(matrices: Floats, wanted: Floats) -> Floats:
+    """What is left of what is wanted (g, r), of matrices (g, r, c), after some alternating projections."""
+    gram = matrices @ matrices.transpose(0, 2, 1)
+    gram += 1e-9 * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[1])
+    inverse = matrices.transpose(0, 2, 1) @ np.linalg.inv(gram)
+    strength, left = np.zeros((len(matrices), matrices.shape[2], 1)), wanted[..., None]
+    for _ in range(ROUNDS):
+        strength = np.maximum(strength + inverse @ left, 0.0)
+        left = wanted[..., None] - matrices @ strength
+    return np.asarray(left[..., 0])
+
+
+def _matrices(columns: Columns, bodies: Rows, chosen: list[Rows], scale: Floats) -> Floats:
+    """The problems' columns for their bodies (g, b), (g, 6 b, c); zeros where one has fewer than another."""
+    every, members = np.concatenate(chosen), bodies.shape[1]
+    counts = np.array([len(part) for part in chosen])
+    problem = np.repeat(np.arange(len(chosen)), counts)
+    column = np.arange(len(every)) - np.repeat(np.cumsum(counts) - counts, counts)
+    place = np.full(len(scale), -1)
+    place[bodies] = np.arange(members)
+    made = np.zeros((len(chosen), int(counts.max()), members, 6))
+    for which, on in ((columns.one[every], columns.on_one), (columns.two[every], columns.on_two)):
+        ours = np.flatnonzero(which >= 0)
+        ours = ours[place[which[ours]] >= 0]
+        body = which[ours]
+        made[problem[ours], column[ours], place[body]] += on[every[ours]] * scale[body]
+    return made.reshape(len(chosen), made.shape[1], -1).transpose(0, 2, 1)
