@@ -70,7 +70,9 @@ class Balance:
         turning = np.linalg.norm(torque, axis=2)
         blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
         judged = ~self._left_out()
-        left, turned = np.concatenate([force, torque], axis=2), np.zeros((*blow.shape, 2))
+        given, wrong = self._ties.laws.given()
+        scale, arm = self._scale(), np.stack([motion.mass, motion.mass * self.size], axis=1)
+        left, turned = np.concatenate([force, torque], axis=2) - given * scale, np.zeros((*blow.shape, 2))
         hit = judged & (blow > SOFT * self._unit * motion.h[:, None])
         for start in range(0, len(motion.h), CHUNK):
             ks = np.arange(start, min(start + CHUNK, len(motion.h)))
@@ -85,7 +87,14 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
+        turned += wrong / arm
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
+
+    def _scale(self) -> Floats:
+        """What a force and a torque on each body count for, (B, 6)."""
+        scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
+        scale[:, 3:] /= self.size[:, None]
+        return scale
 
     def _left_out(self) -> Bools:
         """Bodies that nobody judges: what is moved by hand, hangs in a rope, or is near a surface of triangles."""
@@ -118,9 +127,7 @@ class Balance:
             columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
         if columns:
             all_ = Columns.of(columns)
-            scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
-            scale[:, 3:] /= self.size[:, None]
-            scale = np.tile(scale, (count, 1))
+            scale = np.tile(self._scale(), (count, 1))
             rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
 
