@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from wsim.errors import UserError
+from wsim.importers.mujoco_names import body_name
 
 
 def load_model(path: Path) -> Any:
@@ -17,11 +18,6 @@ def load_model(path: Path) -> Any:
         return mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
         raise UserError(f"{path} is no model that MuJoCo reads: {error}") from error
-
-
-def body_name(model: Any, body: int) -> str:
-    """A body's name; its number where it has none."""
-    return str(model.body(body).name) or f"body_{body}"
 
 
 def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str, np.ndarray]:

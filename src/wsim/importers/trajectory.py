@@ -102,7 +102,7 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
     metadata = {
         "complete": True,
         "imported_from": str(source),
-        "velocity": "differences" if velocity is None else "own",
+        "velocities": "differences" if velocity is None else "own",
     }
     # Controls are in no trajectory: what drives or a program did to the bodies is not known.
     metadata |= {"controlled": bool(arrays.get("controlled", False))}

@@ -114,6 +114,7 @@ class Motor(_Model):
     position: float = 0.0  # [rad] or [m]
     velocity: float = 0.0  # [rad/s] or [m/s]
     max_effort: float | None = None  # [N m] or [N]; None: without bound
+    told: bool = True  # False: something else sets its effort, and it may be any
 
 
 class Joint(_Model):
@@ -136,6 +137,7 @@ class Joint(_Model):
     high: float | None = None
     drive: Motor | None = None
     friction: float = 0.0  # dry, of a hinge [N m] or a slider [N]
+    armature: float = 0.0  # [kg m^2] or [kg]: inertia that moves by the joint's own position alone, as a rotor does
     closing: bool = False  # it closes a loop, or may break: a constraint, and none of the trees' joints
     break_force: float | None = None  # [N]; None: it holds any
     break_torque: float | None = None  # [N m]
@@ -205,6 +207,13 @@ class Rope(_Cord):
     length: float  # [m]
 
 
+class Foreign(_Model):
+    """What acts in another engine's world and has no place in this description: such a world cannot be judged."""
+
+    prim: str
+    feature: str  # "the tendon split": what it is, and its name there
+
+
 class Camera(_Model):
     """A pinhole camera that looks from `eye` to `target`."""
 
@@ -259,6 +268,8 @@ class World(_Model):
     gears: list[Gear] = Field(default_factory=list)
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
+    apart: list[tuple[str, str]] = Field(default_factory=list)  # objects or shapes that never touch
+    foreign: list[Foreign] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)
     lights: list[Light] = Field(default_factory=list)
     parameters: list[Parameter] = Field(default_factory=list)

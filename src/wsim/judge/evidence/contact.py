@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, matrices, multiply, rotate
+from wsim.scene.contact import passing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,13 +31,14 @@ class Overlap:
 
 
 def overlaps(evidence: Recorded) -> list[Overlap]:
-    """Every pair of shapes, of different owners and with no joint between them, that overlap at some time.
+    """Every pair of shapes that overlap at some time, but for those of one owner, jointed, or made to pass.
 
     A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
     edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
     """
     shapes = evidence.placed
     jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
+    passes = passing(evidence.world)
     # Two can only meet if the boxes about all the places that each is ever in do.
     low = np.array([shape.position.min(axis=0) - shape.radius for shape in shapes]).reshape(-1, 3)
     high = np.array([shape.position.max(axis=0) + shape.radius for shape in shapes]).reshape(-1, 3)
@@ -48,6 +50,8 @@ def overlaps(evidence: Recorded) -> list[Overlap]:
         may_meet = np.all((low[index] <= high[later]) & (low[later] <= high[index]), axis=1)
         for b in (shapes[index + 1 + k] for k in np.flatnonzero(may_meet)):
             if a.owner == b.owner or frozenset((a.owner, b.owner)) in jointed:
+                continue
+            if passes((a.owner, a.shape.prim), (b.owner, b.shape.prim)):
                 continue
             depth = _depth(a, b)
             if depth is not None and depth.max() > 0.0:
