@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 NEAR = 2e-3  # [m]: what is nearer than this touches
 PARTS = 4  # of an interval with a blow in it: where shapes meet is looked for at each
 SOFT = 2.0  # times gravity's pull over the interval: what changes a velocity by less is no blow
-ENOUGH = 0.005  # of gravity: a rest that is as good as none
-AGAIN = 0.03  # of gravity: where more is left, contacts are looked for between the frames
+ENOUGH = 0.001  # of gravity: a rest that is as good as none
+AGAIN = 0.003  # of gravity: where more is left, contacts are looked for between the frames
 CHUNK = 64  # intervals worked out at once
 FAST = 0.3  # [m]: no blow is looked for beyond
 
@@ -47,6 +47,7 @@ class Books:
     blow: Floats  # (T - 1, B) change of velocity, of its surface too, that was to be explained [m/s]
     turned: Floats  # (T - 1, B, 2): what may be missing of both, as bodies turn while they are held [m/s^2]
     judged: Bools  # (T - 1, B)
+    hit: Bools  # (T - 1, B), whether it is so much that something hit the body
 
 
 class Balance:
@@ -69,7 +70,9 @@ class Balance:
         turning = np.linalg.norm(torque, axis=2)
         blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
         judged = ~self._left_out()
-        left, turned = np.concatenate([force, torque], axis=2), np.zeros((*blow.shape, 2))
+        given, wrong = self._ties.laws.given()
+        scale, arm = self._scale(), np.stack([motion.mass, motion.mass * self.size], axis=1)
+        left, turned = np.concatenate([force, torque], axis=2) - given * scale, np.zeros((*blow.shape, 2))
         hit = judged & (blow > SOFT * self._unit * motion.h[:, None])
         for start in range(0, len(motion.h), CHUNK):
             ks = np.arange(start, min(start + CHUNK, len(motion.h)))
@@ -84,7 +87,14 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        return Books(left[..., :3], left[..., 3:], blow, turned, judged)
+        turned += wrong / arm
+        return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
+
+    def _scale(self) -> Floats:
+        """What a force and a torque on each body count for, (B, 6)."""
+        scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
+        scale[:, 3:] /= self.size[:, None]
+        return scale
 
     def _left_out(self) -> Bools:
         """Bodies that nobody judges: what is moved by hand, hangs in a rope, or is near a surface of triangles."""
@@ -117,9 +127,7 @@ class Balance:
             columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
         if columns:
             all_ = Columns.of(columns)
-            scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
-            scale[:, 3:] /= self.size[:, None]
-            scale = np.tile(scale, (count, 1))
+            scale = np.tile(self._scale(), (count, 1))
             rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
 
@@ -139,7 +147,7 @@ class Balance:
                     found.append((contacts, moved, side))
         if not found:
             return []
-        lasting = self._lasting(found, ends, hit, h)
+        lasting = self._lasting(found, ends, hit)
         columns = []
         for (contacts, moved, _), along in zip(found, lasting, strict=True):
             friction, rolling = self._touching.laws(contacts.shapes)
@@ -154,10 +162,11 @@ class Balance:
         close = contacts.gap <= NEAR + (speed + self._unit * length) * part
         return np.asarray(close & (_any(between, contacts) | (share == 0.0)))
 
-    def _lasting(
-        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, h: Floats
-    ) -> list[Floats]:
-        """The unit way of each contact's slip where its pair slips one way from one frame to the next, else 0."""
+    def _lasting(self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools) -> list[Floats]:
+        """The unit ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
+
+        Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end.
+        """
         flat = []
         for contacts, _, end in found:
             u = slip(self._touching, contacts, ends[end])
@@ -171,12 +180,12 @@ class Balance:
         np.add.at(count, (side, which), 1.0)
         then = (mean / np.maximum(count, 1.0)[..., None])[1 - side, which]
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
-        friction, _ = self._touching.laws(every.shapes)
-        length = h[np.maximum(every.one, every.two) // hit.shape[1]]
-        slow = 3.0 * friction * self._unit * length + STILL
-        lasts = (np.minimum(speed, speed_then) > slow) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
+        lasts = (np.minimum(speed, speed_then) > STILL) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
         lasts &= ~_any(hit, every)
-        along = np.where(lasts[:, None], own / np.maximum(speed, 1e-300)[:, None], 0.0)
+        ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
+        ways[1] += ways[0]
+        ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
+        along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 
     def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats) -> Floats:

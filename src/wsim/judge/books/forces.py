@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 EDGES = 8  # of the friction cone, which it is cut around
-STILL = 0.02  # [m/s]: below this, and what friction stops within the interval, a slip may come and go
+STILL = 0.02  # [m/s]: a slower slip may come and go within an interval
 ONE_WAY = 0.9  # cosine between the slips at both ends of an interval that lasts
 
 
@@ -75,16 +75,16 @@ def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) ->
 
 
 def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, rolling: Floats) -> Columns:
-    """The impulses of contacts: inside the cone, or on its edge where `along` (n, 3) says which way a slip lasts.
+    """The impulses of contacts: inside the cone, or on its edge where `along` says which ways a slip lasts.
 
     Args:
         contacts: n of them, at the
         poses: that their arms are taken from.
         friction: (n,).
-        along: Unit way of the lasting slip of the second body over the first; 0 where there is none.
+        along: Unit ways of the lasting slip of the second body over the first, (n, 2, 3); 0 where there is none.
         rolling: Torque that resists turning, for a push of one, (n,) [m].
     """
-    n, lasting = contacts.normal, np.any(along != 0.0, axis=1)
+    n, lasting = contacts.normal, np.any(along != 0.0, axis=(1, 2))
     other = np.where(np.abs(n[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
     t1 = np.cross(n, other)
     t1 /= np.linalg.norm(t1, axis=1, keepdims=True)
@@ -94,14 +94,14 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
     cone = (n + friction[:, None] * ring).reshape(-1, 3)
     which = np.tile(np.arange(len(n)), EDGES)
     keep = ~lasting[which]
-    edge = (n - friction[:, None] * along)[lasting]
-    force = np.concatenate([cone[keep], edge])
-    which = np.concatenate([which[keep], np.flatnonzero(lasting)])
+    edges = [(n - friction[:, None] * along[:, k])[lasting] for k in range(along.shape[1])]
+    force = np.concatenate([cone[keep], *edges])
+    which = np.concatenate([which[keep], *([np.flatnonzero(lasting)] * len(edges))])
     spin = np.zeros_like(force)
     turns = np.flatnonzero(rolling > 0.0)
     for axis in (n, t1, t2):
         for way in (-1.0, 1.0):
-            force = np.concatenate([force, (n - friction[:, None] * along)[turns]])
+            force = np.concatenate([force, (n - friction[:, None] * along[:, 0])[turns]])
             spin = np.concatenate([spin, way * (rolling[:, None] * axis)[turns]])
             which = np.concatenate([which, turns])
     arms = [contacts.point - poses.com[np.maximum(rows, 0)] for rows in (contacts.one, contacts.two)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -9,8 +10,9 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.forces import Columns, holds
+from wsim.judge.books.laws import Laws
 from wsim.judge.books.touching import WORLD
-from wsim.judge.evidence.joints import AXES, broken
+from wsim.judge.evidence.joints import AXES, broken, track_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,6 +21,20 @@ if TYPE_CHECKING:
     from wsim.scene.world import Guide, Joint, Spring
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+NEAR_STOP = 0.02  # [rad or m]: a stop that is nearer may push
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A joint, and in which intervals something acts along its own motion, (T - 1,) each."""
+
+    joint: Joint
+    free: Bools  # a drive or dry friction that the frames do not tell, or a gear
+    low: Bools  # the stop at its lower end, which pushes up
+    high: Bools
+    gone: Bools  # it is broken
 
 
 class Ties:
@@ -28,19 +44,22 @@ class Ties:
         self._evidence = evidence
         world = evidence.world
         self._row = {body.prim: i for i, body in enumerate(world.bodies)}
+        self.laws = Laws(evidence)
         geared = {prim for gear in world.gears for prim in (gear.first, gear.second)}
-        self._joints = [
-            (joint, self._may_act(joint, joint.prim in geared), broken(evidence, joint))
-            for joint in world.joints
-            if joint.parent_anchor is not None and joint.child_anchor is not None
-        ]
+        self._joints = [acting for joint in world.joints if (acting := self._acting(joint, joint.prim in geared))]
 
-    @staticmethod
-    def _may_act(joint: Joint, geared: bool) -> bool:
-        """Whether anything may act along the joint's own motion: a drive, a stop, friction, a gear."""
-        return (
-            geared or joint.drive is not None or joint.friction > 0.0 or joint.low is not None or joint.high is not None
-        )
+    def _acting(self, joint: Joint, geared: bool) -> Acting | None:
+        track = track_of(self._evidence, joint)
+        if track is None:
+            return None
+        law, none = self.laws.joints.get(joint.prim), np.zeros(len(self._evidence.time) - 1, dtype=bool)
+        free = none | geared if law is None else ~law.known | geared
+        at, h = track.position, self._evidence.motion.h
+        near = NEAR_STOP + 2.0 * np.abs(np.diff(at)) + self._evidence.gravity * h**2
+        lowest, highest = np.minimum(at[1:], at[:-1]), np.maximum(at[1:], at[:-1])
+        low = none if joint.low is None else lowest <= joint.low + near
+        high = none if joint.high is None else highest >= joint.high - near
+        return Acting(joint, free, low, high, broken(self._evidence, joint)[:-1])
 
     @property
     def any(self) -> bool:
@@ -65,17 +84,20 @@ class Ties:
 
     def columns(self, k: int) -> list[Columns]:
         """What may act between frames k and k + 1."""
-        found = [self._joint(joint, free, k) for joint, free, gone in self._joints if not gone[k]]
-        return found + [self._spring(spring, k) for spring in self._evidence.world.springs]
+        found = [columns for joint in self._joints if not joint.gone[k] for columns in self._joint(joint, k)]
+        springs = zip(self._evidence.world.springs, self.laws.springs, strict=True)
+        return found + [self._spring(spring, k) for spring, law in springs if not law.known[k]]
 
-    def _joint(self, joint: Joint, acts: bool, k: int) -> Columns:
+    def _joint(self, acting: Acting, k: int) -> list[Columns]:
+        joint, acts = acting.joint, bool(acting.free[k])
         one, two = self._row.get(joint.parent or "", WORLD), self._row[joint.child]
         anchors = [self._place(two, joint.child_anchor or (0.0, 0.0, 0.0), frame) for frame in (k, k + 1)]
         arms = self._arm(one, anchors, k), self._arm(two, anchors, k)
         axes = self._axes(one, joint, k)
         along = AXES[joint.axis]
         across = np.delete(axes, along, axis=0)
-        forces, torques = axes, np.zeros((0, 3))
+        none = np.zeros((0, 3))
+        forces, torques = axes, none
         if joint.kind == "fixed":
             torques = axes
         elif joint.kind == "revolute":
@@ -84,7 +106,13 @@ class Ties:
             forces, torques = (axes if acts else across), axes
         elif acts:
             torques = axes
-        return holds(one, two, arms, forces, torques)
+        found = [holds(one, two, arms, forces, torques)]
+        for way, stops in ((1.0, acting.low[k]), (-1.0, acting.high[k])):
+            if stops and not acts:
+                own = way * axes[along][None]
+                stop = holds(one, two, arms, *((none, own) if joint.kind == "revolute" else (own, none)))
+                found.append(replace(stop, both=np.zeros(1, dtype=bool)))
+        return found
 
     def _spring(self, spring: Spring, k: int) -> Columns:
         ends = [[self._guide(guide, frame) for frame in (k, k + 1)] for guide in (spring.path[0], spring.path[-1])]

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
 from wsim.scene.contact import Pair, pair_law
 
 if TYPE_CHECKING:
@@ -145,7 +144,7 @@ class Touching:
     @cached_property
     def surface_velocity(self) -> Floats:
         """Of each shape [m/s], in its body's axes, (shapes, 3)."""
-        stated = [rotate(np.array(shape.rotation), np.array(shape.surface_velocity)) for _, _, shape in self.shapes]
+        stated = [shape.surface_velocity for _, _, shape in self.shapes]
         return np.array(stated, dtype=np.float64).reshape(-1, 3)
 
 

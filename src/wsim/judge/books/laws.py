@@ -1,0 +1,176 @@
+"""Forces that follow from where bodies are and how they go: of springs, drives and dry friction in joints.
+
+Each is taken as the mean of what its law gives at the frames at both ends of an interval, where these are near enough
+to tell: a mode of phase `p` between frames leaves p^2 / 12 of it (the trapezoidal rule's error). Where they are not,
+and where somebody sets the law's numbers while the world runs, the force is unknown, and any along its line may act.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import rotate
+from wsim.judge.evidence.cords import track_of_spring
+from wsim.judge.evidence.joints import AXES, broken, track_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Guide, Joint, Spring
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+RESOLVED = 0.5  # of a mode's phase between two frames [rad]: what is faster is not known from the frames
+
+
+@dataclass(frozen=True)
+class Law:
+    """A force along one way, by its law at each frame."""
+
+    wrench: Floats  # on the second body at each frame, (T, 6) [N, N m]; torques about its centre of mass
+    back: Floats  # on the first one
+    one: int  # row of the first body, or below 0: the world
+    two: int
+    error: Floats  # (T - 1,) share of the force that the frames do not tell
+    known: Bools  # (T - 1,) whether the frames tell it
+
+
+class Laws:
+    """All springs, drives and dry frictions of a world."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self._evidence, self._motion = evidence, evidence.motion
+        self._row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
+        self._set = bool(evidence.recording.metadata.get("controlled"))
+        self.springs = [self._spring(spring) for spring in evidence.world.springs]
+        self.joints = {joint.prim: law for joint in evidence.world.joints if (law := self._joint(joint)) is not None}
+
+    def given(self) -> tuple[Floats, Floats]:
+        """What is known, (T - 1, B, 6) [N, N m], and how much of forces and torques may be wrong, (T - 1, B, 2)."""
+        intervals, bodies = len(self._motion.h), len(self._motion.mass)
+        total, wrong = np.zeros((intervals, bodies, 6)), np.zeros((intervals, bodies, 2))
+        for law in [*self.springs, *self.joints.values()]:
+            for row, wrench in ((law.one, law.back), (law.two, law.wrench)):
+                if row < 0:
+                    continue
+                mean = np.where(law.known[:, None], 0.5 * (wrench[1:] + wrench[:-1]), 0.0)
+                total[:, row] += mean
+                most = np.maximum(np.abs(wrench[1:]), np.abs(wrench[:-1])).reshape(-1, 2, 3)
+                share = np.where(law.known, law.error, 0.0)
+                wrong[:, row] += share[:, None] * np.linalg.norm(most, axis=2)
+        return total, wrong
+
+    # ---- springs
+    def _spring(self, spring: Spring) -> Law:
+        track = track_of_spring(self._evidence, spring)
+        rows = [self._row.get(guide.body or "", -1) for guide in spring.path]
+        arms = [self._arm(row, self._end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
+        force = -(track.pull[:, None] * track.along)
+        loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
+        return self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
+
+    def _end(self, guide: Guide) -> Floats:
+        frames = len(self._evidence.time)
+        if guide.body is None:
+            return np.tile(np.array(guide.position, dtype=np.float64), (frames, 1))
+        q = self._evidence.body_q[:, self._row[guide.body]]
+        place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(guide.position)[None])
+        return place
+
+    def _arm(self, row: int, place: Floats) -> Floats:
+        return np.zeros_like(place) if row < 0 else place - self._motion.com[:, row]
+
+    def _looseness(self, row: int, arm: Floats, along: Floats) -> Floats:
+        """By how much a unit force at an arm speeds its point up along its own way, (T,) [1/kg]."""
+        if row < 0 or self._motion.kinematic[row]:
+            return np.zeros(len(arm))
+        turned = np.cross(arm, along)
+        found: Floats = 1.0 / self._motion.mass[row] + self._turning(row, turned)
+        return found
+
+    def _turning(self, row: int, torque: Floats) -> Floats:
+        """Work of a torque (T, 3) on the turning that it starts, (T,)."""
+        q = self._evidence.body_q[:, row, 3:]
+        own = rotate(q * np.array([-1.0, -1.0, -1.0, 1.0]), torque)
+        return np.einsum("ti,ij,tj->t", own, np.linalg.pinv(self._motion.inertia[row]), own)
+
+    # ---- joints
+    def _joint(self, joint: Joint) -> Law | None:
+        """What a joint's drive and friction give along its own motion; None where it has neither."""
+        if joint.kind not in ("revolute", "prismatic") or (joint.drive is None and joint.friction <= 0.0):
+            return None
+        track = track_of(self._evidence, joint)
+        if track is None or joint.child_anchor is None:
+            return None
+        rows = [self._row.get(joint.parent or "", -1), self._row[joint.child]]
+        place = self._end_of(joint)
+        arms = [self._arm(row, place) for row in rows]
+        axis = self._axis(joint)
+        rate, loose = self._rate(joint, rows, arms, axis), np.zeros(len(place))
+        for row, arm in zip(rows, arms, strict=True):
+            if row >= 0 and not self._motion.kinematic[row]:
+                turns = joint.kind == "revolute"
+                loose = loose + (self._turning(row, axis) if turns else self._looseness(row, arm, axis))
+        effort, stiffness, damping = np.zeros(len(rate)), 0.0, 0.0
+        drive = joint.drive
+        if drive is not None:
+            effort = drive.stiffness * (drive.position - track.position) + drive.damping * (drive.velocity - rate)
+            stiffness, damping = drive.stiffness, drive.damping
+            if drive.max_effort is not None:
+                effort = np.clip(effort, -drive.max_effort, drive.max_effort)
+        effort = effort - joint.friction * np.sign(rate)
+        along = effort[:, None] * axis
+        none = np.zeros_like(along)
+        force, torque = (none, along) if joint.kind == "revolute" else (along, none)
+        law = self._law(rows, arms, force, torque, (stiffness, damping), loose)
+        known = law.known & ~broken(self._evidence, joint)[1:]
+        known &= not (self._set and drive is not None)
+        if joint.friction > 0.0:  # it may hold at rest
+            slow = joint.friction * loose[1:] * self._motion.h
+            known = known & (rate[1:] * rate[:-1] > 0.0) & (np.minimum(np.abs(rate[1:]), np.abs(rate[:-1])) > slow)
+        return Law(law.wrench, law.back, law.one, law.two, law.error, known)
+
+    def _end_of(self, joint: Joint) -> Floats:
+        q = self._evidence.body_q[:, self._row[joint.child]]
+        place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(joint.child_anchor)[None])
+        return place
+
+    def _axis(self, joint: Joint) -> Floats:
+        """The joint's axis in the world, by its child, (T, 3)."""
+        own = rotate(np.array(joint.child_turn), np.eye(3)[AXES[joint.axis]])
+        found: Floats = rotate(self._evidence.body_q[:, self._row[joint.child], 3:], np.asarray(own)[None])
+        return found
+
+    def _rate(self, joint: Joint, rows: list[int], arms: list[Floats], axis: Floats) -> Floats:
+        """The joint's own speed, (T,) [rad/s or m/s]."""
+        speeds = []
+        for row, arm in zip(rows, arms, strict=True):
+            if row < 0:
+                speeds.append(np.zeros_like(axis))
+            elif joint.kind == "revolute":
+                speeds.append(self._motion.w[:, row])
+            else:
+                speeds.append(self._motion.v[:, row] + np.cross(self._motion.w[:, row], arm))
+        found: Floats = np.einsum("ti,ti->t", speeds[1] - speeds[0], axis)
+        return found
+
+    # ---- both
+    def _law(
+        self,
+        rows: list[int],
+        arms: list[Floats],
+        force: Floats,
+        torque: Floats,
+        gains: tuple[float, float],
+        loose: Floats,
+    ) -> Law:
+        h, loose = self._motion.h, np.maximum(loose[1:], loose[:-1])
+        swing = gains[0] * loose * h**2 + (gains[1] * loose * h) ** 2
+        two = np.concatenate([force, np.cross(arms[1], force) + torque], axis=1)
+        one = -np.concatenate([force, np.cross(arms[0], force) + torque], axis=1)
+        return Law(two, one, rows[0], rows[1], swing / 12.0, swing < RESOLVED**2)
