@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from wsim.importers.mujoco_joints import JOINTED, driven, freedoms, kind_of, loaded, pulls, why_not
 from wsim.importers.mujoco_names import element, prim_of
 from wsim.importers.mujoco_tree import Tree
 from wsim.scene.world import Foreign
@@ -43,8 +44,6 @@ def _bodies(model: Any) -> Iterator[Foreign]:
             yield _of(prim, "a mocap body, which is moved by hand")
         if model.body_plugin[b] >= 0:
             yield _of(prim, "forces of a plugin")
-        if model.body_jntnum[b] > 1:
-            yield _of(prim, f"{model.body_jntnum[b]} joints of one body")
 
 
 def _geometry(model: Any) -> Iterator[Foreign]:
@@ -67,31 +66,32 @@ def _geometry(model: Any) -> Iterator[Foreign]:
 
 
 def _joints(model: Any) -> Iterator[Foreign]:
+    for b in range(1, model.nbody):
+        reason = why_not(model, b)
+        if reason is not None:
+            yield _of(prim_of(element(model, "body", b)), reason)
     for j in range(model.njnt):
-        first = int(model.jnt_dofadr[j])
-        kind = mujoco.mjtJoint(int(model.jnt_type[j]))
-        count = {mujoco.mjtJoint.mjJNT_FREE: 6, mujoco.mjtJoint.mjJNT_BALL: 3}.get(kind, 1)
-        dofs = slice(first, first + count)
-        prim = prim_of(element(model, "joint", j))
-        springs = model.jnt_stiffness[j] != 0.0 or np.any(model.jnt_stiffnesspoly[j])
-        if springs:
-            yield _of(prim, "a joint's spring (stiffness)")
-        if np.any(model.dof_damping[dofs]) or np.any(model.dof_dampingpoly[dofs]):
-            yield _of(prim, "a joint's damping")
-        if np.any(model.dof_armature[dofs]):
-            yield _of(prim, "a joint's rotor (armature)")
-        if np.any(model.dof_frictionloss[dofs]):
-            yield _of(prim, "a joint's dry friction (frictionloss)")
+        if kind_of(model, j) == mujoco.mjtJoint.mjJNT_FREE:
+            loose = loaded(model, j) or np.any(model.dof_frictionloss[freedoms(model, j)])
+            if loose or driven(model, j):
+                yield _of(prim_of(element(model, "joint", j)), "damping, a spring or a drive on a body that is free")
 
 
 def _tendons(model: Any) -> Iterator[Foreign]:
+    """Those through points: of those along joints the joints have what they do."""
     for t in range(model.ntendon):
-        yield _of(prim_of(element(model, "tendon", t)), "a tendon")
+        if model.wrap_type[model.tendon_adr[t]] != int(mujoco.mjtWrap.mjWRAP_JOINT) and pulls(model, t):
+            yield _of(prim_of(element(model, "tendon", t)), "a tendon through points in space")
 
 
 def _actuators(model: Any) -> Iterator[Foreign]:
+    """Those that push on bodies: of those on joints and tendons these have what they do."""
+    carried = (*JOINTED, mujoco.mjtTrn.mjTRN_TENDON)
     for a in range(model.nu):
-        yield _of(prim_of(element(model, "actuator", a)), "an actuator")
+        kind = mujoco.mjtTrn(int(model.actuator_trntype[a]))
+        if kind not in carried:
+            what = f"an actuator that pushes on a {kind.name[6:].lower()}"
+            yield _of(prim_of(element(model, "actuator", a)), what)
 
 
 def _equalities(model: Any) -> Iterator[Foreign]:

@@ -85,7 +85,7 @@ def _form(model: Any, g: int) -> dict[str, Any] | None:
 
 def _hull(points: np.ndarray) -> dict[str, Any]:
     """What MuJoCo collides of a mesh."""
-    hull = ConvexHull(np.asarray(points, dtype=np.float64))
+    hull = ConvexHull(np.asarray(points, dtype=np.float64), qhull_options="QJ Pp")  # a flat mesh has one, too
     kept, numbers = np.unique(hull.simplices, return_inverse=True)
     vertices, triangles = hull.points[kept], numbers.reshape(-1, 3)
     corners = vertices[triangles]

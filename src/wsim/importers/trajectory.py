@@ -38,8 +38,9 @@ def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
     - Newton's bodies: `body_names` (B,) and `body_q` (T, B, 7), xyz and then the quaternion in xyzw.
 
     Bodies' velocities are `body_qd` (T, B, 6), linear of the centre of mass [m/s] and angular [rad/s], both in the
-    world's frame; if they are left out they are the poses' central differences. `contact_force` (T, B, 3) [N] and
-    `world` (a `wsim.scene.world.World` as JSON) may be there.
+    world's frame; if they are left out they are the poses' central differences. `contact_force` (T, B, 3) [N],
+    `held_energy` (T,) [J] of the springs and rotors in joints, and `world` (a `wsim.scene.world.World` as JSON) may be
+    there.
 
     Args:
         path: A NumPy .npz file.
@@ -104,8 +105,6 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
         "imported_from": str(source),
         "velocities": "differences" if velocity is None else "own",
     }
-    # Controls are in no trajectory: what drives or a program did to the bodies is not known.
-    metadata |= {"controlled": bool(arrays.get("controlled", False))}
     return Recording(
         path=source,
         world=_started(world, time, body_q, body_qd),
@@ -115,7 +114,7 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
         body_qd=body_qd.astype(np.float32),
         contact_force=np.zeros((*body_q.shape[:2], 3), np.float32) if force is None else force[:, columns],
         fluids={},
-        scalars={},
+        scalars=_work(arrays, world, len(time)),
         log=[],
         images={},
     )
@@ -143,6 +142,14 @@ def velocities(time: Array, body_q: Array, world: World) -> Array:
     spin = turn[..., :3] * np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
     span = (time[later] - time[earlier])[:, None, None]
     return np.concatenate([np.gradient(center, time, axis=0), spin / span], axis=-1)
+
+
+def _work(arrays: Mapping[str, Array], world: World, frames: int) -> dict[str, Array]:
+    """What springs and rotors in joints gave since the frame before [J], where nothing else drives any."""
+    held = _array(arrays, "held_energy", (frames,))
+    if held is None or not all(joint.drive.told for joint in world.joints if joint.drive is not None):
+        return {}
+    return {"work/drives": -np.diff(held, prepend=held[0])}
 
 
 def _own_world(path: Path, arrays: Mapping[str, Array]) -> World:
@@ -187,9 +194,8 @@ def _array(arrays: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Ar
         return None
     array = np.asarray(arrays[name], dtype=np.float64)
     if array.shape != shape:
-        raise ValueError(
-            f"{name} has shape {array.shape}; with {shape[0]} times and {shape[1]} names it must be {shape}"
-        )
+        count = len(arrays.get("body_names", []))
+        raise ValueError(f"{name} has shape {array.shape}; with {shape[0]} times and {count} names it must be {shape}")
     return array
 
 

@@ -117,14 +117,24 @@ class Motor(_Model):
     told: bool = True  # False: something else sets its effort, and it may be any
 
 
+class Move(_Model):
+    """One of the motions of a compound joint."""
+
+    kind: Literal["revolute", "prismatic"]
+    axis: Vec3  # unit, in the anchors' frame where the joint is at 0
+    acts: bool = False  # a drive, a spring, a stop or friction may push along it
+
+
 class Joint(_Model):
     """A joint between two bodies, or a body and the world (parent None).
 
     The anchors are one frame, seen from both ends: while the joint holds, they stay together but for its own motion.
+    That of a compound joint is first along its sliders, then about one hinge after another through the anchor.
     """
 
     prim: str
-    kind: Literal["fixed", "revolute", "prismatic", "spherical"]
+    kind: Literal["fixed", "revolute", "prismatic", "spherical", "compound"]
+    moves: list[Move] = Field(default_factory=list)  # of a compound joint, from the parent on
     parent: str | None
     child: str
     fixture: str | None = None  # prim of the static object that stands for the world at its other end
