@@ -180,7 +180,9 @@ class Balance:
         np.add.at(count, (side, which), 1.0)
         then = (mean / np.maximum(count, 1.0)[..., None])[1 - side, which]
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
-        lasts = (np.minimum(speed, speed_then) > STILL) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
+        # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
+        slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
+        lasts = (slowest > np.maximum(STILL, change)) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]

@@ -56,12 +56,12 @@ class CheckForces(Check):
     def _missing(
         self, evidence: Evidence, books: Books, left: Floats, slack: Floats, weight: Floats, unit: str
     ) -> Finding:
-        """Where it is most by its limit, over one interval or the mean of several."""
+        """Where it is most by its limit: over one interval, or if none fails in the mean of several."""
         pull = max(evidence.gravity, 1.0)
         left = np.where(books.judged[..., None], left, 0.0)
         worst: Worst = (-1.0, 1, 0, 0, np.zeros(3), 0.0)
         for n, share in SHARES.items():
-            if n > len(left):
+            if n > len(left) or worst[0] > 1.0:
                 break
             means, limits = _mean(left, n), share * pull + _mean(slack, n)
             ratio = np.linalg.norm(means, axis=2) / limits

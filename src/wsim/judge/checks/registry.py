@@ -15,6 +15,7 @@ from wsim.judge.checks import (
     fluid,
     forces,
     friction,
+    impacts,
     joint,
     mass,
     motion,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, forces, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints,
+    physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints,
     plan_contacts, plan_motion, fluid, camera,
 )  # fmt: skip
 
