@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import mujoco
+import numpy as np
 
+from wsim.importers.mujoco_joints import give_by
 from wsim.importers.mujoco_shapes import collides
 from wsim.importers.mujoco_tree import Tree
 from wsim.scene.contact import pair_law
-from wsim.scene.world import Contact, Shape, World
+from wsim.scene.world import Contact, Give, Shape, World
 
 TURNS, ROLLS = 4, 6  # contact dimensions from which a contact resists turning about its normal, and rolling
 Pairs = dict[tuple[int, int], int]  # of geometries, to the number of a pair of its own law
@@ -40,6 +42,13 @@ def with_contacts(model: Any, tree: Tree, world: World, shapes: dict[int, Shape]
             contacts += [law] if law is not None else []
     kept = [one for owners, pairs in apart.items() for one in (pairs if owners in meet else [owners])]
     return world.model_copy(update={"apart": kept, "contacts": contacts})
+
+
+def give_of(model: Any) -> Give:
+    """How its contacts yield."""
+    touching = [g for g in range(model.ngeom) if collides(model, g)]
+    solref = np.concatenate([model.geom_solref[touching], model.pair_solref])
+    return give_by(model, solref, np.concatenate([model.geom_solimp[touching], model.pair_solimp]))
 
 
 def _touch(model: Any, tree: Tree, g: int, h: int, pair: int | None) -> bool:

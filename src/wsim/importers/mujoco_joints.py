@@ -11,7 +11,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.importers.mujoco_names import body_name, clean, element, prim_of
 from wsim.importers.mujoco_tree import Tree
-from wsim.scene.world import Joint, Motor, Move
+from wsim.scene.world import Give, Joint, Motor, Move
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 JOINT, FLAG = mujoco.mjtJoint, mujoco.mjtDisableBit
@@ -135,8 +135,22 @@ def _single(model: Any, j: int) -> dict[str, Any]:
         low, high = (float(x) for x in model.jnt_range[j])
         if kind_of(model, j) == JOINT.mjJNT_BALL:
             return {**found, "high": high}  # how far it turns in all
+        found["give"] = give_by(model, model.jnt_solref[[j]], model.jnt_solimp[[j]])
         found |= {"low": low - float(model.qpos0[at]), "high": high - float(model.qpos0[at])}
     return found
+
+
+def give_by(model: Any, solref: np.ndarray, solimp: np.ndarray) -> Give:
+    """How far constraints yield by their references (n, 2) and impedances (n, 5), the softest of them.
+
+    MuJoCo's documentation, Computation: Constraint model: a time constant, or stiffness and damping below 0; the
+    impedance rises to its full value over a width. No time constant is below two steps.
+    """
+    if not len(solref):
+        return Give()
+    stiffness = np.maximum(-solref[:, 0], 1e-9)
+    times = np.where(solref[:, 0] > 0.0, solref[:, 0] * np.maximum(solref[:, 1], 1.0), 1.0 / np.sqrt(stiffness))
+    return Give(time=float(max(times.max(), 2.0 * model.opt.timestep)), depth=float(solimp[:, 2].max()))
 
 
 def _dry(model: Any, j: int) -> float:

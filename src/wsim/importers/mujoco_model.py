@@ -10,7 +10,7 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import Solid
-from wsim.importers.mujoco_contacts import with_contacts
+from wsim.importers.mujoco_contacts import give_of, with_contacts
 from wsim.importers.mujoco_foreign import foreign
 from wsim.importers.mujoco_joints import joints_of
 from wsim.importers.mujoco_names import body_name, prim_of
@@ -40,6 +40,7 @@ def world_of(path: Path) -> World:
     weightless = bool(model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
     world = World(
         combine="larger",
+        give=give_of(model),
         name=prim_of(path.stem).removeprefix("/World/"),
         gravity=(0.0, 0.0, 0.0) if weightless else tuple(model.opt.gravity.tolist()),
         time_step=float(model.opt.timestep),

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from wsim.errors import UserError
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.importers.mujoco_model import world_of
+from wsim.importers.mujoco_names import clean
 from wsim.importers.mujoco_state import bodies_of_states
 from wsim.recording import Frame, RecordingWriter
 from wsim.recording.recording import Recording
@@ -171,7 +172,7 @@ def _world(text: str, where: str) -> World:
 def _columns(names: Sequence[str], world: World) -> list[int]:
     """The column of each of the world's bodies, by whole name or by the last part of a path."""
     last = {name.rsplit("/", 1)[-1]: k for k, name in reversed(list(enumerate(names)))}
-    known = last | {name: k for k, name in enumerate(names)}
+    known = {clean(name): k for name, k in last.items()} | last | {name: k for k, name in enumerate(names)}
     missing = [body.prim for body in world.bodies if body.prim not in known and body.prim.split("/")[-1] not in known]
     if missing:
         raise ValueError(f"body_names has no {', '.join(missing)} of the model; it has {', '.join(names) or 'nothing'}")

@@ -117,6 +117,13 @@ class Motor(_Model):
     told: bool = True  # False: something else sets its effort, and it may be any
 
 
+class Give(_Model):
+    """How soft contacts and stops of other engines yield: what meets them at v goes in by up to v time + depth."""
+
+    time: float = 0.0  # [s]: in which they catch what meets them
+    depth: float = 0.0  # [m] or [rad]: from which on they push in full
+
+
 class Move(_Model):
     """One of the motions of a compound joint."""
 
@@ -147,6 +154,7 @@ class Joint(_Model):
     high: float | None = None
     drive: Motor | None = None
     friction: float = 0.0  # dry, of a hinge [N m] or a slider [N]
+    give: Give = Give()  # of its stops
     armature: float = 0.0  # [kg m^2] or [kg]: inertia that moves by the joint's own position alone, as a rotor does
     closing: bool = False  # it closes a loop, or may break: a constraint, and none of the trees' joints
     break_force: float | None = None  # [N]; None: it holds any
@@ -269,6 +277,7 @@ class World(_Model):
     time_step: float = 0.0  # [s]; 0: chosen by the simulator
     seed: int = 0
     combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
+    give: Give = Give()  # of its contacts
     bodies: list[Body] = Field(default_factory=list)
     statics: list[Static] = Field(default_factory=list)
     containers: list[Container] = Field(default_factory=list)

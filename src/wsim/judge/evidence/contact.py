@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,12 +14,14 @@ from wsim.scene.contact import passing
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.evidence.placed import Placed
     from wsim.judge.evidence.recorded import Recorded
 
     Floats = NDArray[np.float64]
 
 CHUNK = 2048  # frames probed at once
+CAUGHT = 5.0  # time constants, after which a soft contact has let go of what it caught
 
 
 @dataclass
@@ -68,6 +71,19 @@ def distance(evidence: Recorded, one: str, other: str) -> Floats:
         for b in (shape for shape in shapes if shape.owner == other):
             gap = np.minimum(gap, -np.maximum(_probe(a, b, near), _probe(b, a, near)))
     return gap
+
+
+def given_way(evidence: Evidence, rows: list[int]) -> Floats:
+    """How deep the world's soft contacts let some bodies' surfaces in, by how fast they have just been, (T,) [m]."""
+    motion, give = evidence.motion, evidence.world.give
+    if give.time <= 0.0 and give.depth <= 0.0:
+        return np.zeros(len(evidence.time))
+    speed = np.sum([motion.surface_speed[:, row] for row in rows if row >= 0], axis=0)
+    behind = max(1, math.ceil(CAUGHT * give.time / motion.dt_frames))
+    padded = np.concatenate([np.full(behind, speed[0]), speed])
+    recent = np.lib.stride_tricks.sliding_window_view(padded, behind + 1).max(axis=1)
+    found: Floats = give.depth + give.time * recent
+    return found
 
 
 def _depth(a: Placed, b: Placed) -> Floats | None:
