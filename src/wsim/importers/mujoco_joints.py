@@ -17,6 +17,7 @@ IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 JOINT, FLAG = mujoco.mjtJoint, mujoco.mjtDisableBit
 KINDS = {JOINT.mjJNT_HINGE: "revolute", JOINT.mjJNT_SLIDE: "prismatic", JOINT.mjJNT_BALL: "spherical"}
 FREEDOMS = {JOINT.mjJNT_FREE: 6, JOINT.mjJNT_BALL: 3}
+OPPOSED = 100.0  # [m/s^2]: ten times gravity, of what drives and falls push at a contact
 HINGES = 3  # of a body, at most
 
 
@@ -150,7 +151,11 @@ def give_by(model: Any, solref: np.ndarray, solimp: np.ndarray) -> Give:
         return Give()
     stiffness = np.maximum(-solref[:, 0], 1e-9)
     times = np.where(solref[:, 0] > 0.0, solref[:, 0] * np.maximum(solref[:, 1], 1.0), 1.0 / np.sqrt(stiffness))
-    return Give(time=float(max(times.max(), 2.0 * model.opt.timestep)), depth=float(solimp[:, 2].max()))
+    times = np.maximum(times, 2.0 * model.opt.timestep)
+    # Friction takes the share d of the acceleration a that it opposes, and of the slip v 2 v / t: v = (1 - d) a t / 2 d.
+    share = np.clip(0.5 * (solimp[:, 0] + solimp[:, 1]), 0.01, 0.99)
+    creep = ((1.0 - share) / share * OPPOSED * 0.5 * times).max()
+    return Give(time=float(times.max()), depth=float(solimp[:, 2].max()), creep=float(creep))
 
 
 def _dry(model: Any, j: int) -> float:

@@ -122,6 +122,7 @@ class Give(_Model):
 
     time: float = 0.0  # [s]: in which they catch what meets them
     depth: float = 0.0  # [m] or [rad]: from which on they push in full
+    creep: float = 0.0  # [m/s]: a slip that friction may leave to what it holds
 
 
 class Move(_Model):
@@ -275,6 +276,7 @@ class World(_Model):
     duration: float = DURATION  # [s]
     frame_rate: float = FRAME_RATE  # recorded frames a second
     time_step: float = 0.0  # [s]; 0: chosen by the simulator
+    stepped: Literal["bodies", "joints"] = "bodies"  # what its steps of first order move: places, or joints' positions
     seed: int = 0
     combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
     give: Give = Give()  # of its contacts

@@ -111,7 +111,7 @@ class CheckEnergy(Check):
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
-        """What soft contacts hold, (T, B) [J]: a mass m that is in by d of a spring of time constant t, m (d / t)^2 / 2.
+        """What soft contacts hold, (T, B) [J]: of a mass m that is in by d, and their time t, m (d / t)^2 / 2.
 
         m is all that hangs together with the body.
         """
