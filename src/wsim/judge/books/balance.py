@@ -98,20 +98,12 @@ class Balance:
         return scale
 
     def _left_out(self) -> Bools:
-        """Bodies that nobody judges: what is moved by hand, hangs in a rope, or is near a surface of triangles."""
+        """Bodies that nobody judges: what is moved by hand, or hangs in a rope."""
         motion, world = self._motion, self._evidence.world
         out = np.tile(motion.kinematic, (len(motion.h), 1))
         roped = {guide.body for rope in world.ropes for guide in rope.path}
-        rows = [i for i, body in enumerate(world.bodies) if body.prim in roped or _hollow(body.shapes)]
+        rows = [i for i, body in enumerate(world.bodies) if body.prim in roped]
         out[:, rows] = True
-        reach = motion.radius + motion.reach
-        for static in world.statics:
-            for shape in (shape for shape in static.shapes if shape.collides and shape.exact):
-                points = rotate(np.array(shape.rotation), np.array(shape.vertices)) + np.array(shape.position)
-                low, high = points.min(axis=0), points.max(axis=0)
-                apart = np.maximum(np.maximum(low - motion.com, motion.com - high), 0.0)
-                apart = np.linalg.norm(apart, axis=2)
-                out |= np.minimum(apart[1:], apart[:-1]) < reach
         return np.asarray(out)
 
     def _explained(self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
@@ -136,13 +128,14 @@ class Balance:
     def _pushes(self, ks: Rows, hit: Bools, between: Bools) -> list[Columns]:
         h = self._motion.h[ks]
         ends = self._poses(ks), self._poses(ks + 1)
-        fastest = NEAR + np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
+        far = np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
+        reach = NEAR + np.where(between.any(axis=1), far, 2.0 * self._unit * h**2)
         shares = np.linspace(0.0, 1.0, PARTS + 1) if between.any() else np.array([0.0])
         found = []
         for side, end in enumerate(ends):
             for share in shares:
                 moved = _moved(end, np.repeat((share if side == 0 else -share) * h, hit.shape[1]))
-                contacts = self._touching.of_many(moved.q.reshape(len(ks), -1, 7), fastest)
+                contacts = self._touching.of_many(moved.q.reshape(len(ks), -1, 7), reach)
                 contacts = contacts.only(self._within_reach(contacts, moved, h, share, between))
                 if len(contacts):
                     found.append((contacts, moved, side))
@@ -157,7 +150,7 @@ class Balance:
 
     def _within_reach(self, contacts: Contacts, poses: Poses, h: Floats, share: float, between: Bools) -> Bools:
         """Contacts whose gap may close within the part of the interval that a pose stands for."""
-        speed = np.linalg.norm(slip(self._touching, contacts, poses), axis=1)
+        speed = np.abs(np.einsum("ni,ni->n", slip(self._touching, contacts, poses), contacts.normal))
         length = h[np.maximum(contacts.one, contacts.two) // between.shape[1]]
         part = length / PARTS if share > 0.0 else length
         close = contacts.gap <= NEAR + (speed + self._unit * length) * part
@@ -229,8 +222,3 @@ def rounding(evidence: Evidence) -> Floats:
     speed = motion.speed + np.linalg.norm(motion.w, axis=2) * motion.radius
     found: Floats = 8.0 * FLOAT32 * np.maximum(speed[1:], speed[:-1]) / motion.h[:, None]
     return found
-
-
-def _hollow(shapes: list) -> bool:
-    """Whether a body has a mesh: what collides of it need not be its hull."""
-    return any(shape.kind == "mesh" and shape.collides for shape in shapes)

@@ -41,7 +41,9 @@ class CheckRestitution(Check):
                 worst.parting, (expected - limit, expected + limit), "m/s", expected, prim=two, time=time,
                 limit_from=f"restitution {worst.restitution:g} times the approach; {self.share:g} of it, and what two "
                 "steps of gravity change",
-                target=RepairTarget(kind="physical parameter", prim=two, parameter="restitution", why="it is another than stated"),
+                target=RepairTarget(
+                    kind="physical parameter", prim=two, parameter="restitution", why="it is another than stated"
+                ),
             )
         ]  # fmt: skip
 
