@@ -16,6 +16,7 @@ import numpy as np
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip
+from wsim.judge.books.steps import step_error
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
 from wsim.judge.evidence.motion import FLOAT32
@@ -87,7 +88,7 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        turned += wrong / arm
+        turned += wrong / arm + step_error(self._evidence, self.size)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
 
     def _scale(self) -> Floats:
@@ -175,7 +176,9 @@ class Balance:
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
-        lasts = (slowest > np.maximum(STILL, change)) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
+        lasts = (slowest > np.maximum(max(STILL, self._evidence.world.give.creep), change)) & (
+            np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
+        )
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]

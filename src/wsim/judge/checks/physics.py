@@ -12,7 +12,7 @@ from wsim.geometry.rotations import UP, rotate
 from wsim.geometry.shapes import reach
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.carriers import surface_speed
-from wsim.judge.evidence.contact import overlaps
+from wsim.judge.evidence.contact import given_way, overlaps
 from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
@@ -37,7 +37,10 @@ class CheckExplosion(Check):
         """The fastest body and the fastest particle of each fluid."""
         free = self._free_speed(evidence)
         found = []
-        if evidence.world.bodies and not any(body.kinematic for body in evidence.world.bodies):
+        # What a kinematic body or a drive gives whose effort nobody states has no bound.
+        led = any(body.kinematic for body in evidence.world.bodies)
+        led |= any(joint.drive is not None and not joint.drive.told for joint in evidence.world.joints)
+        if evidence.world.bodies and not led:
             found.append(self._bodies(evidence, free))
         for fluid in evidence.world.fluids:
             found.append(self._fluid(evidence, fluid, free))
@@ -157,7 +160,8 @@ class CheckPenetration(Check):
         worst: Finding | None = None
         for pair in overlaps(evidence):
             size = min(p.kind.thinnest for p in (pair.a, pair.b) if p.body >= 0)
-            finding = self._judge(evidence, pair.depth, size, f"{pair.a.owner} in {pair.b.owner}", pair.a.owner)
+            what, give = f"{pair.a.owner} in {pair.b.owner}", given_way(evidence, [pair.a.body, pair.b.body])
+            finding = self._judge(evidence, pair.depth, size, what, pair.a.owner, give)
             if worst is None or _share(finding) > _share(worst):
                 worst = finding
         found = [worst or self.passed("No body is in another, or in a static object")]
@@ -170,7 +174,12 @@ class CheckPenetration(Check):
             found.append(self._judge(evidence, np.nan_to_num(depth, nan=0.0), smallest, "the solver's contacts", None))
         return found
 
-    def _judge(self, evidence: Evidence, depth: Floats, size: float, what: str, prim: str | None) -> Finding:
+    def _judge(
+        self, evidence: Evidence, depth: Floats, size: float, what: str, prim: str | None, give: Floats | float = 0.0
+    ) -> Finding:
+        """By how much a depth (T,) is more than `give`, which soft contacts yield."""
+        give = np.broadcast_to(np.asarray(give, dtype=np.float64), depth.shape)
+        depth = depth - give
         step = float(np.median(np.diff(evidence.time))) if len(evidence.time) > 1 else 1.0
         frames = min(len(depth), max(1, math.ceil(self.seconds / step)) + 1)
         held = np.lib.stride_tricks.sliding_window_view(depth, frames).min(axis=1)
@@ -181,7 +190,10 @@ class CheckPenetration(Check):
         else:
             value, limit, at = brief, self.brief * size, int(np.argmax(depth))
             span, source = "for a moment", f"{self.brief:g} of the smallest extent, {size:.3g} m, at any time"
-        time = float(evidence.time[at])
+        time, soft = float(evidence.time[at]), float(give[at])
+        value, limit = value + soft, limit + soft
+        if soft:
+            source += f", and {soft:.2g} m that soft contacts yield"
         return self.measured(
             f"Deepest penetration, {what}: {max(value, 0.0) * 1e3:.2g} mm {span}, at {time:.3f} s",
             value, limit, "m", prim=prim, time=time, limit_from=source,
