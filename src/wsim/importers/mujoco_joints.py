@@ -152,7 +152,7 @@ def give_by(model: Any, solref: np.ndarray, solimp: np.ndarray) -> Give:
     stiffness = np.maximum(-solref[:, 0], 1e-9)
     times = np.where(solref[:, 0] > 0.0, solref[:, 0] * np.maximum(solref[:, 1], 1.0), 1.0 / np.sqrt(stiffness))
     times = np.maximum(times, 2.0 * model.opt.timestep)
-    # Friction takes the share d of the acceleration a that it opposes, and of the slip v 2 v / t: v = (1 - d) a t / 2 d.
+    # Friction takes the share d of the acceleration a that it opposes, and of the slip 2 v / t: v = (1 - d) a t / 2 d.
     share = np.clip(0.5 * (solimp[:, 0] + solimp[:, 1]), 0.01, 0.99)
     creep = ((1.0 - share) / share * OPPOSED * 0.5 * times).max()
     return Give(time=float(times.max()), depth=float(solimp[:, 2].max()), creep=float(creep))

@@ -9,13 +9,14 @@ hold. What no sum of them gives is the finding.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.admissible import explain
-from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip
+from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.steps import step_error
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
@@ -91,6 +92,15 @@ class Balance:
         turned += wrong / arm + step_error(self._evidence, self.size)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
 
+    @cached_property
+    def unseen(self) -> Bools:
+        """Bodies that something turns by a torque that is not recorded, (B,): a fluid, or what a controller pushes."""
+        pushed = self._evidence.recording.applied_impulse
+        if self._evidence.recording.metadata.get("controlled"):
+            return ~self._motion.kinematic
+        none = np.zeros(len(self._motion.mass), dtype=bool)
+        return none if pushed is None else np.any(pushed != 0.0, axis=(0, 2))
+
     def _scale(self) -> Floats:
         """What a force and a torque on each body count for, (B, 6)."""
         scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
@@ -119,7 +129,8 @@ class Balance:
         for n, k in enumerate(ks) if self._ties.any else ():
             columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
         if columns:
-            all_ = Columns.of(columns)
+            unseen = np.flatnonzero(np.tile(self.unseen, count))
+            all_ = Columns.of([*columns, turns(unseen)] if len(unseen) else columns)
             scale = np.tile(self._scale(), (count, 1))
             rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
