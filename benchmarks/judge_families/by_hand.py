@@ -230,6 +230,13 @@ def velocities_scaled(sound: Sound, size: float, draw: Draw) -> Faulty:
     return Faulty(edited(track, qd=qd), world)
 
 
+@family((1.0, 2.0, 4.0, 8.0, 16.0), "frames", ("air", "slides", "swings", "roll"), hand=True, wrong=2.0)
+def velocities_late(sound: Sound, size: float, draw: Draw) -> Faulty:
+    """The velocities are those of the motion some frames before, as of another run."""
+    world, track, _, qd = _base(sound)
+    return Faulty(edited(track, qd=qd[np.maximum(np.arange(len(qd)) - round(size), 0)]), world)
+
+
 @family((0.03, 0.1, 0.2, 0.4, 0.8), SHARE, ("bounce", "roll", "rest", "impacts"), hand=True, seen=False)
 def body_scaled(sound: Sound, size: float, draw: Draw) -> Faulty:
     """The world says that a body is larger than what moved, or smaller, and as heavy."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
-from benchmarks.judge_families.drawn import Draw, Sound, seed_of
+from benchmarks.judge_families.drawn import Draw, Mechanism, Sound, seed_of
 from benchmarks.judge_families.family import Family, effect
 from benchmarks.judge_families.record import other, own, simulated, world_of
 from benchmarks.judge_families.register import FAMILIES, MECHANISMS
@@ -83,16 +83,21 @@ def trials(half: str, draws: int, worlds: int, only: Sequence[str] = ()) -> list
         Trial("", 0, k, evidence, mechanism)
         for mechanism in MECHANISMS
         for k in range(worlds)
-        for evidence in (EVIDENCE if not MECHANISMS[mechanism].has & {"fluid"} else ("wsim",))
+        for evidence in _evidence(MECHANISMS[mechanism])
     ]
     of = halves(list(FAMILIES))
     for name, family in FAMILIES.items():
         if half in ("all", of[name]):
-            kinds = ("other engine",) if family.hand else tuple(EVIDENCE)
+            kinds = ("other engine",) if family.hand else _evidence(*(m for m in MECHANISMS.values() if family.suits(m)))
             found += [
                 Trial(name, step, k, kinds[k % len(kinds)]) for step in range(len(family.sizes)) for k in range(draws)
             ]
     return [trial for trial in found if not only or any(word in trial.name for word in only)]
+
+
+def _evidence(*mechanisms: Mechanism) -> tuple[str, ...]:
+    """What is judged of them: an imported trajectory has no particles."""
+    return ("wsim",) if all("fluid" in mechanism.has for mechanism in mechanisms) else tuple(EVIDENCE)
 
 
 def run(trial: Trial) -> Outcome:
