@@ -189,7 +189,7 @@ def test_velocities_are_those_of_the_centre_of_mass_in_the_worlds_frame(tmp_path
     np.savez(tmp_path / "a.npz", time=time, qpos=rows["qpos"], qvel=rows["qvel"])
     np.savez(tmp_path / "b.npz", time=time, body_names=["club"], xpos=rows["xpos"], xquat=rows["xquat"])
     own, derived = (read_npz(tmp_path / name, xml) for name in ("a.npz", "b.npz"))
-    assert (own.metadata["velocity"], derived.metadata["velocity"]) == ("own", "differences")
+    assert (own.metadata["velocities"], derived.metadata["velocities"]) == ("own", "differences")
     fall = own.velocity("/World/club")
     assert fall[:, 2] == pytest.approx(
         fall[0, 2] - 9.81 * time, abs=0.01

@@ -2,190 +2,100 @@
 
 from __future__ import annotations
 
-import math
-import re
 from pathlib import Path
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from wsim.errors import UserError
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import Solid
-from wsim.importers.mujoco_state import body_name, load_model
-from wsim.scene.world import Body, Joint, Shape, Static, World
-
-IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
-Pose = tuple[np.ndarray, np.ndarray]  # position (3,), quaternion xyzw (4,)
+from wsim.importers.mujoco_contacts import give_of, with_contacts
+from wsim.importers.mujoco_foreign import foreign
+from wsim.importers.mujoco_joints import joints_of
+from wsim.importers.mujoco_names import body_name, prim_of
+from wsim.importers.mujoco_shapes import shape_of, stand_in
+from wsim.importers.mujoco_state import load_model
+from wsim.importers.mujoco_tree import Tree
+from wsim.scene.world import Body, Shape, Static, World
 
 
 def world_of(path: Path) -> World:
     """The world of a model in its reference pose, bodies as `/World/<name>`.
 
-    Bodies that no joint lets move are fixed objects. Shapes that neither collide with anything nor are of a kind that
-    the judge knows are left out.
+    What is welded together is one body, by the name of the one that has the joint. Bodies that no joint lets move are
+    fixed objects. What acts in the model and has no place in a world is named in `World.foreign`.
 
     Raises:
-        UserError: MuJoCo does not read the file, or something collides with a shape that the judge does not know.
+        UserError: MuJoCo does not read the file.
     """
     model = load_model(path)
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    poses = [(data.xpos[b].copy(), _xyzw(data.xquat[b])) for b in range(model.nbody)]
-    fixed = [model.body_weldid[b] == 0 for b in range(model.nbody)]
-    bodies, statics, joints = [], [], []
-    for b in range(model.nbody):
-        geoms = range(model.body_geomadr[b], model.body_geomadr[b] + model.body_geomnum[b])
-        if not fixed[b]:
-            bodies.append(_body(model, b, poses[b], [s for g in geoms if (s := _shape(model, g, None))]))
-            joints += _joints(model, b, poses, fixed)
-            continue
-        for g in geoms:  # each on its own where the world has them, as an object of the plan would be
-            shape = _shape(model, g, poses[b])
-            if shape is not None:
-                statics.append((shape.prim if b == 0 else _prim(body_name(model, b)), shape))
-    return World(
+    tree = Tree(model)
+    shapes = _shapes(model, tree)
+    statics: dict[str, list[Shape]] = {}
+    for b in tree.members(0):
+        for g in (g for g in tree.geoms(b) if g in shapes):
+            # Each on its own where the world has them, as an object of the plan would be.
+            statics.setdefault(shapes[g].prim if b == 0 else prim_of(body_name(model, b)), []).append(shapes[g])
+    weightless = bool(model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
+    world = World(
         combine="larger",
-        name=_clean(path.stem),
-        gravity=tuple(model.opt.gravity.tolist()),
+        give=give_of(model),
+        name=prim_of(path.stem).removeprefix("/World/"),
+        gravity=(0.0, 0.0, 0.0) if weightless else tuple(model.opt.gravity.tolist()),
         time_step=float(model.opt.timestep),
-        bodies=bodies,
-        statics=[
-            Static(prim=prim, shapes=[shape for owner, shape in statics if owner == prim])
-            for prim in dict.fromkeys(owner for owner, _ in statics)
-        ],
-        joints=joints,
+        stepped="bodies" if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4) else "joints",
+        bodies=[_body(model, tree, b, shapes) for b in tree.roots],
+        statics=[Static(prim=prim, shapes=shapes) for prim, shapes in statics.items()],
+        joints=[joint for b in tree.roots for joint in joints_of(model, tree, b)],
+        foreign=foreign(model, tree),
     )
+    return with_contacts(model, tree, world, shapes)
 
 
-def _body(model: Any, b: int, pose: Pose, shapes: list[Shape]) -> Body:
-    axes = np.stack([rotate(_xyzw(model.body_iquat[b]), axis) for axis in np.eye(3)], axis=1)
-    body = Body(
-        prim=_prim(body_name(model, b)),
-        mass=float(model.body_mass[b]),
-        volume=0.0,
-        com=tuple(model.body_ipos[b].tolist()),
-        inertia=tuple((axes @ np.diag(model.body_inertia[b]) @ axes.T).reshape(-1).tolist()),
-        position=tuple(pose[0].tolist()),
-        rotation=tuple(pose[1].tolist()),
+def _shapes(model: Any, tree: Tree) -> dict[int, Shape]:
+    """The shapes of all geometries, in the frame of what moves with them."""
+    found = {}
+    for g in range(model.ngeom):
+        b = int(model.geom_bodyid[g])
+        root = tree.root(b)
+        frame = tree.seen_from(root, b) if root else tree.pose(b)
+        shape = shape_of(model, g, frame, prim_of(body_name(model, root)) if root else None)
+        if shape is not None:
+            found[g] = shape
+    return found
+
+
+def _body(model: Any, tree: Tree, root: int, known: dict[int, Shape]) -> Body:
+    """A body and all that is welded to it, in its frame."""
+    prim, members = prim_of(body_name(model, root)), tree.members(root)
+    masses = model.body_mass[members]
+    places, inertias = zip(*(_mass_frame(model, tree, root, b) for b in members), strict=True)
+    mass = float(masses.sum())
+    com = masses @ np.array(places) / mass if mass > 0.0 else np.array(places[0])
+    inertia = np.zeros((3, 3))
+    for m, place, own in zip(masses, places, inertias, strict=True):
+        arm = place - com
+        inertia += own + m * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # Steiner's theorem
+    shapes = [known[g] for b in members for g in tree.geoms(b) if g in known]
+    position, rotation = tree.pose(root)
+    kinematic = bool(model.body_mocapid[root] >= 0)
+    shapes = shapes or [stand_in(prim, com, inertia, mass)]
+    return Body(
+        prim=prim,
+        mass=mass or 1.0,  # of what is moved by hand none is stated, and none matters
+        volume=float(Solid(shapes).volume) if any(shape.collides for shape in shapes) else 0.0,
+        com=tuple(com.tolist()),
+        inertia=tuple((inertia if mass > 0.0 else np.eye(3)).reshape(-1).tolist()),
+        position=tuple(position.tolist()),
+        rotation=tuple(rotation.tolist()),
+        kinematic=kinematic,
         shapes=shapes,
     )
-    if not shapes:
-        raise UserError(f"{body.prim} has no shape that the judge knows; give it a collision geometry")
-    return body.model_copy(update={"volume": float(Solid(body.shapes).volume)})
 
 
-def _shape(model: Any, g: int, frame: Pose | None) -> Shape | None:
-    """A geometry in its body's frame, or in the world's where `frame` is its fixed body's pose."""
-    kinds = mujoco.mjtGeom
-    name = _clean(str(model.geom(g).name) or f"geom_{g}")
-    collides = bool(model.geom_contype[g] or model.geom_conaffinity[g])
-    position, rotation = model.geom_pos[g].copy(), _xyzw(model.geom_quat[g])
-    if frame is not None:
-        position, rotation = frame[0] + rotate(frame[1], position), multiply(frame[1], rotation)
-    a, b, c = (float(x) for x in model.geom_size[g])
-    sizes: dict[Any, tuple[str, tuple[float, ...]]] = {
-        kinds.mjGEOM_BOX: ("box", (2 * a, 2 * b, 2 * c)),  # MuJoCo has half the edges and half the lengths
-        kinds.mjGEOM_SPHERE: ("sphere", (a,)),
-        kinds.mjGEOM_CAPSULE: ("capsule", (a, 2 * b)),
-        kinds.mjGEOM_CYLINDER: ("cylinder", (a, 2 * b)),
-        kinds.mjGEOM_PLANE: ("plane", ()),
-    }
-    kind = mujoco.mjtGeom(int(model.geom_type[g]))
-    if kind == kinds.mjGEOM_MESH:
-        mesh = _mesh(model, int(model.geom_dataid[g]))
-        shape_kind, size = "mesh", tuple(np.ptp(np.array(mesh["vertices"]), axis=0).tolist())
-    elif kind in sizes:
-        (shape_kind, size), mesh = sizes[kind], {}
-    elif collides:
-        raise UserError(f"geom {name} is a {kind.name[7:].lower()}, which the judge does not know; use a mesh of it")
-    else:
-        return None
-    body = int(model.geom_bodyid[g])
-    return Shape.model_validate(
-        {
-            "prim": _prim(name) if body == 0 else f"{_prim(body_name(model, body))}/{name}",
-            "kind": shape_kind,
-            "size": size,
-            "position": tuple(position.tolist()),
-            "rotation": tuple(rotation.tolist()),
-            "color": tuple(float(x) for x in model.geom_rgba[g, :3]),
-            "opacity": float(model.geom_rgba[g, 3]),
-            "collides": collides,
-            "friction": float(model.geom_friction[g, 0]),
-            **mesh,
-        }
-    )
-
-
-def _mesh(model: Any, mesh: int) -> dict[str, Any]:
-    first, count = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
-    face, faces = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-    return {
-        "vertices": model.mesh_vert[first : first + count].tolist(),
-        "triangles": model.mesh_face[face : face + faces].tolist(),
-    }
-
-
-def _joints(model: Any, b: int, poses: list[Pose], fixed: list[bool]) -> list[Joint]:
-    """What holds a body to the one that it hangs from; a free joint is none.
-
-    A body with several joints, or welded to one that moves, is known to hang together with it, but not how.
-    """
-    kinds = {
-        mujoco.mjtJoint.mjJNT_HINGE: "revolute",
-        mujoco.mjtJoint.mjJNT_SLIDE: "prismatic",
-        mujoco.mjtJoint.mjJNT_BALL: "spherical",
-    }
-    above, count, first = int(model.body_parentid[b]), int(model.body_jntnum[b]), int(model.body_jntadr[b])
-    if count == 1 and int(model.jnt_type[first]) == int(mujoco.mjtJoint.mjJNT_FREE):
-        return []
-    ends = {"parent": None if fixed[above] else _prim(body_name(model, above)), "child": _prim(body_name(model, b))}
-    if count != 1:
-        kind = "fixed" if count == 0 else "spherical"
-        return [Joint.model_validate({"prim": f"{ends['child']}/joint", "kind": kind, **ends})]
-    kind = kinds[mujoco.mjtJoint(int(model.jnt_type[first]))]
-    place, turn = model.jnt_pos[first].copy(), _to_axis(model.jnt_axis[first])
-    at, facing = poses[b][0] + rotate(poses[b][1], place), multiply(poses[b][1], turn)
-    parent = (np.zeros(3), IDENTITY) if fixed[above] else poses[above]
-    back = conjugate(parent[1])
-    limited = bool(model.jnt_limited[first]) and kind != "spherical"
-    low, high = (float(x) - float(model.qpos0[model.jnt_qposadr[first]]) for x in model.jnt_range[first])
-    return [
-        Joint.model_validate(
-            {
-                "prim": f"{ends['child']}/{_clean(str(model.joint(first).name) or 'joint')}",
-                "kind": kind,
-                **ends,
-                "parent_anchor": rotate(back, at - parent[0]).tolist(),
-                "parent_turn": multiply(back, facing).tolist(),
-                "child_anchor": place.tolist(),
-                "child_turn": turn.tolist(),
-                **({"low": low, "high": high} if limited else {}),
-            }
-        )
-    ]
-
-
-def _to_axis(axis: np.ndarray) -> np.ndarray:
-    """The shortest rotation of +X onto a unit axis, xyzw."""
-    x, y, z = (float(c) for c in axis)
-    if x < -1.0 + 1e-12:
-        return np.array([0.0, 0.0, 1.0, 0.0])
-    q = np.array([0.0, -z, y, 1.0 + x])
-    return q / math.sqrt(float(q @ q))
-
-
-def _xyzw(wxyz: np.ndarray) -> np.ndarray:
-    return np.array([wxyz[1], wxyz[2], wxyz[3], wxyz[0]], dtype=np.float64)
-
-
-def _prim(name: str) -> str:
-    return f"/World/{_clean(name)}"
-
-
-def _clean(name: str) -> str:
-    """A name as a prim may have it."""
-    word = re.sub(r"\W", "_", name, flags=re.ASCII)
-    return f"_{word}" if word[:1].isdigit() else word
+def _mass_frame(model: Any, tree: Tree, root: int, b: int) -> tuple[np.ndarray, np.ndarray]:
+    """Centre of mass (3,) and inertia about it (3, 3) of one body, in its root's frame."""
+    place, turn = tree.seen_from(root, b)
+    axes = np.stack([rotate(turn, rotate(tree.xyzw(model.body_iquat[b]), axis)) for axis in np.eye(3)], axis=1)
+    return place + rotate(turn, model.body_ipos[b]), axes @ np.diag(model.body_inertia[b]) @ axes.T

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from wsim.errors import UserError
+from wsim.importers.mujoco_names import body_name
 
 
 def load_model(path: Path) -> Any:
@@ -19,14 +20,10 @@ def load_model(path: Path) -> Any:
         raise UserError(f"{path} is no model that MuJoCo reads: {error}") from error
 
 
-def body_name(model: Any, body: int) -> str:
-    """A body's name; its number where it has none."""
-    return str(model.body(body).name) or f"body_{body}"
-
-
 def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str, np.ndarray]:
     """Forward kinematics: `body_names`, `xpos`, `xquat` (wxyz) and `body_qd` of states (T, nq) and (T, nv).
 
+    `held_energy` (T,) [J] is what the springs and the rotors of joints and tendons hold.
     Velocities are those of the centres of mass (linear) and of the bodies (angular), in the world's frame.
 
     Raises:
@@ -38,12 +35,13 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
             raise UserError(f"{name} has shape {array.shape}; {path} needs ({len(qpos)}, {width})")
     data, twist, bodies = mujoco.MjData(model), np.zeros(6), range(1, model.nbody)
     position, rotation = np.zeros((len(qpos), model.nbody, 3)), np.zeros((len(qpos), model.nbody, 4))
-    velocity = np.zeros((len(qpos), model.nbody, 6))
+    velocity, held = np.zeros((len(qpos), model.nbody, 6)), np.zeros(len(qpos))
     for k in range(len(qpos)):
         data.qpos[:], data.qvel[:] = qpos[k], qvel[k]
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)
+        held[k] = _held(model, data)
         position[k], rotation[k] = data.xpos, data.xquat
         for body in bodies:
             mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, body, twist, 0)
@@ -53,5 +51,17 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
         "xpos": position[:, 1:],
         "xquat": rotation[:, 1:],
         "body_qd": velocity[:, 1:],
-        "controlled": np.array(model.nu > 0),
+        "held_energy": held,
     }
+
+
+def _held(model: Any, data: Any) -> float:
+    """Energy of springs and rotors [J]: MuJoCo's own potential energy less that of gravity."""
+    mujoco.mj_tendon(model, data)
+    mujoco.mj_transmission(model, data)
+    mujoco.mj_fwdVelocity(model, data)
+    mujoco.mj_energyPos(model, data)
+    pulled = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
+    gravity = -float(model.body_mass @ data.xipos @ model.opt.gravity) if pulled else 0.0
+    rotors = 0.5 * float(model.dof_armature @ data.qvel**2 + model.tendon_armature @ data.ten_velocity**2)
+    return float(data.energy[0]) - gravity + rotors

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from wsim.errors import UserError
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.importers.mujoco_model import world_of
+from wsim.importers.mujoco_names import clean
 from wsim.importers.mujoco_state import bodies_of_states
 from wsim.recording import Frame, RecordingWriter
 from wsim.recording.recording import Recording
@@ -38,8 +39,9 @@ def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
     - Newton's bodies: `body_names` (B,) and `body_q` (T, B, 7), xyz and then the quaternion in xyzw.
 
     Bodies' velocities are `body_qd` (T, B, 6), linear of the centre of mass [m/s] and angular [rad/s], both in the
-    world's frame; if they are left out they are the poses' central differences. `contact_force` (T, B, 3) [N] and
-    `world` (a `wsim.scene.world.World` as JSON) may be there.
+    world's frame; if they are left out they are the poses' central differences. `contact_force` (T, B, 3) [N],
+    `held_energy` (T,) [J] of the springs and rotors in joints, and `world` (a `wsim.scene.world.World` as JSON) may be
+    there.
 
     Args:
         path: A NumPy .npz file.
@@ -102,10 +104,8 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
     metadata = {
         "complete": True,
         "imported_from": str(source),
-        "velocity": "differences" if velocity is None else "own",
+        "velocities": "differences" if velocity is None else "own",
     }
-    # Controls are in no trajectory: what drives or a program did to the bodies is not known.
-    metadata |= {"controlled": bool(arrays.get("controlled", False))}
     return Recording(
         path=source,
         world=_started(world, time, body_q, body_qd),
@@ -115,7 +115,7 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
         body_qd=body_qd.astype(np.float32),
         contact_force=np.zeros((*body_q.shape[:2], 3), np.float32) if force is None else force[:, columns],
         fluids={},
-        scalars={},
+        scalars=_work(arrays, world, len(time)),
         log=[],
         images={},
     )
@@ -145,6 +145,14 @@ def velocities(time: Array, body_q: Array, world: World) -> Array:
     return np.concatenate([np.gradient(center, time, axis=0), spin / span], axis=-1)
 
 
+def _work(arrays: Mapping[str, Array], world: World, frames: int) -> dict[str, Array]:
+    """What springs and rotors in joints gave since the frame before [J], where nothing else drives any."""
+    held = _array(arrays, "held_energy", (frames,))
+    if held is None or not all(joint.drive.told for joint in world.joints if joint.drive is not None):
+        return {}
+    return {"work/drives": -np.diff(held, prepend=held[0])}
+
+
 def _own_world(path: Path, arrays: Mapping[str, Array]) -> World:
     if "world" not in arrays:
         raise UserError(
@@ -164,7 +172,7 @@ def _world(text: str, where: str) -> World:
 def _columns(names: Sequence[str], world: World) -> list[int]:
     """The column of each of the world's bodies, by whole name or by the last part of a path."""
     last = {name.rsplit("/", 1)[-1]: k for k, name in reversed(list(enumerate(names)))}
-    known = last | {name: k for k, name in enumerate(names)}
+    known = {clean(name): k for name, k in last.items()} | last | {name: k for k, name in enumerate(names)}
     missing = [body.prim for body in world.bodies if body.prim not in known and body.prim.split("/")[-1] not in known]
     if missing:
         raise ValueError(f"body_names has no {', '.join(missing)} of the model; it has {', '.join(names) or 'nothing'}")
@@ -187,9 +195,8 @@ def _array(arrays: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Ar
         return None
     array = np.asarray(arrays[name], dtype=np.float64)
     if array.shape != shape:
-        raise ValueError(
-            f"{name} has shape {array.shape}; with {shape[0]} times and {shape[1]} names it must be {shape}"
-        )
+        count = len(arrays.get("body_names", []))
+        raise ValueError(f"{name} has shape {array.shape}; with {shape[0]} times and {count} names it must be {shape}")
     return array
 
 

@@ -9,7 +9,7 @@ from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveFormula
 from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.repair.aim import aim
-from wsim.judge.verdict import Finding, Verdict
+from wsim.judge.verdict import Finding, RepairTarget, Verdict
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -24,13 +24,16 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
         plan: What was asked for. Without one, only the checks that hold for any world are made.
 
     Returns:
-        Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge.
+        Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge, or something
+        acts in the world that the judge does not know.
     """
     evidence = Evidence(recording, plan)
     if len(evidence.time) == 0:
         finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
         aim([finding])
         return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
+    if evidence.world.foreign:
+        return _cannot_judge(evidence)
     findings = [finding for check in run_checks() for finding in check.run(evidence)]
     broken = next((f for f in findings if f.check == "CheckFinite" and not f.passed), None)
     if broken is None:
@@ -46,6 +49,20 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
                 check.failed(message, objective=check.sentence, prim=prim, time=broken.time, line=evidence.line(prim))
             )
     return conclude(findings, evidence)
+
+
+def _cannot_judge(evidence: Evidence) -> Verdict:
+    """Blocked: a motion that an unknown part of the world may have made is neither right nor wrong."""
+    told = [f"{one.prim} has {one.feature}" for one in evidence.world.foreign]
+    findings = [
+        Finding(
+            check="CheckKnown", passed=False, message=f"Cannot judge what {each}", prim=one.prim,
+            target=RepairTarget(kind="program", prim=one.prim, direction="remove", why="the judge has no law for it"),
+        )
+        for each, one in zip(told, evidence.world.foreign, strict=True)
+    ]  # fmt: skip
+    more = f", nor {len(told) - 1} more" if len(told) > 1 else ""
+    return Verdict(status="blocked", summary=f"Blocked: cannot judge what {told[0]}{more}.", findings=findings)
 
 
 def conclude(findings: list[Finding], evidence: Evidence | None = None) -> Verdict:

@@ -13,6 +13,7 @@ What a world states of a pair of objects (`World.contacts`) comes before all tha
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from wsim.defaults import FRICTION
@@ -58,6 +59,16 @@ def stated_pair(world: World, a: str, b: str) -> Contact | None:
         if (within(a, first) and within(b, second)) or (within(a, second) and within(b, first)):
             return contact
     return None
+
+
+def passing(world: World) -> Callable[[tuple[str, str], tuple[str, str]], bool]:
+    """Whether two shapes, each by its owner's prim and its own, pass through each other by `World.apart`."""
+    pairs = {frozenset(pair) for pair in world.apart}
+
+    def passes(one: tuple[str, str], two: tuple[str, str]) -> bool:
+        return bool(pairs) and any(frozenset((a, b)) in pairs for a in one for b in two)
+
+    return passes
 
 
 def within(prim: str, owner: str) -> bool:

@@ -114,16 +114,35 @@ class Motor(_Model):
     position: float = 0.0  # [rad] or [m]
     velocity: float = 0.0  # [rad/s] or [m/s]
     max_effort: float | None = None  # [N m] or [N]; None: without bound
+    told: bool = True  # False: something else sets its effort, and it may be any
+
+
+class Give(_Model):
+    """How soft contacts and stops of other engines yield: what meets them at v goes in by up to v time + depth."""
+
+    time: float = 0.0  # [s]: in which they catch what meets them
+    depth: float = 0.0  # [m] or [rad]: from which on they push in full
+    creep: float = 0.0  # [m/s]: a slip that friction may leave to what it holds
+
+
+class Move(_Model):
+    """One of the motions of a compound joint."""
+
+    kind: Literal["revolute", "prismatic"]
+    axis: Vec3  # unit, in the anchors' frame where the joint is at 0
+    acts: bool = False  # a drive, a spring, a stop or friction may push along it
 
 
 class Joint(_Model):
     """A joint between two bodies, or a body and the world (parent None).
 
     The anchors are one frame, seen from both ends: while the joint holds, they stay together but for its own motion.
+    That of a compound joint is first along its sliders, then about one hinge after another through the anchor.
     """
 
     prim: str
-    kind: Literal["fixed", "revolute", "prismatic", "spherical"]
+    kind: Literal["fixed", "revolute", "prismatic", "spherical", "compound"]
+    moves: list[Move] = Field(default_factory=list)  # of a compound joint, from the parent on
     parent: str | None
     child: str
     fixture: str | None = None  # prim of the static object that stands for the world at its other end
@@ -136,6 +155,8 @@ class Joint(_Model):
     high: float | None = None
     drive: Motor | None = None
     friction: float = 0.0  # dry, of a hinge [N m] or a slider [N]
+    give: Give = Give()  # of its stops
+    armature: float = 0.0  # [kg m^2] or [kg]: inertia that moves by the joint's own position alone, as a rotor does
     closing: bool = False  # it closes a loop, or may break: a constraint, and none of the trees' joints
     break_force: float | None = None  # [N]; None: it holds any
     break_torque: float | None = None  # [N m]
@@ -205,6 +226,13 @@ class Rope(_Cord):
     length: float  # [m]
 
 
+class Foreign(_Model):
+    """What acts in another engine's world and has no place in this description: such a world cannot be judged."""
+
+    prim: str
+    feature: str  # "the tendon split": what it is, and its name there
+
+
 class Camera(_Model):
     """A pinhole camera that looks from `eye` to `target`."""
 
@@ -248,8 +276,10 @@ class World(_Model):
     duration: float = DURATION  # [s]
     frame_rate: float = FRAME_RATE  # recorded frames a second
     time_step: float = 0.0  # [s]; 0: chosen by the simulator
+    stepped: Literal["bodies", "joints"] = "bodies"  # what its steps of first order move: places, or joints' positions
     seed: int = 0
     combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
+    give: Give = Give()  # of its contacts
     bodies: list[Body] = Field(default_factory=list)
     statics: list[Static] = Field(default_factory=list)
     containers: list[Container] = Field(default_factory=list)
@@ -259,6 +289,8 @@ class World(_Model):
     gears: list[Gear] = Field(default_factory=list)
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
+    apart: list[tuple[str, str]] = Field(default_factory=list)  # objects or shapes that never touch
+    foreign: list[Foreign] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)
     lights: list[Light] = Field(default_factory=list)
     parameters: list[Parameter] = Field(default_factory=list)

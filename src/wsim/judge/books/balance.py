@@ -9,13 +9,15 @@ hold. What no sum of them gives is the finding.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.admissible import explain
-from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip
+from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
+from wsim.judge.books.steps import step_error
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
 from wsim.judge.evidence.motion import FLOAT32
@@ -87,8 +89,17 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        turned += wrong / arm
+        turned += wrong / arm + step_error(self._evidence, self.size)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
+
+    @cached_property
+    def unseen(self) -> Bools:
+        """Bodies that something turns by a torque that is not recorded, (B,): a fluid, or what a controller pushes."""
+        pushed = self._evidence.recording.applied_impulse
+        if self._evidence.recording.metadata.get("controlled"):
+            return ~self._motion.kinematic
+        none = np.zeros(len(self._motion.mass), dtype=bool)
+        return none if pushed is None else np.any(pushed != 0.0, axis=(0, 2))
 
     def _scale(self) -> Floats:
         """What a force and a torque on each body count for, (B, 6)."""
@@ -97,20 +108,12 @@ class Balance:
         return scale
 
     def _left_out(self) -> Bools:
-        """Bodies that nobody judges: what is moved by hand, hangs in a rope, or is near a surface of triangles."""
+        """Bodies that nobody judges: what is moved by hand, or hangs in a rope."""
         motion, world = self._motion, self._evidence.world
         out = np.tile(motion.kinematic, (len(motion.h), 1))
         roped = {guide.body for rope in world.ropes for guide in rope.path}
-        rows = [i for i, body in enumerate(world.bodies) if body.prim in roped or _hollow(body.shapes)]
+        rows = [i for i, body in enumerate(world.bodies) if body.prim in roped]
         out[:, rows] = True
-        reach = motion.radius + motion.reach
-        for static in world.statics:
-            for shape in (shape for shape in static.shapes if shape.collides and shape.exact):
-                points = rotate(np.array(shape.rotation), np.array(shape.vertices)) + np.array(shape.position)
-                low, high = points.min(axis=0), points.max(axis=0)
-                apart = np.maximum(np.maximum(low - motion.com, motion.com - high), 0.0)
-                apart = np.linalg.norm(apart, axis=2)
-                out |= np.minimum(apart[1:], apart[:-1]) < reach
         return np.asarray(out)
 
     def _explained(self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
@@ -126,7 +129,8 @@ class Balance:
         for n, k in enumerate(ks) if self._ties.any else ():
             columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
         if columns:
-            all_ = Columns.of(columns)
+            unseen = np.flatnonzero(np.tile(self.unseen, count))
+            all_ = Columns.of([*columns, turns(unseen)] if len(unseen) else columns)
             scale = np.tile(self._scale(), (count, 1))
             rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
@@ -135,13 +139,14 @@ class Balance:
     def _pushes(self, ks: Rows, hit: Bools, between: Bools) -> list[Columns]:
         h = self._motion.h[ks]
         ends = self._poses(ks), self._poses(ks + 1)
-        fastest = NEAR + np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
+        far = np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
+        reach = NEAR + np.where(between.any(axis=1), far, 2.0 * self._unit * h**2)
         shares = np.linspace(0.0, 1.0, PARTS + 1) if between.any() else np.array([0.0])
         found = []
         for side, end in enumerate(ends):
             for share in shares:
                 moved = _moved(end, np.repeat((share if side == 0 else -share) * h, hit.shape[1]))
-                contacts = self._touching.of_many(moved.q.reshape(len(ks), -1, 7), fastest)
+                contacts = self._touching.of_many(moved.q.reshape(len(ks), -1, 7), reach)
                 contacts = contacts.only(self._within_reach(contacts, moved, h, share, between))
                 if len(contacts):
                     found.append((contacts, moved, side))
@@ -156,7 +161,7 @@ class Balance:
 
     def _within_reach(self, contacts: Contacts, poses: Poses, h: Floats, share: float, between: Bools) -> Bools:
         """Contacts whose gap may close within the part of the interval that a pose stands for."""
-        speed = np.linalg.norm(slip(self._touching, contacts, poses), axis=1)
+        speed = np.abs(np.einsum("ni,ni->n", slip(self._touching, contacts, poses), contacts.normal))
         length = h[np.maximum(contacts.one, contacts.two) // between.shape[1]]
         part = length / PARTS if share > 0.0 else length
         close = contacts.gap <= NEAR + (speed + self._unit * length) * part
@@ -182,7 +187,9 @@ class Balance:
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
-        lasts = (slowest > np.maximum(STILL, change)) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
+        lasts = (slowest > np.maximum(max(STILL, self._evidence.world.give.creep), change)) & (
+            np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
+        )
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
@@ -226,8 +233,3 @@ def rounding(evidence: Evidence) -> Floats:
     speed = motion.speed + np.linalg.norm(motion.w, axis=2) * motion.radius
     found: Floats = 8.0 * FLOAT32 * np.maximum(speed[1:], speed[:-1]) / motion.h[:, None]
     return found
-
-
-def _hollow(shapes: list) -> bool:
-    """Whether a body has a mesh: what collides of it need not be its hull."""
-    return any(shape.kind == "mesh" and shape.collides for shape in shapes)

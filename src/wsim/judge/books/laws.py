@@ -129,7 +129,7 @@ class Laws:
         force, torque = (none, along) if joint.kind == "revolute" else (along, none)
         law = self._law(rows, arms, force, torque, (stiffness, damping), loose)
         known = law.known & ~broken(self._evidence, joint)[1:]
-        known &= not (self._set and drive is not None)
+        known &= (drive is None or (drive.told and not self._set)) and joint.armature == 0.0
         if joint.friction > 0.0:  # it may hold at rest
             slow = joint.friction * loose[1:] * self._motion.h
             known = known & (rate[1:] * rate[:-1] > 0.0) & (np.minimum(np.abs(rate[1:]), np.abs(rate[:-1])) > slow)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.forces import Columns, holds
 from wsim.judge.books.laws import Laws
 from wsim.judge.books.touching import WORLD
+from wsim.judge.evidence import compound
 from wsim.judge.evidence.joints import AXES, broken, track_of
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ class Ties:
             return None
         law, none = self.laws.joints.get(joint.prim), np.zeros(len(self._evidence.time) - 1, dtype=bool)
         free = none | geared if law is None else ~law.known | geared
+        if joint.kind == "spherical":  # no law for what turns a ball joint, nor where its stop is
+            free = free | (joint.drive is not None or joint.friction > 0.0 or joint.high is not None)
         at, h = track.position, self._evidence.motion.h
         near = NEAR_STOP + 2.0 * np.abs(np.diff(at)) + self._evidence.gravity * h**2
         lowest, highest = np.minimum(at[1:], at[:-1]), np.maximum(at[1:], at[:-1])
@@ -93,6 +96,8 @@ class Ties:
         one, two = self._row.get(joint.parent or "", WORLD), self._row[joint.child]
         anchors = [self._place(two, joint.child_anchor or (0.0, 0.0, 0.0), frame) for frame in (k, k + 1)]
         arms = self._arm(one, anchors, k), self._arm(two, anchors, k)
+        if joint.kind == "compound":
+            return [self._compound(joint, one, two, arms, k)]
         axes = self._axes(one, joint, k)
         along = AXES[joint.axis]
         across = np.delete(axes, along, axis=0)
@@ -113,6 +118,25 @@ class Ties:
                 stop = holds(one, two, arms, *((none, own) if joint.kind == "revolute" else (own, none)))
                 found.append(replace(stop, both=np.zeros(1, dtype=bool)))
         return found
+
+    def _compound(self, joint: Joint, one: int, two: int, arms: tuple[Floats, Floats], k: int) -> Columns:
+        """All forces and torques that give no power to a motion that nothing pushes along."""
+        q = self._evidence.body_q[[k, k + 1]]
+        turns = [np.tile(np.array([0.0, 0.0, 0.0, 1.0]), (2, 1)) if row < 0 else q[:, row, 3:] for row in (one, two)]
+        own = [np.tile(np.array(turn), (2, 1)) for turn in (joint.parent_turn, joint.child_turn)]
+        axes = compound.axes(joint, multiply(turns[0], own[0]), multiply(turns[1], own[1]))
+        free = np.zeros((0, 6))
+        for move, axis in zip(joint.moves, axes, strict=True):
+            if axis is not None and not move.acts:
+                mean = axis.mean(axis=0) / np.linalg.norm(axis.mean(axis=0))
+                way = [mean, np.zeros(3)] if move.kind == "prismatic" else [np.zeros(3), mean]
+                free = np.concatenate([free, np.concatenate(way)[None]])
+        _, size, rows = np.linalg.svd(free)
+        held = rows[int((size > 1e-6).sum()) :]
+        moments = [held[:, 3:] + np.cross(arm, held[:, :3]) for arm in arms]
+        on_one, on_two = (np.concatenate([held[:, :3], moment], axis=1) for moment in moments)
+        rows_of = np.full(len(held), one, dtype=np.intp), np.full(len(held), two, dtype=np.intp)
+        return Columns(*rows_of, -on_one, on_two, np.ones(len(held), dtype=bool))
 
     def _spring(self, spring: Spring, k: int) -> Columns:
         ends = [[self._guide(guide, frame) for frame in (k, k + 1)] for guide in (spring.path[0], spring.path[-1])]

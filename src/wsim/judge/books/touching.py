@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.judge.books.meshes import Triangles, touching
 from wsim.scene.contact import Pair, pair_law
 
 if TYPE_CHECKING:
@@ -51,7 +53,7 @@ def together(parts: list[Contacts]) -> Contacts:
 
 
 class Touching:
-    """The shapes of a world that collide, but for static meshes, whose triangles MuJoCo does not know."""
+    """The shapes of a world that collide: what MuJoCo finds between those of its own kinds, and meshes' triangles."""
 
     def __init__(self, world: World) -> None:
         import mujoco  # heavy, and wanted where there are bodies alone
@@ -59,6 +61,7 @@ class Touching:
         self.world = world
         self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
         self._laws: dict[tuple[int, int], Pair] = {}
+        self._meshes: dict[int, Triangles] = {}
         spec = mujoco.MjSpec()
         for row, body in enumerate(world.bodies):
             item = spec.worldbody.add_body(name=f"b{row}", mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
@@ -78,7 +81,11 @@ class Touching:
         self._owner_of_shape = [owner for _, owner, _ in self.shapes]
 
     def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
-        if not shape.collides or shape.exact:
+        if not shape.collides:
+            return
+        if shape.kind == "mesh":
+            self._meshes[len(self.shapes)] = Triangles(shape)
+            self.shapes.append((row, owner, shape))
             return
         kinds = mujoco.mjtGeom
         x, y, z, w = shape.rotation
@@ -90,12 +97,8 @@ class Touching:
         elif shape.kind in ("cylinder", "capsule"):
             kind = kinds.mjGEOM_CYLINDER if shape.kind == "cylinder" else kinds.mjGEOM_CAPSULE
             fields |= {"type": kind, "size": [shape.size[0], 0.5 * shape.size[1], 0]}
-        elif shape.kind == "plane":
-            fields |= {"type": kinds.mjGEOM_PLANE, "size": [0, 0, 1]}
         else:
-            mesh = f"m{len(self.shapes)}"
-            spec.add_mesh(name=mesh, uservert=np.ravel(shape.vertices), userface=np.ravel(shape.triangles))
-            fields |= {"type": kinds.mjGEOM_MESH, "meshname": mesh}
+            fields |= {"type": kinds.mjGEOM_PLANE, "size": [0, 0, 1]}
         item.add_geom(**fields)
         self.shapes.append((row, owner, shape))
 
@@ -114,11 +117,42 @@ class Touching:
             rows[:, 0], rows[:, 1], shapes, np.array(found.pos).reshape(-1, 3),
             np.array(found.frame).reshape(-1, 9)[:, :3], np.array(found.dist).reshape(-1),
         )  # fmt: skip
+        if self._meshes:
+            contacts = together([contacts, *self._on_meshes(poses, reach)])
         if not self._tied:
             return contacts
         owners = [self._owner_of_shape[k] for k in range(len(self.shapes))]
         free = [frozenset((owners[a], owners[b])) not in self._tied for a, b in shapes]
         return contacts.only(np.array(free, dtype=bool))
+
+    def _on_meshes(self, poses: Floats, reach: float) -> list[Contacts]:
+        """Contacts of all shapes with all meshes of other bodies; of two meshes, with the faces of both."""
+        places = [self._placed(k, poses) for k in range(len(self.shapes))]
+        found = []
+        for m, mesh in self._meshes.items():
+            row, pose = self.shapes[m][0], places[m]
+            for k, (other, _, shape) in enumerate(self.shapes):
+                if other == row:
+                    continue
+                apart = rotate(conjugate(pose[3:]), places[k][:3] - pose[:3])
+                local = np.concatenate([apart, multiply(conjugate(pose[3:]), places[k][3:])])
+                near = touching(mesh, shape, self._meshes.get(k), local, reach)
+                if near is None or not len(near.gap):
+                    continue
+                count = len(near.gap)
+                point, normal = rotate(pose[3:], near.point) + pose[:3], rotate(pose[3:], near.normal)
+                rows = np.full(count, row, dtype=np.intp), np.full(count, other, dtype=np.intp)
+                found.append(Contacts(*rows, np.tile([m, k], (count, 1)), point, normal, near.gap))
+        return found
+
+    def _placed(self, k: int, poses: Floats) -> Floats:
+        """Where a shape is in the world, (7,)."""
+        row, _, shape = self.shapes[k]
+        own = np.concatenate([shape.position, shape.rotation])
+        if row < 0:
+            return own
+        q = poses[row]
+        return np.concatenate([q[:3] + rotate(q[3:], own[:3]), multiply(q[3:], own[3:])])
 
     def of_many(self, poses: Floats, reach: Floats) -> Contacts:
         """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of K B."""

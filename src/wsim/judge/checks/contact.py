@@ -12,6 +12,7 @@ from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import passing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,6 +38,7 @@ class CheckTunnelling(Check):
         if len(motion.h) == 0:
             return []
         jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
+        passes = passing(evidence.world)
         moved = np.linalg.norm(np.diff(motion.com, axis=0), axis=2)
         found: dict[tuple[str, str], Finding] = {}
         for shape in evidence.placed:
@@ -50,6 +52,8 @@ class CheckTunnelling(Check):
             for i in np.unique(bodies):
                 body = evidence.world.bodies[i]
                 if body.prim == shape.owner or frozenset((body.prim, shape.owner)) in jointed:
+                    continue
+                if all(passes((body.prim, own.prim), (shape.owner, shape.shape.prim)) for own in body.shapes):
                     continue
                 asked = k[bodies == i]
                 passed = asked[self._passes(evidence, int(i), shape, asked)]

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
+from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
@@ -99,12 +100,28 @@ class CheckEnergy(Check):
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
         force = np.linalg.norm(np.asarray(recording.contact_force, dtype=np.float64), axis=2)
         stored = force * (give + motion.speed * motion.dt)
+        if evidence.world.give.time > 0.0:
+            stored = stored + self._pressed_in(evidence)
         for joint in evidence.world.joints:
             track = evidence.joint(joint)
             if track is not None and (joint.low is not None or joint.high is not None):
                 rows = motion.unit == motion.unit[evidence.index(joint.child)]
                 stored[np.ix_(beyond(joint, track) > 0.0, rows)] = np.inf
         return stored
+
+    @staticmethod
+    def _pressed_in(evidence: Evidence) -> Floats:
+        """What soft contacts hold, (T, B) [J]: of a mass m that is in by d, and their time t, m (d / t)^2 / 2.
+
+        m is all that hangs together with the body.
+        """
+        motion, held = evidence.motion, np.zeros(evidence.motion.speed.shape)
+        heavy = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit])
+        for pair in overlaps(evidence):
+            depth = np.maximum(pair.depth, 0.0) / evidence.world.give.time
+            for row in (row for row in (pair.a.body, pair.b.body) if row >= 0):
+                held[:, row] += 0.5 * heavy[row] * depth**2
+        return held
 
     def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""

@@ -45,11 +45,8 @@ class CheckForces(Check):
             return []
         slack = np.where(books.hit, self.blow * books.blow / motion.h[:, None], 0.0) + rounding(evidence)
         found = [self._missing(evidence, books, books.force, slack + books.turned[..., 0], motion.mass, "N")]
-        # What fluid and control turn bodies by is not recorded.
-        pushed = recording.applied_impulse
-        known = np.ones(len(motion.mass), dtype=bool) if pushed is None else ~np.any(pushed != 0.0, axis=(0, 2))
-        if known.any() and not recording.metadata.get("controlled"):
-            torque, slack = np.where(known[None, :, None], books.torque, 0.0), slack + books.turned[..., 1]
+        if not balance.unseen.all():
+            torque, slack = np.where(balance.unseen[None, :, None], 0.0, books.torque), slack + books.turned[..., 1]
             found.append(self._missing(evidence, books, torque, slack, motion.mass * balance.size, "N m"))
         return found
 
@@ -57,12 +54,15 @@ class CheckForces(Check):
         self, evidence: Evidence, books: Books, left: Floats, slack: Floats, weight: Floats, unit: str
     ) -> Finding:
         """Where it is most by its limit: over one interval, or if none fails in the mean of several."""
+        # What fluid and control give is a sum of many small pushes in single precision.
+        least = SHARES[1] if evidence.recording.applied_impulse is not None else 0.0
         pull = max(evidence.gravity, 1.0)
         left = np.where(books.judged[..., None], left, 0.0)
         worst: Worst = (-1.0, 1, 0, 0, np.zeros(3), 0.0)
         for n, share in SHARES.items():
             if n > len(left) or worst[0] > 1.0:
                 break
+            share = max(share, least)
             means, limits = _mean(left, n), share * pull + _mean(slack, n)
             ratio = np.linalg.norm(means, axis=2) / limits
             k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))

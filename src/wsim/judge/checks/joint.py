@@ -76,7 +76,7 @@ class CheckJointLimits(Check):
             over = beyond(joint, track)
             size = 1.0 if joint.kind == "revolute" else evidence.solid(evidence.index(joint.child)).smallest
             range_ = (joint.high - joint.low) if joint.low is not None and joint.high is not None else 0.0
-            limit = max(self.share * range_, self.least * size)
+            limit = max(self.share * range_, self.least * size) + yields(joint, track, evidence.motion.h)
             wrong = over > limit
             at = int(np.argmax(wrong)) if wrong.any() else int(np.argmax(over))
             unit = "rad" if joint.kind == "revolute" else "m"
@@ -89,6 +89,12 @@ class CheckJointLimits(Check):
                 )
             )  # fmt: skip
         return found
+
+
+def yields(joint: Joint, track: JointTrack, h: Floats) -> float:
+    """How far a joint's soft stops let it go at the speed that it has [rad or m]."""
+    fastest = float((np.abs(np.diff(track.position)) / h).max(initial=0.0))
+    return joint.give.depth + joint.give.time * fastest
 
 
 def beyond(joint: Joint, track: JointTrack) -> NDArray[np.float64]:

@@ -12,7 +12,7 @@ from wsim.geometry.rotations import UP, rotate
 from wsim.geometry.shapes import reach
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.carriers import surface_speed
-from wsim.judge.evidence.contact import overlaps
+from wsim.judge.evidence.contact import given_way, overlaps
 from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
@@ -37,7 +37,10 @@ class CheckExplosion(Check):
         """The fastest body and the fastest particle of each fluid."""
         free = self._free_speed(evidence)
         found = []
-        if evidence.world.bodies and not any(body.kinematic for body in evidence.world.bodies):
+        # What a kinematic body or a drive gives whose effort nobody states has no bound.
+        led = any(body.kinematic for body in evidence.world.bodies)
+        led |= any(joint.drive is not None and not joint.drive.told for joint in evidence.world.joints)
+        if evidence.world.bodies and not led:
             found.append(self._bodies(evidence, free))
         for fluid in evidence.world.fluids:
             found.append(self._fluid(evidence, fluid, free))
@@ -51,10 +54,10 @@ class CheckExplosion(Check):
         tops += [float(np.array(fluid.center) @ up + np.array(fluid.size) @ np.abs(up) / 2) for fluid in world.fluids]
         lows = _lows(evidence)
         bottoms = [float(evidence.ends(i)[0][0]) for i in range(len(world.bodies))]
-        # Nothing to land on, or not for what hangs under it: they fall for as long as the run lasts.
+        # Nothing to land on, or not for what hangs under it: particles fall for as long as the run lasts.
         if min(lows, default=math.inf) > min(bottoms, default=math.inf) or not lows:
-            lows = [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
-            lows += [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
+            lows = [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
+        lows += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
         start = max((float(np.linalg.norm(body.velocity)) for body in world.bodies), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
@@ -68,7 +71,8 @@ class CheckExplosion(Check):
         arms = [float(np.linalg.norm(body.com)) for body in evidence.world.bodies]
         moved -= np.linalg.norm(evidence.body_qd[:, :, 3:], axis=2) * np.array(arms)
         fastest = np.maximum(reported, moved)
-        bound = np.sqrt(max(self.body_factor * free, self.least) ** 2 + self._driven(evidence))
+        factor = self._handed_on(evidence)
+        bound = np.sqrt(max(factor * free, self.least) ** 2 + self._driven(evidence))
         frame, i = np.unravel_index(int(np.argmax(fastest / bound)), fastest.shape)
         body = evidence.world.bodies[i]
         value, limit, time = float(fastest[frame, i]), float(bound[frame, i]), float(evidence.time[frame])
@@ -76,9 +80,18 @@ class CheckExplosion(Check):
         return self.measured(
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
             value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
-            limit_from=f"{self.body_factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
+            limit_from=f"{factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
             "by a far heavier body, and the work of drives, control and springs",
         )  # fmt: skip
+
+    def _handed_on(self, evidence: Evidence) -> float:
+        """What a light body may leave with, hit by a far heavier one: twice its speed, thrice where both fell.
+
+        A ball on a ball that bounces first goes up at 3 v (Harter, American Journal of Physics 39, 1971).
+        """
+        loose = int((~evidence.motion.kinematic & ~evidence.motion.jointed).sum())
+        bouncy = any(shape.restitution for body in evidence.world.bodies for shape in body.shapes)
+        return self.body_factor + 1.0 if loose > 1 and bouncy else self.body_factor
 
     @staticmethod
     def _driven(evidence: Evidence) -> Floats:
@@ -88,6 +101,8 @@ class CheckExplosion(Check):
         drives = evidence.recording.scalars.get("work/drives")
         if drives is not None:
             work[:, motion.jointed] += np.nancumsum(drives)[:, None]
+        elif any(joint.drive for joint in evidence.world.joints):
+            work[:, motion.jointed] = np.inf  # what they gave is not known
         # What springs hold at the start may end in any of the bodies that they move.
         work[:, motion.jointed] += motion.elastic[0].sum()
         most: Floats = 2.0 * np.maximum(np.maximum.accumulate(work, axis=0), 0.0) / motion.mass
@@ -145,7 +160,8 @@ class CheckPenetration(Check):
         worst: Finding | None = None
         for pair in overlaps(evidence):
             size = min(p.kind.thinnest for p in (pair.a, pair.b) if p.body >= 0)
-            finding = self._judge(evidence, pair.depth, size, f"{pair.a.owner} in {pair.b.owner}", pair.a.owner)
+            what, give = f"{pair.a.owner} in {pair.b.owner}", given_way(evidence, [pair.a.body, pair.b.body])
+            finding = self._judge(evidence, pair.depth, size, what, pair.a.owner, give)
             if worst is None or _share(finding) > _share(worst):
                 worst = finding
         found = [worst or self.passed("No body is in another, or in a static object")]
@@ -158,7 +174,12 @@ class CheckPenetration(Check):
             found.append(self._judge(evidence, np.nan_to_num(depth, nan=0.0), smallest, "the solver's contacts", None))
         return found
 
-    def _judge(self, evidence: Evidence, depth: Floats, size: float, what: str, prim: str | None) -> Finding:
+    def _judge(
+        self, evidence: Evidence, depth: Floats, size: float, what: str, prim: str | None, give: Floats | float = 0.0
+    ) -> Finding:
+        """By how much a depth (T,) is more than `give`, which soft contacts yield."""
+        give = np.broadcast_to(np.asarray(give, dtype=np.float64), depth.shape)
+        depth = depth - give
         step = float(np.median(np.diff(evidence.time))) if len(evidence.time) > 1 else 1.0
         frames = min(len(depth), max(1, math.ceil(self.seconds / step)) + 1)
         held = np.lib.stride_tricks.sliding_window_view(depth, frames).min(axis=1)
@@ -169,7 +190,10 @@ class CheckPenetration(Check):
         else:
             value, limit, at = brief, self.brief * size, int(np.argmax(depth))
             span, source = "for a moment", f"{self.brief:g} of the smallest extent, {size:.3g} m, at any time"
-        time = float(evidence.time[at])
+        time, soft = float(evidence.time[at]), float(give[at])
+        value, limit = value + soft, limit + soft
+        if soft:
+            source += f", and {soft:.2g} m that soft contacts yield"
         return self.measured(
             f"Deepest penetration, {what}: {max(value, 0.0) * 1e3:.2g} mm {span}, at {time:.3f} s",
             value, limit, "m", prim=prim, time=time, limit_from=source,

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, matrices, multiply, rotate
+from wsim.scene.contact import passing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.evidence.placed import Placed
     from wsim.judge.evidence.recorded import Recorded
 
     Floats = NDArray[np.float64]
 
 CHUNK = 2048  # frames probed at once
+CAUGHT = 5.0  # time constants, after which a soft contact has let go of what it caught
 
 
 @dataclass
@@ -30,13 +34,14 @@ class Overlap:
 
 
 def overlaps(evidence: Recorded) -> list[Overlap]:
-    """Every pair of shapes, of different owners and with no joint between them, that overlap at some time.
+    """Every pair of shapes that overlap at some time, but for those of one owner, jointed, or made to pass.
 
     A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
     edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
     """
     shapes = evidence.placed
     jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
+    passes = passing(evidence.world)
     # Two can only meet if the boxes about all the places that each is ever in do.
     low = np.array([shape.position.min(axis=0) - shape.radius for shape in shapes]).reshape(-1, 3)
     high = np.array([shape.position.max(axis=0) + shape.radius for shape in shapes]).reshape(-1, 3)
@@ -48,6 +53,8 @@ def overlaps(evidence: Recorded) -> list[Overlap]:
         may_meet = np.all((low[index] <= high[later]) & (low[later] <= high[index]), axis=1)
         for b in (shapes[index + 1 + k] for k in np.flatnonzero(may_meet)):
             if a.owner == b.owner or frozenset((a.owner, b.owner)) in jointed:
+                continue
+            if passes((a.owner, a.shape.prim), (b.owner, b.shape.prim)):
                 continue
             depth = _depth(a, b)
             if depth is not None and depth.max() > 0.0:
@@ -64,6 +71,19 @@ def distance(evidence: Recorded, one: str, other: str) -> Floats:
         for b in (shape for shape in shapes if shape.owner == other):
             gap = np.minimum(gap, -np.maximum(_probe(a, b, near), _probe(b, a, near)))
     return gap
+
+
+def given_way(evidence: Evidence, rows: list[int]) -> Floats:
+    """How deep the world's soft contacts let some bodies' surfaces in, by how fast they have just been, (T,) [m]."""
+    motion, give = evidence.motion, evidence.world.give
+    if give.time <= 0.0 and give.depth <= 0.0:
+        return np.zeros(len(evidence.time))
+    speed = np.sum([motion.surface_speed[:, row] for row in rows if row >= 0], axis=0)
+    behind = max(1, math.ceil(CAUGHT * give.time / motion.dt_frames))
+    padded = np.concatenate([np.full(behind, speed[0]), speed])
+    recent = np.lib.stride_tricks.sliding_window_view(padded, behind + 1).max(axis=1)
+    found: Floats = give.depth + give.time * recent
+    return found
 
 
 def _depth(a: Placed, b: Placed) -> Floats | None:

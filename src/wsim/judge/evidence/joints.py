@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.judge.evidence import compound
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,6 +55,8 @@ def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
     elif joint.kind == "spherical":
         angle = np.zeros(len(offset))
     apart = np.linalg.norm(offset, axis=1)
+    if joint.kind == "compound":
+        apart, angle = compound.errors(joint, offset, turn)
     gone = broken(evidence, joint)
     return JointTrack(np.where(gone, 0.0, apart), np.where(gone, 0.0, angle), position)
 

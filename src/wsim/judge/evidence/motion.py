@@ -69,6 +69,16 @@ class Motion:
         return float(known or (np.median(self.h) if len(self.h) else 1.0))
 
     @cached_property
+    def dt_frames(self) -> float:
+        """The time between frames [s]."""
+        return float(np.median(self.h)) if len(self.h) else 1.0
+
+    @cached_property
+    def surface_speed(self) -> Floats:
+        """The most that any point of a body may have, (T, B) [m/s]."""
+        return np.asarray(self.speed + np.linalg.norm(self.w, axis=2) * self.radius)
+
+    @cached_property
     def acceleration(self) -> Floats:
         """Mean acceleration over each interval less what fluid and control gave, (T - 1, B, 3) [m/s^2]."""
         impulse = self._recorded.recording.applied_impulse
@@ -154,8 +164,7 @@ class Motion:
     @cached_property
     def reach(self) -> Floats:
         """How far any point of a body can get within each interval, (T - 1, B) [m]: its speed and gravity's pull."""
-        surface = self.speed + np.linalg.norm(self.w, axis=2) * self.radius
-        fastest = np.maximum(surface[:-1], surface[1:])
+        fastest = np.maximum(self.surface_speed[:-1], self.surface_speed[1:])
         found: Floats = (fastest + np.linalg.norm(self.gravity) * self.h[:, None]) * self.h[:, None]
         return found
 

@@ -1,0 +1,225 @@
+"""Where a shape touches the triangles of a mesh: its lowest points over each face, and the mesh's edges in its sides.
+
+Faces push along their normal, or along that of the curve that they stand for; edges and corners along the side of the
+shape that they press on (Ericson, Real-Time Collision Detection, 2005, ch. 5). Only edges that stick out can press.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError, cKDTree
+
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import kind_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
+    Depth = Callable[[Floats], Floats]
+
+AROUND = 8  # points of a cylinder's rim
+ALONG = 9  # points of an edge
+OUTSIDE = 1e-3  # of a triangle: how far beside it a point still counts as over it
+FLAT = 1e-3  # sine between two faces whose edge does not stick out
+DEEPEST = 0.5  # of a shape's radius: what is deeper under a face is not pushed out by it
+MOST = 256  # corners of a mesh that are asked for over another's faces
+MANY = 32  # contacts of one pair: more are thinned to the deepest and the outermost in each of
+WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0
+
+
+@dataclass(frozen=True)
+class Near:
+    """Contacts of a shape with a mesh, in the mesh's frame, n of them; normals from the mesh to the shape."""
+
+    point: Floats  # (n, 3)
+    normal: Floats  # (n, 3)
+    gap: Floats  # (n,)
+
+    @staticmethod
+    def of(parts: list[Near]) -> Near:
+        """All of several."""
+        return Near(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("point", "normal", "gap")))
+
+
+class Triangles:
+    """A mesh in its own frame, ready to be asked."""
+
+    def __init__(self, shape: Shape) -> None:
+        self.vertices = np.array(shape.vertices, dtype=np.float64)
+        self.faces = np.array(shape.triangles, dtype=np.intp)
+        corners = self.vertices[self.faces]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        twice = np.linalg.norm(across, axis=1)
+        whole = twice > 1e-12 * max(float(twice.max(initial=0.0)), 1e-300)
+        self.faces, self.corners = self.faces[whole], corners[whole]
+        self.normals = across[whole] / twice[whole, None]
+        smooth = np.array(shape.normals, dtype=np.float64).reshape(-1, 3, 3) if shape.normals else None
+        self.smooth = None if smooth is None else smooth[whole]
+        self.centres = self.corners.mean(axis=1)
+        self.radii = np.linalg.norm(self.corners - self.centres[:, None], axis=2).max(axis=1)
+        self.low, self.high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        self._tree = cKDTree(self.centres)
+
+    @cached_property
+    def edges(self) -> tuple[Rows, Rows]:
+        """Edges that stick out, (e, 2) vertices, and the first face of each, (e,)."""
+        pairs = np.concatenate([self.faces[:, [0, 1]], self.faces[:, [1, 2]], self.faces[:, [2, 0]]])
+        owner = np.tile(np.arange(len(self.faces)), 3)
+        # Corners that lie on each other are one.
+        _, same = np.unique(self.vertices.round(9), axis=0, return_inverse=True)
+        keys = np.sort(same.ravel()[pairs], axis=1)
+        _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        others = np.setdiff1d(np.arange(len(pairs)), first)
+        edge = which.ravel()[others]
+        beyond = self.corners[owner[others]] - self.vertices[pairs[others, 0]][:, None]
+        rise = np.einsum("eki,ei->ek", beyond, self.normals[owner[first[edge]]]).min(axis=1)
+        out = np.ones(len(first), dtype=bool)
+        np.logical_and.at(out, edge, rise < -FLAT * np.linalg.norm(beyond, axis=2).max(axis=1))
+        return pairs[first[out]], owner[first[out]]
+
+    @cached_property
+    def points(self) -> Floats:
+        """The corners of its hull, at most `MOST` of them."""
+        try:
+            rows = ConvexHull(self.vertices).vertices
+        except QhullError:  # flat
+            rows = np.arange(len(self.vertices))
+        return self.vertices[rows[:: -(-len(rows) // MOST)]]
+
+    def faces_near(self, centre: Floats, reach: float) -> Rows:
+        """The faces that a ball meets."""
+        near = np.array(self._tree.query_ball_point(centre, reach + float(self.radii.max())), dtype=np.intp)
+        if not len(near):
+            return near
+        apart = np.linalg.norm(self.centres[near] - centre, axis=1)
+        return np.asarray(near[apart <= reach + self.radii[near]])
+
+
+def touching(mesh: Triangles, shape: Shape, other: Triangles | None, pose: Floats, reach: float) -> Near | None:
+    """Contacts with a shape at a pose in the mesh's frame (7,) whose gap is at most `reach` [m].
+
+    `other` are the shape's own triangles where it is a mesh, too; of them its corners are asked for alone.
+    """
+    kind = kind_of(shape)
+    if shape.kind == "plane":
+        return _corners_on(mesh, kind.depth, pose, reach)
+    radius = float(kind.radius_about)
+    beyond = np.maximum(np.maximum(mesh.low - pose[:3], pose[:3] - mesh.high), 0.0)
+    if float(np.linalg.norm(beyond)) > radius + reach:
+        return None
+    faces = mesh.faces_near(pose[:3], radius + reach)
+    if not len(faces):
+        return None
+    lowest = _lowest(shape, other, pose, mesh.normals[faces])
+    rounded = shape.size[0] if shape.kind in ("sphere", "capsule", "cylinder") else 0.0
+    found = [_over_faces(mesh, faces, lowest, rounded, reach, DEEPEST * radius)]
+    if other is None:
+        found.append(_edges_in(mesh, faces, kind.depth, pose, radius, reach))
+    return _thinned(Near.of(found))
+
+
+def _lowest(shape: Shape, other: Triangles | None, pose: Floats, normals: Floats) -> Floats:
+    """The points of a shape that may be its lowest over faces with such normals (m, 3), (m, p, 3)."""
+    own = rotate(conjugate(pose[3:]), normals)
+    count = len(own)
+    if other is not None:
+        local = np.broadcast_to(other.points, (count, *other.points.shape))
+    elif shape.kind == "box":
+        signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
+        local = np.broadcast_to(signs * np.array(shape.size), (count, 8, 3))
+    elif shape.kind == "sphere":
+        local = -shape.size[0] * own[:, None]
+    elif shape.kind == "capsule":
+        ends = np.array([[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]) * shape.size[1]
+        local = ends[None] - shape.size[0] * own[:, None]
+    else:
+        angle = np.arctan2(-own[:, 1], -own[:, 0])[:, None] + 2.0 * np.pi * np.arange(AROUND) / AROUND
+        rim = shape.size[0] * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=2)
+        local = np.concatenate([rim + np.array([0.0, 0.0, half * shape.size[1]]) for half in (-0.5, 0.5)], axis=1)
+    found: Floats = rotate(pose[3:], local) + pose[:3]
+    return found
+
+
+def _over_faces(mesh: Triangles, faces: Rows, points: Floats, rounded: float, reach: float, deepest: float) -> Near:
+    """Points (m, p, 3) that are over their face, and no deeper under it."""
+    corners, normals = mesh.corners[faces], mesh.normals[faces]
+    height = np.einsum("mpi,mi->mp", points - corners[:, None, 0], normals)
+    shares = _shares(corners, normals, points)
+    over = (shares.min(axis=2) > -OUTSIDE) & (height < reach) & (height > -deepest)
+    face, point = np.nonzero(over)
+    normal, at, gap = normals[face], points[face, point], height[face, point]
+    at = at - 0.5 * gap[:, None] * normal
+    if mesh.smooth is not None:
+        curved = np.einsum("nk,nki->ni", shares[face, point], mesh.smooth[faces][face])
+        curved /= np.maximum(np.linalg.norm(curved, axis=1, keepdims=True), 1e-12)
+        at, normal = at + rounded * (normal - curved), curved  # what is round touches where its side has the normal
+    return Near(at, normal, gap)
+
+
+def _shares(corners: Floats, normals: Floats, points: Floats) -> Floats:
+    """Barycentric coordinates of points (m, p, 3) over triangles (m, 3, 3), (m, p, 3)."""
+    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = np.einsum("mi,mi->m", np.cross(one, two), normals)[:, None]
+    from_first = points - corners[:, None, 0]
+    second = np.einsum("mpi,mi->mp", np.cross(from_first, two[:, None]), normals) / area
+    third = np.einsum("mpi,mi->mp", np.cross(one[:, None], from_first), normals) / area
+    return np.stack([1.0 - second - third, second, third], axis=2)
+
+
+def _edges_in(mesh: Triangles, faces: Rows, depth: Depth, pose: Floats, radius: float, reach: float) -> Near:
+    """Points of edges that stick out, as near a shape's sides as `reach`."""
+    edges, owner = mesh.edges
+    edges = edges[np.isin(owner, faces)]
+    start, way = mesh.vertices[edges[:, 0]], mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
+    # Only the part within the ball about the shape.
+    length2 = np.maximum(np.einsum("ei,ei->e", way, way), 1e-300)
+    middle = np.einsum("ei,ei->e", pose[:3] - start, way) / length2
+    aside2 = np.sum((start + middle[:, None] * way - pose[:3]) ** 2, axis=1)
+    half = np.sqrt(np.maximum((radius + reach) ** 2 - aside2, 0.0) / length2)
+    first, last = np.clip(middle - half, 0.0, 1.0), np.clip(middle + half, 0.0, 1.0)
+    near = (half > 0.0) & (last >= first)
+    shares = first[near, None] + (last - first)[near, None] * np.linspace(0.0, 1.0, ALONG)
+    points = (start[near, None] + shares[..., None] * way[near, None]).reshape(-1, 3)
+    return _pressed(points, depth, pose, reach, radius)
+
+
+def _corners_on(mesh: Triangles, depth: Depth, pose: Floats, reach: float) -> Near:
+    return _thinned(_pressed(mesh.vertices, depth, pose, reach, np.inf))
+
+
+def _pressed(points: Floats, depth: Depth, pose: Floats, reach: float, deepest: float) -> Near:
+    """Points of a mesh that are in a shape, or nearly, pressed on along its nearest side."""
+    local = rotate(conjugate(pose[3:]), points - pose[:3])
+    inside = depth(local)
+    near = (inside > -reach) & (inside < DEEPEST * deepest)
+    local, inside = local[near], inside[near]
+    step = 1e-6
+    slope = np.stack([depth(local + step * axis) - depth(local - step * axis) for axis in np.eye(3)], axis=1)
+    length = np.linalg.norm(slope, axis=1)
+    sure = length > step  # of a point that is as near to two sides nothing is known
+    normal = rotate(pose[3:], slope[sure] / length[sure, None])
+    return Near(points[near][sure] + 0.5 * inside[sure, None] * -normal, normal, -inside[sure])
+
+
+def _thinned(near: Near) -> Near:
+    """Contacts with about one normal, of which the outermost carry whatever all of them do."""
+    if len(near.gap) <= MANY:
+        return near
+    kept = [int(np.argmin(near.gap))]
+    alike = np.unique(near.normal.round(1), axis=0, return_inverse=True)[1].ravel()
+    for group in np.unique(alike):
+        rows = np.flatnonzero(alike == group)
+        normal = near.normal[rows].mean(axis=0)
+        ways = WAYS - np.outer(WAYS @ normal, normal)
+        kept += rows[np.argmax(near.point[rows] @ ways.T, axis=0)].tolist()
+    chosen = np.unique(kept)
+    return Near(near.point[chosen], near.normal[chosen], near.gap[chosen])
