@@ -144,17 +144,20 @@ def _single(model: Any, j: int) -> dict[str, Any]:
 def give_by(model: Any, solref: np.ndarray, solimp: np.ndarray) -> Give:
     """How far constraints yield by their references (n, 2) and impedances (n, 5), the softest of them.
 
-    MuJoCo's documentation, Computation: Constraint model: a time constant, or stiffness and damping below 0; the
-    impedance rises to its full value over a width. No time constant is below two steps.
+    MuJoCo's documentation, Computation: Constraint model: a time constant and a damping ratio, or stiffness and damping
+    as numbers below 0; the impedance rises to its full value over a width. No time constant is below two steps.
     """
     if not len(solref):
         return Give()
-    stiffness = np.maximum(-solref[:, 0], 1e-9)
-    times = np.where(solref[:, 0] > 0.0, solref[:, 0] * np.maximum(solref[:, 1], 1.0), 1.0 / np.sqrt(stiffness))
-    times = np.maximum(times, 2.0 * model.opt.timestep)
-    # Friction takes the share d of the acceleration a that it opposes, and of the slip v 2 v / t: v = (1 - d) a t / 2 d.
-    share = np.clip(0.5 * (solimp[:, 0] + solimp[:, 1]), 0.01, 0.99)
-    creep = ((1.0 - share) / share * OPPOSED * 0.5 * times).max()
+    full = solimp[:, 1]
+    direct = solref[:, 0] < 0.0
+    limited = np.maximum(solref[:, 0], 2.0 * model.opt.timestep) * np.maximum(solref[:, 1], 0.0)
+    times = full * np.where(direct, 1.0 / np.sqrt(np.maximum(-solref[:, 0], 1e-9)), limited)
+    # Friction takes the share d of an acceleration a that opposes it, and by its damping 2 / t of a slip v:
+    # v = (1 - d) a t / 2 d is what it leaves.
+    share = np.clip(0.5 * (solimp[:, 0] + full), 0.01, 0.99)
+    damped = np.where(direct, 2.0 * full / np.maximum(-solref[:, 1], 1e-9), full * np.maximum(solref[:, 0], 1e-9))
+    creep = ((1.0 - share) / share * OPPOSED * 0.5 * damped).max()
     return Give(time=float(times.max()), depth=float(solimp[:, 2].max()), creep=float(creep))
 
 

@@ -40,6 +40,7 @@ def world_of(path: Path) -> World:
     weightless = bool(model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
     world = World(
         combine="larger",
+        cone="pyramid" if model.opt.cone == int(mujoco.mjtCone.mjCONE_PYRAMIDAL) else "round",
         give=give_of(model),
         name=prim_of(path.stem).removeprefix("/World/"),
         gravity=(0.0, 0.0, 0.0) if weightless else tuple(model.opt.gravity.tolist()),

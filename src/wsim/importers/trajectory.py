@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from wsim.errors import UserError
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.importers.differences import velocities
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.mujoco_names import clean
 from wsim.importers.mujoco_state import bodies_of_states
@@ -39,7 +39,7 @@ def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
     - Newton's bodies: `body_names` (B,) and `body_q` (T, B, 7), xyz and then the quaternion in xyzw.
 
     Bodies' velocities are `body_qd` (T, B, 6), linear of the centre of mass [m/s] and angular [rad/s], both in the
-    world's frame; if they are left out they are the poses' central differences. `contact_force` (T, B, 3) [N],
+    world's frame; if they are left out they are the poses' differences. `contact_force` (T, B, 3) [N],
     `held_energy` (T,) [J] of the springs and rotors in joints, and `world` (a `wsim.scene.world.World` as JSON) may be
     there.
 
@@ -101,11 +101,9 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
     velocity = _array(arrays, "body_qd", (len(time), len(names), 6))
     force = _array(arrays, "contact_force", (len(time), len(names), 3))
     body_qd = velocities(time, body_q, world) if velocity is None else velocity[:, columns]
-    metadata = {
-        "complete": True,
-        "imported_from": str(source),
-        "velocities": "differences" if velocity is None else "own",
-    }
+    metadata: dict[str, Any] = {"complete": True, "imported_from": str(source), "velocities": "own"}
+    if velocity is None:  # they are known no better than frames follow one another
+        metadata |= {"velocities": "differences", "time_step": float(np.median(np.diff(time)))}
     return Recording(
         path=source,
         world=_started(world, time, body_q, body_qd),
@@ -128,21 +126,6 @@ def save(recording: Recording, path: Path) -> Path:
         for k, t in enumerate(recording.time):
             writer.frame(float(t), Frame(recording.body_q[k], recording.body_qd[k], recording.contact_force[k]))
     return path
-
-
-def velocities(time: Array, body_q: Array, world: World) -> Array:
-    """Velocities (T, B, 6) of the centres of mass by central differences of poses (T, B, 7), second order inside."""
-    com = np.array([body.com for body in world.bodies], dtype=np.float64).reshape(-1, 3)
-    q = body_q[:, :, 3:]
-    center = body_q[:, :, :3] + rotate(q, np.broadcast_to(com, (*q.shape[:2], 3)))
-    later, earlier = np.minimum(np.arange(len(time)) + 1, len(time) - 1), np.maximum(np.arange(len(time)) - 1, 0)
-    turn = multiply(q[later], conjugate(q[earlier]))
-    turn *= np.where(turn[..., 3:] < 0.0, -1.0, 1.0)  # the shorter way round
-    sine = np.linalg.norm(turn[..., :3], axis=-1, keepdims=True)
-    angle = 2.0 * np.arctan2(sine, turn[..., 3:])
-    spin = turn[..., :3] * np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
-    span = (time[later] - time[earlier])[:, None, None]
-    return np.concatenate([np.gradient(center, time, axis=0), spin / span], axis=-1)
 
 
 def _work(arrays: Mapping[str, Array], world: World, frames: int) -> dict[str, Array]:

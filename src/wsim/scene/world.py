@@ -279,6 +279,7 @@ class World(_Model):
     stepped: Literal["bodies", "joints"] = "bodies"  # what its steps of first order move: places, or joints' positions
     seed: int = 0
     combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
+    cone: Literal["round", "pyramid"] = "round"  # of friction: one of four sides is weaker across its edges
     give: Give = Give()  # of its contacts
     bodies: list[Body] = Field(default_factory=list)
     statics: list[Static] = Field(default_factory=list)

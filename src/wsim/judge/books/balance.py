@@ -176,13 +176,15 @@ class Balance:
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
-        lasts = (slowest > np.maximum(max(STILL, self._evidence.world.give.creep), change)) & (
-            np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
-        )
+        slow = max(STILL, self._evidence.world.give.creep)
+        lasts = (slowest > np.maximum(slow, change)) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
+        if self._evidence.world.cone == "pyramid":  # its edges are up to 45 degrees off the slip, its sides nearer
+            across = np.cross(every.normal, ways)
+            ways = np.concatenate([ways, *((ways + side * across) * np.sqrt(0.5) for side in (-1.0, 0.0, 1.0))])
         along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 
