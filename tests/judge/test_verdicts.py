@@ -135,12 +135,12 @@ def test_a_teleport_is_rejected(pool):
 def test_a_speed_beyond_energy_is_rejected(pool):
     case = pool()
     verdict = judge(case.recording)
-    # From the ball's top at the start to the bottom of the ground plane.
+    # From the ball's top at the start to the bottom of the ground plane; two loose bodies that bounce may add up.
     top = case.recording.body_q[0, 1, 2] + 0.06
-    assert only(verdict, "CheckExplosion").limit == pytest.approx(2 * math.sqrt(2 * 9.81 * top), rel=1e-5)
-    case = case.edit("body_qd", (40, 1, 0), 9.0)
+    assert only(verdict, "CheckExplosion").limit == pytest.approx(3 * math.sqrt(2 * 9.81 * top), rel=1e-5)
+    case = case.edit("body_qd", (40, 1, 0), 12.0)
     finding = only(judge(case.recording), "CheckExplosion", BALL)
-    assert not finding.passed and finding.value == pytest.approx(9.0, rel=0.01)
+    assert not finding.passed and finding.value == pytest.approx(12.0, rel=0.01)
 
 
 def test_a_particle_beyond_energy_is_rejected(pool):
@@ -382,7 +382,7 @@ def test_topples_wants_the_stack_to_fall(stack):
 
 def test_a_box_that_slides_at_the_end_has_not_settled(stack):
     case = stack().edit("body_qd", (slice(70, None), 0, 0), 0.2)
-    assert failed(judge(case.recording, case.plan)) == {"CheckSettled"}
+    assert failed(judge(case.recording, case.plan)) == {"CheckSettled", "CheckForces"}
 
 
 def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):

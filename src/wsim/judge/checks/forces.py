@@ -57,12 +57,15 @@ class CheckForces(Check):
         self, evidence: Evidence, books: Books, left: Floats, slack: Floats, weight: Floats, unit: str
     ) -> Finding:
         """Where it is most by its limit: over one interval, or if none fails in the mean of several."""
+        # What fluid and control give is a sum of many small pushes in single precision.
+        least = SHARES[1] if evidence.recording.applied_impulse is not None else 0.0
         pull = max(evidence.gravity, 1.0)
         left = np.where(books.judged[..., None], left, 0.0)
         worst: Worst = (-1.0, 1, 0, 0, np.zeros(3), 0.0)
         for n, share in SHARES.items():
             if n > len(left) or worst[0] > 1.0:
                 break
+            share = max(share, least)
             means, limits = _mean(left, n), share * pull + _mean(slack, n)
             ratio = np.linalg.norm(means, axis=2) / limits
             k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))
