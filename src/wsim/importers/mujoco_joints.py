@@ -63,8 +63,9 @@ def why_not(model: Any, b: int) -> str | None:
         return f"{len(numbers)} joints of one body, one of them a ball joint"
     if set(kinds[len(kinds) - len(hinges) :]) - {JOINT.mjJNT_HINGE} or len(hinges) > HINGES:
         return f"{len(numbers)} joints of one body, in an order that is not sliders and then up to {HINGES} hinges"
-    if any(np.linalg.norm(model.jnt_pos[j] - model.jnt_pos[hinges[-1]]) > 1e-9 for j in hinges):
-        return f"{len(hinges)} hinges of one body through different points"
+    spread = any(np.linalg.norm(model.jnt_pos[j] - model.jnt_pos[hinges[-1]]) > 1e-9 for j in hinges)
+    if spread and len(hinges) < len(numbers):
+        return f"sliders and {len(hinges)} hinges of one body through different points"
     return None
 
 
@@ -171,6 +172,7 @@ def _compound(model: Any, numbers: list[int]) -> dict[str, Any]:
         Move(
             kind="revolute" if kind_of(model, j) == JOINT.mjJNT_HINGE else "prismatic",
             axis=tuple(model.jnt_axis[j].tolist()),
+            point=tuple((model.jnt_pos[j] - model.jnt_pos[numbers[-1]]).tolist()),
             acts=bool(loaded(model, j) or driven(model, j) or model.jnt_limited[j] or _dry(model, j) > 0.0),
         )
         for j in numbers

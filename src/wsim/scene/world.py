@@ -130,6 +130,7 @@ class Move(_Model):
 
     kind: Literal["revolute", "prismatic"]
     axis: Vec3  # unit, in the anchors' frame where the joint is at 0
+    point: Vec3 = (0.0, 0.0, 0.0)  # [m] of a hinge, likewise; the last one goes through the anchor
     acts: bool = False  # a drive, a spring, a stop or friction may push along it
 
 
@@ -137,7 +138,7 @@ class Joint(_Model):
     """A joint between two bodies, or a body and the world (parent None).
 
     The anchors are one frame, seen from both ends: while the joint holds, they stay together but for its own motion.
-    That of a compound joint is first along its sliders, then about one hinge after another through the anchor.
+    That of a compound joint is first along its sliders, then about one hinge after another.
     """
 
     prim: str

@@ -88,7 +88,7 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        turned += wrong / arm + step_error(self._evidence, self.size)[..., None]
+        turned += wrong / arm + step_error(self._evidence)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
 
     def _scale(self) -> Floats:
