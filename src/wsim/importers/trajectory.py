@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from wsim.errors import UserError
+from wsim.geometry.rotations import rotate
 from wsim.importers.differences import velocities
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.mujoco_names import clean
@@ -104,6 +105,7 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
     metadata: dict[str, Any] = {"complete": True, "imported_from": str(source), "velocities": "own"}
     if velocity is None:  # they are known no better than frames follow one another
         metadata |= {"velocities": "differences", "time_step": float(np.median(np.diff(time)))}
+    impulse, work = _lifted(world, time, body_q)
     return Recording(
         path=source,
         world=_started(world, time, body_q, body_qd),
@@ -116,6 +118,8 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
         scalars=_work(arrays, world, len(time)),
         log=[],
         images={},
+        applied_impulse=impulse,
+        applied_work=work,
     )
 
 
@@ -126,6 +130,19 @@ def save(recording: Recording, path: Path) -> Path:
         for k, t in enumerate(recording.time):
             writer.frame(float(t), Frame(recording.body_q[k], recording.body_qd[k], recording.contact_force[k]))
     return path
+
+
+def _lifted(world: World, time: Array, body_q: Array) -> tuple[Array | None, Array | None]:
+    """Impulse and work of what carries a share of bodies' weights; None where nothing does."""
+    share = np.array([body.lift * body.mass for body in world.bodies])
+    if not share.any():
+        return None, None
+    com = np.array([body.com for body in world.bodies])
+    centre = body_q[:, :, :3] + rotate(body_q[:, :, 3:], np.broadcast_to(com, body_q[:, :, :3].shape))
+    force = -share[:, None] * np.array(world.gravity)
+    impulse = np.diff(time, prepend=time[0])[:, None, None] * force
+    work = np.einsum("bi,tbi->tb", force, np.diff(centre, axis=0, prepend=centre[:1]))
+    return impulse, work
 
 
 def _work(arrays: Mapping[str, Array], world: World, frames: int) -> dict[str, Array]:

@@ -69,6 +69,7 @@ class Body(_Model):
     velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial, of the centre of mass
     angular_velocity: Vec3 = (0.0, 0.0, 0.0)  # [rad/s], initial, world
     kinematic: bool = False
+    lift: float = 0.0  # share of its weight that something unseen carries, at its centre of mass
     path: Path | None = None  # of a kinematic body; None: it goes by its velocity
     shapes: list[Shape]
     line: str | None = None  # "program.py:12": who made it
