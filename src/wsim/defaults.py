@@ -12,5 +12,6 @@ FRAME_RATE = 30.0  # [1/s]
 WALL = 0.02  # thickness of a tank's walls and floor [m]
 BODY_DENSITY = 1000.0  # [kg/m^3], what UsdPhysics takes
 FLUID_DENSITY = 1000.0  # of water [kg/m^3]
+FLUID_VISCOSITY = 0.001  # of water [Pa s]
 FRICTION = 0.5
 FIELD_OF_VIEW = 50.0  # of a camera, horizontal [deg]

@@ -12,7 +12,7 @@ from typing import Any
 
 from pxr import Gf, Tf, Usd, UsdGeom, UsdLux, UsdPhysics
 
-from wsim.defaults import DURATION, FLUID_DENSITY, FRAME_RATE, GRAVITY
+from wsim.defaults import DURATION, FLUID_DENSITY, FLUID_VISCOSITY, FRAME_RATE, GRAVITY
 from wsim.errors import UserError
 from wsim.scene import schema
 from wsim.scene.describe_cords import ropes, springs
@@ -180,7 +180,7 @@ def _fluid(prim: Usd.Prim) -> Fluid:
     fluid = Fluid(
         prim=str(prim.GetPath()),
         density=value_of(prim, "density", FLUID_DENSITY),
-        viscosity=value_of(prim, "viscosity", 0.001),
+        viscosity=value_of(prim, "viscosity", FLUID_VISCOSITY),
         spacing=value_of(prim, "spacing", 0.0),
         size=to_vec3(value_of(prim, "size", Gf.Vec3f(0.0))),
         center=to_vec3(rigid_frame(prim).ExtractTranslation()),

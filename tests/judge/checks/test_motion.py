@@ -166,9 +166,18 @@ def test_the_world_has_the_earths_gravity(g, passes):
     assert finding.target is None or finding.target.suggested == 9.81
 
 
-def test_elsewhere_gravity_may_be_another():
+def test_gravity_points_down():
+    slant = with_world(thrown(), gravity=(9.81 * math.sin(0.05), 0.0, -9.81 * math.cos(0.05)))  # 2.9 degrees
+    finding = only(ask(CheckGravity(), slant, make_plan("A ball is thrown")))
+    assert not finding.passed and finding.value == pytest.approx(math.degrees(0.05)) and finding.unit == "deg"
+
+
+def test_elsewhere_gravity_is_the_places():
     moon = make_plan("A ball is thrown").model_copy(update={"prompt": "A ball is thrown on the moon"})
-    assert ask(CheckGravity(), with_world(thrown(), gravity=(0.0, 0.0, -1.62)), moon) == []
+    assert only(ask(CheckGravity(), with_world(thrown(), gravity=(0.0, 0.0, -1.62)), moon)).passed
+    assert not only(ask(CheckGravity(), thrown(), moon)).passed
+    anywhere = moon.model_copy(update={"prompt": "A ball is thrown in a gravity of 3 m/s^2"})
+    assert ask(CheckGravity(), with_world(thrown(), gravity=(0.0, 0.0, -3.0)), anywhere) == []
     assert ask(CheckGravity(), thrown()) == []  # without a plan nobody asked for the Earth's
 
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.check import Check, Checks, share_about
+from wsim.defaults import FLUID_VISCOSITY
+from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class CheckFluidMass(Check):
 
 @dataclass
 class CheckPlanFluid(Check):
-    """Each fluid has the plan's density, and stands where the plan has its free surface."""
+    """Each fluid has the plan's density and viscosity, and stands where the plan has its free surface."""
 
     share: float = 0.05  # of the density
     spacings: float = 0.5  # of the level: half of what the particles resolve
@@ -80,8 +81,46 @@ class CheckPlanFluid(Check):
         fluids = {fluid.prim: fluid for fluid in evidence.world.fluids}
         pairs = [(item, fluids.get(evidence.prim(item.name))) for item in evidence.plan.objects]
         known = [(item, fluid) for item, fluid in pairs if item.primitive == "fluid" and fluid is not None]
-        found = [f for item, fluid in known for f in (*self._density(fluid, item), *self._level(evidence, fluid, item))]
-        return found or ([self.passed("Fluids are of the plan's density and level")] if known else [])
+        found: list[Finding] = []
+        for item, fluid in known:
+            found += [*self._density(fluid, item), *self._viscosity(fluid, item), *self._level(evidence, fluid, item)]
+            found += self._block(fluid, item)
+        return found or ([self.passed("Fluids are of the plan's density, viscosity and level")] if known else [])
+
+    def _viscosity(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        planned = item.registration.viscosity
+        if planned is None and (item.material is None or "water" in item.material.name):
+            planned = FLUID_VISCOSITY
+        if planned is None or abs(fluid.viscosity - planned) <= max(self.share * planned, 1e-9):
+            return []
+        target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="viscosity", suggested=planned, unit="Pa s")
+        return [
+            self.between(
+                f"{fluid.prim} has a viscosity of {fluid.viscosity:.4g} Pa s; the plan has {planned:.4g} Pa s",
+                fluid.viscosity, share_about(planned, self.share), "Pa s", expected=planned, prim=fluid.prim, time=0.0,
+                limit_from=f"the plan's, or water's where it has none, to {self.share:.0%}", target=target
+            )
+        ]  # fmt: skip
+
+    def _block(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
+        """What stands as a block of its own is as large and where the plan has it."""
+        if not item.size or item.pose is None:
+            return []
+        off = max(
+            abs(a - b) for a, b in zip((*fluid.size, *fluid.center), (*item.size, *item.pose.position), strict=True)
+        )
+        limit = max(fluid.spacing, self.share * max(item.size))
+        if off <= limit:
+            return []
+        target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="size", direction="change", unit="m")
+        return [
+            self.measured(
+                f"{fluid.prim} stands as a block of {listed(fluid.size)} m at {listed(fluid.center)} m; the plan has "
+                f"{listed(item.size)} m at {listed(item.pose.position)} m",
+                off, limit, "m", expected=0.0, prim=fluid.prim, time=0.0,
+                limit_from=f"a particle spacing, or {self.share:.0%} of its longest edge", target=target,
+            )
+        ]  # fmt: skip
 
     def _density(self, fluid: Fluid, item: PlanObject) -> list[Finding]:
         planned = item.density

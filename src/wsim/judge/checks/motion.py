@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 EARTH = (9.78, 9.835)  # [m/s^2]: at sea level on the equator and at a pole, rounded outwards
-ELSEWHERE = ("gravity", "moon", "mars", "space", "weightless", "planet", "jupiter")
+# Where else a prompt may be: NASA's planetary fact sheets (nssdc.gsfc.nasa.gov/planetary/factsheet), to 2 %.
+PLACES = {place: (0.98 * g, 1.02 * g) for place, g in (("moon", 1.62), ("mars", 3.71), ("jupiter", 24.8))}
+FREE = ("gravity", "space", "weightless", "planet")  # words after which it may be any
 
 
 @dataclass
@@ -203,21 +206,35 @@ def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: 
 
 @dataclass
 class CheckGravity(Check):
-    """The world's gravity is the Earth's and points down, unless the prompt is about another place."""
+    """The world's gravity is the Earth's and straight down, unless the prompt is about another place."""
+
+    aslant: float = 0.5  # [deg]
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding, where there is a plan."""
         plan = evidence.plan
         words = plan.prompt.lower() if plan is not None else ""
-        if plan is None or any(word in words for word in ELSEWHERE):
+        places = [bounds for place, bounds in PLACES.items() if place in words]
+        if plan is None or len(places) > 1 or any(word in words for word in FREE):
             return []
-        down = -evidence.world.gravity[2]
-        above = down > sum(EARTH) / 2
+        bounds, where = (places[0], "the place of the prompt") if places else (EARTH, "the Earth's, equator to poles")
+        gravity = np.array(evidence.world.gravity)
+        strength = float(np.linalg.norm(gravity))
+        expected = 9.81 if bounds == EARTH else sum(bounds) / 2
+        why = "nothing in the prompt asks for another gravity"
+        aslant = math.degrees(math.acos(np.clip(-gravity[2] / strength, -1.0, 1.0))) if strength > 0.0 else 0.0
+        if aslant > self.aslant:
+            return [
+                self.measured(
+                    f"The world's gravity is {aslant:.3g} degrees aslant", aslant, self.aslant, "deg", expected=0.0,
+                    limit_from="straight down", target=_gravity_target(expected, why),
+                )
+            ]  # fmt: skip
+        above = strength > expected
         return [
             self.measured(
-                f"The world's gravity is {down:.4g} m/s^2 downwards", down, EARTH[above], "m/s^2", at_most=above,
-                expected=9.81, limit_from="the Earth's, from the equator to the poles",
-                target=_gravity_target(9.81, "nothing in the prompt asks for another gravity than the Earth's", above)
+                f"The world's gravity is {strength:.4g} m/s^2 downwards", strength, bounds[above], "m/s^2",
+                at_most=above, expected=expected, limit_from=where, target=_gravity_target(expected, why, above),
             )
         ]  # fmt: skip
 

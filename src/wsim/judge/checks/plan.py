@@ -11,7 +11,9 @@ import numpy as np
 
 from wsim.geometry.kinds import PRIMITIVES
 from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.shapes import kind_of
 from wsim.judge.checks.check import Check, Checks, listed, share_about
+from wsim.judge.checks.plan_closed import assembled, named
 from wsim.judge.verdict import RepairTarget
 from wsim.scene.contact import friction_of, restitution_of, rolling_of
 
@@ -27,40 +29,97 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+PLATES = 5  # of a tank
+
 
 @dataclass
 class CheckPlanSizes(Check):
-    """Each object is of the plan's shape and size."""
+    """Each object is of the plan's shape and size, and of that one shape."""
 
     share: float = 0.05
+    height: float = 0.01  # [m]: of the ground
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that differs, or one for none."""
-        found = [finding for item, made in pairs(evidence) for finding in self._solid(made, item)]
-        found += self._hollows(evidence)
-        return found or ([self.passed("Objects have the plan's sizes")] if evidence.plan is not None else [])
+        found = [f for item, made in pairs(evidence) if not assembled(item) for f in self._made(evidence, made, item)]
+        return found or ([self.passed("Objects have the plan's shapes and sizes")] if evidence.plan is not None else [])
+
+    def _made(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> list[Finding]:
+        if item.primitive == "tank":
+            return self._hollow(evidence, made, item)
+        if item.primitive == "ground":
+            return self._ground(evidence, made, item)
+        if item.primitive not in PRIMITIVES:
+            return []
+        if len(made.shapes) != 1:
+            return [self._pieces(made, f"it is one {item.primitive}", 1)]
+        return self._solid(made, item)
+
+    def _pieces(self, made: Body | Static, planned: str, pieces: int) -> Finding:
+        extra = [shape.prim for shape in made.shapes[pieces:]]
+        message = f"{made.prim} has {len(made.shapes)} shapes; in the plan {planned}"
+        target = RepairTarget(
+            kind="geometry", prim=extra[0] if extra else made.prim, direction="remove" if extra else "add"
+        )
+        return self.failed(message, prim=made.prim, time=0.0, limit_from="the plan's primitive", target=target)
 
     def _solid(self, made: Body | Static, item: PlanObject) -> list[Finding]:
-        if item.primitive not in PRIMITIVES or len(made.shapes) != 1:
-            return []  # an assembly stands for it
-        shape = made.shapes[0]
-        if not shape.collides and item.registration.collision != "none":
-            message = f"{made.prim} takes part in no collision; the plan has it as solid"
-            target = RepairTarget(kind="geometry", prim=made.prim, parameter="collides", direction="add")
+        shape, solid = made.shapes[0], item.registration.collision != "none"
+        if shape.collides != solid:
+            says = ("takes part in no collision", "solid") if solid else ("collides", "passed through")
+            target = RepairTarget(
+                kind="geometry", prim=made.prim, parameter="collides", direction="add" if solid else "remove"
+            )
+            message = f"{made.prim} {says[0]}; the plan has it as {says[1]}"
             return [self.failed(message, prim=made.prim, time=0.0, target=target)]
-        # Of another shape only the bounding box can be compared.
         sizes = (item.size, shape.size)
-        if shape.kind != item.primitive or shape.kind == "box":
-            sizes = (tuple(sorted(_edges(item.primitive, item.size))), tuple(sorted(_edges(shape.kind, shape.size))))
+        if shape.kind == "mesh" and self._fills(shape, item):
+            return self._compare(made.prim, _edges(item.primitive, item.size), shape.size)
+        if shape.kind != item.primitive:
+            message = f"{made.prim} is a {shape.kind}; the plan has it as a {item.primitive}"
+            target = RepairTarget(kind="geometry", prim=made.prim, parameter="shape", direction="change")
+            return [self.failed(message, prim=made.prim, time=0.0, limit_from="the plan's primitive", target=target)]
+        if shape.kind == "box":
+            sizes = (tuple(sorted(item.size)), tuple(sorted(shape.size)))
         return self._compare(made.prim, *sizes)
 
-    def _hollows(self, evidence: Evidence) -> list[Finding]:
-        found = []
-        for item in evidence.plan.objects if evidence.plan is not None else []:
-            container = evidence.container(evidence.prim(item.name))
-            if item.primitive == "tank" and container is not None:
-                found += self._compare(container.prim, item.size, container.inner_size)
-        return found
+    def _fills(self, shape: Shape, item: PlanObject) -> bool:
+        """Whether a mesh stands for the plan's primitive: its hull has the primitive's volume."""
+        kind = PRIMITIVES[item.primitive](*item.size)
+        volume = abs(kind_of(shape).surface().volume)
+        return abs(volume / (item.volume or volume) - 1.0) <= self.share and len(kind.edges) == len(shape.size)
+
+    def _hollow(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> list[Finding]:
+        """A tank: a floor, four walls, and the plan's room between them."""
+        solid = [shape for shape in made.shapes if shape.collides and shape.kind == "box"]
+        if len(made.shapes) != PLATES or len(solid) != PLATES:
+            return [self._pieces(made, f"it is a floor and four walls, {PLATES} solid boxes", PLATES)]
+        container = evidence.container(made.prim)
+        return [] if container is None else self._compare(container.prim, item.size, container.inner_size)
+
+    def _ground(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> list[Finding]:
+        """The ground: one plane across gravity, at the plan's height; other where the plan speaks of terrain."""
+        if evidence.plan is None or named(evidence.plan, "terrain"):
+            return []
+        shape = made.shapes[0]
+        if len(made.shapes) != 1:
+            return [self._pieces(made, "it is one plane", 1)]
+        target = RepairTarget(kind="geometry", prim=made.prim, parameter="shape", direction="change")
+        upright = rotate(np.array(shape.rotation), np.array([0.0, 0.0, 1.0]))[2]
+        if shape.kind != "plane" or not shape.collides or upright < math.cos(math.radians(0.5)):
+            message = f"{made.prim} is no level, solid plane, which the plan's ground is"
+            return [self.failed(message, prim=made.prim, time=0.0, limit_from="the plan's primitive", target=target)]
+        planned = item.pose.position[2] if item.pose is not None else 0.0
+        off = abs(shape.position[2] - planned)
+        if off <= self.height:
+            return []
+        return [
+            self.measured(
+                f"{made.prim} is {shape.position[2]:.3g} m high; the plan has it at {planned:.3g} m",
+                off, self.height, "m", expected=0.0, prim=made.prim, time=0.0, limit_from="the plan's pose",
+                target=target,
+            )
+        ]  # fmt: skip
 
     def _compare(self, prim: str, planned: tuple[float, ...], made: tuple[float, ...]) -> list[Finding]:
         ratios = [b / a for a, b in zip(planned, made, strict=True)]
@@ -94,6 +153,8 @@ class CheckPlanPlaces(Check):
         return found or ([self.passed("Objects start where the plan has them")] if evidence.plan is not None else [])
 
     def _start(self, evidence: Evidence, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
+        if hasattr(made, "mass"):
+            yield from self._velocity(evidence, evidence.index(made.prim), item)
         if item.pose is None or item.primitive not in PRIMITIVES or len(made.shapes) != 1:
             return
         shape = made.shapes[0]
@@ -102,7 +163,6 @@ class CheckPlanPlaces(Check):
             i = evidence.index(made.prim)
             q = evidence.body_q[0, i]
             place, turn = q[:3], multiply(q[3:], turn)
-            yield from self._velocity(evidence, i, item)
         far = float(np.linalg.norm(place - np.array(item.pose.position)))
         limit = self.share * max(_edges(item.primitive, item.size))
         if far > limit:
@@ -157,11 +217,13 @@ class CheckPlanLooks(Check):
         if material is None or item.primitive not in PRIMITIVES or not made.shapes:
             return
         shape = made.shapes[0]
-        for what, value, planned, limit in (
-            ("friction", friction_of(shape), material.friction, self.surface),
-            ("restitution", restitution_of(shape), material.restitution, self.surface),
-            ("rolling", rolling_of(shape), material.rolling or 0.0, self.rolling),
-        ):
+        wanted = (
+            ("friction", friction_of, material.friction, self.surface),
+            ("restitution", restitution_of, material.restitution, self.surface),
+            ("rolling", rolling_of, material.rolling or 0.0, self.rolling),
+        )
+        for what, of, planned, limit in wanted:
+            value = of(shape)
             if abs(value - planned) > limit:
                 target = RepairTarget(kind="physical parameter", prim=made.prim, parameter=what, suggested=planned)
                 yield self.between(

@@ -14,23 +14,40 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.plan.schema import Contact
+    from wsim.plan.schema import Contact, Plan
     from wsim.scene.world import Body, Shape, Static
 
 
 @dataclass
 class CheckPlanContacts(Check):
-    """Each pair of the plan's contacts has the friction, restitution and rolling resistance that the plan states."""
+    """Each pair has the friction, restitution and rolling resistance that the plan states, and no other of its own."""
 
     share: float = 0.05  # of a coefficient
     least: float = 1e-3  # what it may be off of nothing
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each coefficient of a pair that is another, or one for none."""
-        if evidence.plan is None or not evidence.plan.contacts:
+        plan = evidence.plan
+        if plan is None or not (plan.contacts or evidence.world.contacts):
             return []
-        found = [finding for contact in evidence.plan.contacts for finding in self._pair(evidence, contact)]
+        found = [finding for contact in plan.contacts for finding in self._pair(evidence, contact)]
+        found += self._unplanned(evidence, plan)
         return found or [self.passed("Pairs touch by the plan's coefficients")]
+
+    def _unplanned(self, evidence: Evidence, plan: Plan) -> Iterator[Finding]:
+        """Coefficients that the world states of a pair, and the plan leaves to the two surfaces."""
+        planned = {frozenset((evidence.prim(c.object), evidence.prim(c.ref))): c for c in plan.contacts}
+        for made in evidence.world.contacts:
+            pair = planned.get(frozenset("/".join(prim.split("/")[:3]) for prim in (made.first, made.second)))
+            for name in ("friction", "restitution", "rolling"):
+                value = getattr(made, name)
+                if value is not None and (pair is None or getattr(pair, name) is None):
+                    target = RepairTarget(kind="physical parameter", prim=made.prim, parameter=name, direction="remove")
+                    message = f"{made.prim} states a {name} of {value:g} for {made.first} and {made.second} alone; the "
+                    yield self.failed(
+                        message + "plan leaves it to their materials",
+                        prim=made.prim, time=0.0, limit_from="the plan's contacts", target=target,
+                    )  # fmt: skip
 
     def _pair(self, evidence: Evidence, contact: Contact) -> Iterator[Finding]:
         one, other = (evidence.prim(name) for name in (contact.object, contact.ref))

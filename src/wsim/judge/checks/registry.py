@@ -21,6 +21,7 @@ from wsim.judge.checks import (
     motion,
     physics,
     plan,
+    plan_closed,
     plan_contacts,
     plan_joints,
     plan_motion,
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_joints,
-    plan_contacts, plan_motion, fluid, camera,
+    physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_closed,
+    plan_joints, plan_contacts, plan_motion, fluid, camera,
 )  # fmt: skip
 
 

@@ -167,7 +167,13 @@ class CheckPlanControl(Check):
         plan, controlled = evidence.plan, bool(evidence.recording.metadata.get("controlled"))
         if plan is None:
             return []
-        asked = [item.name for item in plan.objects if item.registration.actuation]
+        driven = {joint.prim for joint in evidence.world.joints if joint.drive is not None}
+        asked = [
+            item.name
+            for item in plan.objects
+            for each in item.registration.actuation
+            if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
+        ]
         asked += [step.title for step in plan.steps if step.asks_for_control]
         if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if controlled else []
