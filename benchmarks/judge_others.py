@@ -62,12 +62,13 @@ def main() -> None:
     parser.add_argument("folders", nargs="*", type=Path, help="folders with MJCF files, such as unpacked wheels")
     parser.add_argument("--draws", type=int, default=1, help="random states of each model")
     parser.add_argument("--only", default="", help="a part of the path of the models to run")
+    parser.add_argument("--without", default="", help="parts of paths not to run, with commas between")
     parser.add_argument("--faults", action="store_true", help="run them with faults, too")
     arguments = parser.parse_args()
     warnings.simplefilter("ignore")
     rows = []
     for path in models(arguments.folders):
-        if arguments.only not in str(path):
+        if arguments.only not in str(path) or any(part in str(path) for part in arguments.without.split(",") if part):
             continue
         for row in judged(path, arguments.draws, arguments.faults):
             print(row.line(), flush=True)

@@ -75,8 +75,7 @@ def _end(model: Any, e: int, side: int) -> tuple[int, Pose]:
     anchor = data[:3]  # in the second body; the first has it at its pose by the second's
     if side == 1:
         return number, (anchor, none)
-    turn = Tree.xyzw(data[6:10])
-    return number, (data[3:6] + rotate(turn, anchor), turn)
+    return number, (data[3:6], Tree.xyzw(data[6:10]))
 
 
 def _placed(tree: Tree, body: int, pose: Pose) -> Pose:
