@@ -77,7 +77,7 @@ def _body(model: Any, tree: Tree, root: int, known: dict[int, Shape]) -> Body:
     masses = model.body_mass[members]
     places, inertias = zip(*(_mass_frame(model, tree, root, b) for b in members), strict=True)
     mass = float(masses.sum())
-    com = masses @ np.array(places) / mass if mass > 0.0 else np.array(places[0])
+    com = tree.centre(root)
     inertia = np.zeros((3, 3))
     for m, place, own in zip(masses, places, inertias, strict=True):
         arm = place - com
