@@ -25,7 +25,8 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
     """Forward kinematics: `body_names`, `xpos`, `xquat` (wxyz) and `body_qd` of states (T, nq) and (T, nv).
 
     `held_energy` (T,) [J] is what the springs and the rotors of joints and tendons hold.
-    Velocities are those of the centres of mass of what moves as one (linear) and of the bodies (angular), in the world's frame.
+    Velocities are those of the centres of mass of what moves as one (linear) and of the bodies (angular), in the
+    world's frame.
 
     Raises:
         UserError: If the states are not those of the model.
