@@ -1,148 +1,132 @@
-"""The benchmark of the judge: its split, its worlds, its tables, and that a planted fault is one."""
+"""The benchmark of generated faults: its draws, its families, that a fault is what it says, its curves, a small run."""
 
 import dataclasses
-import math
+import json
+import tempfile
 from collections import Counter
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks import judge_faults
-from benchmarks.judge_worlds import FAULTS, WORLDS, in_program
-from benchmarks.judge_worlds.fault import halves
-from benchmarks.judge_worlds.in_recording import Teleport
-from benchmarks.judge_worlds.tables import BEGIN, END, between_marks, interval, markdown, summary
-from benchmarks.judge_worlds.world import with_arguments
+from benchmarks.judge_families import record, stepping
+from benchmarks.judge_families.curves import BEGIN, END, curves, draw, put, tables
+from benchmarks.judge_families.drawn import Draw, Sound
+from benchmarks.judge_families.family import movers
+from benchmarks.judge_families.pushed import Steady
+from benchmarks.judge_families.register import FAMILIES, MECHANISMS
+from benchmarks.judge_families.trial import Outcome, halves, trials
+from wsim.importers.trajectory import velocities
 
 
-def a_case(name: str) -> judge_faults.Case:
-    return next(case for case in judge_faults.cases("all") if case.name == name)
+@pytest.fixture(scope="module", autouse=True)
+def cache():
+    """Recordings of these tests alone, made once."""
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(record, "CACHE", Path(folder))
+        yield
 
 
-@pytest.fixture
-def cache(tmp_path, monkeypatch):
-    monkeypatch.setattr(judge_faults, "CACHE", tmp_path)
-    return tmp_path
+def a_world(mechanism, k=0):
+    return Sound(MECHANISMS[mechanism], k)
 
 
-def test_there_are_enough_worlds_runs_kinds_and_faults():
-    assert len(WORLDS) >= 25 and len({world.name for world in WORLDS}) == len(WORLDS)
-    assert sum(len(world.plans) for world in WORLDS) >= 100
-    assert len(FAULTS) >= 120 and len({fault.name for fault in FAULTS}) == len(FAULTS)
-    assert len({fault.kind for fault in FAULTS}) >= 20
-    assert {fault.made for fault in FAULTS} == {"program", "solver", "recording"}
+def test_there_are_enough_families_and_each_has_worlds():
+    assert len(FAMILIES) >= 25 and len(MECHANISMS) >= 20
+    for family in FAMILIES.values():
+        assert list(family.sizes) == sorted(family.sizes) and family.limit > 0
+        assert any(family.suits(mechanism) for mechanism in MECHANISMS.values()), family.name
+    count = Counter(halves(list(FAMILIES)).values())
+    assert min(count.values()) > 0.3 * len(FAMILIES)
+    names = [trial.name for trial in trials("all", 2, 2)]
+    assert len(names) == len(set(names))
 
 
-def test_the_split_is_by_halves_of_every_kind_and_does_not_change():
-    of = halves(FAULTS)
-    assert set(of) == {fault.name for fault in FAULTS} and of == halves(list(reversed(FAULTS)))
-    count = Counter(of.values())
-    assert min(count.values()) > 0.4 * len(FAULTS)
-    for kind in {fault.kind for fault in FAULTS}:
-        here = Counter(of[fault.name] for fault in FAULTS if fault.kind == kind)
-        assert abs(here["tuning"] - here["held-out"]) <= 1
-    assert of != halves(FAULTS, seed=1)
-    fewer = [fault for fault in FAULTS if fault.kind != "jitter"]
-    assert halves(fewer) == {fault.name: of[fault.name] for fault in fewer}
+def test_the_tuning_half_and_the_held_out_half_share_no_family():
+    of = {half: {trial.family for trial in trials(half, 1, 0)} for half in ("tuning", "held-out", "all")}
+    assert of["tuning"] | of["held-out"] == of["all"] and not of["tuning"] & of["held-out"]
 
 
-def test_the_tuning_half_is_what_runs_by_default(monkeypatch):
-    names = {}
-    for half in ("tuning", "held-out", "all"):
-        names[half] = {case.name for case in judge_faults.cases(half) if case.fault}
-    assert names["tuning"] | names["held-out"] == names["all"] and not names["tuning"] & names["held-out"]
-    asked = []
-    monkeypatch.setattr(judge_faults, "outcomes", lambda wanted, *rest: asked.extend(wanted) or [])
-    judge_faults.main([])
-    assert {case.name for case in asked if case.fault} == names["tuning"]
+def test_a_world_is_the_same_each_time_and_another_for_another_number():
+    assert record._text(a_world("throw").stage) == record._text(a_world("throw").stage)
+    assert record._text(a_world("throw").stage) != record._text(a_world("throw", 1).stage)
 
 
-@pytest.mark.parametrize("world", WORLDS, ids=lambda world: world.name)
-def test_every_world_has_objectives_and_a_program(world):
-    plan = world.plans[0]()
-    assert plan.objectives
-    program = world.write(plan)
-    compile(program, "program.py", "exec")
-    assert "def build(" in program
+def test_worlds_are_of_all_sizes_and_gravities():
+    worlds = [record.world_of(a_world("throw", k).stage) for k in range(12)]
+    sizes = [max(world.bodies[0].shapes[0].size) for world in worlds]
+    pulls = [-world.gravity[2] for world in worlds]
+    assert min(sizes) < 0.1 and max(sizes) > 2.0 and min(pulls) < 5.0 < 15.0 < max(pulls)
 
 
-def test_every_fault_of_a_program_changes_it():
-    worlds = {world.name: world for world in WORLDS}
-    for fault in FAULTS:
-        case = judge_faults.Case(worlds[fault.world], fault.variant, fault)
-        same = case.program == judge_faults.Case(case.world, case.variant).program
-        assert same == (fault.made != "program"), fault.name
-        compile(case.program, "program.py", "exec")
+def test_a_ghost_force_gives_the_momentum_of_its_impulse():
+    sound = a_world("spinner")
+    mass = record.world_of(sound.stage).bodies[0].mass
+    track = record.simulated(sound.stage, Steady(0, 2.0 * mass, (0.6, 0.0, 0.8), 0.1, 0.3))
+    assert track.qd[-1, 0, :3] == pytest.approx(2.0 * 0.2 * np.array([0.6, 0.0, 0.8]), abs=2.0 * 2e-3)
 
 
-def test_a_sound_world_and_its_fault(cache):
-    case = a_case("sound | rest 0")
-    assert judge_faults.run(case).status == "accepted"
-    fault = next(f for f in FAULTS if f.world == "rest" and isinstance(f.tamper, Teleport))
-    made = judge_faults.run(judge_faults.Case(case.world, 0, fault))
-    assert not made.error and made.difference == pytest.approx(0.05, abs=1e-4)
-    assert made.kind == "teleport for one frame" and made.made == "recording"
-    # Judged again, nothing is recorded again.
-    before = {path: path.stat().st_mtime_ns for path in cache.rglob("recording.rrd")}
-    assert judge_faults.run(case, rejudge=True).status == "accepted"
-    assert {path: path.stat().st_mtime_ns for path in cache.rglob("recording.rrd")} == before
+def test_the_short_cut_is_the_simulator(tmp_path):
+    from wsim.sim import Simulation
+
+    stage = tmp_path / "stage.usda"
+    stage.write_text(a_world("skid").stage)
+    short, whole = (Simulation(stage, device="cpu") for _ in range(2))
+    advance = stepping.Stepper(short)
+    assert advance.direct
+    for _ in range(5):
+        advance.frame()
+        whole.advance_frame()
+    assert np.array_equal(short.state.body_q.numpy(), whole.state.body_q.numpy())
+    assert np.array_equal(short.state.body_qd.numpy(), whole.state.body_qd.numpy())
 
 
-def test_a_fault_that_changes_too_little_is_none(cache):
-    fault = next(f for f in FAULTS if f.world == "rest" and isinstance(f.tamper, Teleport))
-    small = dataclasses.replace(fault, tamper=Teleport("box", (0.0, 0.0, 0.001), 2.0))
-    world = next(world for world in WORLDS if world.name == "rest")
-    monster = judge_faults.Case(world, 0, small)
-    made = judge_faults.run(monster)
-    assert "no fault" in made.error
-    rows = summary([made])
-    assert rows["faults"] == 0 and rows["broken"] == 1
+@pytest.mark.parametrize("name", ["shifted", "spin", "time stretch", "creeping", "joint apart", "tipped"])
+def test_velocities_go_with_the_poses_that_a_hand_changed(name):
+    family = FAMILIES[name]
+    mechanism = next(each for each in ("throw", "spinner", "lying", "pendulum", "slide") if
+                     family.suits(MECHANISMS[each]))  # fmt: skip
+    faulty = family.make(a_world(mechanism), family.sizes[2], Draw(name))
+    track, world = faulty.track, faulty.world
+    found = velocities(track.time, track.q.astype(float), world)[2:-2]
+    error = np.abs(found - track.qd[2:-2])[:, movers(world)]
+    sound = record.simulated(a_world(mechanism).stage)
+    usual = np.abs(velocities(sound.time, sound.q.astype(float), world) - sound.qd)[2:-2].max()
+    scale = max(np.abs(track.qd).max(), 1e-3)
+    assert error.max() < max(3.0 * usual, 0.1 * scale)
 
 
-def test_what_is_not_recorded_is_not_judged(cache):
-    made = judge_faults.run(a_case("sound | rest 1"), rejudge=True)
-    assert "not recorded yet" in made.error and not made.status
+def test_a_small_run(tmp_path, capsys):
+    """A sound world is accepted, gravity at less than six tenths is not."""
+    file, document = tmp_path / "found.json", tmp_path / "judge.md"
+    document.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
+    asked = ["sound | throw 0 ", "gravity | 0.8 | 0", "unplanned kinematic | 1 | 0"]
+    code = judge_faults.main(["--half", "all", "--only", *asked, "--json", str(file), "--docs", str(document)])
+    made = json.loads(file.read_text())
+    status = {trial["name"]: trial["status"] for trial in made["trials"]}
+    assert code == 0 and len(status) == 4
+    assert {found for name, found in status.items() if name.startswith("sound")} == {"accepted"}
+    assert status["gravity | 0.8 | 0"] == "rejected"
+    assert {curve["family"] for curve in made["curves"]} == {"gravity", "unplanned kinematic"}
+    assert "| gravity | of the quantity | 0.8: 1/1 | 0.8 | 0.1 | 0 of 1 |" in document.read_text()
+    assert "0 trials broke" in capsys.readouterr().out
 
 
-def test_rates_and_their_confidence():
-    low, high = interval(0, 60)
-    assert low == 0.0 and high == pytest.approx(0.0602, abs=2e-4)  # n / (n + z^2) is certain of 60 good ones
-    low, high = interval(5, 50)
-    assert (low, high) == (pytest.approx(0.0435, abs=2e-4), pytest.approx(0.2136, abs=2e-4))
-    assert interval(50, 50)[1] == pytest.approx(1.0) and math.isclose(interval(50, 50)[0], 1 - interval(0, 50)[1])
+def outcome(k, size, status, family="gravity"):
+    return Outcome(f"{family} | {size} | {k}", family, size, half="tuning", status=status, checks=["CheckForces"])
 
 
-def test_tables_count_what_was_missed_and_what_was_wronged():
-    make = judge_faults.Outcome
-    found = [
-        make("a", "w", "f", kind="k", made="solver", status="accepted"),
-        make("b", "w", "f", kind="k", made="program", status="rejected", checks=["CheckMass"]),
-        make("c", "w", "f", status="accepted"),
-        make("d", "w", "f", status="rejected", checks=["CheckEnergy"]),
-        make("e", "w", "f", kind="k", error="no fault"),
-    ]
-    counted = summary(found)
-    assert (counted["faults"], counted["false_accepts"], counted["sound"], counted["false_rejects"]) == (2, 1, 2, 1)
-    text = markdown(found)
-    assert "| k | program, solver | 2 | 1 | 1 | CheckMass 1 |" in text
-    assert "| f | 2 | 1 | 1 | CheckEnergy 1 |" in text
-    assert "1 of 2 = 50.0 %" in text
-
-
-def test_tables_go_between_the_marks_of_a_document():
-    text = f"before\n{BEGIN}\nold\n{END}\nafter\n"
-    assert between_marks(text, "new\n") == f"before\n{BEGIN}\nnew\n{END}\nafter\n"
-    assert between_marks(between_marks(text, "x\n"), "new\n") == between_marks(text, "new\n")
-    with pytest.raises(ValueError, match="faults:begin"):
-        between_marks("no marks", "new")
-
-
-def test_programs_are_edited_by_call():
-    program = 'def build(scene):\n    scene.box("a", size=(1, 1, 1))\n\nif __name__ == "__main__":\n    build(None)\n'
-    assert "density=5.0" in with_arguments(program, "a", density="5.0")
-    with pytest.raises(ValueError, match="'b'"):
-        with_arguments(program, "b", density="5.0")
-    with pytest.raises(ValueError, match="gravity"):
-        in_program.replaced("gravity", "x")(program)
-    longer = in_program.appended("scene.ground()")(program)
-    compile(longer, "program.py", "exec")
-    assert longer.index("scene.ground()") < longer.index("__main__")
+def test_the_least_size_that_is_found_and_what_was_missed(tmp_path):
+    status = {0.03: 9, 0.1: 5, 0.2: 1, 0.4: 0, 0.8: 0}  # accepted, of ten
+    made = [outcome(k, size, "accepted" if k < n else "rejected") for size, n in status.items() for k in range(10)]
+    made += [outcome(10, 0.8, "no effect"), dataclasses.replace(outcome(11, 0.8, ""), error="broke")]
+    (curve,) = curves(made)
+    assert curve.least == 0.2 and curve.missed == (6, 40)
+    assert curve.points[0].bounds == (pytest.approx(0.0179, abs=1e-4), pytest.approx(0.4042, abs=1e-4))  # 1 of 10
+    assert "6 of 40 = 15.0 %" in tables(made)
+    (never,) = curves([outcome(0, 0.8, "accepted")])
+    assert never.least is None
+    assert draw(made, tmp_path / "curves.png").stat().st_size > 1000
+    with pytest.raises(ValueError, match="curves:begin"):
+        put("no marks", "new")

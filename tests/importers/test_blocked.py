@@ -33,7 +33,9 @@ MODELS = {  # what acts: (the world's bodies, what else the model has, a word of
         "a tendon through points", "/World/string",
     ),
     "by hand": ('<body name="hand" mocap="true"><geom size="0.1"/></body>' + CHAIN, "", "mocap", "/World/hand"),
-    "far": (CHAIN.replace("<geom", '<geom name="skin" margin="0.05"'), "", "from 0.05 m away", "/World/skin"),
+    "belt": (
+        CHAIN.replace("<geom", '<geom name="skin" surfacevel="1 0 0 0 0 0"'), "", "a surface that moves", "/World/skin",
+    ),
     "slider after a hinge": (
         CHAIN.replace("<geom", '<joint name="k" type="slide" axis="0 0 1"/><geom'), "", "2 joints of one body",
         "/World/a",

@@ -57,6 +57,9 @@ CARRIED: dict[str, tuple[str, str, dict[int, float]]] = {
         '<equality><joint joint1="i" joint2="j" polycoef="0 2 0 0 0" solref="0.002 1"/></equality>',
         {0: 2.0, 1: 1.0},
     ),
+    "contacts from afar": (
+        FLOOR + '<body name="a" pos="0 0 0.12"><freejoint/><geom size="0.1" margin="0.02"/></body>', "", {},
+    ),
     "a tendon along joints": (
         f'<body name="a" pos="0 0 2"><joint name="i" axis="0 1 0"/>{LINK}<body pos="0 0 -0.4">'
         f'<joint name="j" axis="0 1 0"/>{LINK}</body></body>',

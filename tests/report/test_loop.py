@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import json
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -158,7 +159,7 @@ def test_each_iteration_has_a_row_with_its_patch(blocked: Callable[..., Path]) -
 def test_why_it_is_blocked_stands_at_the_top(blocked: Callable[..., Path], cause: str, words: str) -> None:
     page = Elements(write(blocked(cause=cause)))
     assert words in section(page, "Blocked", "Why it failed")
-    assert "3 of 24 findings fail" in section(page, "Blocked", "Why it failed")
+    assert re.search(r"3 of \d+ findings fail", section(page, "Blocked", "Why it failed"))
     assert "nearly the slope's tangent" in section(page, "What to change", "What must happen")
 
 

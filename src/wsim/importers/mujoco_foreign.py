@@ -54,7 +54,7 @@ def _geometry(model: Any) -> Iterator[Foreign]:
         kind = mujoco.mjtGeom(int(model.geom_type[g]))
         if kind == mujoco.mjtGeom.mjGEOM_SDF:
             yield _of(name, f"a collision shape of kind {kind.name[7:].lower()}")
-        if model.geom_margin[g] > 0.0:
+        if model.geom_margin[g] > 0.0 and kind in (mujoco.mjtGeom.mjGEOM_MESH, mujoco.mjtGeom.mjGEOM_HFIELD):
             yield _of(name, f"contacts that push from {model.geom_margin[g]:g} m away (margin)")
         if model.geom_gap[g] > 0.0:
             yield _of(name, f"contacts that do not push (gap {model.geom_gap[g]:g} m)")

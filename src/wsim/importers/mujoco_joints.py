@@ -17,7 +17,6 @@ IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 JOINT, FLAG = mujoco.mjtJoint, mujoco.mjtDisableBit
 KINDS = {JOINT.mjJNT_HINGE: "revolute", JOINT.mjJNT_SLIDE: "prismatic", JOINT.mjJNT_BALL: "spherical"}
 FREEDOMS = {JOINT.mjJNT_FREE: 6, JOINT.mjJNT_BALL: 3}
-OPPOSED = 100.0  # [m/s^2]: ten times gravity, of what drives and falls push at a contact
 HINGES = 3  # of a body, at most
 
 
@@ -158,7 +157,7 @@ def give_by(model: Any, solref: np.ndarray, solimp: np.ndarray) -> Give:
     # v = (1 - d) a t / 2 d is what it leaves.
     share = np.clip(0.5 * (solimp[:, 0] + full), 0.01, 0.99)
     damped = np.where(direct, 2.0 * full / np.maximum(-solref[:, 1], 1e-9), full * np.maximum(solref[:, 0], 1e-9))
-    creep = ((1.0 - share) / share * OPPOSED * 0.5 * damped).max()
+    creep = ((1.0 - share) / share * 0.5 * damped).max()
     return Give(time=float(times.max()), depth=float(solimp[:, 2].max()), creep=float(creep))
 
 

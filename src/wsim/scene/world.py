@@ -40,6 +40,7 @@ class Shape(_Model):
     friction: float | None = None  # None leaves it to what it touches (`wsim.scene.contact`)
     restitution: float | None = None
     rolling: float | None = None  # torque that resists rolling, of radius times push
+    margin: float = 0.0  # [m]: another engine's contacts may push from so far, and that of the other shape, away
     surface_velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], in the frame of `position`: the surface moves as a belt does
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
@@ -123,7 +124,7 @@ class Give(_Model):
 
     time: float = 0.0  # [s]: in which they catch what meets them
     depth: float = 0.0  # [m] or [rad]: from which on they push in full
-    creep: float = 0.0  # [m/s]: a slip that friction may leave to what it holds
+    creep: float = 0.0  # [s]: the slip that friction leaves to what it holds, over the acceleration that it takes
 
 
 class Move(_Model):

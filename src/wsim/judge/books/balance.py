@@ -9,13 +9,14 @@ hold. What no sum of them gives is the finding.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.admissible import explain
-from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip
+from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.steps import step_error
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
@@ -36,6 +37,7 @@ SOFT = 2.0  # times gravity's pull over the interval: what changes a velocity by
 ENOUGH = 0.001  # of gravity: a rest that is as good as none
 AGAIN = 0.003  # of gravity: where more is left, contacts are looked for between the frames
 CHUNK = 64  # intervals worked out at once
+LOADS = 3.0  # of its weight, that a body in motion may press with
 FAST = 0.3  # [m]: no blow is looked for beyond
 
 
@@ -91,6 +93,15 @@ class Balance:
         turned += wrong / arm + step_error(self._evidence)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
 
+    @cached_property
+    def unseen(self) -> Bools:
+        """Bodies that something turns by a torque that is not recorded, (B,): a fluid, or what a controller pushes."""
+        pushed = self._evidence.recording.applied_impulse
+        if self._evidence.recording.metadata.get("controlled"):
+            return ~self._motion.kinematic
+        none = np.zeros(len(self._motion.mass), dtype=bool)
+        return none if pushed is None else np.any(pushed != 0.0, axis=(0, 2))
+
     def _scale(self) -> Floats:
         """What a force and a torque on each body count for, (B, 6)."""
         scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
@@ -119,7 +130,8 @@ class Balance:
         for n, k in enumerate(ks) if self._ties.any else ():
             columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
         if columns:
-            all_ = Columns.of(columns)
+            unseen = np.flatnonzero(np.tile(self.unseen, count))
+            all_ = Columns.of([*columns, turns(unseen)] if len(unseen) else columns)
             scale = np.tile(self._scale(), (count, 1))
             rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
@@ -176,8 +188,9 @@ class Balance:
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
-        slow = max(STILL, self._evidence.world.give.creep)
-        lasts = (slowest > np.maximum(slow, change)) & (np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then)
+        lasts = (slowest > np.maximum(self._creep(every), change)) & (
+            np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
+        )
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
@@ -187,6 +200,19 @@ class Balance:
             ways = np.concatenate([ways, *((ways + side * across) * np.sqrt(0.5) for side in (-1.0, 0.0, 1.0))])
         along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
+
+    def _creep(self, contacts: Contacts) -> Floats:
+        """The slip of each contact that soft friction may leave, (n,) [m/s].
+
+        It takes the acceleration mu N / m of the body alone, which may be pressed by thrice all that hangs on it.
+        """
+        motion, friction = self._motion, self._touching.laws(contacts.shapes)[0]
+        total = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit]) / motion.mass
+        rows = np.stack([contacts.one, contacts.two])
+        loads = np.where(rows >= 0, total[rows % len(total)], 0.0).max(axis=0)
+        taken = LOADS * friction * self._unit * loads
+        found: Floats = np.maximum(STILL, self._evidence.world.give.creep * taken)
+        return found
 
     def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats) -> Floats:
         """The torque that resists turning, for a push of one [m]: rolling's, or spinning's, which is the greater."""

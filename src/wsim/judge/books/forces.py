@@ -118,3 +118,10 @@ def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torqu
     count = len(on_two)
     rows = np.full(count, one, dtype=np.intp), np.full(count, two, dtype=np.intp)
     return Columns(*rows, on_one, on_two, np.ones(count, dtype=bool))
+
+
+def turns(rows: NDArray[np.intp]) -> Columns:
+    """Any torque on some bodies."""
+    which = np.repeat(rows, 3)
+    twist = np.tile(np.concatenate([np.zeros((3, 3)), np.eye(3)], axis=1), (len(rows), 1))
+    return Columns(np.full(len(which), -1), which, np.zeros_like(twist), twist, np.ones(len(which), dtype=bool))

@@ -116,19 +116,22 @@ class Laws:
             if row >= 0 and not self._motion.kinematic[row]:
                 turns = joint.kind == "revolute"
                 loose = loose + (self._turning(row, axis) if turns else self._looseness(row, arm, axis))
-        effort, stiffness, damping = np.zeros(len(rate)), 0.0, 0.0
-        drive = joint.drive
+        drive, stiffness, damping = joint.drive, 0.0, 0.0
+        effort, full = np.zeros(len(rate)), np.zeros(len(rate))
         if drive is not None:
             effort = drive.stiffness * (drive.position - track.position) + drive.damping * (drive.velocity - rate)
             stiffness, damping = drive.stiffness, drive.damping
             if drive.max_effort is not None:
+                full = np.where(np.abs(effort) >= drive.max_effort, np.sign(effort), 0.0)
                 effort = np.clip(effort, -drive.max_effort, drive.max_effort)
         effort = effort - joint.friction * np.sign(rate)
         along = effort[:, None] * axis
         none = np.zeros_like(along)
         force, torque = (none, along) if joint.kind == "revolute" else (along, none)
         law = self._law(rows, arms, force, torque, (stiffness, damping), loose)
-        known = law.known & ~broken(self._evidence, joint)[1:]
+        # All of an interval at its full strength it is known; where it comes to that, or leaves it, it is not.
+        known = (law.known & (full[1:] == full[:-1])) | (full[1:] * full[:-1] > 0.0)
+        known = known & ~broken(self._evidence, joint)[1:]
         known &= (drive is None or (drive.told and not self._set)) and joint.armature == 0.0
         if joint.friction > 0.0:  # it may hold at rest
             slow = joint.friction * loose[1:] * self._motion.h

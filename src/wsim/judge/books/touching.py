@@ -76,6 +76,7 @@ class Touching:
         self._data = mujoco.MjData(self._model)
         names = [self._model.geom(k).name for k in range(self._model.ngeom)]
         self._shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
+        self._margin = np.array([self.shapes[k][2].margin for k in self._shape_of_geom], dtype=np.float64)
         self._row_of_shape = np.array([row for row, _, _ in self.shapes], dtype=np.intp)
 
     def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
@@ -103,7 +104,8 @@ class Touching:
     def at(self, poses: Floats, reach: float) -> Contacts:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
         model, data = self._model, self._data
-        model.geom_margin[:] = model.body_margin[:] = 0.5 * reach
+        model.geom_margin[:] = 0.5 * reach + self._margin
+        model.body_margin[:] = 0.5 * reach + self._margin.max(initial=0.0)
         data.qpos[:] = poses[:, [0, 1, 2, 6, 3, 4, 5]].ravel()
         self._mujoco.mj_kinematics(model, data)
         self._mujoco.mj_comPos(model, data)
@@ -113,7 +115,8 @@ class Touching:
         rows = self._row_of_shape[shapes]
         contacts = Contacts(
             rows[:, 0], rows[:, 1], shapes, np.array(found.pos).reshape(-1, 3),
-            np.array(found.frame).reshape(-1, 9)[:, :3], np.array(found.dist).reshape(-1),
+            np.array(found.frame).reshape(-1, 9)[:, :3],
+            np.array(found.dist).reshape(-1) - self._margin[np.asarray(found.geom).reshape(-1, 2)].sum(axis=1),
         )  # fmt: skip
         if self._meshes:
             contacts = together([contacts, *self._on_meshes(poses, reach)])

@@ -45,11 +45,8 @@ class CheckForces(Check):
             return []
         slack = np.where(books.hit, self.blow * books.blow / motion.h[:, None], 0.0) + rounding(evidence)
         found = [self._missing(evidence, books, books.force, slack + books.turned[..., 0], motion.mass, "N")]
-        # What fluid and control turn bodies by is not recorded.
-        pushed = recording.applied_impulse
-        known = np.ones(len(motion.mass), dtype=bool) if pushed is None else ~np.any(pushed != 0.0, axis=(0, 2))
-        if known.any() and not recording.metadata.get("controlled"):
-            torque, slack = np.where(known[None, :, None], books.torque, 0.0), slack + books.turned[..., 1]
+        if not balance.unseen.all():
+            torque, slack = np.where(balance.unseen[None, :, None], 0.0, books.torque), slack + books.turned[..., 1]
             found.append(self._missing(evidence, books, torque, slack, motion.mass * balance.size, "N m"))
         return found
 

@@ -28,6 +28,7 @@ from wsim.judge.checks import (
     rest,
     run,
     settled,
+    water,
 )
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 RUN = (run,)
 PHYSICS = (
     physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_closed,
-    plan_joints, plan_contacts, plan_motion, fluid, camera,
+    plan_joints, plan_contacts, plan_motion, fluid, water, camera,
 )  # fmt: skip
 
 

@@ -1,0 +1,129 @@
+"""Checks of a fluid as a whole: none of it gets through what is solid, and at rest it lies level and even."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import kind_of
+from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.containment import local
+from wsim.scene.contact import within
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Container, Fluid
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckLeak(Check):
+    """Not one particle gets under the floor of its tank, or into the ground."""
+
+    spacings: float = 1.0  # that particles may press into what is solid
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """How many particles of each fluid are where none can get, at most."""
+        found = []
+        for fluid in evidence.world.fluids:
+            track = evidence.track(fluid)
+            lost = np.array([self._through(evidence, fluid, points) for points in track.position])
+            value, at = int(lost.max(initial=0)), int(np.argmax(lost > 0))
+            found.append(
+                self.measured(
+                    f"{value} of {track.position.shape[1]} particles of {fluid.prim} are under a floor, "
+                    f"from {float(track.time[at]):.3f} s",
+                    value, 0.0, "particles", prim=fluid.prim, time=float(track.time[at]), expected=0.0,
+                    fine=f"No particle of {fluid.prim} gets under a floor",
+                    limit_from=f"none, farther than {self.spacings:g} spacing: what is solid lets nothing through",
+                )
+            )  # fmt: skip
+        return found
+
+    def _through(self, evidence: Evidence, fluid: Fluid, points: NDArray[np.float32]) -> int:
+        """Particles under the hollow of a tank, or in the ground."""
+        deep, gone = self.spacings * fluid.spacing, np.zeros(len(points), dtype=bool)
+        container = evidence.container_of(fluid)
+        if container is not None:
+            own, half = local(container, points.astype(np.float64)), np.array(container.inner_size) / 2
+            gone |= (np.abs(own[:, :2]) < half[:2]).all(axis=1) & (own[:, 2] < -half[2] - deep)
+        for static in evidence.world.statics:
+            for shape in static.shapes:
+                if shape.kind == "plane" and shape.collides:
+                    turn = conjugate(np.array(shape.rotation))
+                    gone |= kind_of(shape).depth(rotate(turn, points - np.array(shape.position))) > deep
+        return int(gone.sum())
+
+
+@dataclass
+class CheckLevelSurface(Check):
+    """A fluid at rest in a box, and alone there, has a level surface, and its weight where its level puts it."""
+
+    degrees: float = 1.0
+    spacings: float = 0.5  # of the level that the centre of mass tells
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """Tilt of the surface and height of the centre of mass, over the final window."""
+        found = []
+        for fluid in evidence.world.fluids:
+            container = evidence.container_of(fluid)
+            if container is None or not self._alone(evidence, fluid, container):
+                continue
+            track = evidence.track(fluid)
+            late = track.time >= evidence.window_start
+            points = local(container, track.position[late].mean(axis=0).astype(np.float64))
+            floor = -container.inner_size[2] / 2
+            level = fluid.size[0] * fluid.size[1] * fluid.size[2] / (container.inner_size[0] * container.inner_size[1])
+            speed = float(np.sqrt((track.velocity[late].astype(np.float64) ** 2).sum(axis=2).mean()))
+            swing = speed * math.sqrt(level / max(evidence.gravity, 1e-9))  # as high as it still sloshes
+            found += [
+                self._tilt(evidence, fluid, points, swing / min(container.inner_size[:2])),
+                self._weight(evidence, fluid, 2.0 * float(points[:, 2].mean() - floor), level, swing),
+            ]
+        return found
+
+    @staticmethod
+    def _alone(evidence: Evidence, fluid: Fluid, container: Container) -> bool:
+        """Whether it is the only fluid in an upright tank, and nothing else is in there."""
+        upright = bool(rotate(np.array(container.rotation), np.array([0.0, 0.0, 1.0])) @ evidence.up > 1.0 - 1e-6)
+        if not upright or evidence.gravity == 0.0 or len(evidence.world.fluids) > 1:
+            return False
+        half, motion = np.array(container.inner_size) / 2, evidence.motion
+        for static in evidence.world.statics:
+            for shape in (shape for shape in static.shapes if not within(shape.prim, container.prim)):
+                size = 0.0 if shape.kind == "plane" else kind_of(shape).radius_about
+                if shape.kind != "plane" and (np.abs(local(container, np.array(shape.position))) < half + size).all():
+                    return False
+        inside = np.abs(local(container, motion.com)) < half + motion.radius[:, None]
+        return not inside.all(axis=2).any()
+
+    def _tilt(self, evidence: Evidence, fluid: Fluid, points: Floats, swing: float) -> Finding:
+        """Columns are as high as their mean is twice: the slope of all particles' heights is half the surface's."""
+        level = np.column_stack([points[:, :2] - points[:, :2].mean(axis=0), np.ones(len(points))])
+        slope = np.linalg.lstsq(level, points[:, 2], rcond=None)[0][:2]
+        value = math.degrees(math.atan(2.0 * float(np.linalg.norm(slope))))
+        return self.measured(
+            f"The surface of {fluid.prim} is tilted by {value:.2g} degrees at rest",
+            value, self.degrees + math.degrees(math.atan(2.0 * swing)), "deg", prim=fluid.prim,
+            time=evidence.window_start, expected=0.0,
+            limit_from=f"{self.degrees:g} degree, and how far it still sloshes",
+        )  # fmt: skip
+
+    def _weight(self, evidence: Evidence, fluid: Fluid, seen: float, level: float, swing: float) -> Finding:
+        return self.measured(
+            f"{fluid.prim} stands {seen:.4g} m high by its centre of mass, {level:.4g} m by its volume",
+            abs(seen - level), self.spacings * fluid.spacing + swing, "m", prim=fluid.prim,
+            time=evidence.window_start, expected=0.0,
+            limit_from=f"{self.spacings:g} spacing, and how far it still sloshes",
+        )  # fmt: skip
+
+
+CHECKS: Checks = (CheckLeak, CheckLevelSurface)
