@@ -324,10 +324,8 @@ def flies(finding: Finding, evidence: Evidence) -> RepairTarget:
 
 
 def collides_with(finding: Finding, evidence: Evidence) -> RepairTarget:
-    """They miss each other, pass through each other, or the contact loses momentum."""
+    """They miss each other, or pass through each other."""
     prim, ref = finding.prim or "", ref_of(finding, evidence)
-    if finding.unit == "kg m/s":
-        return shorter_step(evidence, 0.5, "the contact loses momentum: half the step is the first to try")
     missing = next((owner for owner in (prim, ref) if not collides(evidence, owner)), None)
     if missing is not None:
         return add_collision(missing)
