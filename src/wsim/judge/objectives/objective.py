@@ -32,6 +32,12 @@ class ObjectiveCheck(Check):
 
     def run(self, evidence: Evidence) -> list[Finding]:
         """The findings, each with the objective's sentence and its object's prim and line."""
+        key = self.objective.model_dump_json()
+        if key not in evidence.answers:
+            evidence.answers[key] = self._answers(evidence)
+        return evidence.answers[key]
+
+    def _answers(self, evidence: Evidence) -> list[Finding]:
         prim = evidence.prim(self.objective.object)
         try:
             found = self.evaluate(evidence)
