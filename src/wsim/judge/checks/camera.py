@@ -194,7 +194,8 @@ def _events(evidence: Evidence) -> Iterator[tuple[str, float, str]]:
         for finding, part in zip(found, parts, strict=False):
             once = isinstance(part, Eventually | Then) or (isinstance(part, Predicate) and part.alone == "eventually")
             if finding.passed and finding.prim and finding.time is not None and (part is None or once):
-                yield finding.prim, finding.time, check.sentence
+                # The moment that decides is that of the greatest margin; it came true before.
+                yield finding.prim, finding.span[0] if finding.span is not None else finding.time, check.sentence
 
 
 def _things(evidence: Evidence) -> list[str]:
