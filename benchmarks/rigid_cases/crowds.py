@@ -78,13 +78,14 @@ def _house(bench: Bench, share: float, seconds: float) -> Track:
     """A house of cards whose friction is a share of the least with which it stands.
 
     At the bottom a card bears W and a quarter of the 16 above, P = 4 W, which lie on its outer upper edge. Its
-    neighbour pushes with H at its inner one, the roof rubs with F up to mu P, and its foot holds H + F up to mu (W + P).
+    neighbour pushes with H at its inner one, the roof rubs with F up to mu P, its foot holds H + F up to mu (W + P).
     About its foot, over L cos a, that is H + F (1 + tan a t / L) = (W / 2 + P) (tan a - t / L); so
     mu (W + P + P tan a t / L) is at least its right side. Upper storeys bear less and need less. What the two cards of
     a tent share unequally drops out of the sum of the two.
 
     The two tents of a storey must not meet. Feet that have slid together hold each other, a tent can then fall only by
-    dragging its top below the roof, and half as far: (W / 2 + P) (tan a - t / L) > mu (W + P + P), 0.56 of the least by statics.
+    dragging its top below the roof, and half as far: (W / 2 + P) (tan a - t / L) > mu (W + P + P), by statics 0.56 of
+    the least.
     """
     lean = math.tan(CARD_LEAN)
     friction = share * (0.5 + 4.0) * (lean - CARD_THICK / CARD) / (1.0 + 4.0 + 4.0 * lean * CARD_THICK / CARD)
