@@ -118,7 +118,11 @@ class Laws:
         for row, arm in zip(rows, arms, strict=True):
             if row >= 0 and not self._motion.kinematic[row]:
                 turns = joint.kind == "revolute"
-                loose = loose + (self._turning(row, axis) if turns else self._looseness(row, arm, axis))
+                own = self._turning(row, axis) if turns else self._looseness(row, arm, axis)
+                if turns and min(rows) < 0:  # about an axis that stands still its mass goes round as well
+                    round_ = self._motion.mass[row] * np.sum(np.cross(arm, axis) ** 2, axis=1)
+                    own = 1.0 / (1.0 / np.maximum(own, 1e-12) + round_)
+                loose = loose + own
         drive, stiffness, damping = joint.drive, 0.0, 0.0
         effort, full = np.zeros(len(rate)), np.zeros(len(rate))
         if drive is not None:

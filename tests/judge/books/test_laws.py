@@ -1,0 +1,74 @@
+"""Springs, drives, dry friction and stops: simulated as one world has them, judged as another states them."""
+
+import math
+
+import pytest
+
+from tests.judge.test_turned import simulated
+from tests.judge.theory import ask, with_world
+from wsim.judge.checks.forces import CheckForces
+from wsim.scene import Drive
+
+
+def hung(scene):
+    scene.sphere("bob", radius=0.08, density=900, position=(0, 0, 1.2))
+    scene.spring("coil", None, "bob", stiffness=120, damping=0.5, rest_length=0.6, anchor_a=(0, 0, 2))
+
+
+def arm(scene):
+    scene.box("arm", size=(0.6, 0.06, 0.06), density=400, position=(0.3, 0, 1))
+    scene.joint_revolute(
+        "elbow", None, "arm", axis="Y", anchor=(0, 0, 1), drive=Drive(position=20, stiffness=14, damping=1)
+    )
+
+
+def wheel(scene):
+    scene.cylinder("wheel", radius=0.2, height=0.05, density=800, position=(0, 0, 1), angular_velocity_deg=(0, 0, 900))
+    scene.joint_revolute("axle", None, "wheel", axis="Z", anchor=(0, 0, 1), friction=0.4)
+
+
+def door(scene):
+    scene.box("door", size=(0.8, 0.04, 0.3), density=200, position=(0.4, 0, 1), velocity=(0, 0.6, 0),
+              angular_velocity_deg=(0, 0, math.degrees(1.5)))  # fmt: skip
+    scene.joint_revolute("hinge", None, "door", axis="Z", anchor=(0, 0, 1), limits_deg=(-90, 40))
+
+
+def off(findings):
+    return [finding.message for finding in findings if not finding.passed]
+
+
+def changed(recording, folder, name, **fields):
+    """The same motion in a world that states something else of one thing."""
+    things = [
+        thing.model_copy(update=fields) if thing.prim.endswith("/" + name) else thing
+        for thing in getattr(recording.world, folder)
+    ]
+    return with_world(recording, **{folder: things})
+
+
+def driven(recording, **fields):
+    drive = recording.world.joints[0].drive.model_copy(update=fields)
+    return changed(recording, "joints", "elbow", drive=drive)
+
+
+@pytest.mark.parametrize(("build", "wrong"), [
+    (hung, lambda r: changed(r, "springs", "coil", stiffness=132.0)),
+    (hung, lambda r: changed(r, "springs", "coil", rest_length=0.63)),
+    (arm, lambda r: driven(r, stiffness=15.4)),
+    (arm, lambda r: driven(r, damping=1.3)),
+    (arm, lambda r: driven(r, max_effort=2.0)),
+    (wheel, lambda r: changed(r, "joints", "axle", friction=0.44)),
+    (wheel, lambda r: changed(r, "joints", "axle", friction=0.0)),
+    (door, lambda r: changed(r, "joints", "hinge", low=None, high=None)),
+])  # fmt: skip
+def test_what_is_a_tenth_off_is_found(tmp_path, build, wrong):
+    """By a tenth of stiffness, friction, rest length, by three tenths of damping; a stop that nothing states."""
+    recording = simulated(tmp_path, build, 1.0)
+    assert off(ask(CheckForces(), recording)) == []
+    assert off(ask(CheckForces(), wrong(recording))) != []
+
+
+def test_a_stop_pushes_and_does_not_pull(tmp_path):
+    """Turned back in time the door leaves its stop as it came; mirrored it is held where no stop is."""
+    recording = simulated(tmp_path, door, 1.0)
+    assert off(ask(CheckForces(), changed(recording, "joints", "hinge", low=math.radians(40.0), high=None))) != []
