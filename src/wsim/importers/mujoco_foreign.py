@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from wsim.importers.mujoco_equalities import linear, on
 from wsim.importers.mujoco_joints import JOINTED, driven, freedoms, kind_of, loaded, pulls, why_not
 from wsim.importers.mujoco_names import element, prim_of
 from wsim.importers.mujoco_tree import Tree
@@ -16,8 +17,8 @@ from wsim.scene.world import Foreign
 
 def foreign(model: Any, tree: Tree) -> list[Foreign]:
     """All of it, in the model's order."""
-    parts = (_surroundings, _bodies, _geometry, _joints, _tendons, _actuators, _equalities)
-    return [one for part in parts for one in part(model)]
+    parts = (_surroundings, _geometry, _joints, _tendons, _actuators, _equalities)
+    return [*_bodies(model, tree), *(one for part in parts for one in part(model))]
 
 
 def _of(prim: str, feature: str) -> Foreign:
@@ -35,11 +36,12 @@ def _surroundings(model: Any) -> Iterator[Foreign]:
         yield from (_of(prim_of(element(model, "flex", k)), "a deformable body (flex)") for k in range(model.nflex))
 
 
-def _bodies(model: Any) -> Iterator[Foreign]:
+def _bodies(model: Any, tree: Tree) -> Iterator[Foreign]:
     for b in range(1, model.nbody):
         prim = prim_of(element(model, "body", b))
-        if model.body_gravcomp[b] != 0.0:
-            yield _of(prim, f"gravity compensation (gravcomp {model.body_gravcomp[b]:g})")
+        weighs = [model.body_gravcomp[one] for one in tree.members(tree.root(b)) if model.body_mass[one] > 0.0]
+        if tree.root(b) == b and len(set(weighs)) > 1:
+            yield _of(prim, "parts of different gravity compensation (gravcomp)")
         if model.body_mocapid[b] >= 0:
             yield _of(prim, "a mocap body, which is moved by hand")
         if model.body_plugin[b] >= 0:
@@ -52,7 +54,7 @@ def _geometry(model: Any) -> Iterator[Foreign]:
         kind = mujoco.mjtGeom(int(model.geom_type[g]))
         if kind == mujoco.mjtGeom.mjGEOM_SDF:
             yield _of(name, f"a collision shape of kind {kind.name[7:].lower()}")
-        if model.geom_margin[g] > 0.0:
+        if model.geom_margin[g] > 0.0 and kind in (mujoco.mjtGeom.mjGEOM_MESH, mujoco.mjtGeom.mjGEOM_HFIELD):
             yield _of(name, f"contacts that push from {model.geom_margin[g]:g} m away (margin)")
         if model.geom_gap[g] > 0.0:
             yield _of(name, f"contacts that do not push (gap {model.geom_gap[g]:g} m)")
@@ -95,6 +97,17 @@ def _actuators(model: Any) -> Iterator[Foreign]:
 
 
 def _equalities(model: Any) -> Iterator[Foreign]:
+    """Those that a world has no joint for: of tendons along joints the joints have what they do."""
+    kinds = mujoco.mjtEq
     for e in range(model.neq):
-        kind = mujoco.mjtEq(int(model.eq_type[e])).name[5:].lower()
-        yield _of(prim_of(element(model, "equality", e)), f"an equality constraint ({kind})")
+        kind = kinds(int(model.eq_type[e]))
+        if not on(model, e) or kind in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD, kinds.mjEQ_TENDON):
+            continue
+        hinged = kind == kinds.mjEQ_JOINT and linear(model, e)
+        single = [model.body_jntnum[model.jnt_bodyid[j]] == 1 for j in _ends(model, e)] if hinged else [False]
+        if not all(single):
+            yield _of(prim_of(element(model, "equality", e)), f"an equality constraint ({kind.name[5:].lower()})")
+
+
+def _ends(model: Any, e: int) -> tuple[int, int]:
+    return int(model.eq_obj1id[e]), int(model.eq_obj2id[e])

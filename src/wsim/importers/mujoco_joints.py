@@ -17,7 +17,6 @@ IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 JOINT, FLAG = mujoco.mjtJoint, mujoco.mjtDisableBit
 KINDS = {JOINT.mjJNT_HINGE: "revolute", JOINT.mjJNT_SLIDE: "prismatic", JOINT.mjJNT_BALL: "spherical"}
 FREEDOMS = {JOINT.mjJNT_FREE: 6, JOINT.mjJNT_BALL: 3}
-OPPOSED = 100.0  # [m/s^2]: ten times gravity, of what drives and falls push at a contact
 HINGES = 3  # of a body, at most
 
 
@@ -63,8 +62,9 @@ def why_not(model: Any, b: int) -> str | None:
         return f"{len(numbers)} joints of one body, one of them a ball joint"
     if set(kinds[len(kinds) - len(hinges) :]) - {JOINT.mjJNT_HINGE} or len(hinges) > HINGES:
         return f"{len(numbers)} joints of one body, in an order that is not sliders and then up to {HINGES} hinges"
-    if any(np.linalg.norm(model.jnt_pos[j] - model.jnt_pos[hinges[-1]]) > 1e-9 for j in hinges):
-        return f"{len(hinges)} hinges of one body through different points"
+    spread = any(np.linalg.norm(model.jnt_pos[j] - model.jnt_pos[hinges[-1]]) > 1e-9 for j in hinges)
+    if spread and len(hinges) < len(numbers):
+        return f"sliders and {len(hinges)} hinges of one body through different points"
     return None
 
 
@@ -144,17 +144,20 @@ def _single(model: Any, j: int) -> dict[str, Any]:
 def give_by(model: Any, solref: np.ndarray, solimp: np.ndarray) -> Give:
     """How far constraints yield by their references (n, 2) and impedances (n, 5), the softest of them.
 
-    MuJoCo's documentation, Computation: Constraint model: a time constant, or stiffness and damping below 0; the
-    impedance rises to its full value over a width. No time constant is below two steps.
+    MuJoCo's documentation, Computation: Constraint model: a time constant and a damping ratio, or stiffness and damping
+    as numbers below 0; the impedance rises to its full value over a width. No time constant is below two steps.
     """
     if not len(solref):
         return Give()
-    stiffness = np.maximum(-solref[:, 0], 1e-9)
-    times = np.where(solref[:, 0] > 0.0, solref[:, 0] * np.maximum(solref[:, 1], 1.0), 1.0 / np.sqrt(stiffness))
-    times = np.maximum(times, 2.0 * model.opt.timestep)
-    # Friction takes the share d of the acceleration a that it opposes, and of the slip 2 v / t: v = (1 - d) a t / 2 d.
-    share = np.clip(0.5 * (solimp[:, 0] + solimp[:, 1]), 0.01, 0.99)
-    creep = ((1.0 - share) / share * OPPOSED * 0.5 * times).max()
+    full = solimp[:, 1]
+    direct = solref[:, 0] < 0.0
+    limited = np.maximum(solref[:, 0], 2.0 * model.opt.timestep) * np.maximum(solref[:, 1], 0.0)
+    times = full * np.where(direct, 1.0 / np.sqrt(np.maximum(-solref[:, 0], 1e-9)), limited)
+    # Friction takes the share d of an acceleration a that opposes it, and by its damping 2 / t of a slip v:
+    # v = (1 - d) a t / 2 d is what it leaves.
+    share = np.clip(0.5 * (solimp[:, 0] + full), 0.01, 0.99)
+    damped = np.where(direct, 2.0 * full / np.maximum(-solref[:, 1], 1e-9), full * np.maximum(solref[:, 0], 1e-9))
+    creep = ((1.0 - share) / share * 0.5 * damped).max()
     return Give(time=float(times.max()), depth=float(solimp[:, 2].max()), creep=float(creep))
 
 
@@ -168,6 +171,7 @@ def _compound(model: Any, numbers: list[int]) -> dict[str, Any]:
         Move(
             kind="revolute" if kind_of(model, j) == JOINT.mjJNT_HINGE else "prismatic",
             axis=tuple(model.jnt_axis[j].tolist()),
+            point=tuple((model.jnt_pos[j] - model.jnt_pos[numbers[-1]]).tolist()),
             acts=bool(loaded(model, j) or driven(model, j) or model.jnt_limited[j] or _dry(model, j) > 0.0),
         )
         for j in numbers

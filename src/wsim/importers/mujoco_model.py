@@ -11,6 +11,7 @@ import numpy as np
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import Solid
 from wsim.importers.mujoco_contacts import give_of, with_contacts
+from wsim.importers.mujoco_equalities import closing, gear
 from wsim.importers.mujoco_foreign import foreign
 from wsim.importers.mujoco_joints import joints_of
 from wsim.importers.mujoco_names import body_name, prim_of
@@ -38,8 +39,11 @@ def world_of(path: Path) -> World:
             # Each on its own where the world has them, as an object of the plan would be.
             statics.setdefault(shapes[g].prim if b == 0 else prim_of(body_name(model, b)), []).append(shapes[g])
     weightless = bool(model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_GRAVITY))
+    joints = [joint for b in tree.roots for joint in joints_of(model, tree, b)]
+    prims = {int(model.body_jntadr[b]): one[0].prim for b in tree.roots if len(one := joints_of(model, tree, b)) == 1}
     world = World(
         combine="larger",
+        cone="pyramid" if model.opt.cone == int(mujoco.mjtCone.mjCONE_PYRAMIDAL) else "round",
         give=give_of(model),
         name=prim_of(path.stem).removeprefix("/World/"),
         gravity=(0.0, 0.0, 0.0) if weightless else tuple(model.opt.gravity.tolist()),
@@ -47,7 +51,8 @@ def world_of(path: Path) -> World:
         stepped="bodies" if model.opt.integrator == int(mujoco.mjtIntegrator.mjINT_RK4) else "joints",
         bodies=[_body(model, tree, b, shapes) for b in tree.roots],
         statics=[Static(prim=prim, shapes=shapes) for prim, shapes in statics.items()],
-        joints=[joint for b in tree.roots for joint in joints_of(model, tree, b)],
+        joints=joints + [joint for e in range(model.neq) if (joint := closing(model, tree, e)) is not None],
+        gears=[made for e in range(model.neq) if (made := gear(model, e, prims)) is not None],
         foreign=foreign(model, tree),
     )
     return with_contacts(model, tree, world, shapes)
@@ -72,7 +77,7 @@ def _body(model: Any, tree: Tree, root: int, known: dict[int, Shape]) -> Body:
     masses = model.body_mass[members]
     places, inertias = zip(*(_mass_frame(model, tree, root, b) for b in members), strict=True)
     mass = float(masses.sum())
-    com = masses @ np.array(places) / mass if mass > 0.0 else np.array(places[0])
+    com = tree.centre(root)
     inertia = np.zeros((3, 3))
     for m, place, own in zip(masses, places, inertias, strict=True):
         arm = place - com
@@ -90,6 +95,7 @@ def _body(model: Any, tree: Tree, root: int, known: dict[int, Shape]) -> Body:
         position=tuple(position.tolist()),
         rotation=tuple(rotation.tolist()),
         kinematic=kinematic,
+        lift=float(model.body_gravcomp[members] @ masses / mass) if mass > 0.0 else 0.0,
         shapes=shapes,
     )
 

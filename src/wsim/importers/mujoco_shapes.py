@@ -47,6 +47,7 @@ def shape_of(model: Any, g: int, frame: Pose, owner: str | None = None) -> Shape
             "opacity": float(model.geom_rgba[g, 3]),
             "collides": collides(model, g),
             "friction": float(model.geom_friction[g, 0]),
+            "margin": float(model.geom_margin[g]),
             **form,
         }
     )

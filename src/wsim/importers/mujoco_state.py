@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.importers.mujoco_names import body_name
+from wsim.importers.mujoco_tree import Tree
 
 
 def load_model(path: Path) -> Any:
@@ -24,7 +25,8 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
     """Forward kinematics: `body_names`, `xpos`, `xquat` (wxyz) and `body_qd` of states (T, nq) and (T, nv).
 
     `held_energy` (T,) [J] is what the springs and the rotors of joints and tendons hold.
-    Velocities are those of the centres of mass (linear) and of the bodies (angular), in the world's frame.
+    Velocities are those of the centres of mass of what moves as one (linear) and of the bodies (angular), in the
+    world's frame.
 
     Raises:
         UserError: If the states are not those of the model.
@@ -36,6 +38,8 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
     data, twist, bodies = mujoco.MjData(model), np.zeros(6), range(1, model.nbody)
     position, rotation = np.zeros((len(qpos), model.nbody, 3)), np.zeros((len(qpos), model.nbody, 4))
     velocity, held = np.zeros((len(qpos), model.nbody, 6)), np.zeros(len(qpos))
+    tree = Tree(model)  # twists are those of each body's own centre
+    off = {b: tree.centre(b) - model.body_ipos[b] if tree.root(b) == b else np.zeros(3) for b in bodies}
     for k in range(len(qpos)):
         data.qpos[:], data.qvel[:] = qpos[k], qvel[k]
         mujoco.mj_kinematics(model, data)
@@ -45,7 +49,8 @@ def bodies_of_states(path: Path, qpos: np.ndarray, qvel: np.ndarray) -> dict[str
         position[k], rotation[k] = data.xpos, data.xquat
         for body in bodies:
             mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, body, twist, 0)
-            velocity[k, body] = [*twist[3:], *twist[:3]]  # MuJoCo has the angular part first
+            arm = data.xmat[body].reshape(3, 3) @ off[body]
+            velocity[k, body] = [*(twist[3:] + np.cross(twist[:3], arm)), *twist[:3]]  # the angular part comes first
     return {
         "body_names": np.array([body_name(model, body) for body in bodies]),
         "xpos": position[:, 1:],

@@ -57,6 +57,16 @@ class Tree:
         back = conjugate(facing)
         return rotate(back, place - at), multiply(back, turn)
 
+    def centre(self, root: int) -> np.ndarray:
+        """Centre of mass of all that moves with a root, in its frame, (3,) [m]."""
+        model, members = self._model, self.members(root)
+        masses = model.body_mass[members]
+        if not masses.any():
+            return np.array(model.body_ipos[root])
+        poses = [self.seen_from(root, b) for b in members]
+        places = [at + rotate(turn, model.body_ipos[b]) for b, (at, turn) in zip(members, poses, strict=True)]
+        return np.asarray(masses @ np.array(places) / masses.sum())
+
     @staticmethod
     def xyzw(wxyz: np.ndarray) -> np.ndarray:
         """A quaternion in the world's order."""

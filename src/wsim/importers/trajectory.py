@@ -12,7 +12,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from wsim.errors import UserError
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import rotate
+from wsim.importers.differences import velocities
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.mujoco_names import clean
 from wsim.importers.mujoco_state import bodies_of_states
@@ -39,7 +40,7 @@ def read_npz(path: str | Path, model: str | Path | None = None) -> Recording:
     - Newton's bodies: `body_names` (B,) and `body_q` (T, B, 7), xyz and then the quaternion in xyzw.
 
     Bodies' velocities are `body_qd` (T, B, 6), linear of the centre of mass [m/s] and angular [rad/s], both in the
-    world's frame; if they are left out they are the poses' central differences. `contact_force` (T, B, 3) [N],
+    world's frame; if they are left out they are the poses' differences. `contact_force` (T, B, 3) [N],
     `held_energy` (T,) [J] of the springs and rotors in joints, and `world` (a `wsim.scene.world.World` as JSON) may be
     there.
 
@@ -101,11 +102,10 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
     velocity = _array(arrays, "body_qd", (len(time), len(names), 6))
     force = _array(arrays, "contact_force", (len(time), len(names), 3))
     body_qd = velocities(time, body_q, world) if velocity is None else velocity[:, columns]
-    metadata = {
-        "complete": True,
-        "imported_from": str(source),
-        "velocities": "differences" if velocity is None else "own",
-    }
+    metadata: dict[str, Any] = {"complete": True, "imported_from": str(source), "velocities": "own"}
+    if velocity is None:  # they are known no better than frames follow one another
+        metadata |= {"velocities": "differences", "time_step": float(np.median(np.diff(time)))}
+    impulse, work = _lifted(world, time, body_q)
     return Recording(
         path=source,
         world=_started(world, time, body_q, body_qd),
@@ -118,6 +118,8 @@ def from_arrays(arrays: Mapping[str, Array], world: World, source: Path = Path("
         scalars=_work(arrays, world, len(time)),
         log=[],
         images={},
+        applied_impulse=impulse,
+        applied_work=work,
     )
 
 
@@ -130,19 +132,17 @@ def save(recording: Recording, path: Path) -> Path:
     return path
 
 
-def velocities(time: Array, body_q: Array, world: World) -> Array:
-    """Velocities (T, B, 6) of the centres of mass by central differences of poses (T, B, 7), second order inside."""
-    com = np.array([body.com for body in world.bodies], dtype=np.float64).reshape(-1, 3)
-    q = body_q[:, :, 3:]
-    center = body_q[:, :, :3] + rotate(q, np.broadcast_to(com, (*q.shape[:2], 3)))
-    later, earlier = np.minimum(np.arange(len(time)) + 1, len(time) - 1), np.maximum(np.arange(len(time)) - 1, 0)
-    turn = multiply(q[later], conjugate(q[earlier]))
-    turn *= np.where(turn[..., 3:] < 0.0, -1.0, 1.0)  # the shorter way round
-    sine = np.linalg.norm(turn[..., :3], axis=-1, keepdims=True)
-    angle = 2.0 * np.arctan2(sine, turn[..., 3:])
-    spin = turn[..., :3] * np.where(sine > 1e-12, angle / np.maximum(sine, 1e-12), 2.0)
-    span = (time[later] - time[earlier])[:, None, None]
-    return np.concatenate([np.gradient(center, time, axis=0), spin / span], axis=-1)
+def _lifted(world: World, time: Array, body_q: Array) -> tuple[Array | None, Array | None]:
+    """Impulse and work of what carries a share of bodies' weights; None where nothing does."""
+    share = np.array([body.lift * body.mass for body in world.bodies])
+    if not share.any():
+        return None, None
+    com = np.array([body.com for body in world.bodies])
+    centre = body_q[:, :, :3] + rotate(body_q[:, :, 3:], np.broadcast_to(com, body_q[:, :, :3].shape))
+    force = -share[:, None] * np.array(world.gravity)
+    impulse = np.diff(time, prepend=time[0])[:, None, None] * force
+    work = np.einsum("bi,tbi->tb", force, np.diff(centre, axis=0, prepend=centre[:1]))
+    return impulse, work
 
 
 def _work(arrays: Mapping[str, Array], world: World, frames: int) -> dict[str, Array]:

@@ -40,6 +40,7 @@ class Shape(_Model):
     friction: float | None = None  # None leaves it to what it touches (`wsim.scene.contact`)
     restitution: float | None = None
     rolling: float | None = None  # torque that resists rolling, of radius times push
+    margin: float = 0.0  # [m]: another engine's contacts may push from so far, and that of the other shape, away
     surface_velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], in the frame of `position`: the surface moves as a belt does
     vertices: list[Vec3] = Field(default_factory=list)  # [m], meshes only
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
@@ -69,6 +70,7 @@ class Body(_Model):
     velocity: Vec3 = (0.0, 0.0, 0.0)  # [m/s], initial, of the centre of mass
     angular_velocity: Vec3 = (0.0, 0.0, 0.0)  # [rad/s], initial, world
     kinematic: bool = False
+    lift: float = 0.0  # share of its weight that something unseen carries, at its centre of mass
     path: Path | None = None  # of a kinematic body; None: it goes by its velocity
     shapes: list[Shape]
     line: str | None = None  # "program.py:12": who made it
@@ -122,7 +124,7 @@ class Give(_Model):
 
     time: float = 0.0  # [s]: in which they catch what meets them
     depth: float = 0.0  # [m] or [rad]: from which on they push in full
-    creep: float = 0.0  # [m/s]: a slip that friction may leave to what it holds
+    creep: float = 0.0  # [s]: the slip that friction leaves to what it holds, over the acceleration that it takes
 
 
 class Move(_Model):
@@ -130,6 +132,7 @@ class Move(_Model):
 
     kind: Literal["revolute", "prismatic"]
     axis: Vec3  # unit, in the anchors' frame where the joint is at 0
+    point: Vec3 = (0.0, 0.0, 0.0)  # [m] of a hinge, likewise; the last one goes through the anchor
     acts: bool = False  # a drive, a spring, a stop or friction may push along it
 
 
@@ -137,7 +140,7 @@ class Joint(_Model):
     """A joint between two bodies, or a body and the world (parent None).
 
     The anchors are one frame, seen from both ends: while the joint holds, they stay together but for its own motion.
-    That of a compound joint is first along its sliders, then about one hinge after another through the anchor.
+    That of a compound joint is first along its sliders, then about one hinge after another.
     """
 
     prim: str
@@ -279,6 +282,7 @@ class World(_Model):
     stepped: Literal["bodies", "joints"] = "bodies"  # what its steps of first order move: places, or joints' positions
     seed: int = 0
     combine: Literal["smaller", "larger"] = "smaller"  # of two surfaces' coefficients (`wsim.scene.contact`)
+    cone: Literal["round", "pyramid"] = "round"  # of friction: one of four sides is weaker across its edges
     give: Give = Give()  # of its contacts
     bodies: list[Body] = Field(default_factory=list)
     statics: list[Static] = Field(default_factory=list)

@@ -37,6 +37,7 @@ SOFT = 2.0  # times gravity's pull over the interval: what changes a velocity by
 ENOUGH = 0.001  # of gravity: a rest that is as good as none
 AGAIN = 0.003  # of gravity: where more is left, contacts are looked for between the frames
 CHUNK = 64  # intervals worked out at once
+LOADS = 3.0  # of its weight, that a body in motion may press with
 FAST = 0.3  # [m]: no blow is looked for beyond
 
 
@@ -89,7 +90,7 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        turned += wrong / arm + step_error(self._evidence, self.size)[..., None]
+        turned += wrong / arm + step_error(self._evidence)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
 
     @cached_property
@@ -187,15 +188,31 @@ class Balance:
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
-        lasts = (slowest > np.maximum(max(STILL, self._evidence.world.give.creep), change)) & (
+        lasts = (slowest > np.maximum(self._creep(every), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
+        if self._evidence.world.cone == "pyramid":  # its edges are up to 45 degrees off the slip, its sides nearer
+            across = np.cross(every.normal, ways)
+            ways = np.concatenate([ways, *((ways + side * across) * np.sqrt(0.5) for side in (-1.0, 0.0, 1.0))])
         along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
+
+    def _creep(self, contacts: Contacts) -> Floats:
+        """The slip of each contact that soft friction may leave, (n,) [m/s].
+
+        It takes the acceleration mu N / m of the body alone, which may be pressed by thrice all that hangs on it.
+        """
+        motion, friction = self._motion, self._touching.laws(contacts.shapes)[0]
+        total = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit]) / motion.mass
+        rows = np.stack([contacts.one, contacts.two])
+        loads = np.where(rows >= 0, total[rows % len(total)], 0.0).max(axis=0)
+        taken = LOADS * friction * self._unit * loads
+        found: Floats = np.maximum(STILL, self._evidence.world.give.creep * taken)
+        return found
 
     def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats) -> Floats:
         """The torque that resists turning, for a push of one [m]: rolling's, or spinning's, which is the greater."""

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.joints import anchors_of
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -19,23 +21,37 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def step_error(evidence: Evidence, size: Floats) -> Floats:
-    """How much of each body's force over its mass may be due to steps, (T - 1, B) [m/s^2].
-
-    Args:
-        evidence: What was recorded.
-        size: How far from its centre of mass each body reaches or is held, (B,) [m].
-    """
+def step_error(evidence: Evidence) -> Floats:
+    """How much of each body's force over its mass may be due to steps, (T - 1, B) [m/s^2]."""
     motion, found = evidence.motion, np.zeros((len(evidence.motion.h), len(evidence.motion.mass)))
     if evidence.world.stepped != "joints":
         return found
     rate, change = np.linalg.norm(motion.w, axis=2), np.linalg.norm(np.diff(motion.w, axis=0), axis=2)
-    fastest, h = np.maximum(rate[1:], rate[:-1]), motion.h[:, None]
-    dt = np.minimum(motion.dt, h)
-    off = size * (2.0 * fastest * change * dt / h + 0.5 * fastest**3 * dt)
-    for unit in np.unique(motion.unit):
-        rows = np.flatnonzero(motion.unit == unit)
-        if motion.jointed[rows].any():  # it ends in any of the bodies, the more the heavier they are
-            total = off[:, rows] @ motion.mass[rows]
-            found[:, rows] = total[:, None] * motion.mass[rows] / np.sum(motion.mass[rows] ** 2)
+    fastest, h = np.maximum(rate[1:], rate[:-1]), motion.h
+    dt, off = np.minimum(motion.dt, h), np.zeros_like(found)
+    for i, links in enumerate(_chains(evidence)):
+        if links:
+            length = np.max([np.linalg.norm(motion.com[:, i] - place, axis=1) for _, place in links], axis=0)
+            rows = [i, *(row for row, _ in links)]
+            w, dw = fastest[:, rows].max(axis=1), change[:, rows].max(axis=1)
+            off[:, i] = np.maximum(length[1:], length[:-1]) * (2.0 * w * dw * dt / h + 0.5 * w**3 * dt)
+    for unit in np.unique(motion.unit[motion.jointed]):
+        rows_of = np.flatnonzero(motion.unit == unit)
+        mass = motion.mass[rows_of]  # it ends in any of the bodies, the more the heavier they are
+        found[:, rows_of] = (off[:, rows_of] @ mass)[:, None] * mass / np.sum(mass**2)
     return found
+
+
+def _chains(evidence: Evidence) -> list[list[tuple[int, Floats]]]:
+    """Of each body the bodies that it hangs from, itself first, and where their joints are, (T, 3) [m]."""
+    row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
+    above = {joint.child: joint for joint in evidence.world.joints if not joint.closing and joint.child_anchor}
+    chains = []
+    for body in evidence.world.bodies:
+        chain: list[tuple[int, Floats]] = []
+        joint = above.get(body.prim)
+        while joint is not None and len(chain) < len(row):
+            chain.append((row[joint.child], anchors_of(evidence, joint).below))
+            joint = above.get(joint.parent or "")
+        chains.append(chain)
+    return chains

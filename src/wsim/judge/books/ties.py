@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import multiply, rotate
+from wsim.geometry.rotations import rotate
 from wsim.judge.books.forces import Columns, holds
 from wsim.judge.books.laws import Laws
 from wsim.judge.books.touching import WORLD
 from wsim.judge.evidence import compound
-from wsim.judge.evidence.joints import AXES, broken, track_of
+from wsim.judge.evidence.joints import AXES, anchors_of, broken, track_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,6 +46,7 @@ class Ties:
         world = evidence.world
         self._row = {body.prim: i for i, body in enumerate(world.bodies)}
         self.laws = Laws(evidence)
+        self._moves: dict[str, list[compound.Placed | None]] = {}
         geared = {prim for gear in world.gears for prim in (gear.first, gear.second)}
         self._joints = [acting for joint in world.joints if (acting := self._acting(joint, joint.prim in geared))]
 
@@ -97,7 +98,7 @@ class Ties:
         anchors = [self._place(two, joint.child_anchor or (0.0, 0.0, 0.0), frame) for frame in (k, k + 1)]
         arms = self._arm(one, anchors, k), self._arm(two, anchors, k)
         if joint.kind == "compound":
-            return [self._compound(joint, one, two, arms, k)]
+            return [self._compound(joint, (one, two), anchors, arms, k)]
         axes = self._axes(one, joint, k)
         along = AXES[joint.axis]
         across = np.delete(axes, along, axis=0)
@@ -119,24 +120,30 @@ class Ties:
                 found.append(replace(stop, both=np.zeros(1, dtype=bool)))
         return found
 
-    def _compound(self, joint: Joint, one: int, two: int, arms: tuple[Floats, Floats], k: int) -> Columns:
+    def _compound(
+        self, joint: Joint, rows_of: tuple[int, int], anchors: list[Floats], arms: tuple[Floats, Floats], k: int
+    ) -> Columns:
         """All forces and torques that give no power to a motion that nothing pushes along."""
-        q = self._evidence.body_q[[k, k + 1]]
-        turns = [np.tile(np.array([0.0, 0.0, 0.0, 1.0]), (2, 1)) if row < 0 else q[:, row, 3:] for row in (one, two)]
-        own = [np.tile(np.array(turn), (2, 1)) for turn in (joint.parent_turn, joint.child_turn)]
-        axes = compound.axes(joint, multiply(turns[0], own[0]), multiply(turns[1], own[1]))
         free = np.zeros((0, 6))
-        for move, axis in zip(joint.moves, axes, strict=True):
-            if axis is not None and not move.acts:
-                mean = axis.mean(axis=0) / np.linalg.norm(axis.mean(axis=0))
-                way = [mean, np.zeros(3)] if move.kind == "prismatic" else [np.zeros(3), mean]
-                free = np.concatenate([free, np.concatenate(way)[None]])
+        if joint.prim not in self._moves:
+            self._moves[joint.prim] = compound.placed(joint, anchors_of(self._evidence, joint))
+        for move, at in zip(joint.moves, self._moves[joint.prim], strict=True):
+            if at is None or move.acts:
+                continue
+            axis = at.axis[k] + at.axis[k + 1]
+            axis /= np.linalg.norm(axis)
+            if move.kind == "prismatic":
+                way = [axis, np.zeros(3)]
+            else:  # seen from the child's anchor
+                arm = 0.5 * (anchors[0] + anchors[1] - at.point[k] - at.point[k + 1])
+                way = [np.cross(axis, arm), axis]
+            free = np.concatenate([free, np.concatenate(way)[None]])
         _, size, rows = np.linalg.svd(free)
         held = rows[int((size > 1e-6).sum()) :]
         moments = [held[:, 3:] + np.cross(arm, held[:, :3]) for arm in arms]
         on_one, on_two = (np.concatenate([held[:, :3], moment], axis=1) for moment in moments)
-        rows_of = np.full(len(held), one, dtype=np.intp), np.full(len(held), two, dtype=np.intp)
-        return Columns(*rows_of, -on_one, on_two, np.ones(len(held), dtype=bool))
+        one, two = (np.full(len(held), row, dtype=np.intp) for row in rows_of)
+        return Columns(one, two, -on_one, on_two, np.ones(len(held), dtype=bool))
 
     def _spring(self, spring: Spring, k: int) -> Columns:
         ends = [[self._guide(guide, frame) for frame in (k, k + 1)] for guide in (spring.path[0], spring.path[-1])]

@@ -14,7 +14,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.meshes import Triangles, touching
-from wsim.scene.contact import Pair, pair_law
+from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,9 +76,8 @@ class Touching:
         self._data = mujoco.MjData(self._model)
         names = [self._model.geom(k).name for k in range(self._model.ngeom)]
         self._shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
+        self._margin = np.array([self.shapes[k][2].margin for k in self._shape_of_geom], dtype=np.float64)
         self._row_of_shape = np.array([row for row, _, _ in self.shapes], dtype=np.intp)
-        self._tied = _tied(world)
-        self._owner_of_shape = [owner for _, owner, _ in self.shapes]
 
     def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
         if not shape.collides:
@@ -105,7 +104,8 @@ class Touching:
     def at(self, poses: Floats, reach: float) -> Contacts:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
         model, data = self._model, self._data
-        model.geom_margin[:] = model.body_margin[:] = 0.5 * reach
+        model.geom_margin[:] = 0.5 * reach + self._margin
+        model.body_margin[:] = 0.5 * reach + self._margin.max(initial=0.0)
         data.qpos[:] = poses[:, [0, 1, 2, 6, 3, 4, 5]].ravel()
         self._mujoco.mj_kinematics(model, data)
         self._mujoco.mj_comPos(model, data)
@@ -115,15 +115,20 @@ class Touching:
         rows = self._row_of_shape[shapes]
         contacts = Contacts(
             rows[:, 0], rows[:, 1], shapes, np.array(found.pos).reshape(-1, 3),
-            np.array(found.frame).reshape(-1, 9)[:, :3], np.array(found.dist).reshape(-1),
+            np.array(found.frame).reshape(-1, 9)[:, :3],
+            np.array(found.dist).reshape(-1) - self._margin[np.asarray(found.geom).reshape(-1, 2)].sum(axis=1),
         )  # fmt: skip
         if self._meshes:
             contacts = together([contacts, *self._on_meshes(poses, reach)])
-        if not self._tied:
-            return contacts
-        owners = [self._owner_of_shape[k] for k in range(len(self.shapes))]
-        free = [frozenset((owners[a], owners[b])) not in self._tied for a, b in shapes]
-        return contacts.only(np.array(free, dtype=bool))
+        return contacts if self._meet.all() else contacts.only(self._meet[contacts.shapes[:, 0], contacts.shapes[:, 1]])
+
+    @cached_property
+    def _meet(self) -> NDArray[np.bool_]:
+        """Whether two shapes may touch at all: not where a joint ties their objects, or they are made to pass."""
+        tied, passes = _tied(self.world), passing(self.world)
+        named = [(owner, shape.prim) for _, owner, shape in self.shapes]
+        meet = [[frozenset((a[0], b[0])) not in tied and not passes(a, b) for b in named] for a in named]
+        return np.array(meet, dtype=bool).reshape(len(named), len(named))
 
     def _on_meshes(self, poses: Floats, reach: float) -> list[Contacts]:
         """Contacts of all shapes with all meshes of other bodies; of two meshes, with the faces of both."""

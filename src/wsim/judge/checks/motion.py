@@ -72,6 +72,11 @@ class CheckContinuity(Check):
         motion = evidence.motion
         fastest = np.maximum(motion.speed[1:], motion.speed[:-1]).max(axis=1, keepdims=True)
         handed: Floats = np.where(motion.meets, fastest, 0.0)
+        if evidence.world.stepped == "joints":  # a stop or a contact of one link catches the others within a step
+            for unit in np.unique(motion.unit[motion.jointed]):
+                rows = np.flatnonzero(motion.unit == unit)
+                apart = np.linalg.norm(motion.v[:, rows, None] - motion.v[:, None, rows], axis=3).max(axis=2)
+                handed[:, rows] = np.maximum(handed[:, rows], np.maximum(apart[1:], apart[:-1]))
         return handed
 
     def _worst(self, evidence: Evidence, value: Floats, limit: Floats, unit: str, verb: str, source: str) -> Finding:

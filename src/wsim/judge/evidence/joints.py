@@ -56,9 +56,17 @@ def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
         angle = np.zeros(len(offset))
     apart = np.linalg.norm(offset, axis=1)
     if joint.kind == "compound":
-        apart, angle = compound.errors(joint, offset, turn)
+        anchors = compound.Anchors(above, above_turn, below, below_turn)
+        apart, angle = compound.errors(joint, anchors, offset, turn)
     gone = broken(evidence, joint)
     return JointTrack(np.where(gone, 0.0, apart), np.where(gone, 0.0, angle), position)
+
+
+def anchors_of(evidence: Recorded, joint: Joint) -> compound.Anchors:
+    """Both ends of a joint whose anchors are known."""
+    none = (0.0, 0.0, 0.0)
+    above = _anchor(evidence, joint.parent, joint.parent_anchor or none, joint.parent_turn)
+    return compound.Anchors(*above, *_anchor(evidence, joint.child, joint.child_anchor or none, joint.child_turn))
 
 
 def broken(evidence: Recorded, joint: Joint) -> NDArray[np.bool_]:

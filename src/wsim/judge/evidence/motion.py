@@ -201,6 +201,7 @@ class Motion:
         """Whether body i and a shape may touch within the intervals, (len(intervals),)."""
         near = np.zeros(len(intervals), dtype=bool)
         reach = self.reach[intervals, i] + (self.reach[intervals, shape.body] if shape.body >= 0 else 0.0)
+        reach = reach + shape.shape.margin + max(own.margin for own in self._recorded.solid(i).shapes)
         for frames in (intervals, intervals + 1):
             local = rotate(conjugate(shape.rotation[frames]), self.com[frames, i] - shape.position[frames])
             if shape.shape.kind == "mesh":
