@@ -136,7 +136,7 @@ def draw(outcomes: Sequence[Outcome], path: Path) -> Path:
 
     found = curves(outcomes)
     rows = -(-len(found) // COLUMNS)
-    figure = Figure(figsize=(1.75 * COLUMNS, 1.35 * rows), dpi=90, layout="constrained")
+    figure = Figure(figsize=(1.75 * COLUMNS, 1.35 * rows), dpi=72, layout="constrained")
     panels = figure.subplots(rows, COLUMNS, squeeze=False, sharey=True).ravel()
     for curve, axes in zip(found, panels, strict=False):
         x = [point.size for point in curve.points]

@@ -196,8 +196,8 @@ def wall(scene: Scene, draw: Draw) -> None:
     gap = speed * draw.between(0.15, 0.3)
     scene.box("sheet", size=(thin, 20 * radius, 40 * radius), position=(gap + radius + 0.5 * thin, 0, 0), static=True,
               restitution=1.0)  # fmt: skip
-    scene.sphere("ball", radius=radius, velocity=(speed, 0, 0.2 * g), restitution=draw.between(0.3, 0.9),
-                 density=draw.density(2 * radius))  # fmt: skip
+    scene.sphere("ball", radius=radius, velocity=(speed, 0, min(0.2 * g, speed)), restitution=draw.between(0.3, 0.9),
+                 friction=0.0, density=draw.density(2 * radius))  # fmt: skip
 
 
 @mechanism("friction", "gravity", "surface", "contact", "slides", "single")

@@ -10,6 +10,7 @@ import os
 import re
 import tempfile
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -51,14 +52,14 @@ class Track:
         return self.frames["body_qd"]
 
 
+@lru_cache(256)
 def world_of(stage: str) -> World:
-    """What a stage states; no lines of programs."""
-    path = _kept("worlds", _text(stage), ".json")
-    if not path.exists():
-        source = _written(stage)
-        _write(path, describe(source).model_dump_json().encode())
+    """What a stage states."""
+    source = _written(stage)
+    try:
+        return describe(source)
+    finally:
         source.unlink()
-    return World.model_validate_json(path.read_text(encoding="utf-8"))
 
 
 def simulated(stage: str, push: Push | None = None) -> Track:
