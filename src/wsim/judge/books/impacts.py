@@ -99,7 +99,7 @@ def _blow(
     slack = motion.dt + 0.02 * h + 2.0 * gaps[0] * 1e-3 / approach
     lies = abs(back) < 0.05 * approach and gaps[1] < 0.01 * approach * h
     again = 2.0 * law.restitution * approach < pull * (h - spent)  # it may have bounced and come back
-    if (not lies and abs(spent + flown - h) > slack) or again:
+    if (not lies and (back <= 0.0 or abs(spent + flown - h) > slack)) or again:
         return None
     across = [
         slip(touching, c, _poses(evidence, k + end))[n] for end, (c, n) in enumerate(zip(near, which, strict=True))
