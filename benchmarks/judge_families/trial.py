@@ -88,7 +88,9 @@ def trials(half: str, draws: int, worlds: int, only: Sequence[str] = ()) -> list
     of = halves(list(FAMILIES))
     for name, family in FAMILIES.items():
         if half in ("all", of[name]):
-            kinds = ("other engine",) if family.hand else _evidence(*(m for m in MECHANISMS.values() if family.suits(m)))
+            kinds = (
+                ("other engine",) if family.hand else _evidence(*(m for m in MECHANISMS.values() if family.suits(m)))
+            )
             found += [
                 Trial(name, step, k, kinds[k % len(kinds)]) for step in range(len(family.sizes)) for k in range(draws)
             ]
