@@ -66,7 +66,8 @@ def _world(items: list[Any], solver: str) -> World:
     give = Give()
     if solver == "SolverFeatherstone":  # its contacts are springs, and its friction a damper up to the cone
         surface, mass = newton.ModelBuilder.ShapeConfig(), max(body.mass for body in bodies)
-        give = Give(time=math.sqrt(mass / surface.ke), creep=mass / surface.kf)
+        springs = 4 if any(kind == "box" for kind, *_ in items) else 1  # a box lands on its corners
+        give = Give(time=math.sqrt(mass / (springs * surface.ke)), creep=mass / surface.kf)
     return World(bodies=bodies, joints=joints, statics=statics, time_step=STEP, give=give)
 
 
