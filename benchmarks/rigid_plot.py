@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.rigid_cases.case import Case, Curve
 
-COLUMNS, ROWS = 6, 6
+COLUMNS, ROWS = 6, 5
 KNOWN, MEASURED, MISSED = "#999999", "#0072b2", "#d55e00"
 
 

@@ -33,7 +33,7 @@ def build(scene: Scene) -> None:
     )
 
     scene.light("sun", direction=(-0.4, 0.6, -1.0))
-    scene.camera("side", eye=(-1.0, -4.2, 1.8), target=(-0.2, 0.0, 0.6))
+    scene.camera("side", eye=(-0.8, -4.8, 1.9), target=(0.0, 0.0, 0.6))
 
 
 if __name__ == "__main__":

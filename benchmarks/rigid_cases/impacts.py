@@ -164,6 +164,21 @@ def glancing_grip(bench: Bench) -> tuple[float, float]:
     return float(track.velocity("ball")[-1, 0]), 5 / 7
 
 
+@case("m/s")
+def spinning_bounce(bench: Bench) -> tuple[float, float]:
+    """However fast it spins, a ball of e = 0.5 and μ = 1 leaves at e v_z: its friction lifts nothing, holds nothing."""
+
+    def build(scene: Scene) -> None:
+        scene.simulation(gravity=(0, 0, 0))
+        scene.ground()
+        scene.sphere("ball", radius=0.1, mass=1.0, position=(0, 0, 0.3), velocity=(0, 0, -2.0),
+                     angular_velocity_deg=(0, math.degrees(150.0), 0), friction=1.0, restitution=0.5)  # fmt: skip
+
+    track = bench.run(build, 0.3)
+    bench.show("v [m/s]", track.time, track.velocity("ball")[:, 2], step_at(track.time, 0.1, -2.0, 1.0))
+    return float(track.velocity("ball")[-1, 2]), 1.0
+
+
 @case("m", 0.02, "five joints at e = 1, and the strike falls within a step")
 def cradle(bench: Bench) -> tuple[float, float]:
     """The last ball of a cradle of five rises as high as the first was let go, L (1 - cos 0.5)."""

@@ -28,16 +28,31 @@ def compare(first: Finding, *again: Finding) -> list[Finding]:
     return CheckConverged().compare(verdict(first), [rerun])
 
 
-@pytest.mark.parametrize(("second", "passed"), [(8.9, True), (9.1, False), (3.1, True), (2.9, False)])
+@pytest.mark.parametrize(("second", "passed"), [(6.1, True), (7.9, True), (8.1, False), (9.1, False)])
 def test_a_number_may_move_by_its_share_of_the_margin(second: float, passed: bool) -> None:
     (finding,) = compare(measured(6.0), measured(second))  # margin 4: it may move by 2
-    assert finding.passed is (abs(second - 6.0) <= 2.0)
+    assert finding.passed is passed
     assert (finding.value, finding.limit) == (pytest.approx(abs(second - 6.0)), pytest.approx(2.0))
     assert finding.message.startswith("Not converged") is not finding.passed
     assert "6 mm at first" in finding.message
     assert f"{second:.4g} mm with half the time step" in finding.message
     assert finding.limit_from == "0.5 of the margin: theory"
     assert (finding.target is None) is finding.passed
+
+
+@pytest.mark.parametrize("second", [5.0, 3.1, 0.0, -20.0])
+def test_a_number_that_moves_away_from_its_only_limit_stands(second: float) -> None:
+    assert compare(measured(9.9), measured(second))[0].passed  # whatever it comes to in the limit, it keeps to 10
+
+
+@pytest.mark.parametrize(("second", "passed"), [(9.9, False), (8.5, True), (4.6, True), (4.4, False)])
+def test_a_number_that_moves_towards_what_is_expected_has_the_room_to_the_other_side(
+    second: float, passed: bool
+) -> None:
+    """At most 10 about 5: at 9 it has 1 to its limit and 9 to 0, which is as far on the other side."""
+    (finding,) = compare(measured(9.0, expected=5.0), measured(second, expected=5.0))
+    assert finding.limit == pytest.approx(0.5 * (1.0 if second > 9.0 else 9.0))
+    assert finding.passed is passed
 
 
 def test_a_limit_that_tightens_with_the_resolution_is_no_move() -> None:

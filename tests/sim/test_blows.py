@@ -35,6 +35,23 @@ def test_an_elastic_ball_keeps_its_energy(simulate, jointed, worlds):
     assert energy[-1] == pytest.approx(energy[0], rel=5e-4)
 
 
+@pytest.mark.parametrize("worlds", [1, 2])
+def test_a_ball_with_fast_spin_bounces_as_one_without(simulate, worlds):
+    """On a floor and on another ball: friction is sought until it fits the push, or half of the bounce is lost."""
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, 0))
+        scene.ground()
+        spun = {"radius": 0.1, "mass": 1.0, "friction": 1.0, "restitution": 0.9}
+        scene.sphere("ball", position=(0, 0, 0.15), velocity=(0, 0, -2), angular_velocity_deg=(0, 8000, 0), **spun)
+        scene.sphere("one", position=(3, 0, 2), velocity=(1, 0, 0), angular_velocity_deg=(0, 8000, 0), **spun)
+        scene.sphere("two", position=(3.25, 0, 2), velocity=(-1, 0, 0), angular_velocity_deg=(0, 8000, 0), **spun)
+
+    run = simulate(build, 0.05, worlds)
+    assert run.v["ball"][-1, 2] == pytest.approx(0.9 * 2.0, rel=2e-3)
+    assert run.v["two"][-1, 0] - run.v["one"][-1, 0] == pytest.approx(0.9 * 2.0, rel=2e-3)
+
+
 def test_a_blow_through_a_cluster_keeps_its_energy(simulate):
     """A ball that is hit while it nears another lets go of that one: nothing is lost at a dead stop."""
 

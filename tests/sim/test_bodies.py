@@ -127,6 +127,21 @@ def test_a_ball_bounces_in_batched_worlds(simulate):
     assert speed[met] / -speed[met - 1] == pytest.approx(0.8, rel=0.01)
 
 
+@pytest.mark.parametrize("worlds", [1, 2])
+def test_a_log_in_a_groove_is_rubbed_on_both_sides(simulate, worlds):
+    """It slows at sqrt(2) mu g in a groove of 90 degrees, in single precision as well: no search ends too early."""
+
+    def build(scene):
+        for name, side in (("left", 1.0), ("right", -1.0)):
+            middle = (0, side * 0.6 / math.sqrt(2.0), 0.4 / math.sqrt(2.0))
+            scene.box(name, size=(6, 1, 0.2), position=middle, rotation_deg=(side * 45, 0, 0), static=True)
+        scene.cylinder("log", radius=0.05, height=0.4, axis="X", mass=2.0, position=(-1, 0, 0.05 * math.sqrt(2.0)),
+                       velocity=(2, 0, 0), friction=0.3)  # fmt: skip
+
+    speed = simulate(build, 0.1, worlds).v["log"][:, 0]
+    assert (2.0 - speed[-1]) / 0.1 == pytest.approx(math.sqrt(2.0) * 0.3 * G, rel=1e-3)
+
+
 def test_a_slipping_ball_comes_to_roll(simulate):
     def build(scene):
         scene.ground()

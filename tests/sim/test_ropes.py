@@ -94,6 +94,24 @@ def test_a_cable_hangs_in_a_catenary(simulate, worlds):
     assert q["c_15"][:, 2] == pytest.approx(lowest, abs=1e-3)
 
 
+@BOTH
+def test_a_cable_with_equal_weights_lies_over_a_post(simulate, worlds):
+    """In single precision no factor of M + J^T D J of a cable that touches all along was found: nothing was finite."""
+
+    def build(scene):
+        scene.cylinder("post", radius=0.2, height=0.3, axis="Y", static=True)
+        turn = [(0.21 * math.cos(a), 0, 0.21 * math.sin(a)) for a in np.linspace(math.pi, 0, 37)]
+        for name, x in (("left", -0.21), ("right", 0.21)):
+            scene.box(name, size=(0.04, 0.04, 0.04), mass=0.05, position=(x, 0, -0.12))
+        scene.cable("c", "left", "right", anchor_a=(-0.21, 0, -0.1), anchor_b=(0.21, 0, -0.1), through=turn, links=20,
+                    mass_per_length=0.1, radius=0.01)  # fmt: skip
+
+    _, q, v = simulate(build, 0.3 if worlds == 1 else 0.03, worlds)
+    for name in ("left", "right", "c_9"):
+        assert q[name] == pytest.approx(np.broadcast_to(q[name][0], q[name].shape), abs=3e-3)
+        assert np.abs(v[name]).max() < 0.1
+
+
 def test_a_hanging_line_solves_the_catenary():
     """a cosh(x / a): of the right length, through both ends, and with the slope that its weight asks for."""
     points = hanging(np.array([0, 0, 1.0]), np.array([2.0, 0, 1.5]), 3.0, 20001)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -103,8 +104,10 @@ def _moved(finding: Finding, other: Finding, rerun: Rerun) -> Iterator[Finding]:
             return
         margin, unit = margin / abs(finding.limit), "of the limit"
         move = abs(other.margin / abs(other.limit) - margin)
-    limit = rerun.share * margin
+    room = _room(finding, other, margin)
+    limit = rerun.share * room
     passed = move <= limit
+    away = room > margin
     what = f'"{finding.objective}" ({finding.check})'
     values = f"{finding.value:.4g} {finding.unit} at first, {other.value:.4g} {other.unit} with {rerun.name}"
     yield Finding(
@@ -115,14 +118,28 @@ def _moved(finding: Finding, other: Finding, rerun: Rerun) -> Iterator[Finding]:
         prim=finding.prim,
         time=other.time,
         value=move,
-        limit=limit,
+        limit=limit if math.isfinite(limit) else None,
         expected=0.0,
         unit=unit,
-        margin=limit - move,
-        limit_from=f"{rerun.share:.3g} of the margin: {rerun.share_from}",
+        margin=limit - move if math.isfinite(limit) else None,
+        limit_from=f"{rerun.share:.3g} of {'the way to the limit on the other side' if away else 'the margin'}: "
+        f"{rerun.share_from}",
         line=finding.line,
         target=None if passed else rerun.target,
     )
+
+
+def _room(finding: Finding, other: Finding, margin: float) -> float:
+    """How far a number may go before its margin's sign could change, as it goes.
+
+    Towards its limit that is the margin. Away from it the limit on the other side of what is expected, as far from that
+    as its own; where nothing is expected, there is none.
+    """
+    if finding.limit is None or finding.value is None or other.value is None or finding.unit != other.unit:
+        return margin
+    if (other.value - finding.value) * (finding.limit - finding.value) >= 0.0:
+        return margin
+    return math.inf if finding.expected is None else margin + 2.0 * abs(finding.value - finding.expected)
 
 
 def _by_key(verdict: Verdict) -> dict[Key, Finding]:

@@ -13,6 +13,8 @@ LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
 TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
 CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
 ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
+SMALL_CHANGE = wp.constant(1.0e-5)  # [m/s], and
+STEEPEST = wp.constant(0.95)  # of what is left by the slip's guess, as wsim.solvers.contact_law has them
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 
 
@@ -152,6 +154,7 @@ def aim(
     target: wp.array(dtype=float),
     blow: wp.array(dtype=float),  # 1 where surfaces meet
     slip: wp.array(dtype=float),
+    before: wp.array(dtype=wp.vec2),
     weight: wp.array2d(dtype=float),
     aref: wp.array2d(dtype=float),
 ):
@@ -210,6 +213,7 @@ def aim(
         aref[world, r] = -v / h
         slipped += friction[j] * friction[j] * v * v
     slip[k] = wp.sqrt(slipped)
+    before[k] = wp.vec2(slip[k], slip[k])
     aref[world, row] = (goal - slip[k] - velocity[world, row]) / h
 
 
@@ -236,9 +240,13 @@ def aim_again(
     force: wp.array2d(dtype=float),
     # Data out:
     slip: wp.array(dtype=float),
+    before: wp.array(dtype=wp.vec2),  # guess, and what was left, of the solution before
     aref: wp.array2d(dtype=float),
 ):
-    """Take the slip that the last solution leaves in place of the guess, and add what a blow's row gave way."""
+    """Guess the slip anew from what two solutions leave, as `extrapolated` of the solver does.
+
+    What a blow's row gave way is asked for in addition.
+    """
     k = wp.tid()
     if k >= count[0]:
         return
@@ -254,7 +262,13 @@ def aim_again(
         change = along(world, r, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
         v = friction[j] * (velocity[world, r] + h * change)
         slipped += v * v
-    slip[k] = wp.sqrt(slipped)
+    left = wp.sqrt(slipped)
+    change = slip[k] - before[k][0]
+    slope = float(0.0)
+    if wp.abs(change) > SMALL_CHANGE:
+        slope = wp.clamp((left - before[k][1]) / change, 0.0, STEEPEST)
+    before[k] = wp.vec2(slip[k], left)
+    slip[k] = wp.max(slip[k] + (left - slip[k]) / (1.0 - slope), 0.0)
     given = float(0.0)
     if blow[k] > 0.0:
         given = force[world, row] / inertia[world, row]

@@ -138,7 +138,9 @@ def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
     """One frame a camera: a view in which nothing of the plan is to be seen fails before anything is simulated."""
     made.reached = Reached.FRAMES
     plan = iteration.plan
-    named = {f"/World/{item.name}" for item in plan.objects if item.primitive != "ground"} if plan else set()
+    # What is clear is not in a picture of what is opaque, by which pixels are counted.
+    things = [item for item in plan.objects if item.primitive not in ("ground", "tank")] if plan else []
+    named = {f"/World/{item.name}" for item in things if item.material is None or item.material.opacity == 1.0}
     findings = []
     for still in sim.Stills(iteration.stage, iteration.settings.device, progress=iteration.progress).draw_start():
         pixels = {prim: count for prim, count in still.pixels.items() if prim in named and count}

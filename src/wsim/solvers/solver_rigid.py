@@ -17,7 +17,7 @@ from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
-from wsim.solvers.single_precision import soften_for_single_precision
+from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 
@@ -167,10 +167,13 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if not self.use_mujoco_cpu:
             soften_for_single_precision(self.import_mujoco()[0], model, config)
         if not self.use_mujoco_cpu and model.neq:
-            for name in ("eq_solimp", "eq_solref"):
-                array = getattr(self.mjw_model, name)
-                values = np.broadcast_to(getattr(model, name), array.numpy().shape)
-                array.assign(values.astype(np.float32))
+            self._tell_warp("eq_solimp", "eq_solref")
+
+    def _tell_warp(self, *names: str) -> None:
+        """Give all worlds of MuJoCo Warp's model what MuJoCo's model has under these names."""
+        for name in names:
+            array = getattr(self.mjw_model, name)
+            array.assign(np.broadcast_to(getattr(self.mj_model, name), array.numpy().shape).astype(np.float32))
 
     def _breaking(self, breakable: Sequence[Breakable]) -> Any:
         """What breaks joints, under MuJoCo's numbers of their constraints."""
@@ -193,9 +196,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
         # the contacts of a box that slides, on an H200 in one step of some 300.
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
+        if soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config):
+            self.mjw_model.opt.solver = int(self._mujoco.mjtSolver.mjSOL_CG)
+        self._tell_warp("body_invweight0", "geom_solimp")
         margin = self.mjw_model.geom_margin
-        weights = self.mjw_model.body_invweight0
-        weights.assign(np.broadcast_to(self.mj_model.body_invweight0, weights.numpy().shape).astype(np.float32))
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
             self._geom_class = wp.array(geom_class, dtype=int)
@@ -206,6 +210,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._blow = wp.zeros(data.naconmax, dtype=float)
             self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
             self._slip = wp.zeros(data.naconmax, dtype=float)
+            self._before = wp.zeros(data.naconmax, dtype=wp.vec2)
             self._bow = wp.zeros(data.naconmax, dtype=float)
         self.mjw_model.callback.contactfilter = self._mend_contacts
 
@@ -336,7 +341,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 data.qacc_smooth, self._touched_for, *self._jacobian(model, efc), config.threshold, config.settle_time,
                 config.settle_speed, config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref],
+            outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
@@ -356,7 +361,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 model.opt.timestep, data.qacc, *self._jacobian(model, efc), self._target,
                 self._blow, efc.D, efc.force,
             ],
-            outputs=[self._slip, efc.aref],
+            outputs=[self._slip, self._before, efc.aref],
         )  # fmt: skip
 
     @staticmethod

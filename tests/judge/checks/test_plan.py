@@ -25,6 +25,7 @@ from wsim.judge.checks.mass import CheckMass
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_joints import CheckPlanJoints
 from wsim.plan.schema import Objective, Plan
+from wsim.plan.schema.formula import Crosses
 from wsim.recording.recording import SeenTrack
 from wsim.scene.world import Motor, Parameter
 
@@ -303,6 +304,20 @@ def test_what_is_asked_for_and_gone_most_of_the_time_is_found(asked, passes):
     plan = a_plan().model_copy(update={"objectives": [Objective(kind="settles", object=asked)]})
     found = ask(CheckInFrame(), with_world(still, cameras=[camera()]), plan)
     assert {f.prim for f in found if not f.passed} == (set() if passes else {"/World/ball"})
+
+
+@pytest.mark.parametrize(("at", "passes"), [(1.0, True), (3.0, False)])
+def test_what_happens_is_in_the_picture_as_it_does(at, passes):
+    """Seen for most of the time, a ball crosses x = 3 m out of a picture that ends 2.3 m to the right."""
+    t = times(2.0)
+    place = np.tile(np.array(((0.0, 0.0, 0.05), (0.0, 0.0, 0.1))), (len(t), 1, 1))
+    place[:, 1, 0] = 2.0 * t
+    bodies = [box(size=SIZE, mass=BOX_KG), ball(mass=BALL_KG)]
+    moves = record(bodies, place, np.gradient(place, t, axis=0), t, statics=[ground()])
+    asked = Objective(kind="formula", object="ball", formula=Crosses(object="ball", axis="x", at=at))
+    plan = a_plan().model_copy(update={"objectives": [asked]})
+    found = [f for f in ask(CheckInFrame(), with_world(moves, cameras=[camera()]), plan) if not f.passed]
+    assert [(f.prim, round(f.time, 1)) for f in found] == ([] if passes else [("/World/ball", at / 2.0)])
 
 
 @pytest.mark.parametrize(

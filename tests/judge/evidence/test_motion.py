@@ -177,7 +177,7 @@ def test_a_throw_is_a_parabola():
 
 
 # ---- a collision
-def collided(exchange=1.0, apart=0.0, lost=0.0):
+def collided(exchange=1.0, apart=0.0):
     """Two equal balls that come at each other and leave with each other's speeds."""
     plan = make_plan("A red ball and a blue ball collide")
     time = times_of(plan)
@@ -185,7 +185,7 @@ def collided(exchange=1.0, apart=0.0, lost=0.0):
     meet = (0.8 - apart) / 2
     before = time < meet
     for k, sign in ((0, 1.0), (1, -1.0)):
-        v = np.where(before, sign, sign * (1 - 2 * exchange) + (lost if k == 1 else 0.0))
+        v = np.where(before, sign, sign * (1 - 2 * exchange))
         q[:, k, 0] += sign * np.minimum(time, meet) + np.where(before, 0.0, (time - meet) * v)
         qd[:, k, 0] = v
     return plan, recorded(plan, q, qd)
@@ -193,31 +193,17 @@ def collided(exchange=1.0, apart=0.0, lost=0.0):
 
 def test_a_collision_touches_and_changes_both():
     plan, recording = collided()
-    gap, change, momentum = findings(plan, recording, "ObjectiveCollidesWith")
-    assert gap.passed and change.passed and momentum.passed
-    assert momentum.value < 1e-6 and gap.unit == "m" and change.unit == "m/s" and momentum.unit == "kg m/s"
+    (blow,) = findings(plan, recording, "ObjectiveCollidesWith")
+    assert blow.passed
 
 
-def test_a_near_miss_a_ghost_and_a_gain_of_momentum_are_rejected():
+def test_a_near_miss_and_a_ghost_are_rejected():
     plan, recording = collided(apart=0.5)
     (gap,) = findings(plan, recording, "ObjectiveCollidesWith")
-    assert not gap.passed and gap.value == pytest.approx(0.5, abs=1.5 / RATE * 2)
+    assert not gap.passed and gap.unit == "m" and gap.value == pytest.approx(0.5, abs=1.5 / RATE)
     plan, recording = collided(exchange=0.0)
-    assert not findings(plan, recording, "ObjectiveCollidesWith")[1].passed
-    plan, recording = collided(lost=3.0)
-    assert not findings(plan, recording, "ObjectiveCollidesWith")[2].passed
-
-
-@pytest.mark.parametrize(("factor", "passes"), [(0.0, True), (0.9, True), (1.1, False)])
-def test_momentum_is_known_to_what_friction_takes_in_a_frame(factor, passes):
-    plan, right = collided()
-    bodies = right.world.bodies
-    mu = max(shape.friction for thing in (*bodies, *right.world.statics) for shape in thing.shapes)
-    assert bodies[0].mass == pytest.approx(bodies[1].mass)
-    # Of the pair's 2 m at 1 m/s each: a tenth of it, and friction on both; all of it lost by one of the two.
-    plan, recording = collided(lost=factor * (0.1 * 2.0 + 2.0 * mu * G / RATE))
-    momentum = findings(plan, recording, "ObjectiveCollidesWith")[2]
-    assert momentum.passed == passes and momentum.span[1] - momentum.span[0] == pytest.approx(1.0 / RATE)
+    (change,) = findings(plan, recording, "ObjectiveCollidesWith")
+    assert not change.passed and change.unit == "m/s"
 
 
 # ---- on a hinge

@@ -100,7 +100,8 @@ def balls(a: np.ndarray, b: np.ndarray):
 def test_then_is_one_frame_and_a_later_one_in_its_window(rows, low, width):
     a, b = np.array(rows).T
     n, high = len(a), low + width
-    pairs = [(i, j) for i in range(n - high) for j in range(max(i + low, i + 1), i + high + 1)]
+    # A window closes with the last frame: what comes late in the run may still be followed by what it is to be.
+    pairs = [(i, j) for i in range(n) for j in range(max(i + low, i + 1), min(i + high, n - 1) + 1)]
     formula = A.then(B, (low / RATE, high / RATE))
     if not pairs or high == 0 or n - high <= 0:
         return
@@ -118,6 +119,14 @@ def test_then_chains_and_wants_the_order(two_balls):
     assert not evaluate(A.then(B), two_balls(first, first[:])).satisfied[0]
     assert not evaluate(A.then(B, (0, 1)), two_balls(first, second)).satisfied[0]
     assert evaluate(A.then(B, (0, 2)), two_balls(first, second)).satisfied[0]
+
+
+def test_a_window_that_ends_with_the_run_is_as_long_as_it(two_balls):
+    """An event at 1 s and another at 3 s, of a run of 4 s: within all of it, and within 4 s of each other."""
+    first, second = [-1, 0.5, -1, -1, -1], [-1, -1, -1, 0.25, -1]
+    assert evaluate(A.then(B, (0, 4)), two_balls(first, second)).margin[0] == pytest.approx(0.25)
+    assert evaluate(eventually(A.then(B), (0, 4)), two_balls(first, second)).margin[0] == pytest.approx(0.25)
+    assert not evaluate(eventually(B.then(A), (0, 4)), two_balls(first, second)).satisfied[0]
 
 
 def test_finally_looks_at_the_last_seconds(two_balls):

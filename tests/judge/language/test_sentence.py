@@ -44,6 +44,7 @@ def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
         "target": st.one_of(names, points), "center": st.one_of(names, points), "radius": numbers, "share": shares,
         "path": st.lists(points, min_size=2, max_size=4), "axis": st.sampled_from("xyz"), "at": st.floats(-1e6, 1e6),
         "clearance": st.one_of(st.just(0.0), numbers), "period": st.one_of(st.none(), numbers), "level": numbers,
+        "least": numbers,
         "amplitude": st.one_of(st.none(), st.floats(0.1, 180)), "speed": st.one_of(st.none(), numbers),
         "restitution": st.one_of(st.none(), st.floats(0, 1)), "what": st.sampled_from(["energy", "momentum"]),
         "objects": st.lists(names, max_size=3),

@@ -10,6 +10,7 @@ from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.repair.aim import STAGES, aim, rules
 from wsim.judge.repair.language import RULES
+from wsim.judge.repair.rule import tried
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.plan.schema import Objective, Registration
 from wsim.plan.schema.formula import VOCABULARY
@@ -197,7 +198,39 @@ def test_what_slides_off_a_slope_needs_friction_above_its_tangent(stack):
     case.plan = case.plan.model_copy(update={"objectives": [objective]})
     found = aimed(case, failed("ObjectiveStaysOn", slick.prim, objective="box_1 stays_on ramp", unit="m"))
     assert (found.parameter, found.direction, found.current) == ("friction", "raise", 0.2)
-    assert found.suggested == pytest.approx(math.tan(math.radians(30.0)))
+    assert found.suggested == pytest.approx(1.1 * math.tan(math.radians(30.0)))  # at the tangent itself it may slip
+
+
+@pytest.mark.parametrize(
+    ("given", "stands"),
+    [
+        ({"parameter": "duration", "direction": "raise", "current": 3.0, "suggested": 12.0}, True),
+        ({"parameter": "duration", "direction": "raise", "current": 3.0, "suggested": 25_590.0}, False),
+        ({"parameter": "time_step", "direction": "lower", "current": 1e-3, "suggested": 5e-4}, True),
+        ({"parameter": "time_step", "direction": "lower", "current": 1e-3, "suggested": 2e-3}, False),
+        ({"parameter": "time_step", "direction": "lower", "current": 1e-3, "suggested": 1e-9}, False),
+        ({"parameter": "friction", "direction": "raise", "current": 0.5, "suggested": 4.0}, False),
+        ({"parameter": "density", "direction": "lower", "current": 700.0, "suggested": 0.01}, False),
+        ({"parameter": "velocity", "direction": "raise", "current": 2.0, "suggested": 1.0}, False),
+    ],
+)
+def test_a_number_that_cannot_be_one_is_not_offered(given, stands):
+    target = RepairTarget(kind="physical parameter", prim=BLOCK, **given)
+    kept = tried(target)
+    assert kept.suggested == (given["suggested"] if stands else None)
+    assert kept.direction == given["direction"]
+
+
+def test_what_rolls_on_for_ever_is_told_no_run_that_long(stack):
+    """A speed that falls by a thousandth a second is below a hundredth of itself after 4,600 s."""
+    case = stack()
+    fades = 0.5 * np.exp(-1e-3 * case.recording.time)
+    case = case.edit("body_qd", (slice(None), 0, 0), fades)
+    round_ = Shape(prim="/World/box_1/g", kind="sphere", size=(0.1,))
+    found = aimed(
+        case.body("/World/box_1", shapes=[round_]), failed("CheckSettled", "/World/box_1", value=0.5, limit=0.005)
+    )
+    assert (found.parameter, found.direction, found.suggested) == ("rolling", "raise", None)
 
 
 def test_a_way_goes_as_the_square_of_the_speed(stack):
@@ -205,7 +238,7 @@ def test_a_way_goes_as_the_square_of_the_speed(stack):
     case = case.body("/World/box_1", velocity=(2.0, 0.0, 0.0))
     found = aimed(case, failed("ObjectiveMoves", "/World/box_1", value=0.5, limit=2.0, unit="m"))
     assert (found.parameter, found.direction, found.current) == ("velocity", "raise", 2.0)
-    assert found.suggested == pytest.approx(4.0)
+    assert found.suggested == pytest.approx(1.05 * 4.0)
     joint = Joint(prim="/World/rail", kind="prismatic", parent=None, child="/World/box_2")
     driven = case.world(joints=[joint])
     assert aimed(driven, failed("ObjectiveMoves", "/World/box_2", value=0.5, limit=2.0, unit="m")).kind == "drive"

@@ -61,8 +61,11 @@ class Laws:
                 mean = np.where(law.known[:, None], 0.5 * (wrench[1:] + wrench[:-1]), 0.0)
                 total[:, row] += mean
                 most = np.maximum(np.abs(wrench[1:]), np.abs(wrench[:-1])).reshape(-1, 2, 3)
-                share = np.where(law.known, law.error, 0.0)
-                wrong[:, row] += share[:, None] * np.linalg.norm(most, axis=2)
+                change = np.linalg.norm((wrench[1:] - wrench[:-1]).reshape(-1, 2, 3), axis=2)
+                # A step takes the force at its end, or at its start.
+                late = 0.5 * (self._motion.dt / self._motion.h)[:, None] * change
+                off = law.error[:, None] * np.linalg.norm(most, axis=2) + late
+                wrong[:, row] += np.where(law.known[:, None], off, 0.0)
         return total, wrong
 
     # ---- springs

@@ -9,9 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.language.objective import ObjectiveFormula
+from wsim.judge.objectives.registry import OBJECTIVES
 from wsim.judge.verdict import RepairTarget
+from wsim.plan.schema.formula import And, Eventually, Predicate, Then
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -21,6 +26,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
 
+EVENTS = ("collides_with", "topples", "tilts")  # objectives of something that happens at a moment
 MOMENTS = 48  # frames that are looked at
 ONCE = "what the world is about is to be seen, once at least"
 ASKED = "what the plan asks something of is to be seen as it does it, not only where it starts"
@@ -31,10 +37,11 @@ class CheckInFrame(Check):
     """Every camera has something that moves in frame, and everything that moves is in frame of some camera.
 
     At some time: what is hit may leave the picture for most of it, and a finding says for how much. What the plan asks
-    something of is in frame for a part of the time that it takes to do that.
+    something of is in frame for a part of the time that it takes to do that, and at the moment when it comes true.
     """
 
     asked: float = 0.25  # of the time, for an object of the plan's objectives
+    about: float = 0.25  # [s] before and after what an objective is about, within which it is in frame once
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each camera and each object that is out of frame too long, or one for none."""
@@ -57,6 +64,7 @@ class CheckInFrame(Check):
             found += self._out(evidence, frames, shown, prim, "is in frame of no camera", target)
             if prim in asked and shown.any():
                 found += self._briefly(evidence, frames, shown, prim, target)
+        found += self._unseen(evidence, {finding.prim for finding in found})
         shares = anywhere.mean(axis=0)
         limits = np.array([self.asked if prim in asked else 1.0 / len(frames) for prim in things])
         least = int(np.argmin(shares / limits))
@@ -89,6 +97,25 @@ class CheckInFrame(Check):
                 target=target.model_copy(update={"why": why}),
             )
         ]  # fmt: skip
+
+    def _unseen(self, evidence: Evidence, told: set[str | None]) -> Iterator[Finding]:
+        """What happens, as the plan asks, while its object is out of every picture: once for each object."""
+        cameras = evidence.world.cameras
+        rows = {prim: k for k, prim in enumerate(_things(evidence))}
+        for prim, time, sentence in _events(evidence):
+            about = np.flatnonzero(np.abs(evidence.time - time) <= self.about)
+            if prim in told or prim not in rows or not len(about):
+                continue
+            if not any(bool(_inside(evidence, camera, about)[:, rows[prim]].any()) for camera in cameras):
+                told.add(prim)
+                target = RepairTarget(
+                    kind="camera", prim=cameras[0].prim, parameter="target", direction="change",
+                    why="what the plan asks for happens out of the picture: frame that place too",
+                )  # fmt: skip
+                yield self.measured(
+                    f"{prim} is in frame of no camera at {time:.3f} s, when it comes true: {sentence}",
+                    0.0, 1.0, "frames", at_most=False, prim=prim, time=time, limit_from=ASKED, target=target,
+                )  # fmt: skip
 
     def _out(
         self, evidence: Evidence, frames: NDArray[np.intp], seen: Bools, prim: str, what: str, target: RepairTarget
@@ -153,6 +180,22 @@ class CheckSeen(Check):
                 least = self.pixels / sizes.get(camera, 640 * 360)
                 shown |= track.share[nearest, track.objects.index(prim)] >= least
         return times, shown
+
+
+def _events(evidence: Evidence) -> Iterator[tuple[str, float, str]]:
+    """What comes true, as the plan asks: of which object, when [s], and in words. What always holds has no moment."""
+    for objective in evidence.plan.objectives if evidence.plan is not None else []:
+        formula = objective.formula
+        check = (OBJECTIVES[objective.kind] if formula is None else ObjectiveFormula)(objective)
+        if formula is None and objective.kind not in EVENTS:
+            continue
+        found = check.run(evidence)
+        parts = formula.of if isinstance(formula, And) else (formula,) * len(found)
+        for finding, part in zip(found, parts, strict=False):
+            once = isinstance(part, Eventually | Then) or (isinstance(part, Predicate) and part.alone == "eventually")
+            if finding.passed and finding.prim and finding.time is not None and (part is None or once):
+                # The moment that decides is that of the greatest margin; it came true before.
+                yield finding.prim, finding.span[0] if finding.span is not None else finding.time, check.sentence
 
 
 def _things(evidence: Evidence) -> list[str]:

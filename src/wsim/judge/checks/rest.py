@@ -187,7 +187,9 @@ class CheckCreep(Check):
         motion, here = evidence.motion, np.flatnonzero(evidence.window)[:-1]
         others = np.ones(len(motion.mass), dtype=bool)
         others[i] = False
-        moves = bool(motion.meets[here, i].any() and (motion.speed[here][:, others] > 1e-3).any())
+        # What turns in its place, as a turntable does, carries what is on it as well.
+        goes = motion.speed[here] + np.linalg.norm(motion.w[here], axis=2) * motion.radius
+        moves = bool(motion.meets[here, i].any() and (goes[:, others] > 1e-3).any())
         return moves or rides(evidence, i, here)
 
     @staticmethod

@@ -126,4 +126,47 @@ class CheckLevelSurface(Check):
         )  # fmt: skip
 
 
-CHECKS: Checks = (CheckLeak, CheckLevelSurface)
+@dataclass
+class CheckDraft(Check):
+    """What hangs still in a fluid, touched by nothing else, displaces its own mass of it, whoever asks."""
+
+    share: float = 0.1  # of its mass
+    spacings: float = 1.0  # of its draft, which is what particles resolve
+    still: float = 0.05  # of sqrt(g L)
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The mass of fluid that each such body displaces at the end."""
+        found, motion = [], evidence.motion
+        if evidence.gravity == 0.0 or evidence.recording.metadata.get("controlled"):
+            return []
+        late = evidence.last(0.5)
+        for fluid in evidence.world.fluids:
+            container = evidence.container_of(fluid)
+            if container is None or len(evidence.world.fluids) > 1:
+                continue
+            half = np.array(container.inner_size)[:2] / 2
+            for i, body in enumerate(evidence.world.bodies):
+                slow = motion.speed[late, i].max() < self.still * evidence.velocity_scale(evidence.solid(i).smallest)
+                held = motion.touched[late, i].any() or motion.jointed[i] or body.kinematic
+                over = np.abs(local(container, motion.com[-1, i])[:2]) < half
+                if slow and not held and over.all():
+                    found.append(self._displaced(evidence, fluid, i))
+        return found
+
+    def _displaced(self, evidence: Evidence, fluid: Fluid, i: int) -> Finding:
+        position, rotation = evidence.resting_pose(i)
+        level, deep, body = evidence.level(fluid).height, self.spacings * fluid.spacing, evidence.world.bodies[i]
+        below = [
+            fluid.density * evidence.solid(i).volume_below(rotation, float(position[2]), level + by)
+            for by in (0.0, deep, -deep)
+        ]
+        slack = self.share * body.mass + max(abs(below[1] - below[0]), abs(below[0] - below[2]))
+        return self.between(
+            f"{body.prim} hangs in {fluid.prim} with {below[0]:.4g} kg displaced, and weighs {body.mass:.4g} kg",
+            below[0], (body.mass - slack, body.mass + slack), "kg", body.mass, prim=body.prim,
+            time=evidence.window_start,
+            limit_from=f"Archimedes; {self.share:g} of its mass, and {self.spacings:g} spacing of its draft",
+        )  # fmt: skip
+
+
+CHECKS: Checks = (CheckLeak, CheckLevelSurface, CheckDraft)

@@ -17,6 +17,7 @@ from wsim.judge.evidence.recorded import MissingError, Recorded
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.verdict import Finding
     from wsim.plan.schema import Plan
     from wsim.recording.recording import FluidTrack, Recording
     from wsim.scene.world import Container, Fluid, Joint
@@ -43,6 +44,7 @@ class Evidence(Recorded):
         super().__init__(recording, plan)
         self._levels: dict[str, Level] = {}
         self._joints: dict[str, JointTrack | None] = {}
+        self.answers: dict[str, list[Finding]] = {}  # of the plan's objectives, each put to the evidence once
 
     # ---- bodies
     @cached_property

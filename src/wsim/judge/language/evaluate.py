@@ -10,7 +10,7 @@ import numpy as np
 from wsim.judge.evidence.recorded import WINDOW, WINDOW_MOST, WINDOW_SHARE, MissingError
 from wsim.judge.language import measures_contact, measures_fluid, measures_place, measures_whole
 from wsim.judge.language.measure import MEASURERS, Measure
-from wsim.judge.language.trace import Trace, extreme, pick, pick_all, span_of, until
+from wsim.judge.language.trace import Trace, extreme, following, pick, pick_all, span_of, until
 from wsim.plan.schema.formula import (
     Always,
     And,
@@ -209,8 +209,7 @@ class _Evaluation:
         time = self.signals.time
         rest = self._trace(formula.events[-1], timed=True)
         for event, window in zip(formula.events[-2::-1], formula.windows[::-1], strict=True):
-            low, high = span_of(time, len(rest), window, after=True)
-            rest = pick(self._trace(event, timed=True), extreme(rest, low, high, greatest=True), greatest=False)
+            rest = pick(self._trace(event, timed=True), following(rest, time, window), greatest=False)
         low, high = span_of(time, len(rest), None)
         return extreme(rest, low, high, greatest=True)
 

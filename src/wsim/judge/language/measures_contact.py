@@ -11,12 +11,13 @@ from wsim.geometry.kinds import ROUND
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.contacts import gap, moving_size, touch_reach
+from wsim.judge.language.contacts import about, moving_size, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.objectives.objective import support_of
 from wsim.plan.schema.formula import (
     CollidesWith,
     NeverTouches,
+    Pushes,
     RestsOn,
     RollsWithoutSlip,
     Settles,
@@ -43,7 +44,7 @@ def _touches(asked: Touches, signals: Signals) -> list[Measure]:
 
 def _touching(one: str, other: str, within: float | None, signals: Signals) -> Measure:
     limit, source = touch_reach(signals, one, other)
-    value = gap(signals, one, other)
+    value = about(swept_gap(signals, one, other))
     if within is not None:
         limit, source = np.full(1, within), "the objective's"
     scale = np.maximum(limit, FLOAT32 * moving_size(signals, one, other))
@@ -52,7 +53,7 @@ def _touching(one: str, other: str, within: float | None, signals: Signals) -> M
 
 @measures(NeverTouches)
 def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
-    value = gap(signals, asked.object, asked.ref)
+    value = swept_gap(signals, asked.object, asked.ref)
     size = moving_size(signals, asked.object, asked.ref)
     source = "the objective's clearance" if asked.clearance else "the surfaces"
     return [
@@ -141,7 +142,11 @@ def _normal(signals: Signals, name: str, on: str | None) -> Floats:
 
 @measures(CollidesWith)
 def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
-    """At each frame the collision that is between the frame before and the one after it."""
+    """At each frame the collision that is between the frame before and the one after it.
+
+    They come at each other along the impulse, and it ends that at once. What is pushed for long and then parts from
+    what pushed it came at nothing.
+    """
     touching = _touching(asked.object, asked.ref, None, signals)
     u = signals.velocity(asked.object) - signals.velocity(asked.ref)
     before, after = np.concatenate([u[:, :1], u[:, :-1]], axis=1), np.concatenate([u[:, 1:], u[:, -1:]], axis=1)
@@ -160,11 +165,15 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
         f"change of its speed to {signals.prim(asked.ref)}", touching.prim, jump, limit, "m/s", scale,
         f"{CHANGE:g} of the speed of approach, and what weight and friction can do in two frames", at_most=False,
     )  # fmt: skip
-    found = [touching, change]
+    # The impulse acts along the contact's normal, but for friction; what parts over what approached, along it.
+    normal = jolt / np.where(jump > 0.0, jump, 1.0)[..., None]
+    approach = -np.sum(before * normal, axis=-1)
+    coming = Measure(
+        f"speed at which it comes at {signals.prim(asked.ref)}", touching.prim, approach, floor, "m/s", scale,
+        f"{CHANGE:g} sqrt(g L), along the impulse: what does not come at the other parts from it", at_most=False,
+    )  # fmt: skip
+    found = [touching, change, coming]
     if asked.restitution is not None:
-        # The impulse acts along the contact's normal, but for friction; what parts over what approached, along it.
-        normal = jolt / np.where(jump > 0.0, jump, 1.0)[..., None]
-        approach = -np.sum(before * normal, axis=-1)
         parting = np.sum(after * normal, axis=-1)
         towards = approach > floor
         ratio = np.clip(parting / np.where(towards, approach, 1.0), -1.0, 2.0)
@@ -178,3 +187,27 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
             )
         )  # fmt: skip
     return found
+
+
+@measures(Pushes)
+def _pushes(asked: Pushes, signals: Signals) -> list[Measure]:
+    """For how long, without a break, the one has been behind the other, touching it, and going on with it (W, T)."""
+    touching = _touching(asked.object, asked.ref, None, signals)
+    v, u = signals.velocity(asked.object), signals.velocity(asked.ref)
+    speed = np.linalg.norm(u, axis=-1)
+    ahead = u / np.where(speed > 0.0, speed, 1.0)[..., None]
+    still = QUIET * signals.speed_scale(moving_size(signals, asked.object, asked.ref))
+    # It drives the other on: from behind, and by its own motion, at a speed that is the other's along its way.
+    behind = np.sum((signals.centre(asked.ref) - signals.centre(asked.object)) * ahead, axis=-1) > 0.0
+    together = np.abs(np.sum((v - u) * ahead, axis=-1)) <= np.maximum(STILL * speed, still)
+    on = (touching.margin >= 0.0) & (speed > still) & behind & together
+    held = np.zeros(on.shape)
+    for k in range(1, on.shape[1]):
+        held[:, k] = np.where(on[:, k] & on[:, k - 1], held[:, k - 1] + signals.time[k] - signals.time[k - 1], 0.0)
+    value = np.where(np.isfinite(touching.value), held, np.nan)
+    return [
+        Measure(
+            f"time for which it has pushed {signals.prim(asked.ref)}", touching.prim, value, asked.least, "s",
+            asked.least, "the objective's: a blow is over sooner", at_most=False,
+        )
+    ]  # fmt: skip

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.evidence.welded import unheld_lift, welded
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
 from wsim.plan.schema.formula import FillsTo, Floats, Sinks, Submerged
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+LIFT = 0.25  # of a body's weight, that may be missing to what is under and should rise
 SHARE, SPACINGS = 0.1, 0.5  # of the body's height, or particle spacings if more: what particles resolve of a draft
 
 
@@ -97,17 +99,29 @@ def _sinks(asked: Sinks, signals: Signals) -> list[Measure]:
         "height above the floor", signals.prim(asked.object), wet.low - wet.floor, wet.tolerance, "m", wet.tolerance,
         wet.source, expected=0.0,
     )  # fmt: skip
-    return [above, _under(signals, asked.object, wet)]
+    return [above, *_under(signals, asked.object, wet)]
 
 
 @measures(Submerged)
 def _submerged(asked: Submerged, signals: Signals) -> list[Measure]:
-    return [_under(signals, asked.object, _wet(signals, asked.object, asked.fluid, None))]
+    return _under(signals, asked.object, _wet(signals, asked.object, asked.fluid, None))
 
 
-def _under(signals: Signals, name: str, wet: _Wet) -> Measure:
+def _under(signals: Signals, name: str, wet: _Wet) -> list[Measure]:
+    """The depth of its highest point; of what should rise, the lift that nothing holds."""
     depth, prim = wet.surface - wet.high, signals.prim(name)
-    return Measure("depth of its highest point", prim, depth, 0.0, "m", wet.tolerance, "the surface", at_most=False)
+    found = [Measure("depth of its highest point", prim, depth, 0.0, "m", wet.tolerance, "the surface", at_most=False)]
+    i = wet.evidence.index(prim)
+    weight = sum(wet.evidence.world.bodies[k].mass for k in welded(wet.evidence, i)) * wet.evidence.gravity
+    volume = sum(wet.evidence.solid(k).volume for k in welded(wet.evidence, i))
+    lift = (
+        unheld_lift(wet.evidence, i, wet.fluid) if weight < wet.fluid.density * volume * wet.evidence.gravity else None
+    )
+    if lift is not None:
+        limit = LIFT * weight
+        what, source = "lift that nothing holds", f"{LIFT:g} of its weight: what is lighter than the fluid rises"
+        found.append(Measure(what, prim, np.full_like(depth, lift), limit, "N", limit, source, expected=0.0))
+    return found
 
 
 @measures(FillsTo)

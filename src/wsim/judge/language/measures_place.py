@@ -12,7 +12,7 @@ from wsim.geometry.rotations import conjugate, rotate, sides_of
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.contacts import gap, touch_reach
+from wsim.judge.language.contacts import about, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.plan.schema.formula import (
     ContainedIn,
@@ -40,7 +40,7 @@ LASTING = 0.05  # of a body's smallest extent, by which it may be in a wall: as 
 def _reaches(asked: Reaches, signals: Signals) -> list[Measure]:
     prim = signals.prim(asked.object)
     if isinstance(asked.target, str):
-        value = gap(signals, asked.object, asked.target)
+        value = about(swept_gap(signals, asked.object, asked.target))
         default, source = touch_reach(signals, asked.object, asked.target)
         what = f"gap to {signals.prim(asked.target)}"
     else:

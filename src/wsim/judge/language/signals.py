@@ -220,15 +220,18 @@ class Signals:
         if prims not in self._frames:
             rows = [i for i, body in enumerate(self.world.bodies) if body.prim in prims]
             q = self.body_q[:, :, rows].reshape(-1, len(rows), 7)
-            # Nothing here is asked of velocities and forces; whatever was would come out as not known.
-            qd, force = (np.broadcast_to(np.nan, (len(q), len(rows), width)) for width in (6, 3))
-            recording = Recording(
-                path=Path(), world=self.world.model_copy(update={"bodies": [self.world.bodies[i] for i in rows]}),
-                metadata={}, time=np.tile(self.time, self.count), body_q=q, body_qd=qd, contact_force=force,
-                fluids={}, scalars={}, log=[], images={},
-            )  # fmt: skip
-            self._frames[prims] = Evidence(recording)
+            self._frames[prims] = self.posed(rows, np.tile(self.time, self.count), q)
         return self._frames[prims]
+
+    def posed(self, rows: list[int], time: Floats, q: NDArray[Any]) -> Evidence:
+        """Some bodies at any poses, (N, len(rows), 7) at times (N,)."""
+        # Nothing here is asked of velocities and forces; whatever was would come out as not known.
+        qd, force = (np.broadcast_to(np.nan, (len(q), len(rows), width)) for width in (6, 3))
+        recording = Recording(
+            path=Path(), world=self.world.model_copy(update={"bodies": [self.world.bodies[i] for i in rows]}),
+            metadata={}, time=time, body_q=q, body_qd=qd, contact_force=force, fluids={}, scalars={}, log=[], images={},
+        )  # fmt: skip
+        return Evidence(recording)
 
     def fold(self, flat: NDArray[Any]) -> NDArray[Any]:
         """Answers (W * T, ...) with their world axis, (W, T, ...)."""

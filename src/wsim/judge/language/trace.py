@@ -96,6 +96,23 @@ def span_of(time: Floats, n: int, window: Between | None, after: bool = False) -
     return low[:count], high[:count]
 
 
+def following(trace: Trace, time: Floats, window: Between | None) -> Trace:
+    """The greatest robustness in a window after each frame, as far as was recorded: what is to follow may still come.
+
+    The window opens with the next frame at the earliest and closes with the last one. Where nothing is left of it
+    nothing follows: that is as far from holding as the trace ever is from its limit.
+    """
+    n = len(trace)
+    start, end = window if window is not None else (0.0, None)
+    low = np.maximum(np.searchsorted(time[:n], time + start - SAME), np.arange(1, len(time) + 1))
+    high = np.full(len(time), n) if end is None else np.searchsorted(time[:n], time + end + SAME, side="right")
+    some = low < high
+    span_of(time, n, window, after=True)  # from the first frame on it must be covered, and hold frames
+    found = extreme(trace, np.where(some, low, 0), np.where(some, high, 1), greatest=True)
+    never = -np.max(np.abs(trace.robustness), axis=1, keepdims=True)
+    return Trace(np.where(some, found.robustness, never), np.where(some, found.source, trace.source[:, -1:]))
+
+
 def extreme(trace: Trace, low: Indices, high: Indices, greatest: bool) -> Trace:
     """The smallest or greatest robustness of each range of frames [low, high).
 

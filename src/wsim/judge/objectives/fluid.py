@@ -9,7 +9,9 @@ import numpy as np
 
 from wsim.judge.checks.physics import contained
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.evidence.welded import unheld_lift, welded
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
+from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -136,10 +138,12 @@ class ObjectiveFloats(ObjectiveCheck):
 
 @dataclass
 class ObjectiveSubmerged(ObjectiveCheck):
-    """The body is wholly under the surface."""
+    """The body is wholly under the surface, and what is lighter than the fluid is held there."""
+
+    lift: float = 0.25  # of its weight, that may be missing
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding: the least depth of its highest point over the final window [m]."""
+        """The least depth of its highest point over the final window [m]; of what should rise, the lift [N]."""
         a = _afloat(evidence, self.objective.object, self.ref())
         _, high = evidence.ends(a.i)
         depth = a.level.height - high
@@ -152,6 +156,26 @@ class ObjectiveSubmerged(ObjectiveCheck):
                 f"{prim} {story}: its highest point is {value:.4g} m below the surface at the least",
                 value, limit, "m", at_most=False, time=evidence.earliest(evidence.since(depth < limit)),
                 limit_from="the surface",
+            ),
+            *self._lift(evidence, a),
+        ]  # fmt: skip
+
+    def _lift(self, evidence: Evidence, a: _Afloat) -> list[Finding]:
+        """What is lighter than the fluid rises in it, but where it is held."""
+        left = unheld_lift(evidence, a.i, a.fluid) if a.ratio < 1.0 else None
+        if left is None:
+            return []
+        weight = sum(evidence.world.bodies[k].mass for k in a.joined) * evidence.gravity
+        target = RepairTarget(
+            kind="physical parameter", prim=evidence.world.bodies[a.i].prim, parameter="density", direction="raise",
+            current=a.ratio * a.fluid.density, unit="kg/m^3", why="what is lighter than the fluid rises in it",
+        )  # fmt: skip
+        return [
+            self.measured(
+                f"{evidence.world.bodies[a.i].prim} is lighter than {a.fluid.prim}, and nothing holds it down: "
+                f"{left:.3g} N of lift are missing",
+                left, self.lift * weight, "N", expected=0.0, time=evidence.window_start, target=target,
+                fine=f"{evidence.world.bodies[a.i].prim} is held under", limit_from=f"{self.lift:g} of its weight",
             )
         ]  # fmt: skip
 
@@ -217,7 +241,7 @@ def _afloat(evidence: Evidence, name: str, ref: str) -> _Afloat:
     level = evidence.level(fluid)
     low, high = evidence.ends(i)
     here = evidence.window
-    joined = _joined(evidence, i)
+    joined = welded(evidence, i)
     needed = sum(evidence.world.bodies[j].mass for j in joined) / fluid.density
     return _Afloat(
         i,
@@ -229,16 +253,6 @@ def _afloat(evidence: Evidence, name: str, ref: str) -> _Afloat:
         needed=needed,
         joined=joined,
     )
-
-
-def _joined(evidence: Evidence, i: int) -> list[int]:
-    """A body and those that fixed joints, one after another, hold to it."""
-    index = {body.prim: k for k, body in enumerate(evidence.world.bodies)}
-    fixed = [(index.get(j.parent or ""), index.get(j.child)) for j in evidence.world.joints if j.kind == "fixed"]
-    found = {i}
-    while more := {k for pair in fixed if found & {*pair} for k in pair if k is not None} - found:
-        found |= more
-    return sorted(found)
 
 
 def _still_draft(evidence: Evidence, a: _Afloat) -> float:

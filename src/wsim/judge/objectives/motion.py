@@ -8,19 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import level
+from wsim.geometry.rotations import conjugate, level, rotate
+from wsim.geometry.shapes import into, kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.language.objective import findings
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
-from wsim.scene.contact import largest_friction
+from wsim.plan.schema.formula import CollidesWith
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.scene.world import Body
 
     Floats = NDArray[np.float64]
 
@@ -67,6 +68,7 @@ class ObjectiveSlides(ObjectiveMoves):
     """The body moves so far without turning: down the ramp `ref`, or from where it was."""
 
     turning: float = 0.5  # of the way that it would roll at its rate of turning
+    parting: float = 0.05  # of its smallest extent: a gap beyond is no contact any more
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The way made [m], and how much of it is rolling [1]."""
@@ -88,12 +90,15 @@ class ObjectiveSlides(ObjectiveMoves):
         )  # fmt: skip
 
     def _frames(self, evidence: Evidence, i: int) -> NDArray[np.bool_]:
-        """From the start until the planned way is made; all, where it never is."""
-        moved = np.linalg.norm(evidence.body_q[:, i, :3] - evidence.body_q[0, i, :3], axis=1)
-        beyond = np.flatnonzero(moved > (self.objective.value or math.inf))
-        here = np.ones(len(moved), dtype=bool)
-        if len(beyond):
-            here[beyond[0] + 1 :] = False
+        """All of its way (T,): down a ramp until it leaves that, for what it meets then is another story."""
+        if self.objective.ref is None:
+            return np.ones(len(evidence.time), dtype=bool)
+        gap = distance(evidence, evidence.world.bodies[i].prim, evidence.prim(self.objective.ref))
+        near = gap <= self.parting * evidence.solid(i).smallest
+        left = np.flatnonzero(~near & (np.cumsum(near) > 0))
+        here = np.ones(len(near), dtype=bool)
+        if len(left):
+            here[left[0] :] = False
         return here
 
 
@@ -102,7 +107,6 @@ class ObjectiveRollsDown(ObjectiveSlides):
     """The body rolls down the ramp `ref`, at the acceleration that its own inertia leaves of gravity's pull."""
 
     accuracy: float = 0.1  # of the acceleration
-    parting: float = 0.05  # of its smallest extent: a gap beyond is no contact any more
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The way made [m], how much of it is rolling [1], and for a ball let go the acceleration [m/s^2]."""
@@ -110,7 +114,7 @@ class ObjectiveRollsDown(ObjectiveSlides):
         along = downhill(evidence, self.ref(), i)
         found = [self._way(evidence, i, None, along), self._turning(evidence, i, rolls=True)]
         body = evidence.world.bodies[i]
-        here = self._frames(evidence, i) & self._on_ramp(evidence, body)
+        here = self._frames(evidence, i)
         ball = len(body.shapes) == 1 and body.shapes[0].kind == "sphere"
         if not ball or np.linalg.norm(body.velocity) > 0.0 or here.sum() < 4 or not found[0].passed:
             return found
@@ -132,16 +136,6 @@ class ObjectiveRollsDown(ObjectiveSlides):
             )
         )  # fmt: skip
         return found
-
-    def _on_ramp(self, evidence: Evidence, body: Body) -> NDArray[np.bool_]:
-        """The frames (T,) until it leaves the ramp: what it meets after that is another story."""
-        gap = distance(evidence, body.prim, evidence.prim(self.ref()))
-        near = gap <= self.parting * evidence.solid(evidence.index(body.prim)).smallest
-        left = np.flatnonzero(~near & (np.cumsum(near) > 0))
-        here = np.ones(len(near), dtype=bool)
-        if len(left):
-            here[left[0] :] = False
-        return here
 
 
 def downhill(evidence: Evidence, name: str, i: int) -> Floats:
@@ -175,7 +169,8 @@ class ObjectiveFlies(ObjectiveCheck):
         # A contact between two frames shows in the speed alone: what gravity gives, and no more.
         gain = np.diff(evidence.body_qd[:, i, :3], axis=0) - np.array(evidence.world.gravity) * np.diff(t)[:, None]
         jolts = np.flatnonzero(np.linalg.norm(gain, axis=1) > 0.5)
-        end = max(1, min(end, int(jolts[0]) + 1 if len(jolts) else end))
+        end = min(end, int(jolts[0]) + 1 if len(jolts) else end)
+        end = max(1, min(end, self._splash(evidence, i, end)))
         flown = float(t[end - 1])
         found = [
             self.measured(
@@ -196,95 +191,30 @@ class ObjectiveFlies(ObjectiveCheck):
         )  # fmt: skip
         return found
 
+    @staticmethod
+    def _splash(evidence: Evidence, i: int, end: int) -> int:
+        """The first frame at which a particle of some fluid is within half a spacing of the body."""
+        solid = evidence.solid(i)
+        for k in range(end):
+            for fluid in evidence.world.fluids:
+                track = evidence.track(fluid)
+                points = track.position[int(np.argmin(np.abs(track.time - evidence.time[k])))]
+                apart = np.asarray(points, dtype=np.float64) - evidence.body_q[k, i, :3]
+                near = apart[np.linalg.norm(apart, axis=1) < float(evidence.motion.radius[i]) + fluid.spacing]
+                own = rotate(conjugate(evidence.body_q[k, i, 3:]), near)
+                depths = (kind_of(shape).depth(into(shape, own)) for shape in solid.shapes)
+                if len(own) and any(bool(np.any(depth > -fluid.spacing / 2)) for depth in depths):
+                    return k
+        return end
+
 
 @dataclass
 class ObjectiveCollidesWith(ObjectiveCheck):
-    """The body comes up to the other object and their speeds change at once; two free bodies keep their momentum."""
-
-    change: float = 0.05  # of the speed of approach, that the collision must change at least
-    frames: int = 1  # before and after the closest approach, between which speeds are compared
-    share: float = 0.1  # of the momentum that the equations may lose, beside what friction takes
+    """The body comes at the other object, touches it, and the blow ends that at once: the language's predicate."""
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """The gap at the closest [m], the change of speed [m/s], and the change of the pair's momentum [kg m/s]."""
-        prim, other = evidence.prim(self.objective.object), evidence.prim(self.ref())
-        i = evidence.index(prim)
-        free = evidence.static(other) is None
-        j = evidence.index(other) if free else -1
-        gap = distance(evidence, prim, other)
-        v = evidence.body_qd[:, i, :3]
-        relative = v - evidence.body_qd[:, j, :3] if free else v
-        step = float(np.median(np.diff(evidence.time)))
-        speed = np.linalg.norm(relative, axis=1)
-        # Between two frames they may come that much nearer, and part again.
-        reach = self.objective.tolerance or max(step * float(speed[: int(np.argmin(gap)) + 1].max()), 1e-3)
-        touch = self._moment(gap <= reach, relative) if (gap <= reach).any() else int(np.argmin(gap))
-        time = float(evidence.time[touch])
-        found = [
-            self.measured(
-                f"{prim} comes within {max(float(gap.min()), 0.0):.3g} m of {other}", float(gap.min()), reach, "m",
-                time=time, expected=0.0, limit_from="the way that they close between two recorded frames"
-            )
-        ]  # fmt: skip
-        if found[0].passed:
-            found += self._exchange(evidence, i, j, touch, speed, time)
-        return found
-
-    def _moment(self, near: NDArray[np.bool_], relative: Floats) -> int:
-        """The frame near the other at which their speed to each other changes most."""
-        jump = np.zeros(len(relative))
-        jump[1:-1] = np.linalg.norm(relative[2:] - relative[:-2], axis=1)
-        return int(np.argmax(np.where(near, jump, -1.0)))
-
-    def _exchange(self, evidence: Evidence, i: int, j: int, touch: int, speed: Floats, time: float) -> list[Finding]:
-        """What the collision changed, beside what gravity and friction did in the meantime."""
-        before, after = max(0, touch - self.frames), min(len(evidence.time) - 1, touch + self.frames)
-        span = float(evidence.time[after] - evidence.time[before])
-        rubbed = largest_friction(evidence.world) * evidence.gravity * span
-        changes = {k: self._jump(evidence, k, before, after, falling=j < 0) - rubbed for k in (i, j) if k >= 0}
-        whose = max(changes, key=lambda k: changes[k])
-        body = evidence.world.bodies[whose]
-        found = [
-            self.measured(
-                f"{body.prim} changes its velocity by {changes[whose]:.3g} m/s as they meet, beyond what friction can",
-                changes[whose], self.change * float(speed[before]), "m/s",
-                at_most=False, prim=body.prim, time=time, line=body.line,
-                limit_from=f"{self.change:g} of the speed at which they approach"
-            )
-        ]  # fmt: skip
-        # A third body may take its share of the momentum, and a static one any amount.
-        if j >= 0 and len(evidence.world.bodies) == 2:
-            # A box that is hit tips on an edge, and may press harder for a frame than it weighs; a ball does not.
-            balls = all(shape.kind == "sphere" for k in (i, j) for shape in evidence.solid(k).shapes)
-            frames = sorted({before, touch, after}) if balls else [before, after]
-            found.append(self._momentum(evidence, (i, j), frames))
-        return found
-
-    @staticmethod
-    def _jump(evidence: Evidence, k: int, before: int, after: int, falling: bool) -> float:
-        jump = evidence.body_qd[after, k, :3] - evidence.body_qd[before, k, :3]
-        if falling:  # what comes at a fixed thing may be falling; what is on the ground is carried
-            return float(
-                np.linalg.norm(jump - np.array(evidence.world.gravity) * np.diff(evidence.time[[before, after]]))
-            )
-        return float(np.linalg.norm(level(jump, evidence.up)))
-
-    def _momentum(self, evidence: Evidence, pair: tuple[int, int], frames: list[int]) -> Finding:
-        """What the two do to each other leaves their momentum as it is: the time between frames that takes most."""
-        masses = np.array([evidence.world.bodies[k].mass for k in pair])
-        v = level(evidence.body_qd[np.ix_(frames, pair)][:, :, :3], evidence.up)  # (frames, 2 bodies, 3)
-        scale = float(masses @ np.linalg.norm(v[0], axis=1))
-        lost = np.linalg.norm(np.diff(np.einsum("b,tbi->ti", masses, v), axis=0), axis=1)
-        weight = evidence.gravity * float(masses.sum())
-        rubbed = largest_friction(evidence.world) * weight * np.diff(evidence.time[frames])
-        limit = self.share * scale + rubbed
-        k = int(np.argmax(lost / limit))
-        start, end = float(evidence.time[frames[k]]), float(evidence.time[frames[k + 1]])
-        return self.measured(
-            f"The two keep their momentum to {lost[k]:.3g} kg m/s of {scale:.3g} between two frames",
-            float(lost[k]), float(limit[k]), "kg m/s", time=end, span=(start, end), expected=0.0,
-            limit_from=f"{self.share:g} of it, and what friction on the ground takes between two frames",
-        )  # fmt: skip
+        """One finding: of the gap [m], the change of speed and the speed of approach [m/s], what decides."""
+        return findings(self, CollidesWith(object=self.objective.object, ref=self.ref()), evidence)
 
 
 OBJECTIVES: Objectives = {

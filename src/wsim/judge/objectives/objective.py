@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate, sides_of
+from wsim.geometry.rotations import conjugate, rotate, sides_of
 from wsim.geometry.shapes import top_under
 from wsim.judge.checks.check import Check
+from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
@@ -31,6 +32,12 @@ class ObjectiveCheck(Check):
 
     def run(self, evidence: Evidence) -> list[Finding]:
         """The findings, each with the objective's sentence and its object's prim and line."""
+        key = self.objective.model_dump_json()
+        if key not in evidence.answers:
+            evidence.answers[key] = self._answers(evidence)
+        return evidence.answers[key]
+
+    def _answers(self, evidence: Evidence) -> list[Finding]:
         prim = evidence.prim(self.objective.object)
         try:
             found = self.evaluate(evidence)
@@ -91,6 +98,27 @@ def support_of(evidence: Evidence, i: int, prim: str) -> Support:
     at = where @ sides_of(evidence.up).T
     over = np.all((at >= low) & (at <= high), axis=1)
     return Support(top, over, None, prim)
+
+
+def height_over(evidence: Evidence, i: int, prim: str, support: Support) -> Floats:
+    """How far body i is off what carries it (T,) [m]: the gap of their surfaces, where it is above it.
+
+    Seen from the support, which may tilt or be a slope: the height of the body's lowest point over it says nothing of
+    that. In a container it is the height over the floor, for the walls may be near; over a mesh, whose distance is not
+    measured, and where it is under the support, it is the difference of their heights.
+    """
+    heights = evidence.ends(i)[0] - support.top
+    if evidence.container(prim) is not None:
+        return heights
+    gap = distance(evidence, evidence.world.bodies[i].prim, prim)
+    if evidence.static(prim) is not None:
+        above = evidence.body_q[:, i, :3] @ evidence.up > support.top
+    else:
+        j = evidence.index(prim)
+        own = rotate(conjugate(evidence.body_q[:1, j, 3:]), evidence.up[None])  # what pointed up at the start
+        apart = evidence.body_q[:, i, :3] - evidence.body_q[:, j, :3]
+        above = np.sum(apart * rotate(evidence.body_q[:, j, 3:], np.broadcast_to(own, apart.shape)), axis=1) > 0.0
+    return np.where(above & np.isfinite(gap), gap, heights)
 
 
 def _on_static(static: Static, where: Floats, high: Floats, up: Floats) -> Support:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import tilt
-from wsim.judge.objectives.objective import ObjectiveCheck, Objectives, Support, support_of
+from wsim.judge.evidence.welded import welded
+from wsim.judge.objectives.objective import ObjectiveCheck, Objectives, Support, height_over, support_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,7 +43,7 @@ class ObjectiveRestsOn(ObjectiveCheck):
 
     def _gap(self, evidence: Evidence, i: int, support: Support) -> Finding:
         low, high = evidence.ends(i)
-        gap = low - support.top
+        gap = height_over(evidence, i, evidence.prim(self.ref()), support)
         here = evidence.window
         tolerance = self.objective.tolerance or max(
             self.share * float((high - low)[here].mean()),
@@ -65,13 +66,14 @@ class ObjectiveRestsOn(ObjectiveCheck):
 
     def _force(self, evidence: Evidence, i: int, support: Support) -> Finding | None:
         """The mean contact force against weight less buoyancy; None where no force was recorded."""
-        force = np.asarray(evidence.recording.contact_force[evidence.window, i], dtype=np.float64) @ evidence.up
+        parts = welded(evidence, i)  # what is fixed together is carried as one
+        force = np.asarray(evidence.recording.contact_force[evidence.window][:, parts], dtype=np.float64) @ evidence.up
         if not np.any(evidence.recording.contact_force):
             return None
         body = evidence.world.bodies[i]
-        weight = body.mass * evidence.gravity
+        weight = sum(evidence.world.bodies[k].mass for k in parts) * evidence.gravity
         buoyancy, film = self._by_fluid(evidence, i, support)
-        expected, value = weight - buoyancy, float(force.mean())
+        expected, value = weight - buoyancy, float(force.sum(axis=1).mean())
         above = value > expected
         limit = expected + self.force * weight + film if above else expected - self.force * weight
         source = f"{self.force:g} of its weight about weight less buoyancy, as a mean over the final window"
@@ -102,7 +104,9 @@ class ObjectiveRestsOn(ObjectiveCheck):
         height = bottom + min(fluid.spacing, solid.smallest / 2)
         slab = solid.volume_below(rotation, z, height + thin) - solid.volume_below(rotation, z, height - thin)
         film = specific * max(0.0, level - bottom) * slab / (2 * thin)
-        return specific * solid.volume_below(rotation, z, level), film
+        poses = {k: evidence.resting_pose(k) for k in welded(evidence, i)}
+        under = sum(evidence.solid(k).volume_below(q, float(at[2]), level) for k, (at, q) in poses.items())
+        return specific * under, film
 
 
 @dataclass
@@ -118,52 +122,64 @@ class ObjectiveStaysOn(ObjectiveCheck):
         support = support_of(evidence, i, evidence.prim(self.ref()))
         low, high = evidence.ends(i)
         tolerance = self.objective.tolerance or self.share * float((high - low)[0])
-        gap = np.where(support.over, np.abs(low - support.top), np.inf)
-        off = gap > tolerance
-        time = float(evidence.time[np.argmax(off)]) if off.any() else float(evidence.time[-1])
         source = "the plan's tolerance" if self.objective.tolerance else f"{self.share:g} of the body's height"
-        value = float(gap.max())
-        if not math.isfinite(value):
+        gap = np.abs(height_over(evidence, i, evidence.prim(self.ref()), support))
+        if not support.over.all():
+            time = float(evidence.time[np.argmin(support.over)])
             return [
                 self.failed(
                     f"{prim} leaves {support.name} at {time:.3f} s: it is no longer over it",
                     time=time, limit=tolerance, unit="m", limit_from=source,
                 )
             ]  # fmt: skip
-        word = "leaves" if off.any() else "stays on"
-        message = f"{prim} {word} {support.name}: the gap reaches {value * 1e3:.3g} mm"
-        return [self.measured(message, value, tolerance, "m", expected=0.0, time=time, limit_from=source)]
+        worst, off = int(np.argmax(gap)), np.flatnonzero(gap > tolerance)
+        time = float(evidence.time[worst])
+        word = f"leaves {support.name} at {evidence.time[off[0]]:.3f} s" if len(off) else f"stays on {support.name}"
+        message = f"{prim} {word}: the gap reaches {gap[worst] * 1e3:.3g} mm at {time:.3f} s"
+        span = (float(evidence.time[off[0]]), time) if len(off) else None
+        value = float(gap[worst])
+        return [self.measured(message, value, tolerance, "m", expected=0.0, time=time, span=span, limit_from=source)]
 
 
 @dataclass
 class ObjectiveTopples(ObjectiveCheck):
-    """The body ends tilted, or lower than it was."""
+    """The body tilts over its edge, and ends tilted, or lower than it was. A ball, which has no upright, falls."""
 
     tilt: float = 45.0  # [deg]
     drop: float = 0.5  # of its height
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """One finding: the tilt [deg] or the drop [m], whichever comes nearer to its limit."""
+        """How far it tilts at the most [deg]; and at the end its tilt, or how far it fell [m]."""
         i = evidence.index(evidence.prim(self.objective.object))
         body = evidence.world.bodies[i]
-        low, high = evidence.ends(i)
-        height = float((high - low)[0])
         tilts = tilt(evidence.body_q[:, i, 3:], evidence.up)
         if all(shape.kind == "sphere" for shape in evidence.solid(i).shapes):
-            tilts = np.zeros_like(tilts)  # a ball has no upright
-        fall = low[0] - low
-        share = np.maximum(tilts / self.tilt, fall / (self.drop * height))
-        fallen = share >= 1.0
-        end = float(share[evidence.window].mean())
-        time = float(evidence.time[np.argmax(fallen)]) if fallen.any() else float(evidence.time[-1])
-        tilted = float(tilts[evidence.window].mean())
-        fell = float(fall[evidence.window].mean())
-        word = "has toppled" if end >= 1.0 else "still stands"
-        message = f"{body.prim} {word}: tilted by {tilted:.3g} degrees, {fell:.3g} m lower than at the start"
+            return [self._end(evidence, i, np.zeros_like(tilts))]
+        over = np.flatnonzero(tilts >= self.tilt)
+        most, at = float(tilts.max()), over[0] if len(over) else int(np.argmax(tilts))
+        word = "tips over" if len(over) else "does not tip over"
+        turned = self.measured(
+            f"{body.prim} {word}: it tilts by {most:.3g} degrees at the most", most, self.tilt, "deg", at_most=False,
+            time=float(evidence.time[at]), limit_from="what is moved upright has not toppled",
+        )  # fmt: skip
+        return [turned, self._end(evidence, i, tilts)] if turned.passed else [turned]
+
+    def _end(self, evidence: Evidence, i: int, tilts: Floats) -> Finding:
+        low, high = evidence.ends(i)
+        height = float((high - low)[0])
+        fall, here = low[0] - low, evidence.window
+        tilted, fell = float(tilts[here].mean()), float(fall[here].mean())
         by_drop = fell / (self.drop * height) > tilted / self.tilt
+        fallen = (fall >= self.drop * height) | (tilts >= self.tilt)
         value, limit, unit = (fell, self.drop * height, "m") if by_drop else (tilted, self.tilt, "deg")
-        source = f"a tilt of {self.tilt:g} degrees, or a fall by {self.drop:g} of its height"
-        return [self.measured(message, value, limit, unit, at_most=False, time=time, limit_from=source)]
+        word = "has toppled" if value >= limit else "stands"
+        return self.measured(
+            f"{evidence.world.bodies[i].prim} {word} at the end: tilted by {tilted:.3g} degrees, {fell:.3g} m lower "
+            "than at the start",
+            value, limit, unit, at_most=False,
+            time=float(evidence.time[np.argmax(fallen)] if fallen.any() else evidence.time[-1]),
+            limit_from=f"a tilt of {self.tilt:g} degrees, or a fall by {self.drop:g} of its height",
+        )  # fmt: skip
 
 
 @dataclass

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.repair.language import formula
 from wsim.judge.repair.objectives import OBJECTIVES
-from wsim.judge.repair.rule import Rule
+from wsim.judge.repair.rule import Rule, tried
 from wsim.judge.repair.run import CHECKS
 from wsim.judge.verdict import Finding, RepairTarget
 
@@ -33,7 +33,7 @@ def aim(findings: Sequence[Finding], evidence: Evidence | None = None) -> None:
         evidence: What they were made from; without it only the program's own failures have a rule.
     """
     for finding in findings:
-        finding.target = None if finding.passed else finding.target or _target(finding, evidence)
+        finding.target = None if finding.passed else tried(finding.target or _target(finding, evidence))
     broken = next((finding for finding in findings if finding.check == "CheckFinite" and not finding.passed), None)
     if broken is not None:
         for finding in findings:

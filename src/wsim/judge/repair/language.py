@@ -147,6 +147,14 @@ def collides(finding: Finding, evidence: Evidence) -> RepairTarget:
     )  # fmt: skip
 
 
+def pushes(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What pushes goes on at the other, in its way and fast enough."""
+    why = "it does not drive the other on for that long: aim it there, and keep it moving"
+    return RepairTarget(
+        kind="physical parameter", prim=finding.prim, parameter="velocity", direction="change", unit="m/s", why=why
+    )
+
+
 def fills_to(finding: Finding, evidence: Evidence) -> RepairTarget:
     """As much fluid as the level needs: the level is as high as the volume."""
     value, expected = finding.value or 0.0, finding.expected
@@ -180,5 +188,6 @@ RULES: dict[str, Rule] = {
     "settles": settles,
     "conserves": conserves,
     "collides_with": collides,
+    "pushes": pushes,
     "fills_to": fills_to,
 }

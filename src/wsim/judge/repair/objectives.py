@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, level, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.repair.asked import ref_of
 from wsim.judge.repair.rule import (
+    ROOM,
     Rule,
     add_collision,
     collides,
@@ -81,7 +83,8 @@ def _too_small(evidence: Evidence, prim: str, beyond: float) -> RepairTarget:
     now = min(container.inner_size[:2]) if container is not None else None
     return RepairTarget(
         kind="geometry", prim=prim, parameter="inner_size", direction="raise", current=now,
-        suggested=None if now is None else now + 2 * beyond, unit="m", why="a body gets out of it: room for its way",
+        suggested=None if now is None else (1.0 + ROOM) * (now + 2 * beyond), unit="m",
+        why="a body gets out of it: room for its way",
     )  # fmt: skip
 
 
@@ -157,10 +160,25 @@ def tunnelled(finding: Finding, evidence: Evidence, prim: str, ref: str) -> Repa
 
 def stays_on(finding: Finding, evidence: Evidence) -> RepairTarget:
     """It slides off: on a slope friction must be more than its tangent."""
-    slope = _slope(finding, evidence, evidence.static(ref_of(finding, evidence)))
-    steepest = f"a body stays on a slope of {math.degrees(slope):.3g} degrees where friction is above its tangent"
-    why = steepest if slope > 0.01 else "it slides or is carried off: more friction holds it"
-    return friction(finding, evidence, "raise", math.tan(slope) if slope > 0.01 else None, why)
+    prim, ref = finding.prim or "", ref_of(finding, evidence)
+    slope = _slope(finding, evidence, evidence.static(ref))
+    if slope > 0.01:
+        why = f"a body stays on a slope of {math.degrees(slope):.3g} degrees where friction is above its tangent"
+        return friction(finding, evidence, "raise", math.tan(slope), why)
+    if _slipped(finding, evidence, ref):
+        return friction(finding, evidence, "raise", None, "it slides or is carried off: more friction holds it")
+    why = f"it comes off {ref} and does not slide: what lifts or throws it must be slower"
+    return RepairTarget(kind="settlement", prim=prim, parameter="motion", direction="change", why=why)
+
+
+def _slipped(finding: Finding, evidence: Evidence, ref: str) -> bool:
+    """Whether the finding's body has moved along what it is to stay on, by more than it has moved off it."""
+    here = evidence.body_q[:, evidence.index(finding.prim or ""), :3]
+    if evidence.static(ref) is None and evidence.container(ref) is None:
+        other = evidence.body_q[:, evidence.index(ref)]
+        here = rotate(conjugate(other[:, 3:]), here - other[:, :3])  # as seen from what carries it
+    along = float(np.linalg.norm(level(here - here[0], evidence.up), axis=1).max())
+    return along > max(abs(finding.value or 0.0), NEAR * evidence.solid(evidence.index(finding.prim or "")).smallest)
 
 
 def _slope(finding: Finding, evidence: Evidence, static: Static | None) -> float:
@@ -193,7 +211,8 @@ def slides_off(finding: Finding, evidence: Evidence) -> RepairTarget | None:
 
 
 def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, why: str) -> RepairTarget:
-    """Another friction of the finding's body."""
+    """Another friction of the finding's body, with room to the value at which it just holds, or just lets go."""
+    to = None if to is None else to * (1.0 + ROOM if way == "raise" else 1.0 - ROOM)
     body = evidence.body(finding.prim or "")
     now = friction_of(body.shapes[0]) if body.shapes else None
     if to is not None and now is not None and (to > now) != (way == "raise"):
@@ -269,7 +288,7 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
         why = "a joint moves it: its drive must push harder or longer"
         return RepairTarget(kind="drive", prim=body.prim, parameter="target", direction="raise", why=why)
     if speed > 0.0:
-        to = speed * math.sqrt(limit / value) if 0.0 < value < limit else None
+        to = (1.0 + ROOM / 2) * speed * math.sqrt(limit / value) if 0.0 < value < limit else None
         return RepairTarget(
             kind="physical parameter", prim=body.prim, parameter="velocity", direction="raise", current=speed,
             suggested=to, unit="m/s", why="under friction it gets as far as v^2 / (2 mu g)",
@@ -310,7 +329,7 @@ def flies(finding: Finding, evidence: Evidence) -> RepairTarget:
     """It lands too soon, or something beside gravity acts on it."""
     prim, value, limit = finding.prim or "", finding.value or 0.0, finding.limit or 0.0
     if finding.unit == "s":
-        rise = 0.5 * evidence.gravity * limit
+        rise = 0.5 * evidence.gravity * limit * (1.0 + ROOM)
         why = f"a flight of {limit:g} s takes {rise:.3g} m/s upwards, or as much height"
         return RepairTarget(
             kind="physical parameter", prim=prim, parameter="velocity.z", direction="raise",
@@ -324,10 +343,8 @@ def flies(finding: Finding, evidence: Evidence) -> RepairTarget:
 
 
 def collides_with(finding: Finding, evidence: Evidence) -> RepairTarget:
-    """They miss each other, pass through each other, or the contact loses momentum."""
+    """They miss each other, or pass through each other."""
     prim, ref = finding.prim or "", ref_of(finding, evidence)
-    if finding.unit == "kg m/s":
-        return shorter_step(evidence, 0.5, "the contact loses momentum: half the step is the first to try")
     missing = next((owner for owner in (prim, ref) if not collides(evidence, owner)), None)
     if missing is not None:
         return add_collision(missing)

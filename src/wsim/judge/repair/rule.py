@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,11 @@ if TYPE_CHECKING:
     from wsim.scene.world import Fluid, Shape
 
 Rule = Callable[[Finding, Evidence], RepairTarget]
+
+ROOM = 0.1  # of a limit that a suggested value keeps from it: what just meets it fails by rounding
+# What a number may be: rubber on rubber has a friction of 1.2, osmium 22 600 kg/m^3.
+BOUNDS = {"friction": (0.0, 1.5), "restitution": (0.0, 1.0), "rolling": (0.0, 1.0), "density": (1.0, 22_600.0)}
+FARTHEST = {"duration": 5.0, "time_step": 50.0, "spacing": 10.0}  # times what it is: beyond, something else is wrong
 
 
 def shorter_step(evidence: Evidence, share: float, why: str) -> RepairTarget:
@@ -30,6 +36,25 @@ def longer_run(evidence: Evidence, seconds: float | None, why: str) -> RepairTar
     return RepairTarget(
         kind="settlement", parameter="duration", direction="raise", current=now, suggested=seconds, unit="s", why=why
     )
+
+
+def tried(target: RepairTarget) -> RepairTarget:
+    """A target whose number can be one: on the side that it is to be on, and such as there is.
+
+    What a rule's formula gives beyond that it does not know; the number is left out, and the direction stays.
+    """
+    now, to = target.current, target.suggested
+    if to is None:
+        return target
+    low, high = BOUNDS.get(target.parameter, (-math.inf, math.inf))
+    wrong = not low <= to <= high
+    if now is not None:
+        wrong |= (target.direction == "lower" and to >= now) or (target.direction == "raise" and to <= now)
+        wrong |= (
+            target.parameter in FARTHEST
+            and not now / FARTHEST[target.parameter] <= to <= now * FARTHEST[target.parameter]
+        )
+    return target.model_copy(update={"suggested": None}) if wrong else target
 
 
 def time_step(evidence: Evidence) -> float | None:

@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.kinds import ROUND
 from wsim.geometry.shapes import kind_of
 from wsim.judge.repair.rule import (
+    FARTHEST,
+    ROOM,
     Rule,
     add_collision,
     collides,
@@ -20,6 +23,7 @@ from wsim.judge.repair.rule import (
     sound_speed,
 )
 from wsim.judge.verdict import Finding, RepairTarget
+from wsim.scene.contact import friction_of, rolling_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -186,8 +190,21 @@ def settled(finding: Finding, evidence: Evidence) -> RepairTarget:
             evidence, 0.5, "it does not die down: contacts or fluid keep it going; half the step is the first to try"
         )
     rate = math.log(before / after) / half
-    wanted = end + max(0.0, math.log(finding.value / finding.limit)) / rate + half
+    wanted = end + max(0.0, math.log((1.0 + ROOM) * finding.value / finding.limit)) / rate + half
+    if wanted > FARTHEST["duration"] * end:
+        return damped(evidence, i, f"its speed falls by half in {math.log(2) / rate:.2g} s: no run is that long")
     return longer_run(evidence, wanted, f"its speed falls by half in {math.log(2) / rate:.2g} s: by then it is at rest")
+
+
+def damped(evidence: Evidence, i: int, why: str) -> RepairTarget:
+    """What goes on and on needs something that takes its energy: what is round resistance to rolling, else friction."""
+    body = evidence.world.bodies[i]
+    rolls = any(shape.kind in ROUND for shape in body.shapes)
+    has = (rolling_of if rolls else friction_of)(body.shapes[0]) if body.shapes else None
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="rolling" if rolls else "friction", direction="raise",
+        current=has, why=why,
+    )  # fmt: skip
 
 
 CHECKS: dict[str, Rule] = {

@@ -245,6 +245,16 @@ class CollidesWith(Predicate):
     within: Positive = quantity("1", 0.1, lt=1.0)
 
 
+class Pushes(Predicate):
+    """The object drives another on before it, in contact, for a while: no blow."""
+
+    op: Literal["pushes"] = "pushes"
+    alone: ClassVar[Literal["eventually"]] = "eventually"
+    object: Named
+    ref: Named
+    least: Positive = quantity("s", 0.1)
+
+
 class FillsTo(Predicate):
     """The fluid's surface stands at a height above the floor of its container."""
 
@@ -268,7 +278,7 @@ _KINDS: tuple[type[Node], ...] = (
     And, Or, Not, Always, Eventually, Finally, Until, Then,
     Reaches, StaysWithin, RestsOn, SupportedBy, ContainedIn, Floats, Sinks, Submerged, Touches, NeverTouches,
     Upright, SpeedBetween, FollowsPath, Crosses, Ordered, Swings, RollsWithoutSlip, Settles, Conserves,
-    CollidesWith, FillsTo, StaysInside,
+    CollidesWith, Pushes, FillsTo, StaysInside,
 )  # fmt: skip
 if TYPE_CHECKING:
     Formula = Node

@@ -1,0 +1,50 @@
+"""Bodies that fixed joints make one, and the fluid's lift on them that nothing holds down."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Fluid
+
+
+def welded(evidence: Evidence, i: int) -> list[int]:
+    """A body and those that fixed joints, one after another, hold to it."""
+    index = {body.prim: k for k, body in enumerate(evidence.world.bodies)}
+    fixed = [(index.get(j.parent or ""), index.get(j.child)) for j in evidence.world.joints if j.kind == "fixed"]
+    found = {i}
+    while more := {k for pair in fixed if found & {*pair} for k in pair if k is not None} - found:
+        found |= more
+    return sorted(found)
+
+
+def held(evidence: Evidence, parts: list[int]) -> bool:
+    """Whether a joint or a cord ties bodies to anything but each other, or they go their own way."""
+    prims = {evidence.world.bodies[k].prim for k in parts}
+    joints = [{joint.parent, joint.child} for joint in evidence.world.joints]
+    tied = any(prims & ends and not ends <= prims for ends in joints)
+    tied |= any(guide.body in prims for cord in evidence.world.cords for guide in cord.path)
+    return tied or any(evidence.world.bodies[k].kinematic for k in parts)
+
+
+def unheld_lift(evidence: Evidence, i: int, fluid: Fluid) -> float | None:
+    """Archimedes' lift on a body less its weight and what contacts press it down with, over the final window [N].
+
+    A body that lies still has none: what is left over would raise it. With what fixed joints hold to it; None where
+    something else holds it.
+    """
+    parts, here = welded(evidence, i), evidence.window
+    if held(evidence, parts):
+        return None
+    surface = evidence.level(fluid).height
+    poses = {k: evidence.resting_pose(k) for k in parts}
+    under = sum(evidence.solid(k).volume_below(q, float(at[2]), surface) for k, (at, q) in poses.items())
+    mass = sum(evidence.world.bodies[k].mass for k in parts)
+    pushed = np.asarray(evidence.recording.contact_force[here][:, parts], dtype=np.float64) @ evidence.up
+    rising = evidence.body_qd[here][:, i, :3] @ evidence.up
+    span = float(evidence.time[here][-1] - evidence.time[here][0])
+    gained = mass * float(rising[-1] - rising[0]) / span if span > 0.0 else 0.0
+    return float((fluid.density * under - mass) * evidence.gravity + pushed.sum(axis=1).mean() - gained)

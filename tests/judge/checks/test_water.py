@@ -1,0 +1,95 @@
+"""A fluid as a whole, from particles put where they should not be."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask, only
+from wsim.judge.checks.water import CheckDraft, CheckLeak, CheckLevelSurface
+from wsim.recording.recording import FluidTrack, Recording
+from wsim.scene.world import Container, Fluid, Shape, Static, World
+
+SPACING, LEVEL, INNER, WALL = 0.02, 0.2, (0.6, 0.4, 0.5), 0.02
+WATER = "/World/water"
+
+
+def still(points, speed=0.0, frames=31):
+    """A tank of water without bodies, whose particles stay at points (N, 3)."""
+    time = np.linspace(0.0, 1.0, frames)
+    position = np.broadcast_to(points, (frames, *points.shape)).astype(np.float32)
+    velocity = np.full_like(position, speed / np.sqrt(3.0))
+    plane = Shape(prim="/World/ground/plane", kind="plane", size=())
+    size = (INNER[0], INNER[1], LEVEL)
+    world = World(
+        duration=1.0, frame_rate=30.0, bodies=[], statics=[Static(prim="/World/ground", shapes=[plane])],
+        containers=[Container(prim="/World/tank", inner_size=INNER, inner_center=(0.0, 0.0, WALL + INNER[2] / 2))],
+        fluids=[Fluid(prim=WATER, density=1000.0, viscosity=1e-3, spacing=SPACING, size=size,
+                      center=(0.0, 0.0, WALL + LEVEL / 2), container="/World/tank")],
+    )  # fmt: skip
+    track = FluidTrack(time, position, velocity, np.full(position.shape[:2], 1000.0, dtype=np.float32))
+    none = np.zeros((frames, 0, 7), np.float32), np.zeros((frames, 0, 6), np.float32), np.zeros((frames, 0, 3))
+    return Recording(Path("still"), world, {"time_step": 1e-3}, time, *none, {WATER: track}, {}, [], {})
+
+
+def lattice():
+    """Water that fills its box."""
+    start = (-INNER[0] / 2, -INNER[1] / 2, WALL)
+    axes = [low + np.arange(SPACING / 2, size, SPACING) for low, size in zip(start, (*INNER[:2], LEVEL), strict=True)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def test_water_that_lies_in_its_tank_is_sound():
+    recording = still(lattice())
+    assert only(ask(CheckLeak(), recording)).passed
+    assert [finding.passed for finding in ask(CheckLevelSurface(), recording)] == [True, True]
+
+
+@pytest.mark.parametrize("height", [-0.005, -0.3, -11.0])
+def test_one_particle_under_the_floor_is_a_leak(height):
+    """Of six thousand, under the tank and in the ground; a wall that is 2 cm thick holds none of it."""
+    points = lattice()
+    points[17] = (0.1, 0.1, height)
+    finding = only(ask(CheckLeak(), still(points)))
+    assert not finding.passed and finding.value == 1
+
+
+def test_a_splash_beside_the_tank_is_no_leak():
+    points = lattice()
+    points[17] = (1.0, 0.0, 0.005)
+    assert only(ask(CheckLeak(), still(points))).passed
+
+
+@pytest.mark.parametrize(("degrees", "sound"), [(0.5, True), (2.0, False), (5.0, False), (20.0, False)])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_surface_that_is_not_level_at_rest(degrees, sound, axis):
+    points = lattice()
+    points[:, 2] += (points[:, 2] - WALL) / LEVEL * np.tan(np.radians(degrees)) * points[:, axis]
+    tilt, _ = ask(CheckLevelSurface(), still(points))
+    assert tilt.passed is sound and tilt.value == pytest.approx(degrees, rel=0.02)
+
+
+@pytest.mark.parametrize(("stretched", "sound"), [(1.02, True), (1.1, False), (0.9, False)])
+def test_water_that_stands_higher_than_its_volume(stretched, sound):
+    points = lattice()
+    points[:, 2] = WALL + stretched * (points[:, 2] - WALL)
+    _, weight = ask(CheckLevelSurface(), still(points))
+    assert weight.passed is sound and weight.value == pytest.approx(abs(stretched - 1.0) * LEVEL, abs=1e-6)
+
+
+def test_what_still_sloshes_may_be_tilted():
+    """At 0.3 m/s waves are v sqrt(H / g) = 4 cm high."""
+    points = lattice()
+    points[:, 2] += (points[:, 2] - WALL) / LEVEL * np.tan(np.radians(5.0)) * points[:, 0]
+    assert ask(CheckLevelSurface(), still(points, speed=0.3))[0].passed
+
+
+@pytest.mark.parametrize(("raised", "sound"), [(0.0, True), (0.05, False), (-0.05, False)])
+def test_a_block_floats_by_its_own_weight(pool, raised, sound):
+    """600 kg/m^3 in water: two spacings and more too high or too low is no equilibrium, whoever asks."""
+    case = pool()
+    q = case.recording.body_q.copy()
+    q[:, 0, 2] += raised
+    found = [finding for finding in ask(CheckDraft(), replace(case.recording, body_q=q)) if "block" in finding.prim]
+    assert only(found).passed is sound
