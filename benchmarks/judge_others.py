@@ -32,6 +32,7 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.importers import read_npz
+from wsim.importers.trajectory import from_arrays
 from wsim.judge import judge
 
 SECONDS = 1.5
@@ -63,6 +64,7 @@ def main() -> None:
     parser.add_argument("--draws", type=int, default=1, help="random states of each model")
     parser.add_argument("--only", default="", help="a part of the path of the models to run")
     parser.add_argument("--without", default="", help="parts of paths not to run, with commas between")
+    parser.add_argument("--newton", action="store_true", help="and small worlds by Newton's other solvers")
     parser.add_argument("--faults", action="store_true", help="run them with faults, too")
     arguments = parser.parse_args()
     warnings.simplefilter("ignore")
@@ -73,6 +75,9 @@ def main() -> None:
         for row in judged(path, arguments.draws, arguments.faults):
             print(row.line(), flush=True)
             rows.append(row)
+    for row in newton_rows() if arguments.newton else ():
+        print(row.line(), flush=True)
+        rows.append(row)
     summarize(rows)
     sys.exit(any(row.status in ("rejected", "error") and not row.fault for row in rows))
 
@@ -102,6 +107,20 @@ def judged(path: Path, draws: int, faults: bool) -> Iterator[Row]:
                 for fault in FAULTS:
                     if fault != "gravity" or np.any(model.opt.gravity):
                         yield one(path, name, seed, controls, fault)
+
+
+def newton_rows() -> Iterator[Row]:
+    """Worlds that Newton's XPBD and Featherstone solvers run, by their velocities and by their poses alone."""
+    from judge_others_newton import runs  # it loads Newton
+
+    for name, world, arrays in runs():
+        for poses in (False, True):
+            start = time.perf_counter()
+            kept = {key: array for key, array in arrays.items() if not (poses and key == "body_qd")}
+            verdict = judge(from_arrays(kept, world))
+            failures = [f"{finding.check}: {finding.message}" for finding in verdict.failures]
+            title = f"{name}{', poses alone' if poses else ''}"
+            yield Row(title, "", verdict.status, "; ".join(failures[:1]), time.perf_counter() - start)
 
 
 def one(path: Path, name: str, seed: int, controls: bool, fault: str) -> Row:
