@@ -15,6 +15,7 @@ from wsim.agents.failures import ModelError
 from wsim.agents.models import Models, connect
 from wsim.agents.transcript import Transcript
 from wsim.errors import UserError
+from wsim.judge.language.sentence import vocabulary
 
 if TYPE_CHECKING:
     from wsim.agents.relay import Replay
@@ -142,8 +143,9 @@ def _schema(schema: dict[str, Any]) -> dict[str, Any]:
 
 @cache
 def instructions(role: str) -> str:
-    """The prompt of a role."""
-    return (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
+    """The prompt of a role; what objectives may say is from the language's own table."""
+    text = (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
+    return text.replace("{PREDICATES}", vocabulary())
 
 
 def object_in(text: str) -> dict[str, Any]:

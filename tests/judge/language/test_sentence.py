@@ -47,12 +47,18 @@ def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
         "least": numbers,
         "amplitude": st.one_of(st.none(), st.floats(0.1, 180)), "speed": st.one_of(st.none(), numbers),
         "restitution": st.one_of(st.none(), st.floats(0, 1)), "what": st.sampled_from(["energy", "momentum"]),
-        "objects": st.lists(names, max_size=3),
+        "objects": st.lists(names, min_size=kind is VOCABULARY["counts"], max_size=3), "height": numbers,
         "within": shares if kind is VOCABULARY["collides_with"] else st.one_of(st.none(), st.floats(1e-6, 180)),
     }  # fmt: skip
     if kind is SpeedBetween:
         return st.tuples(names, numbers, numbers).map(
             lambda v: SpeedBetween(object=v[0], low=min(v[1:]), high=max(v[1:]))
+        )
+    if {"low", "high", "axis"} <= set(kind.model_fields):
+        return st.tuples(names, st.sampled_from("xyz"), numbers, numbers, st.one_of(st.none(), names)).map(
+            lambda v: kind.model_validate(
+                {"object": v[0], "axis": v[1], "low": -max(v[2:4]), "high": min(v[2:4]), "of": v[4]}
+            )
         )
     chosen = {name: taken[name] for name in kind.model_fields if name != "op"}
     return st.fixed_dictionaries(chosen).map(kind.model_validate)
@@ -103,9 +109,12 @@ def test_the_three_forms_of_one_objective():
 @pytest.mark.parametrize("name", [name for name in VOCABULARY if name not in ("ordered", "conserves")])
 def test_python_calls_every_predicate_by_its_fields(name):
     kind = VOCABULARY[name]
-    samples = {"path": ((0, 0, 0), (1, 0, 0)), "axis": "x", "target": "c", "center": "c"}
+    samples = {"path": ((0, 0, 0), (1, 0, 0)), "axis": "x", "target": "c", "center": "c", "objects": ("c", "d")}
     wanted = [field for field, info in kind.model_fields.items() if info.is_required()]
-    values = [samples.get(field, 0.5 if field in ("radius", "low", "high", "at", "level") else "a") for field in wanted]
+    values = [
+        samples.get(field, 0.5 if field in ("radius", "low", "high", "at", "level", "height", "least") else "a")
+        for field in wanted
+    ]
     assert getattr(python, name)(*values) == kind(**dict(zip(wanted, values, strict=True)))
     with pytest.raises(TypeError, match="takes "):
         getattr(python, name)(*["a"] * 9)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
-from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives.registry import OBJECTIVES
+from wsim.judge.objectives.registry import check_of
 from wsim.judge.verdict import RepairTarget
 from wsim.plan.schema.formula import And, Eventually, Predicate, Then
 
@@ -186,7 +185,7 @@ def _events(evidence: Evidence) -> Iterator[tuple[str, float, str]]:
     """What comes true, as the plan asks: of which object, when [s], and in words. What always holds has no moment."""
     for objective in evidence.plan.objectives if evidence.plan is not None else []:
         formula = objective.formula
-        check = (OBJECTIVES[objective.kind] if formula is None else ObjectiveFormula)(objective)
+        check = check_of(objective)
         if formula is None and objective.kind not in EVENTS:
             continue
         found = check.run(evidence)

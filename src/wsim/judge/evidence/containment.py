@@ -50,3 +50,23 @@ def local(container: Container, points: Floats) -> Floats:
     if np.array_equal(q, [0.0, 0.0, 0.0, 1.0]):
         return shifted
     return rotate(conjugate(q), shifted)
+
+
+def pools_of(dry: Bools) -> NDArray[np.intp]:
+    """Which connected part of what is not dry each cell (m, n) is in, counted from 0; -1 where it is dry."""
+    pools = np.full(dry.shape, -1, dtype=np.intp)
+    found = 0
+    for start in np.argwhere(~dry):
+        if pools[tuple(start)] >= 0:
+            continue
+        edge = [tuple(int(x) for x in start)]
+        pools[edge[0]] = found
+        while edge:
+            x, y = edge.pop()
+            for cell in ((x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)):
+                inside = 0 <= cell[0] < dry.shape[0] and 0 <= cell[1] < dry.shape[1]
+                if inside and not dry[cell] and pools[cell] < 0:
+                    pools[cell] = found
+                    edge.append(cell)
+        found += 1
+    return pools

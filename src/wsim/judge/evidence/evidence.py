@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.judge.evidence.containment import pools_of
 from wsim.judge.evidence.joints import JointTrack, track_of
 from wsim.judge.evidence.motion import Motion
 from wsim.judge.evidence.recorded import MissingError, Recorded
@@ -101,11 +102,16 @@ class Evidence(Recorded):
     def _level_seen(
         self, fluid: Fluid, container: Container, track: FluidTrack, chosen: NDArray[np.intp], height: float
     ) -> float | None:
-        """Median over columns and frames of the highest particle, plus half a spacing, away from bodies."""
+        """Median over columns and frames of the highest particle, plus half a spacing, away from bodies.
+
+        What stands in the fluid from its floor up, as a gate does, parts it in pools, each with a level of its own:
+        then it is their mean, by area, which is what their common volume tells of.
+        """
         width = COLUMN * fluid.spacing
         half = np.array(container.inner_size) / 2
         counts = np.maximum(1, np.round(2 * half[:2] / width)).astype(int)
-        tops = []
+        pools = pools_of(self._dry(container, counts, float(track.time[chosen[-1]]), height))
+        tops: list[list[Floats]] = [[] for _ in range(int(pools.max()) + 1)]
         for frame in chosen:
             world = np.asarray(track.position[frame], dtype=np.float64)
             p = self.local(container, world)
@@ -114,21 +120,41 @@ class Evidence(Recorded):
             top = np.full(int(counts.prod()), -np.inf)
             np.maximum.at(top, cell[:, 0] * counts[1] + cell[:, 1], p[:, 2])
             open_ = np.isfinite(top) & self._open_columns(container, counts, float(track.time[frame]), height, width)
-            tops.append(top[open_])
-        found = np.concatenate(tops) if tops else np.zeros(0)
-        if len(found) == 0:
+            for k, found in enumerate(tops):
+                found.append(top[open_ & (pools.ravel() == k)])
+        levels = [np.concatenate(found) for found in tops]
+        areas = np.array([np.count_nonzero(pools == k) if len(level) else 0 for k, level in enumerate(levels)])
+        if not areas.any():
             return None
-        return float(np.median(found)) + fluid.spacing / 2 + container.inner_center[2]
+        medians = [float(np.median(level)) if len(level) else 0.0 for level in levels]
+        return float(np.average(medians, weights=areas)) + fluid.spacing / 2 + container.inner_center[2]
+
+    def _dry(self, container: Container, counts: NDArray[np.intp], time: float, height: float) -> NDArray[np.bool_]:
+        """Columns (counts[0], counts[1]) whose middle a solid fills from the floor to above the surface."""
+        frame = int(np.argmin(np.abs(self.time - time)))
+        grid = _columns(container, counts)
+        floor = -container.inner_size[2] / 2
+        depth = height - (container.inner_center[2] + floor)
+        half = max(size / n for size, n in zip(container.inner_size[:2], counts, strict=True)) / 2
+        dry = np.zeros(len(grid), dtype=bool)
+        for shape in self.placed:
+            if shape.owner == container.prim or shape.shape.kind == "plane":
+                continue
+            stands = np.ones(len(grid), dtype=bool)
+            for level in (0.1, 0.5, 0.9):
+                points = np.column_stack([grid, np.full(len(grid), floor + level * depth)])
+                at = rotate(np.array(container.rotation), points) + np.array(container.inner_center)
+                local = rotate(conjugate(shape.rotation[frame]), at - shape.position[frame])
+                stands &= shape.kind.depth(local) > -half
+            dry |= stands
+        return dry.reshape(*counts)
 
     def _open_columns(
         self, container: Container, counts: NDArray[np.intp], time: float, height: float, width: float
     ) -> NDArray[np.bool_]:
         """Columns that no body which pierces the surface stands in, (counts[0] * counts[1],)."""
         frame = int(np.argmin(np.abs(self.time - time)))
-        axes = [
-            (np.arange(n) + 0.5) / n * size - size / 2 for n, size in zip(counts, container.inner_size, strict=False)
-        ]
-        grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+        grid = _columns(container, counts)
         free = np.ones(len(grid), dtype=bool)
         for i in range(len(self.world.bodies)):
             if self.ends(i)[1][frame] < height - width or self.ends(i)[0][frame] > height + width:
@@ -139,3 +165,9 @@ class Evidence(Recorded):
             p = self.local(container, points)[:, :2]
             free &= ~np.all((grid > p.min(axis=0) - width) & (grid < p.max(axis=0) + width), axis=1)
         return free
+
+
+def _columns(container: Container, counts: NDArray[np.intp]) -> Floats:
+    """The middles of a container's columns in its own frame, (counts[0] * counts[1], 2) [m]."""
+    axes = [(np.arange(n) + 0.5) / n * size - size / 2 for n, size in zip(counts, container.inner_size, strict=False)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.judge.evidence.recorded import WINDOW, WINDOW_MOST, WINDOW_SHARE, MissingError
-from wsim.judge.language import measures_contact, measures_fluid, measures_place, measures_whole
+from wsim.judge.language import measures_contact, measures_fluid, measures_place, measures_turn, measures_whole
 from wsim.judge.language.measure import MEASURERS, Measure
 from wsim.judge.language.trace import Trace, extreme, following, pick, pick_all, span_of, until
 from wsim.plan.schema.formula import (
@@ -32,7 +32,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-PREDICATES = (measures_contact, measures_fluid, measures_place, measures_whole)  # importing them registers them
+PREDICATES = (
+    measures_contact,
+    measures_fluid,
+    measures_place,
+    measures_turn,
+    measures_whole,
+)  # importing them registers them
 
 
 @dataclass(eq=False)

@@ -64,14 +64,7 @@ def _stays_within(asked: StaysWithin, signals: Signals) -> list[Measure]:
 @measures(ContainedIn)
 def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
     prim, container = signals.prim(asked.object), signals.container(asked.ref)
-    q, solid = signals.frames(asked.object).body_q[:, 0], signals.solid(asked.object)
-    axes = rotate(np.array(container.rotation, dtype=np.float64), np.eye(3))
-    local = Evidence.local(container, q[:, :3])
-    room = []
-    for axis, half in enumerate(np.array(container.inner_size) / 2):
-        low, high = solid.reach(q[:, 3:], axes[axis])
-        room += [half - local[:, axis] - high, half + local[:, axis] + low]
-    value = signals.fold(np.min(room, axis=0))
+    solid, value = signals.solid(asked.object), room_in(signals, asked.object, asked.ref)
     tolerance = LASTING * solid.smallest if asked.within is None else asked.within
     source = f"{LASTING:g} of its smallest extent, as the check of penetration has it"
     return [
@@ -80,6 +73,18 @@ def _contained_in(asked: ContainedIn, signals: Signals) -> list[Measure]:
             source if asked.within is None else "the objective's", at_most=False,
         )
     ]  # fmt: skip
+
+
+def room_in(signals: Signals, name: str, ref: str) -> Floats:
+    """The least room between a body and the walls, the floor and the rim of a container, (W, T) [m]."""
+    container, q, solid = signals.container(ref), signals.frames(name).body_q[:, 0], signals.solid(name)
+    axes = rotate(np.array(container.rotation, dtype=np.float64), np.eye(3))
+    local = Evidence.local(container, q[:, :3])
+    room = []
+    for axis, half in enumerate(np.array(container.inner_size) / 2):
+        low, high = solid.reach(q[:, 3:], axes[axis])
+        room += [half - local[:, axis] - high, half + local[:, axis] + low]
+    return signals.fold(np.min(room, axis=0))
 
 
 @measures(StaysInside)

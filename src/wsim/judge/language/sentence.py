@@ -14,7 +14,6 @@ from wsim.plan.schema.formula import (
     VOCABULARY,
     Always,
     And,
-    Conserves,
     Eventually,
     Finally,
     Formula,
@@ -33,6 +32,7 @@ UNITS = {
     "s": {"s": 1.0, "ms": 1e-3, "min": 60.0},
     "deg": {"deg": 1.0, "rad": 57.29577951308232},
     "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6},
+    "deg/s": {"deg/s": 1.0, "rad/s": 57.29577951308232, "rev/s": 360.0},
     "1": {"": 1.0, "%": 1e-2},
 }
 
@@ -207,7 +207,7 @@ def bind(kind: type[Predicate], arguments: tuple[tuple[str | None, Any], ...]) -
     for key, value in arguments:
         numeric = isinstance(value, (int, float))
         free = [name for name in (numbers if numeric else others) if name not in bound]
-        if key is None and kind is Conserves and not numeric and "what" in bound:
+        if key is None and not numeric and "objects" in others and not set(others) - {"objects"} - set(bound):
             bound["objects"] = (*bound.get("objects", ()), value)
             continue
         field = key or (free[0] if free else None)
@@ -225,6 +225,21 @@ def unit_of(kind: type[Predicate], field: str) -> str:
     """The unit of a predicate's number; empty for what is none."""
     extra = kind.model_fields[field].json_schema_extra
     return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else ""
+
+
+def vocabulary() -> str:
+    """Every predicate as it is written, with what may be left out in brackets, and what it says: a line each."""
+    lines = []
+    for op, kind in VOCABULARY.items():
+        fields = []
+        for name, field in kind.model_fields.items():
+            if name != "op":
+                unit = unit_of(kind, name)
+                said = name if unit in ("", "1") else f"{name} {unit}"
+                fields.append(said if field.is_required() else f"[{said}]")
+        first = str(kind.__doc__).splitlines()[0]
+        lines.append(f"{op}({', '.join(fields)}): {first}")
+    return "\n".join(lines)
 
 
 # ---- printing

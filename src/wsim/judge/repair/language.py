@@ -155,6 +155,36 @@ def pushes(finding: Finding, evidence: Evidence) -> RepairTarget:
     )
 
 
+def ranged(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What a joint moves, its drive does; what is free, its start."""
+    prim, value, limit = finding.prim or "", finding.value or 0.0, finding.limit or 0.0
+    way, short = ("raise" if value < limit else "lower"), f"{abs(limit - value):.3g} {finding.unit}"
+    joint = next((j for j in evidence.world.joints if prim in (j.child, j.parent) and j.drive is not None), None)
+    if joint is not None:
+        why = f"its drive brings it {short} off: another target, or a stronger drive"
+        return RepairTarget(kind="drive", prim=joint.prim, parameter="drive", direction=way, why=why)
+    why = f"it is {short} off: it starts otherwise, or something stops it"
+    return RepairTarget(kind="physical parameter", prim=prim, parameter="velocity", direction=way, unit="m/s", why=why)
+
+
+def bounces(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """From a height h a restitution e brings it up to e^2 h: as its square root, so is the restitution off."""
+    body, value, expected = evidence.body(finding.prim or ""), finding.value or 0.0, finding.expected or 0.0
+    now = body.shapes[0].restitution if body.shapes else None
+    to = now * (expected / value) ** 0.5 if now and value > 0.0 else None
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="restitution",
+        direction="raise" if value < expected else "lower", current=now, suggested=to,
+        why="what bounces comes up to the square of its restitution of where it fell from",
+    )  # fmt: skip
+
+
+def counts(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Some are beside it, or on their way."""
+    why = "too few get into it: start them over it, or give it more room or time"
+    return RepairTarget(kind="settlement", prim=finding.prim, parameter="position", direction="change", why=why)
+
+
 def fills_to(finding: Finding, evidence: Evidence) -> RepairTarget:
     """As much fluid as the level needs: the level is as high as the volume."""
     value, expected = finding.value or 0.0, finding.expected
@@ -189,5 +219,10 @@ RULES: dict[str, Rule] = {
     "conserves": conserves,
     "collides_with": collides,
     "pushes": pushes,
+    "turned_between": ranged,
+    "spin_between": ranged,
+    "gone_between": ranged,
+    "bounces_to": bounces,
+    "counts": counts,
     "fills_to": fills_to,
 }

@@ -274,11 +274,79 @@ class StaysInside(Predicate):
     share: Positive = quantity("1", 0.01, lt=1.0)
 
 
+class _Ranged(Predicate):
+    """A number of the object, against another object if one is named, in a range; either end may be negative."""
+
+    object: Named
+    axis: Literal["x", "y", "z"]
+    low: Number
+    high: Number
+    of: Named | None = None
+    NAMES: ClassVar[tuple[str, ...]] = (*Predicate.NAMES, "of")
+
+    @model_validator(mode="after")
+    def _range(self) -> _Ranged:
+        if self.high < self.low:
+            raise ValueError(f"{self.op}: low {self.low:g} is above high {self.high:g}; swap them")
+        return self
+
+
+class TurnedBetween(_Ranged):
+    """The object has turned about an axis of the world by an angle since the start; of another: a joint's angle."""
+
+    op: Literal["turned_between"] = "turned_between"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    low: Number = quantity("deg")
+    high: Number = quantity("deg")
+
+
+class SpinBetween(_Ranged):
+    """The object turns about an axis of the world at a rate, right-handed; of another: a joint's rate."""
+
+    op: Literal["spin_between"] = "spin_between"
+    low: Number = quantity("deg/s")
+    high: Number = quantity("deg/s")
+
+
+class GoneBetween(_Ranged):
+    """The object has gone along an axis by a way since the start; of another: as seen from that."""
+
+    op: Literal["gone_between"] = "gone_between"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    low: Number = quantity("m")
+    high: Number = quantity("m")
+
+
+class BouncesTo(Predicate):
+    """After a touch of the other, the object's lowest point rises to a height over where it touched."""
+
+    op: Literal["bounces_to"] = "bounces_to"
+    alone: ClassVar[Literal["eventually"]] = "eventually"
+    object: Named
+    ref: Named
+    height: Positive = quantity("m")
+    within: Positive | None = quantity("m", None)
+
+
+class Counts(Predicate):
+    """At least so many of some objects are in a container, below its rim."""
+
+    op: Literal["counts"] = "counts"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    ref: Named
+    least: Positive = quantity("1")
+    objects: tuple[Named, ...] = Field(min_length=1, max_length=1000)
+
+    def objects_named(self) -> set[str]:
+        """The container, and what is counted."""
+        return {self.ref, *self.objects}
+
+
 _KINDS: tuple[type[Node], ...] = (
     And, Or, Not, Always, Eventually, Finally, Until, Then,
     Reaches, StaysWithin, RestsOn, SupportedBy, ContainedIn, Floats, Sinks, Submerged, Touches, NeverTouches,
     Upright, SpeedBetween, FollowsPath, Crosses, Ordered, Swings, RollsWithoutSlip, Settles, Conserves,
-    CollidesWith, Pushes, FillsTo, StaysInside,
+    CollidesWith, Pushes, FillsTo, StaysInside, TurnedBetween, SpinBetween, GoneBetween, BouncesTo, Counts,
 )  # fmt: skip
 if TYPE_CHECKING:
     Formula = Node

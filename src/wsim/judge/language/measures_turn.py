@@ -1,0 +1,118 @@
+"""Predicates about how far and how fast a body has turned or gone along an axis, by itself or against another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.judge.language.contacts import about, gap, swept_gap, touch_reach
+from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measures_place import room_in
+from wsim.plan.schema.formula import BouncesTo, Counts, GoneBetween, SpinBetween, TurnedBetween
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.language.signals import Signals
+
+    Floats = NDArray[np.float64]
+
+
+def _range(what: str, prim: str, value: Floats, low: float, high: float, unit: str) -> list[Measure]:
+    """A number between two limits."""
+    scale = max(abs(low), abs(high), 1e-9)
+    return [
+        Measure(what, prim, value, limit, unit, scale, "the objective's range", at_most=at_most)
+        for limit, at_most in ((low, False), (high, True))
+    ]
+
+
+def _turn(signals: Signals, name: str) -> Floats:
+    """Rotation since the start, in the world's axes (W, T, 4)."""
+    q = signals.q(name)[..., 3:]
+    return multiply(q, np.broadcast_to(conjugate(q[:, :1]), q.shape))
+
+
+@measures(TurnedBetween)
+def _turned(asked: TurnedBetween, signals: Signals) -> list[Measure]:
+    turn = _turn(signals, asked.object)
+    if asked.of is not None and signals.moves(asked.of):
+        turn = multiply(conjugate(_turn(signals, asked.of)), turn)
+    # The twist about the axis, of a rotation's split in a swing and a twist; counted on beyond half a turn.
+    k = "xyz".index(asked.axis)
+    value = np.degrees(np.unwrap(2.0 * np.arctan2(turn[..., k], turn[..., 3]), axis=1))
+    what = f"angle turned about {asked.axis}" + (f" against {signals.prim(asked.of)}" if asked.of else "")
+    return _range(what, signals.prim(asked.object), value, asked.low, asked.high, "deg")
+
+
+@measures(SpinBetween)
+def _spin(asked: SpinBetween, signals: Signals) -> list[Measure]:
+    w = signals.qd(asked.object)[..., 3:]
+    if asked.of is not None and signals.moves(asked.of):
+        w = w - signals.qd(asked.of)[..., 3:]
+    value = np.degrees(w[..., "xyz".index(asked.axis)])
+    what = f"rate of turning about {asked.axis}" + (f" against {signals.prim(asked.of)}" if asked.of else "")
+    return _range(what, signals.prim(asked.object), value, asked.low, asked.high, "deg/s")
+
+
+@measures(GoneBetween)
+def _gone(asked: GoneBetween, signals: Signals) -> list[Measure]:
+    place = signals.centre(asked.object)
+    if asked.of is not None and signals.moves(asked.of):
+        # As seen from the other, in the axes that it started with.
+        back = conjugate(_turn(signals, asked.of))
+        place = rotate(back, place - signals.centre(asked.of))
+    value = (place - place[:, :1])[..., "xyz".index(asked.axis)]
+    what = f"way along {asked.axis}" + (f" against {signals.prim(asked.of)}" if asked.of else "")
+    return _range(what, signals.prim(asked.object), value, asked.low, asked.high, "m")
+
+
+@measures(BouncesTo)
+def _bounces(asked: BouncesTo, signals: Signals) -> list[Measure]:
+    """The height of the flight that a frame is in over the one touch before it, (W, T); 0 before the first."""
+    prim = signals.prim(asked.object)
+    off, near = gap(signals, asked.object, asked.ref), about(swept_gap(signals, asked.object, asked.ref))
+    reach, _ = touch_reach(signals, asked.object, asked.ref)
+    touching = near <= reach
+    low = signals.ends(asked.object)[0]
+    value = np.zeros(low.shape)
+    for w in range(signals.count):
+        touches = np.flatnonzero(touching[w])
+        # A flight lies between two frames of touch that do not follow one another, and after the last.
+        for start, end in zip(touches, [*touches[1:], low.shape[1]], strict=True):
+            if end - start > 1:
+                ground = float(low[w, start] - off[w, start])
+                value[w, start + 1 : end] = max(_apex(signals, w, asked.object, int(start) + 1, int(end)) - ground, 0.0)
+    value = np.where(np.isfinite(near), value, np.nan)
+    within = asked.within or max(0.1 * asked.height, 0.02)
+    source = "the objective's" if asked.within else "a tenth of the height, at least 2 cm"
+    return [
+        Measure.about(
+            value, asked.height, within, what=f"height of the bounce off {signals.prim(asked.ref)}", prim=prim,
+            unit="m", limit_from=source,
+        )
+    ]  # fmt: skip
+
+
+def _apex(signals: Signals, w: int, name: str, start: int, end: int) -> float:
+    """The height that the lowest point reaches within frames, and between them by the speed there [m]."""
+    low = signals.ends(name)[0][w, start:end]
+    v = signals.velocity(name)[w, start:end] @ signals.up
+    rise = np.where(v > 0.0, np.minimum(v, signals.gravity * signals.step) ** 2 / (2 * max(signals.gravity, 1e-9)), 0.0)
+    top = int(np.argmax(low))
+    return float(low[top] + rise[top])
+
+
+@measures(Counts)
+def _counts(asked: Counts, signals: Signals) -> list[Measure]:
+    """How many of some objects are in a container, at each frame."""
+    inside = [room_in(signals, name, asked.ref) >= -0.05 * signals.solid(name).smallest for name in asked.objects]
+    value = np.sum(inside, axis=0).astype(np.float64)
+    return [
+        Measure(
+            f"number of {len(asked.objects)} objects in it", signals.prim(asked.ref), value, asked.least, "objects",
+            1.0, "the objective's", at_most=False,
+        )
+    ]  # fmt: skip
