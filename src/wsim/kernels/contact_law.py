@@ -275,7 +275,7 @@ def aim_again(
     left = wp.sqrt(slipped)
     change = slip[k] - before[k][0]
     slope = float(0.0)
-    if wp.abs(change) > SMALL_CHANGE:
+    if blow[k] > 0.0 and wp.abs(change) > SMALL_CHANGE:
         slope = wp.clamp((left - before[k][1]) / change, 0.0, STEEPEST)
     before[k] = wp.vec2(slip[k], left)
     slip[k] = wp.max(slip[k] + (left - slip[k]) / (1.0 - slope), 0.0)

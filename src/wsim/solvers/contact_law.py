@@ -152,7 +152,8 @@ def extrapolated(slip: Array, left: Array, before: tuple[Array, Array]) -> Array
 
     A blow's friction changes the slip that its push was asked for by: what is left goes by a / (1 + a) with the guess,
     a = mu² A_t / A_n, A what the contact yields to a push along and across, 3.5 mu² for balls. Where a contact slides
-    that is a straight line, and where it comes to stick its fixed point is none and what is left is 0.
+    that is a straight line, and where it comes to stick its fixed point is none and what is left is 0. It is for blows
+    alone, which are far apart: of many contacts that press at once, as of a cable on a post, it may diverge.
 
     Args:
         slip: Guessed, times friction [m/s], (contacts,).
@@ -343,7 +344,7 @@ class ContactLawC:
             left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
             if np.abs(left - slip).max() < config.tolerance and (k or not blow.any()):
                 return
-            slip, before = extrapolated(slip, left, before), (slip, left)
+            slip, before = np.where(blow, extrapolated(slip, left, before), left), (slip, left)
             given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc
 
