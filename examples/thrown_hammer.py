@@ -19,7 +19,7 @@ def build(scene: Scene) -> None:
         angular_velocity_deg=(0.0, 500.0, 0.0),
     )
     scene.light("sun", direction=(-0.4, 0.6, -1.0))
-    scene.camera("side", eye=(0.1, -3.2, 1.0), target=(0.1, 0.0, 0.65))
+    scene.camera("side", eye=(0.1, -3.8, 1.0), target=(0.1, 0.0, 0.7))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import pytest
 
 from wsim.scene import Scene
 from wsim.sim import Simulation
-from wsim.sim.contacts import contact_law
+from wsim.sim.contacts import surfaces_of
 
 G, R = 9.81, 0.1
 
@@ -126,9 +126,9 @@ def test_two_round_bodies_roll_by_both_radii(simulate):
         scene.box("slab", size=(1, 1, 0.1), position=(2, 0, 0), static=True)
 
     *_, simulation = simulate(build, 0.0)
-    _, law, bends = contact_law(simulation.model, simulation.world)
-    assert bends.tolist() == pytest.approx([1 / R, 1 / R, 0.0])
-    assert law[..., 2].max() == 0.05
+    surfaces = surfaces_of(simulation.model, simulation.world)
+    assert surfaces.curvature.tolist() == pytest.approx([1 / R, 1 / R, 0.0])
+    assert surfaces.law[..., 2].max() == 0.05
 
 
 def test_a_pair_has_its_own_friction(simulate):

@@ -16,6 +16,7 @@ ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law h
 SMALL_CHANGE = wp.constant(1.0e-5)  # [m/s], and
 STEEPEST = wp.constant(0.95)  # of what is left by the slip's guess, as wsim.solvers.contact_law has them
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
+vec5 = wp.types.vector(length=5, dtype=float)
 
 
 @wp.func
@@ -80,6 +81,29 @@ def bent(turn: wp.mat33, frame: wp.mat33, curvature: float, kind: int) -> float:
     if kind == CYLINDER and wp.abs(wp.dot(wp.vec3(turn[0, 2], turn[1, 2], turn[2, 2]), frame[0])) > ON_END:
         return 0.0
     return curvature
+
+
+@wp.func
+def waiting(goal: float, distance: float, speed: float, touched: bool, threshold: float, h: float) -> float:
+    """Speed of a contact of what bounces, while its own blow is not now: it lets go of what is hit elsewhere."""
+    if speed < -threshold:
+        if distance > 0.0:
+            return wp.where(touched, -LATER, wp.min(goal, 4.0 * speed))
+    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
+    elif touched and distance > -threshold * h:
+        return -LATER
+    return goal
+
+
+@wp.func
+def coefficients(pair: wp.vec3, bend: float, smallest: float) -> vec5:
+    """Of the rows of friction: two of sliding, one of spinning [m], two of rolling [m]; `bend` is 1/R1 + 1/R2 [1/m]."""
+    roll = float(0.0)
+    if pair[2] > 0.0 and bend > 0.0:
+        roll = pair[2] / bend
+    slide = wp.max(pair[0], smallest)
+    rolling = wp.max(roll, smallest)
+    return vec5(slide, slide, wp.max(wp.pi * pair[0] * roll, smallest), rolling, rolling)
 
 
 @wp.kernel(enable_backward=False)
@@ -150,7 +174,7 @@ def aim(
     settle_speed: float,
     smallest: float,
     # Data out:
-    contact_friction: wp.array(dtype=wp.types.vector(length=5, dtype=float)),
+    contact_friction: wp.array(dtype=vec5),
     target: wp.array(dtype=float),
     blow: wp.array(dtype=float),  # 1 where surfaces meet
     slip: wp.array(dtype=float),
@@ -178,30 +202,16 @@ def aim(
             smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
             goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
-        elif speed < -threshold * h:
-            if distance > 0.0:
-                goal = wp.where(touched > 0, -LATER, wp.min(goal, 4.0 * speed))
-        # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
-        elif touched > 0 and distance > -threshold * h * h:
-            goal = -LATER
+        else:
+            goal = waiting(goal, distance, speed, touched > 0, threshold * h, h)
     goal += bow[k]
     target[k] = goal
 
-    roll = float(0.0)
+    bend = float(0.0)
     if pair[2] > 0.0:
-        bend = float(0.0)
         for side in range(2):
             bend += bent(geom_turn[world, geom[side]], contact_frame[k], curvature[geom[side]], geom_kind[geom[side]])
-        if bend > 0.0:
-            roll = pair[2] / bend
-    friction = contact_friction[k]
-    for j in range(5):
-        part = pair[0]
-        if j == 2:
-            part = wp.pi * pair[0] * roll
-        elif j > 2:
-            part = roll
-        friction[j] = wp.max(part, smallest)
+    friction = coefficients(pair, bend, smallest)
     contact_friction[k] = friction
     for j in range(2, contact_dim[k] - 1):
         share = friction[j] / friction[0]
@@ -224,7 +234,7 @@ def aim_again(
     contact_world: wp.array(dtype=int),
     contact_row: wp.array2d(dtype=int),
     contact_dim: wp.array(dtype=int),
-    contact_friction: wp.array(dtype=wp.types.vector(length=5, dtype=float)),
+    contact_friction: wp.array(dtype=vec5),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
     acceleration: wp.array2d(dtype=float),
@@ -265,7 +275,7 @@ def aim_again(
     left = wp.sqrt(slipped)
     change = slip[k] - before[k][0]
     slope = float(0.0)
-    if wp.abs(change) > SMALL_CHANGE:
+    if blow[k] > 0.0 and wp.abs(change) > SMALL_CHANGE:
         slope = wp.clamp((left - before[k][1]) / change, 0.0, STEEPEST)
     before[k] = wp.vec2(slip[k], left)
     slip[k] = wp.max(slip[k] + (left - slip[k]) / (1.0 - slope), 0.0)

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.scene.contact import curvature, pair_law, within
 from wsim.scene.world import Shape, World
 from wsim.solvers.contact_law import ContactConfig
+from wsim.solvers.surfaces import Surfaces
 
 Array = np.ndarray
 
@@ -65,50 +66,45 @@ def let_roll(builder: Any, world: World) -> None:
     """Give contacts rows for spinning and rolling where a shape rolls against friction; others keep three rows."""
     if not any(shape.rolling for shape in _shapes(world).values()) and not any(pair.rolling for pair in world.contacts):
         return
-    classes, law, bends = _law([str(label) for label in builder.shape_label], world)
-    kinds = np.column_stack([classes, bends > 0.0, np.array(builder.shape_body) >= 0])
+    surfaces = _surfaces([str(label) for label in builder.shape_label], world)
+    kinds = np.column_stack([surfaces.classes, surfaces.curvature > 0.0, np.array(builder.shape_body) >= 0])
     needs = set()
     for one in {tuple(kind) for kind in kinds.tolist()}:
         for other in {tuple(kind) for kind in kinds.tolist()}:
             # Of a contact one side asks for the rows: of two that move the round one.
             asks = one[2] and (one[1] or (other[1] and not other[2]))
-            if asks and law[one[0], other[0], 2] > 0.0:
+            if asks and surfaces.law[one[0], other[0], 2] > 0.0:
                 needs.add(one)
     rows = {k: 6 for k, kind in enumerate(kinds.tolist()) if tuple(kind) in needs}
     builder.custom_attributes["mujoco:condim"].values = dict.fromkeys(range(builder.shape_count), 3) | rows
 
 
-def contact_law(model: Any, world: World) -> tuple[Array, Array, Array]:
-    """What `wsim.solvers.solver_rigid.SolverRigid` needs of the surfaces of the model's first world.
-
-    Returns:
-        The class of each shape, (shapes,), the law of two classes, (classes, classes, 3): friction, restitution and
-        rolling resistance, and the curvature of each shape's round side [1/m], (shapes,).
-    """
+def surfaces_of(model: Any, world: World) -> Surfaces:
+    """The surfaces of the shapes of the model's first world."""
     count = model.shape_count // max(1, model.world_count)
-    return _law([str(label) for label in model.shape_label[:count]], world)
+    return _surfaces([str(label) for label in model.shape_label[:count]], world)
 
 
-def _law(labels: list[str], world: World) -> tuple[Array, Array, Array]:
+def _surfaces(labels: list[str], world: World) -> Surfaces:
     moving = {shape.prim for body in world.bodies for shape in body.shapes}
     known = _shapes(world)
     named = {prim for contact in world.contacts for prim in (contact.first, contact.second)}
-    surfaces: dict[tuple[Any, ...], Shape] = {}
+    kinds: dict[tuple[Any, ...], Shape] = {}
     index: dict[tuple[Any, ...], int] = {}
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
     for k, label in enumerate(labels):
         shape = _of_label(label, known)
         owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
         key = (shape.friction, shape.restitution, shape.rolling, owners)
-        surfaces.setdefault(key, shape)
+        kinds.setdefault(key, shape)
         classes[k] = index.setdefault(key, len(index))
         bends[k] = curvature(shape, moves=shape.prim in moving)
-    law = np.zeros((len(surfaces), len(surfaces), 3))
-    for i, a in enumerate(surfaces.values()):
-        for j, b in enumerate(surfaces.values()):
+    law = np.zeros((len(kinds), len(kinds), 3))
+    for i, a in enumerate(kinds.values()):
+        for j, b in enumerate(kinds.values()):
             pair = pair_law(world, a, b)
             law[i, j] = pair.friction, pair.restitution, pair.rolling
-    return classes, law, bends
+    return Surfaces(classes, law, bends)
 
 
 def surface_velocities(model: Any, world: World) -> Array:

@@ -13,7 +13,7 @@ from newton import ShapeFlags
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
-from wsim.sim.contacts import contact_law, surface_velocities
+from wsim.sim.contacts import surface_velocities, surfaces_of
 from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
@@ -96,11 +96,11 @@ class RigidBodies:
         may_touch = _may_touch(model) or bool(world.ropes or touching) or jumps
         if touching:
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
-        law = contact_law(model, world)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + drive_count(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
-        self.solver = SolverRigid(model, *law, self.on_c, smooth, may_touch, dt, breakable, touching=touching, **sizes)
+        found = surfaces_of(model, world)
+        self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, **sizes)
         self.solver.move_surfaces(surface_velocities(model, world))
         kinds: set[Any] = set()
         if not self.on_c:

@@ -37,6 +37,7 @@ from wsim.solvers.breaking import BreakingC
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.surface_contacts import SurfaceContacts
+from wsim.solvers.surfaces import Surfaces
 
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
@@ -151,7 +152,8 @@ def extrapolated(slip: Array, left: Array, before: tuple[Array, Array]) -> Array
 
     A blow's friction changes the slip that its push was asked for by: what is left goes by a / (1 + a) with the guess,
     a = mu² A_t / A_n, A what the contact yields to a push along and across, 3.5 mu² for balls. Where a contact slides
-    that is a straight line, and where it comes to stick its fixed point is none and what is left is 0.
+    that is a straight line, and where it comes to stick its fixed point is none and what is left is 0. It is for blows
+    alone, which are far apart: of many contacts that press at once, as of a cable on a post, it may diverge.
 
     Args:
         slip: Guessed, times friction [m/s], (contacts,).
@@ -184,9 +186,7 @@ class ContactLawC:
         mujoco: The module.
         model: MuJoCo's model.
         flight: Steps the loose bodies.
-        geom_class: Class of each geom, (geoms,).
-        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
-        curvature: Of each geom's round side [1/m], (geoms,); 0 for a flat one.
+        surfaces: Of the geoms.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
@@ -199,9 +199,7 @@ class ContactLawC:
         mujoco: Any,
         model: Any,
         flight: Flight,
-        geom_class: Array,
-        law: Array,
-        curvature: Array,
+        surfaces: Surfaces,
         smooth: bool,
         config: ContactConfig,
         breaking: BreakingC | None = None,
@@ -210,10 +208,9 @@ class ContactLawC:
     ) -> None:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.geom_class, self.law, self.curvature = geom_class, law, curvature
-        self.touching, self._bow = touching, np.zeros(0)
+        self.surfaces, self.touching, self._bow = surfaces, touching, np.zeros(0)
         self.touched = 0  # steps of the first order since the last smooth one
-        self.rolls = bool(law[..., 2].any())
+        self.rolls = bool(surfaces.law[..., 2].any())
         if self.rolls:
             model.opt.tolerance = config.rolling_tolerance
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
@@ -316,7 +313,8 @@ class ContactLawC:
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
         geoms = contact.geom[chosen]
-        law = self.law[self.geom_class[geoms[:, 0]], self.geom_class[geoms[:, 1]]]
+        classes = self.surfaces.classes[geoms]
+        law = self.surfaces.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
         contact.friction[chosen] = friction
         contact.mu[chosen] = friction[:, 0]
@@ -346,7 +344,7 @@ class ContactLawC:
             left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
             if np.abs(left - slip).max() < config.tolerance and (k or not blow.any()):
                 return
-            slip, before = extrapolated(slip, left, before), (slip, left)
+            slip, before = np.where(blow, extrapolated(slip, left, before), left), (slip, left)
             given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc
 
@@ -357,7 +355,7 @@ class ContactLawC:
             axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
             leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
             on_end = self.flat_ended[geoms] & (leans > ON_END)
-            bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
+            bend = np.where(on_end, 0.0, self.surfaces.curvature[geoms]).sum(axis=1)
             np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
         return np.maximum(
             np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction

@@ -20,6 +20,7 @@ from wsim.solvers.flight import Flight
 from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
+from wsim.solvers.surfaces import Surfaces
 
 Array = np.ndarray
 ALWAYS = 2**30  # steps
@@ -41,15 +42,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
 
     Args:
         model: The Newton model.
-        classes: Class of each shape of the first world, (shapes,).
-        law: Friction, restitution and rolling resistance of two classes, (classes, classes, 3).
-        curvature: Of each shape's round side [1/m], (shapes,); 0 for a flat one.
+        surfaces: Of the shapes of the first world.
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order.
         may_touch: Whether any contact, stop or dry friction can come up.
         time_step: Of the steps to come [s].
         breakable: The joints that may break.
-        config: How the law is applied.
         touching: Finds contacts with what MuJoCo does not know.
         options: For `newton.solvers.SolverMuJoCo`.
     """
@@ -57,19 +55,16 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def __init__(
         self,
         model: Any,
-        classes: Array,
-        law: Array,
-        curvature: Array,
+        surfaces: Surfaces,
         on_c: bool,
         smooth: bool,
         may_touch: bool,
         time_step: float,
         breakable: Sequence[Breakable] = (),
-        config: ContactConfig | None = None,
         touching: SurfaceContacts | None = None,
         **options: Any,
     ) -> None:
-        self.contact_config = config or ContactConfig()
+        self.contact_config = ContactConfig()
         self._flight: Flight | None = None
         super().__init__(
             model,
@@ -82,10 +77,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             tolerance=self.contact_config.solver_tolerance if on_c else self.contact_config.solver_tolerance_warp,
             **options,
         )
-        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
-        geom_class, bends = (
-            np.where(shapes >= 0, of[np.maximum(shapes, 0) % len(of)], 0) for of in (classes, curvature)
-        )
+        of_geoms = surfaces.taken(self.mjc_geom_to_newton_shape.numpy()[0])
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
@@ -100,23 +92,20 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         driven = drive_rows(mujoco, self.mj_model)
         self._drives: Any = None
         if on_c:
-            config = self.contact_config
             drives = DrivesC(mujoco, self.mj_model, driven) if driven else None
             self._law_c = ContactLawC(
                 mujoco,
                 self.mj_model,
                 self._flight,
-                geom_class,
-                law,
-                bends,
+                of_geoms,
                 smooth,
-                config,
+                self.contact_config,
                 self.breaking,
                 touching,
                 drives,
             )
         elif may_touch or not smooth:
-            self._prepare_warp(geom_class, law, bends)
+            self._prepare_warp(of_geoms)
             with wp.ScopedDevice(model.device):
                 self._drives = DrivesWarp(self.mj_model, driven, self.mjw_data.nworld) if driven else None
         else:  # Runge and Kutta's stages take drives as MuJoCo does
@@ -190,7 +179,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
-    def _prepare_warp(self, geom_class: Array, law: Array, curvature: Array) -> None:
+    def _prepare_warp(self, surfaces: Surfaces) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
@@ -202,9 +191,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         margin = self.mjw_model.geom_margin
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
-            self._geom_class = wp.array(geom_class, dtype=int)
-            self._law = wp.array(law, dtype=wp.vec3)
-            self._curvature = wp.array(curvature, dtype=float)
+            self._geom_class = wp.array(surfaces.classes, dtype=int)
+            self._law = wp.array(surfaces.law, dtype=wp.vec3)
+            self._curvature = wp.array(surfaces.curvature, dtype=float)
             self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._blow = wp.zeros(data.naconmax, dtype=float)
