@@ -144,7 +144,7 @@ class CheckPlanPlaces(Check):
     """Each object starts where, turned as, and as fast as the plan has it."""
 
     share: float = 0.25  # of its largest extent: a program may nudge what it places, not exchange it
-    turn: float = 10.0  # [deg]
+    turn: float = 4.0  # [deg]
     speed: float = 0.05  # of the plan's speed, or of what gravity gives over its size
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
@@ -204,7 +204,8 @@ class CheckPlanLooks(Check):
     """Each object has the plan's colour, and its surface the plan's friction, restitution and rolling resistance."""
 
     color: float = 0.1  # of linear RGB, in its largest part: what is seen as another shade
-    surface: float = 0.1  # of friction or restitution
+    surface: float = 0.08  # of friction or restitution, of what the plan has, and at least
+    least: float = 0.01
     rolling: float = 0.002  # of rolling resistance, which is some thousandths of what is hard
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
@@ -218,8 +219,8 @@ class CheckPlanLooks(Check):
             return
         shape = made.shapes[0]
         wanted = (
-            ("friction", friction_of, material.friction, self.surface),
-            ("restitution", restitution_of, material.restitution, self.surface),
+            ("friction", friction_of, material.friction, max(self.surface * material.friction, self.least)),
+            ("restitution", restitution_of, material.restitution, max(self.surface * material.restitution, self.least)),
             ("rolling", rolling_of, material.rolling or 0.0, self.rolling),
         )
         for what, of, planned, limit in wanted:
