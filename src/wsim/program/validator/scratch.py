@@ -17,6 +17,13 @@ from wsim.scene import Part, Scene, SceneError
 from wsim.scene.mesh_file import APPROXIMATIONS, FORMATS
 
 _MOST_CALLS = 400
+
+
+def _level(x: float, y: float) -> float:
+    """Heights of flat ground."""
+    return 0.0 * (x + y)
+
+
 _SHAPE = {"size": (1.0, 1.0, 1.0)}
 _ROUND = {"radius": 0.1, "height": 0.2}
 _JOINT: dict[str, Any] = {"parent": None}
@@ -30,7 +37,7 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "surface_velocity": {"velocity": (1.0, 0.0, 0.0)},
     "path": {"times": (0.0, 1.0), "positions": ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))},
     "track": {"pieces": [("line", 1.0)]}, "compound": {"parts": [Part("sphere", radius=0.1)]},
-    "height_field": {"heights": [[0.0, 0.0], [0.0, 0.0]], "size": (1.0, 1.0)},
+    "height_field": {"heights": _level, "size": (1.0, 1.0)},  # a function: cells go with no other
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
     "gear": {"ratio": 1.0},
