@@ -109,6 +109,11 @@ def test_then_is_one_frame_and_a_later_one_in_its_window(rows, low, width):
     assert evaluate(formula, balls(a, b)).robustness[0] == pytest.approx(expected)
 
 
+def test_nothing_follows_the_last_frame(two_balls):
+    """What comes true there is followed by nothing, however near to its limit that always is."""
+    assert evaluate(A.then(B, (0, 1)), two_balls([-1, -1, -1, 0], [0, 0, 0, 0])).robustness[0] == pytest.approx(-1.0)
+
+
 def test_then_chains_and_wants_the_order(two_balls):
     first, second = [-1, 0.5, -1, -1, -1], [-1, -1, -1, 0.25, -1]
     assert evaluate(A.then(B), two_balls(first, second)).margin[0] == pytest.approx(0.25)

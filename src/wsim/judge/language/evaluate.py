@@ -215,7 +215,8 @@ class _Evaluation:
         time = self.signals.time
         rest = self._trace(formula.events[-1], timed=True)
         for event, window in zip(formula.events[-2::-1], formula.windows[::-1], strict=True):
-            rest = pick(self._trace(event, timed=True), following(rest, time, window), greatest=False)
+            first = self._trace(event, timed=True)
+            rest = pick(first, following(rest, time, window, first), greatest=False)
         low, high = span_of(time, len(rest), None)
         return extreme(rest, low, high, greatest=True)
 

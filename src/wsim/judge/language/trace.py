@@ -96,11 +96,11 @@ def span_of(time: Floats, n: int, window: Between | None, after: bool = False) -
     return low[:count], high[:count]
 
 
-def following(trace: Trace, time: Floats, window: Between | None) -> Trace:
+def following(trace: Trace, time: Floats, window: Between | None, event: Trace) -> Trace:
     """The greatest robustness in a window after each frame, as far as was recorded: what is to follow may still come.
 
     The window opens with the next frame at the earliest and closes with the last one. Where nothing is left of it
-    nothing follows: that is as far from holding as the trace ever is from its limit.
+    nothing follows: that is farther from holding than the trace, or the event that it follows, ever is.
     """
     n = len(trace)
     start, end = window if window is not None else (0.0, None)
@@ -109,7 +109,7 @@ def following(trace: Trace, time: Floats, window: Between | None) -> Trace:
     some = low < high
     span_of(time, n, window, after=True)  # from the first frame on it must be covered, and hold frames
     found = extreme(trace, np.where(some, low, 0), np.where(some, high, 1), greatest=True)
-    never = -np.max(np.abs(trace.robustness), axis=1, keepdims=True)
+    never = -sum(np.max(np.abs(each.robustness), axis=1, keepdims=True) for each in (trace, event))
     return Trace(np.where(some, found.robustness, never), np.where(some, found.source, trace.source[:, -1:]))
 
 
