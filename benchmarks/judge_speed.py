@@ -92,20 +92,21 @@ def theory(count: int, seconds: float, seed: int = 0) -> Trajectories:
 def plan_of(world: World, objectives: int) -> Plan:
     """A plan of the world's objects, with so many objectives."""
     wood = {"name": "wood", "density": 500.0, "friction": FRICTION}
-    names = [(b.prim.rsplit("/", 1)[-1], b.shapes[0]) for b in world.bodies]
+    names = [(b.prim.rsplit("/", 1)[-1], b.shapes[0], b.velocity) for b in world.bodies]
     things: list[dict[str, Any]] = [
         {
             "name": name,
             "role": "rigid_body",
             "state": "dynamic",
             "material": wood,
+            "velocity": list(velocity),
             "construction": {"kind": "proxy", "primitive": shape.kind, "size": list(shape.size)},
         }
-        for name, shape in names
+        for name, shape, velocity in names
     ]
     ground: dict[str, Any] = {"name": "ground", "role": "terrain", "state": "static"}
     ground["construction"] = {"kind": "proxy", "primitive": "ground"}
-    standing = [name for name, _ in names if not name.startswith("stands_on")]
+    standing = [name for name, _, _ in names if not name.startswith("stands_on")]
     asked = [
         {"kind": kind, "object": name, **({"ref": "ground"} if kind == "rests_on" else {})}
         for name in standing

@@ -46,6 +46,8 @@ def blows(evidence: Evidence) -> list[Blow]:
     """All of a recording that stand alone."""
     motion = evidence.motion
     changed = np.linalg.norm(motion.acceleration - motion.gravity, axis=2) * motion.h[:, None] > LEAST
+    # What lies still is pushed as well, and changes nothing: of a pair that meets one changes by half of it at least.
+    changed &= np.linalg.norm(np.diff(motion.v, axis=0), axis=2) > 0.5 * LEAST
     changed &= ~motion.jointed & ~motion.kinematic
     if not changed.any():
         return []
