@@ -124,7 +124,12 @@ def _shapes(world: World) -> dict[str, Shape]:
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:
-    """The stage's shape behind one of the model's, which may be a part of it (a mesh in convex pieces)."""
+    """The stage's shape behind one of the model's, which may be a part of it (a mesh in convex pieces).
+
+    Newton keeps a mesh beside the hull that collides for it, as a shape to look at.
+    """
+    if label not in known:
+        label = label.removesuffix("_visual")
     while label not in known and "/" in label:
         label = label.rsplit("/", 1)[0]
     return known[label]
