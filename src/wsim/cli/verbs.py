@@ -18,6 +18,7 @@ VERBS = {
     "plan": "Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two "
     "drawings.",
     "run": "Run a program: build its stage in the sandbox, simulate it, and judge it.",
+    "sweep": "Run many candidates of a program, judge each, and rank them: by verdict, then by the room to the limit.",
     "judge": "Judge a recording: the checks that hold for any world, and the plan's objectives.",
     "tool": "Call one of the tools that agents work with, or list them; `wsim tool NAME` alone shows what one takes.",
     "view": "Open a recording in Rerun's viewer; with no display, print the command to use elsewhere.",

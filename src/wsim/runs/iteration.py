@@ -148,7 +148,9 @@ class Iteration:
             ControlError: If the program's own `control` fails.
         """
         pictures = self.settings.pictures
-        with open_simulation(self.stage, self.program, self.settings, self.progress) as simulation:
+        with open_simulation(
+            self.stage, self.program, self.settings, self.progress, (self.settings.seed,)
+        ) as simulation:
             return simulation.run(
                 self.recording,
                 video=self.folder / "video.mp4" if pictures else None,

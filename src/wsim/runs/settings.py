@@ -18,6 +18,7 @@ class Settings:
     isolation: str = "auto"
     pictures: bool = True
     time_step: float | None = None  # [s]
+    seed: int = 0  # of `wsim.sim.perturb`; 0: as the stage states
     verify: bool = False  # an accepted world is run again, computed more finely
     build_timeout: float = 30.0  # [s]
     build_memory: int = 4 * 2**30  # [bytes]

@@ -1,0 +1,154 @@
+"""`wsim sweep`: candidates of a program, run and judged side by side, in one table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, get_args
+
+import typer
+from rich.table import Table
+from rich.text import Text
+
+from wsim import sim
+from wsim.cli.options import Isolation, Runs, TimeStep
+from wsim.cli.run import find_program
+from wsim.cli.show import STATUS_STYLE, ConsoleProgress, console
+from wsim.errors import UserError
+from wsim.plan.store import load
+from wsim.program.sandbox.isolation import choose
+from wsim.sweep.again import run_again, telling
+from wsim.sweep.axis import Axis
+from wsim.sweep.candidate import Outcome
+from wsim.sweep.declared import axes_of, check, parameters_of
+from wsim.sweep.folder import SweepFolder
+from wsim.sweep.picture import draw
+from wsim.sweep.sampling import Method, Point, read_points
+from wsim.sweep.spec import Spec
+from wsim.sweep.sweep import sweep as run_sweep
+from wsim.sweep.table import parameters
+
+SHOWN = 12  # rows
+
+
+def sweep(
+    targets: Annotated[
+        list[Path] | None, typer.Argument(metavar="PROGRAM...", help="Programs, or the folder of a run.")
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option("--vary", metavar="NAME=LOW:HIGH", help="What differs; also NAME=log:LOW:HIGH and NAME=A,B,C."),
+    ] = None,
+    points: Annotated[
+        Path | None, typer.Option("--points", metavar="FILE.csv", help="Values: a line of names, a line a candidate.")
+    ] = None,
+    method: Annotated[
+        str, typer.Option("--method", help="How values are drawn: sobol, latin, random or grid.")
+    ] = "sobol",
+    samples: Annotated[int, typer.Option("--samples", "-n", min=1, max=1_000_000, help="How many are drawn.")] = 16,
+    repeats: Annotated[
+        int, typer.Option("--repeats", min=1, max=10_000, help="Worlds for each, set up a hair's breadth differently.")
+    ] = 1,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the draw.")] = 0,
+    plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
+    device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …")] = "cpu",
+    time_step: TimeStep = None,
+    workers: Annotated[int, typer.Option("--workers", min=0, help="Processes; 0: one for each core.")] = 0,
+    patience: Annotated[
+        float, typer.Option("--patience", min=1.0, help="Seconds after which a candidate is given up.")
+    ] = 600.0,
+    full: Annotated[
+        bool, typer.Option("--full/--no-full", help="Run the best, the worst and those at the limit again, in full.")
+    ] = True,
+    resume: Annotated[
+        Path | None, typer.Option("--resume", metavar="FOLDER", help="A sweep that was stopped: finish the rest.")
+    ] = None,
+    runs: Runs = Path("runs"),
+    isolation: Isolation = "auto",
+) -> None:
+    """Run many candidates of a program, judge each, and rank them: by verdict, then by the room to the limit.
+
+    Without --vary, every scene.param that states a range is varied. Ctrl-C keeps what is done.
+    Exit code: 0 if a candidate is accepted, 1 if none is, 2 for a mistake in what was given.
+    """
+    if resume:
+        if targets or vary or points:
+            raise UserError(
+                "--resume goes on with a sweep as it was asked for; leave programs, --vary and --points out"
+            )
+        folder = SweepFolder.open(resume)
+    else:
+        if method not in get_args(Method):
+            raise UserError(f"--method {method}: expected sobol, latin, random or grid")
+        choose(isolation)
+        if device != "cpu":
+            sim.pick_device(device)
+        spec = Spec(
+            method=method,
+            samples=samples,
+            repeats=repeats,
+            seed=seed,
+            device=device,
+            time_step=time_step,
+            isolation=isolation,
+            patience=patience,
+        )
+        folder = _ask(spec, targets or [], vary or [], points, plan, runs)
+    try:
+        with ConsoleProgress() as progress:
+            outcomes = run_sweep(folder, workers, progress)
+            if full:
+                for outcome in telling(outcomes):
+                    run_again(folder, outcome, progress=progress)
+    except KeyboardInterrupt:
+        console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
+        raise typer.Exit(130) from None
+    picture = draw(outcomes, folder.path)
+    _show(outcomes)
+    for path in [folder.path / "table.parquet", *([picture] if picture else [])]:
+        console.print(f"{path.stem}: {path}", soft_wrap=True)
+    raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+
+
+def _ask(
+    spec: Spec, targets: list[Path], vary: list[str], points: Path | None, plan: Path | None, runs: Path
+) -> SweepFolder:
+    """The folder of a new sweep, whose axes every program has."""
+    if not targets:
+        raise UserError("name a program.py or the folder of a run, or a sweep with --resume")
+    found = [find_program(target, plan) for target in targets]
+    programs, plans = [program for program, _ in found], {own for _, own in found if own is not None}
+    if len(plans) > 1:
+        raise UserError("the runs have different plans; give the one to judge by with --plan")
+    if points and vary:
+        raise UserError("--points gives the values; leave --vary out")
+    given: list[Point] = read_points(points) if points else []
+    axes = [Axis.parse(text) for text in vary]
+    for program in programs:
+        if given:
+            known = {parameter.name: parameter for parameter in parameters_of(program, spec.isolation)}
+            for name in given[0]:
+                check(name, [point[name] for point in given], known, f"--points {points}")
+        else:
+            axes = axes_of(program, axes, spec.isolation)
+    chosen = load(plans.pop()) if plans else None
+    asked = spec.model_copy(update={"axes": axes, "points": given})
+    text = chosen.model_dump_json(indent=2) + "\n" if chosen else None
+    return SweepFolder.create(runs, chosen.title if chosen else programs[0].stem, asked, programs, text)
+
+
+def _show(outcomes: list[Outcome]) -> None:
+    """The first rows of the table, and how many there are of each status."""
+    names = parameters(outcomes)
+    table = Table(show_edge=False, pad_edge=False)
+    for column in ("rank", "candidate", *names, "status", "slack", "decided by", "s"):
+        table.add_column(column, overflow="fold")
+    for rank, outcome in enumerate(outcomes[:SHOWN], start=1):
+        values = [outcome.candidate.params.get(name) for name in names]
+        numbers = ["as it stands" if value is None else f"{value:.4g}" for value in values]
+        slack = "" if outcome.slack is None else f"{outcome.slack:+.3f}"
+        cells = [str(rank), str(outcome.candidate.number), *numbers]
+        row = [*map(Text, cells), Text(outcome.status, style=STATUS_STYLE.get(outcome.status, "bold magenta"))]
+        table.add_row(*row, Text(slack), Text(outcome.decided_by or outcome.reason), Text(f"{outcome.seconds:.1f}"))
+    console.print(table)
+    counts = {status: sum(o.status == status for o in outcomes) for status in {o.status: 0 for o in outcomes}}
+    console.print(", ".join(f"{count} {status}" for status, count in counts.items()) + f" of {len(outcomes)}")

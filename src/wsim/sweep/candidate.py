@@ -1,0 +1,106 @@
+"""A candidate, and what came of it."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from wsim.judge.verdict import Finding, Verdict
+
+Status = Literal["accepted", "rejected", "blocked", "failed"]
+ORDER: tuple[Status, ...] = ("accepted", "rejected", "blocked", "failed")  # the best first
+
+
+class Candidate(BaseModel):
+    """One world of a sweep.
+
+    Attributes:
+        number: Its own, from 0: the program as it stands.
+        params: Values of `scene.param`; the others keep their defaults.
+        seed: Of `wsim.sim.perturb`; 0 starts as the stage states.
+        program: The file in the sweep's folder.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    number: int
+    params: dict[str, float] = Field(default_factory=dict)
+    seed: int = 0
+    program: str = "program.py"
+
+
+class Outcome(BaseModel):
+    """What came of a candidate.
+
+    Attributes:
+        candidate: It.
+        status: The verdict's; "failed" where there is none, for a reason that is not the world's.
+        reason: The verdict's summary, or why there is none.
+        slack: The least distance of an objective to its limit as a share of both, in (-1, 1); negative: it, or another
+            finding, fails. None where nothing was asked and nothing failed.
+        decided_by: The finding of that slack: its objective's sentence, or its check's name.
+        margins: By objective, the distance to its limit in its unit; positive: satisfied.
+        values: By objective, what was measured.
+        failures: What did not pass.
+        seconds: What it took [s].
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    candidate: Candidate
+    status: Status
+    reason: str = ""
+    slack: float | None = None
+    decided_by: str = ""
+    margins: dict[str, float] = Field(default_factory=dict)
+    values: dict[str, float] = Field(default_factory=dict)
+    failures: list[str] = Field(default_factory=list)
+    seconds: float = 0.0
+
+    @property
+    def rank(self) -> tuple[int, float, int]:
+        """Smaller is better: by status, then the most room, then the first drawn."""
+        return (ORDER.index(self.status), -(0.0 if self.slack is None else self.slack), self.candidate.number)
+
+    @classmethod
+    def of(cls, candidate: Candidate, verdict: Verdict, seconds: float) -> Outcome:
+        """What a verdict says of a candidate.
+
+        What was asked decides how near it came; where something else failed, that does too. The room that other
+        checks had left says how a world was computed, not how well it does.
+        """
+        asked = [finding for finding in verdict.findings if finding.objective]
+        decisive = [*asked, *(finding for finding in verdict.failures if not finding.objective)]
+        tightest = min(decisive, key=slack, default=None)
+        nearest = {name(finding): finding for finding in sorted(asked, key=slack, reverse=True)}  # the tightest of each
+        return cls(
+            candidate=candidate,
+            status=verdict.status,
+            reason=verdict.summary,
+            slack=None if tightest is None else slack(tightest),
+            decided_by="" if tightest is None else name(tightest),
+            margins={key: finding.margin for key, finding in nearest.items() if finding.margin is not None},
+            values={key: finding.value for key, finding in nearest.items() if finding.value is not None},
+            failures=list(dict.fromkeys(map(name, verdict.failures))),
+            seconds=round(seconds, 3),
+        )
+
+
+def name(finding: Finding) -> str:
+    """What a finding is called in a table."""
+    return finding.objective or finding.check
+
+
+def slack(finding: Finding) -> float:
+    """How far a finding is from its limit, m, as a share m / (|m| + s) with s the greater of limit and expected value.
+
+    Margins have units and cannot be compared; this one is without, grows with each of them, and changes sign with them.
+    1 and -1 where there are no numbers.
+    """
+    sign = 1.0 if finding.passed else -1.0
+    if finding.margin is None:
+        return sign
+    scale = max(abs(finding.limit or 0.0), abs(finding.expected or 0.0))
+    size = abs(finding.margin)
+    return sign * size / (size + scale) if size + scale > 0.0 else 0.0

@@ -1,0 +1,90 @@
+"""Candidates' parameters: points of the space that the axes span."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from scipy.stats import qmc
+
+from wsim.errors import UserError
+from wsim.sweep.axis import Axis
+
+Method = Literal["sobol", "latin", "random", "grid"]
+Point = dict[str, float]
+
+
+def sample(axes: Sequence[Axis], method: Method, count: int, seed: int = 0) -> list[Point]:
+    """Points of the space.
+
+    Sobol' numbers are scrambled (Owen 1998, "Scrambling Sobol' and Niederreiter-Xing points"), Latin hypercubes
+    as McKay, Beckman and Conover (1979) draw them. Both fill the space more evenly than random points do.
+
+    Args:
+        axes: At least one.
+        method: A grid has as many values along each axis as make `count` points in all, or the axis' own list; the
+            number of its points is then that of their product.
+        count: How many.
+        seed: Of the draw; the same points for the same seed.
+    """
+    if method == "grid":
+        free = sum(not axis.values for axis in axes)
+        listed = math.prod(len(axis.values) or 1 for axis in axes)
+        # A hair is added so that the cube root of 27 is 3.
+        along = max(2, math.floor((count / listed) ** (1.0 / free) + 1e-9)) if free else 1
+        columns = [axis.spread(along) for axis in axes]
+        points = np.array(list(itertools.product(*columns)))
+    else:
+        shares = _shares(method, len(axes), count, seed)
+        points = np.stack([axis.at(column) for axis, column in zip(axes, shares.T, strict=True)], axis=1)
+    return [dict(zip((axis.name for axis in axes), map(float, point), strict=True)) for point in points]
+
+
+def _shares(method: Method, dimensions: int, count: int, seed: int) -> np.ndarray:
+    if method == "sobol":
+        # Balanced in powers of two; the first of them are as even as can be.
+        drawn = qmc.Sobol(dimensions, rng=seed).random_base2(max(0, math.ceil(math.log2(count))))
+        return np.asarray(drawn[:count])
+    if method == "latin":
+        return np.asarray(qmc.LatinHypercube(dimensions, rng=seed).random(count))
+    return np.random.default_rng(seed).random((count, dimensions))
+
+
+def read_points(path: Path) -> list[Point]:
+    """Points from a CSV file: a line of parameters' names, then a line of numbers for each candidate.
+
+    Raises:
+        UserError: Naming file, line and column of what is wrong.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.reader(file))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise UserError(f"--points {path}: {error}; give a CSV file with a line of names") from error
+    rows = [row for row in rows if any(cell.strip() for cell in row)]
+    if len(rows) < 2:
+        raise UserError(f"--points {path}: no candidates; give a line of names, then a line of numbers for each")
+    names = [name.strip() for name in rows[0]]
+    odd = [name for name in names if not name.isidentifier() or names.count(name) > 1]
+    if odd:
+        raise UserError(f"--points {path}, line 1: {odd[0]!r} is no name of a parameter, or is there twice")
+    return [_point(path, line, names, row) for line, row in enumerate(rows[1:], start=2)]
+
+
+def _point(path: Path, line: int, names: list[str], row: list[str]) -> Point:
+    if len(row) != len(names):
+        raise UserError(f"--points {path}, line {line}: {len(row)} numbers for {len(names)} names")
+    point = {}
+    for name, cell in zip(names, row, strict=True):
+        try:
+            point[name] = float(cell)
+        except ValueError:
+            point[name] = math.nan
+        if not math.isfinite(point[name]):
+            raise UserError(f"--points {path}, line {line}: {name} is {cell!r}; it must be a finite number")
+    return point
