@@ -14,6 +14,7 @@ from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.runs.folder import RunFolder
+from wsim.runs.named import named
 
 
 def judge(
@@ -57,6 +58,7 @@ def find_recording(target: Path) -> tuple[Path, Path | None]:
     Raises:
         UserError: If there is no recording.
     """
+    target = named(target)
     if target.suffix in (".rrd", ".npz"):
         if not target.is_file():
             raise UserError(f"{target} does not exist")

@@ -14,6 +14,7 @@ from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.runs.folder import RunFolder, write_whole
+from wsim.runs.named import named
 from wsim.runs.settings import Settings
 
 
@@ -68,6 +69,7 @@ def find_program(target: Path, plan: Path | None) -> tuple[Path, Path | None]:
     Raises:
         UserError: If there is no program.
     """
+    target = named(target)
     if target.is_dir():
         run = RunFolder.open(target)
         own = run.path / "plan.json"

@@ -72,7 +72,7 @@ def _folder(chosen: Tool, run: Path | None) -> RunFolder:
     if not chosen.needs_run:
         return RunFolder(run or Path())
     if run is None:
-        raise UserError(f"{chosen.name} works on a run: give its folder with --run; `ls runs` shows them")
+        raise UserError(f"{chosen.name} works on a run: give its folder with --run; `wsim runs` lists them")
     run = run.resolve()  # answers name no folder of this machine, which a bare word would not be seen to be
     if chosen.writes and not run.exists():
         run.mkdir(parents=True)

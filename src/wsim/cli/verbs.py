@@ -21,6 +21,7 @@ VERBS = {
     "sweep": "Run many candidates of a program, judge each, and rank them: by verdict, then by the room to the limit.",
     "judge": "Judge a recording: the checks that hold for any world, and the plan's objectives.",
     "tool": "Call one of the tools that agents work with, or list them; `wsim tool NAME` alone shows what one takes.",
+    "runs": "List runs and sweeps, the newest first, with their verdicts.",
     "view": "Open a recording in Rerun's viewer; with no display, print the command to use elsewhere.",
     "mcp": "Serve wsim's tools to a coding agent, which starts this command and speaks over its stdin and stdout.",
     "doctor": "List devices, versions, isolation and the models configured. Exit code 1 if wsim cannot run here.",

@@ -12,6 +12,7 @@ from typing import Any
 
 from wsim.errors import UserError
 from wsim.program.patch import diff
+from wsim.runs.named import named
 
 SLUG_LENGTH = 40
 
@@ -80,9 +81,9 @@ class RunFolder:
         Raises:
             UserError: If there is no run there.
         """
-        start = Path(path)
+        start = named(Path(path))
         if not start.exists():
-            raise UserError(f"{path} does not exist; `ls runs` shows the runs of this folder")
+            raise UserError(f"{path} does not exist; `wsim runs` lists the runs of this folder")
         for folder in (start, *start.resolve().parents):
             if (folder / "run.json").is_file() or (folder / "iterations").is_dir():
                 return cls(folder)

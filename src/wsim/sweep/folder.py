@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from wsim.errors import UserError
 from wsim.runs.folder import RunFolder, write_whole
+from wsim.runs.named import named
 from wsim.sweep.candidate import Outcome
 from wsim.sweep.spec import Spec
 
@@ -59,9 +60,10 @@ class SweepFolder:
         Raises:
             UserError: If there is none.
         """
-        if not (Path(path) / "sweep.json").is_file():
-            raise UserError(f"{path} is no sweep's folder (it has no sweep.json)")
-        return cls(path)
+        found = named(Path(path))
+        if not (found / "sweep.json").is_file():
+            raise UserError(f"{path} is no sweep's folder (it has no sweep.json); `wsim runs` lists them")
+        return cls(found)
 
     @property
     def spec(self) -> Spec:
