@@ -63,14 +63,13 @@ def _run(path: Path) -> dict[str, Any]:
 
 def _sweep(path: Path) -> dict[str, Any]:
     folder = SweepFolder(path)
-    outcomes, asked = folder.outcomes().values(), len(folder.spec.candidates())
+    outcomes, asked = folder.outcomes().values(), folder.spec.count
     counts = {status: sum(o.status == status for o in outcomes) for status in {o.status: 0 for o in outcomes}}
-    whole = len(outcomes) == asked
     return {
         "run": path.name,
         "what": "sweep",
         "tried": len(outcomes),
-        "status": ("accepted" if counts.get("accepted") else "rejected") if whole else "unfinished",
+        "status": ("accepted" if counts.get("accepted") else "rejected") if folder.finished else "unfinished",
         "seconds": round(sum(o.seconds for o in outcomes), 1),
         "summary": ", ".join(f"{n} {status}" for status, n in counts.items()) + f" of {asked}",
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated, get_args
 
@@ -42,7 +43,7 @@ def sweep(
         Path | None, typer.Option("--points", metavar="FILE.csv", help="Values: a line of names, a line a candidate.")
     ] = None,
     method: Annotated[
-        str, typer.Option("--method", help="How values are drawn: sobol, latin, random or grid.")
+        str, typer.Option("--method", help="How values are drawn: sobol, latin, random, grid; cma searches.")
     ] = "sobol",
     samples: Annotated[int, typer.Option("--samples", "-n", min=1, max=1_000_000, help="How many are drawn.")] = 16,
     repeats: Annotated[
@@ -78,7 +79,7 @@ def sweep(
         folder = SweepFolder.open(resume)
     else:
         if method not in get_args(Method):
-            raise UserError(f"--method {method}: expected sobol, latin, random or grid")
+            raise UserError(f"--method {method}: expected sobol, latin, random, grid or cma")
         choose(isolation)
         if device != "cpu":
             sim.pick_device(device)
@@ -91,6 +92,7 @@ def sweep(
             time_step=time_step,
             isolation=isolation,
             patience=patience,
+            batch=max(1, (workers or len(os.sched_getaffinity(0))) // max(1, len(targets or []) * repeats)),
         )
         folder = _ask(spec, targets or [], vary or [], points, plan, runs)
     try:

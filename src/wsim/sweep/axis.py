@@ -24,6 +24,7 @@ class Axis(BaseModel):
         low: Least value.
         high: Greatest value.
         scale: How values are spread between them: evenly, or evenly in their logarithm.
+        start: Where a search begins; None: in the middle.
         values: The only values that it takes, if there are any; `low` and `high` are then theirs.
     """
 
@@ -33,6 +34,7 @@ class Axis(BaseModel):
     low: float = Field(allow_inf_nan=False)
     high: float = Field(allow_inf_nan=False)
     scale: Literal["linear", "log"] = "linear"
+    start: float | None = Field(default=None, allow_inf_nan=False)
     values: tuple[float, ...] = ()
 
     @model_validator(mode="after")
@@ -71,6 +73,16 @@ class Axis(BaseModel):
         if self.scale == "log":
             return np.exp(math.log(self.low) + share * math.log(self.high / self.low))
         return self.low + share * (self.high - self.low)
+
+    def share(self, value: float) -> float:
+        """Where a value is in the range, in [0, 1]: the inverse of `at`, or the middle of the nearest value's part."""
+        if self.values:
+            nearest = int(np.abs(np.asarray(self.values) - value).argmin())
+            return (nearest + 0.5) / len(self.values)
+        low, high, at = self.low, self.high, min(max(value, self.low), self.high)
+        if self.scale == "log":
+            low, high, at = math.log(low), math.log(high), math.log(at)
+        return (at - low) / (high - low)
 
     def spread(self, count: int) -> NDArray[np.float64]:
         """Values from end to end: those of the list, or `count` of the range."""

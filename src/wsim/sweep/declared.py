@@ -45,7 +45,8 @@ def axes_of(program: Path, given: Sequence[Axis], isolation: str = "auto") -> li
     if not axes:
         named = f"it has {', '.join(known)}" if known else "it has no scene.param"
         raise UserError(f"{program}: no parameter states a range ({named}); give one with --vary NAME=LOW:HIGH")
-    return axes
+    # A search begins at the program as it stands.
+    return [axis.model_copy(update={"start": known[axis.name].value}) for axis in axes]
 
 
 def check(name: str, values: Sequence[float], known: dict[str, Parameter], where: str) -> None:

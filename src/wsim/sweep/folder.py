@@ -1,20 +1,21 @@
 """The folder of a sweep: what was asked, what is done, the table.
 
 runs/<time>-sweep-<name>/
-  sweep.json  program.py …  plan.json  outcomes.jsonl  table.parquet  table.csv  margins.png
+  sweep.json  program.py …  plan.json  outcomes.jsonl  summary.json  table.parquet  table.csv  margins.png
   candidates/0007/     the run of candidate 7, as `wsim run` leaves it
 """
 
 from __future__ import annotations
 
 import shutil
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
 from pydantic import ValidationError
 
 from wsim.errors import UserError
-from wsim.runs.folder import RunFolder, write_whole
+from wsim.runs.folder import RunFolder, write_json, write_whole
 from wsim.runs.named import named
 from wsim.sweep.candidate import Outcome
 from wsim.sweep.spec import Spec
@@ -96,6 +97,17 @@ class SweepFolder:
         cut = path.is_file() and path.stat().st_size and not path.read_bytes().endswith(b"\n")
         with path.open("a", encoding="utf-8") as file:
             file.write(("\n" if cut else "") + outcome.model_dump_json() + "\n")
+
+    def finish(self, best_first: Sequence[Outcome]) -> None:
+        """Say in summary.json that all is done, how many came out how, and which is the best."""
+        counts = Counter(outcome.status for outcome in best_first)
+        best = best_first[0].model_dump(mode="json") if best_first else None
+        write_json(self.path / "summary.json", {"counts": dict(counts), "best": best})
+
+    @property
+    def finished(self) -> bool:
+        """Whether nothing is left to run."""
+        return (self.path / "summary.json").is_file()
 
     def run_of(self, number: int) -> RunFolder:
         """The folder of a candidate that is run in full; an older one goes."""

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 from wsim.errors import UserError
 from wsim.sweep.axis import Axis
 
-Method = Literal["sobol", "latin", "random", "grid"]
+Method = Literal["sobol", "latin", "random", "grid", "cma"]
 Point = dict[str, float]
 
 
@@ -31,7 +31,12 @@ def sample(axes: Sequence[Axis], method: Method, count: int, seed: int = 0) -> l
             number of its points is then that of their product.
         count: How many.
         seed: Of the draw; the same points for the same seed.
+
+    Raises:
+        ValueError: If the method draws from what it is told: that is `wsim.sweep.search`'s.
     """
+    if method == "cma":
+        raise ValueError("method: cma asks for points batch by batch; use wsim.sweep.search.Search")
     if method == "grid":
         free = sum(not axis.values for axis in axes)
         listed = math.prod(len(axis.values) or 1 for axis in axes)

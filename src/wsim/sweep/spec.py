@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Sequence
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Candidate
-from wsim.sweep.sampling import Point, sample
+from wsim.sweep.sampling import Method, Point, sample
 
 
 class Spec(BaseModel):
@@ -18,13 +18,14 @@ class Spec(BaseModel):
         programs: Files in the sweep's folder; each is run with each point.
         axes: What candidates differ in.
         points: Points that were given instead of drawn.
-        method: How points are drawn.
-        samples: How many points are drawn.
+        method: How points are drawn; "cma" searches for the one with the most room to the limit.
+        samples: How many points are drawn; of a search, at most about as many.
         seed: Of the draw.
         repeats: Worlds for each point: the first as the stage states it, the others each with a seed.
         device: Where worlds are run.
         time_step: Upper bound of the step [s]; None: chosen.
         isolation: Of the programs.
+        batch: The least number of points of a search that run side by side.
         patience: Seconds after which a candidate is given up [s].
     """
 
@@ -33,25 +34,45 @@ class Spec(BaseModel):
     programs: list[str] = Field(default=["program.py"], min_length=1)
     axes: list[Axis] = Field(default_factory=list)
     points: list[Point] = Field(default_factory=list)
-    method: Literal["sobol", "latin", "random", "grid"] = "sobol"
+    method: Method = "sobol"
     samples: int = Field(default=16, ge=1, le=1_000_000)
     seed: int = Field(default=0, ge=0)
     repeats: int = Field(default=1, ge=1, le=10_000)
     device: str = "cpu"
     time_step: float | None = None
     isolation: str = "auto"
+    batch: int = Field(default=1, ge=1, le=100_000)
     patience: float = Field(default=600.0, gt=0.0)
+
+    @property
+    def count(self) -> int:
+        """Candidates in all; of a search, at most about as many."""
+        return (1 + self._points) * self.each
+
+    @property
+    def each(self) -> int:
+        """Candidates for each point."""
+        return len(self.programs) * self.repeats
+
+    @property
+    def _points(self) -> int:
+        if self.points or self.method == "grid":
+            return len(self._drawn())
+        return self.samples if self.axes else 0
 
     def candidates(self) -> list[Candidate]:
         """All worlds: every program as it stands, then with each point, in the order in which they are drawn."""
-        drawn = self.points or (sample(self.axes, self.method, self.samples, self.seed) if self.axes else [])
+        return self.of([{}, *self._drawn()], 0)
+
+    def of(self, points: Sequence[Point], first: int) -> list[Candidate]:
+        """Every program with each of some points; they are numbered from `first`."""
         cases = [
-            (program, point, seed)
-            for point in [{}, *drawn]
-            for program in self.programs
-            for seed in range(self.repeats)
+            (point, program, seed) for point in points for program in self.programs for seed in range(self.repeats)
         ]
         return [
             Candidate(number=number, params=point, seed=seed, program=program)
-            for number, (program, point, seed) in enumerate(cases)
+            for number, (point, program, seed) in enumerate(cases, start=first)
         ]
+
+    def _drawn(self) -> list[Point]:
+        return self.points or (sample(self.axes, self.method, self.samples, self.seed) if self.axes else [])

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from wsim.progress import Progress, silent
 from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.pool import Lost, Pool
+from wsim.sweep.search import Search
 from wsim.sweep.table import ranked, write
 from wsim.sweep.work import Job, work
 
 if TYPE_CHECKING:
     from wsim.sweep.folder import SweepFolder
+    from wsim.sweep.spec import Spec
 
 
 def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) -> list[Outcome]:
@@ -27,19 +29,44 @@ def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) ->
     Returns:
         All outcomes, the best first.
     """
-    done = folder.outcomes()
-    candidates = folder.spec.candidates()
-    left = [candidate for candidate in candidates if candidate.number not in done]
-    progress("candidates", len(done), len(candidates))
+    done, spec = folder.outcomes(), folder.spec
+    progress("candidates", len(done), spec.count)
     try:
-        for outcome in run(left, folder, workers):
-            folder.add(outcome)
-            done[outcome.candidate.number] = outcome
-            progress("candidates", len(done), len(candidates))
+        for batch in batches(spec, done):
+            left = [candidate for candidate in batch if candidate.number not in done]
+            for outcome in run(left, folder, workers):
+                folder.add(outcome)
+                done[outcome.candidate.number] = outcome
+                progress("candidates", min(len(done), spec.count), spec.count)
     finally:
         if done:
             write(list(done.values()), folder.path)
-    return ranked(list(done.values()))
+    progress("candidates", spec.count, spec.count)
+    best_first = ranked(list(done.values()))
+    folder.finish(best_first)
+    return best_first
+
+
+def batches(spec: Spec, done: Mapping[int, Outcome]) -> Iterator[list[Candidate]]:
+    """What is run side by side: all at once, or what a search asks for next.
+
+    Args:
+        spec: What is asked.
+        done: By candidate; each batch is in it when the next one is taken. A search that goes on asks again for what
+            is in it already, since the same answers make the same questions.
+    """
+    if spec.method != "cma" or spec.points or not spec.axes:
+        yield spec.candidates()
+        return
+    search, first = Search(spec.axes, spec.seed, spec.batch), spec.each
+    yield spec.of([{}], 0)
+    while first < spec.count and not search.done:
+        batch = spec.of(search.ask(), first)
+        yield batch
+        # Of the programs and seeds at a point the worst counts: it is to hold for all of them.
+        came = [done[candidate.number] for candidate in batch]
+        search.tell([max(came[k : k + spec.each], key=lambda o: o.rank) for k in range(0, len(came), spec.each)])
+        first += len(batch)
 
 
 def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) -> Iterator[Outcome]:
