@@ -13,6 +13,7 @@ from wsim.judge.checks import (
     cord,
     energy,
     fluid,
+    fluid_books,
     forces,
     friction,
     impacts,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
 RUN = (run,)
 PHYSICS = (
     physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_closed,
-    plan_joints, plan_contacts, plan_motion, fluid, water, camera,
+    plan_joints, plan_contacts, plan_motion, fluid, fluid_books, water, camera,
 )  # fmt: skip
 
 
