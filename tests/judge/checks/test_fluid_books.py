@@ -1,4 +1,4 @@
-"""The momentum of a fluid as a whole, in closed form: a block of particles that falls, and pushes what it is told to."""
+"""The momentum of a fluid as a whole, in closed form: a block that falls, and pushes what it is told to."""
 
 from dataclasses import replace
 from pathlib import Path
