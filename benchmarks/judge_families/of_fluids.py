@@ -10,8 +10,10 @@ import numpy as np
 from benchmarks.judge_families.drawn import Draw, Sound
 from benchmarks.judge_families.family import SHARE, Faulty, family
 from benchmarks.judge_families.in_stage import scaled
-from benchmarks.judge_families.record import Array, Track, edited, simulated, world_of
+from benchmarks.judge_families.record import Array, Track, edited, own, simulated, world_of
 from benchmarks.judge_families.stepping import Told
+from wsim.judge.books.fluids import fluid_books
+from wsim.judge.evidence.evidence import Evidence
 from wsim.recording.recording import FluidTrack
 from wsim.scene.world import World
 
@@ -134,6 +136,16 @@ def fluid_lift(sound: Sound, size: float, draw: Draw) -> Faulty:
     return Faulty(
         simulated(sound.stage, Lifted(force, _surface(world) + 1e3 * (sound.mechanism.name == "floating"))), world
     )
+
+
+@family((0.03, 0.1, 0.2, 0.4, 0.8), SHARE, ("floats", "sinks"))
+def fluid_lift_hidden(sound: Sound, size: float, draw: Draw) -> Faulty:
+    """Likewise, and the walls are said to have got the rest, so that the fluid's momentum adds up."""
+    faulty = fluid_lift(sound, size, draw)
+    books = fluid_books(Evidence(own(faulty.track, faulty.world)))
+    walls = faulty.track.frames["wall_impulse"].copy()
+    walls[1:] -= books.left
+    return replace(faulty, track=replace(faulty.track, frames={**faulty.track.frames, "wall_impulse": walls}))
 
 
 @family((0.1, 0.3, 1.0, 3.0, 10.0), SHARE, ("sinks",), wrong=1.0)

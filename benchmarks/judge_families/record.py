@@ -27,7 +27,7 @@ from wsim.scene.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 CACHE = ROOT / "build" / "judge_faults" / "families"
-FORMAT = 1  # of what is kept: raise it where the simulator records more
+FORMAT = 2  # of what is kept: raise it where the simulator records more
 Array = np.ndarray
 
 
@@ -88,7 +88,7 @@ def _simulate(stage: Path, push: Push | None) -> Track:
         if k:
             advance()
         times.append(simulation.time)
-        frames.append(measure(simulation.built, simulation.state, simulation.rigid))
+        frames.append(measure(simulation.built, simulation.state, simulation.rigid, simulation.fluid))
     if problems := simulation.problems():
         raise RuntimeError("; ".join(problems))
     names = [f.name for f in fields(Frame) if f.name not in ("fluids", "scalars")]

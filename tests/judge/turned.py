@@ -64,4 +64,7 @@ def turned(recording, q):
         body_qd=np.concatenate([all_of(twist[..., :3]), all_of(twist[..., 3:])], axis=-1),
         contact_force=all_of(recording.contact_force),
         applied_impulse=all_of(recording.applied_impulse),
+        applied_turn=all_of(recording.applied_turn),
+        control_impulse=all_of(recording.control_impulse),
+        wall_impulse=all_of(recording.wall_impulse),
     )

@@ -1,9 +1,12 @@
 """The books of a run: what drives, control and water do to bodies is what changes their energy and momentum."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.fluid_books import CheckFluidMomentum
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Drive, Scene
@@ -46,7 +49,7 @@ class Push:
     """Pushes the only body."""
 
     def __call__(self, t, simulation):
-        simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.0, 0.0]], dtype=np.float32))
+        simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.2, 0.0]], dtype=np.float32))
 
 
 def kite(scene):
@@ -61,6 +64,8 @@ def test_a_push_of_control_is_in_the_books(tmp_path):
     assert np.cumsum(recording.applied_impulse[:, 0], axis=0) == pytest.approx(
         np.outer(time, [3.0, 0.0, 50.0]), abs=1e-4
     )
+    assert np.array_equal(recording.control_impulse, recording.applied_impulse)
+    assert np.cumsum(recording.applied_turn[:, 0], axis=0) == pytest.approx(np.outer(time, [0.0, 0.2, 0.0]), abs=1e-5)
     energy = (motion.kinetic + motion.potential)[:, 0]
     assert np.cumsum(recording.applied_work[:, 0]) == pytest.approx(energy - energy[0], abs=0.01 * np.ptp(energy))
     assert motion.acceleration[:, 0] == pytest.approx(np.tile([0.0, 0.0, -G], (len(time) - 1, 1)), abs=1e-2)
@@ -79,6 +84,10 @@ def test_still_water_carries_a_block_with_its_buoyancy(tmp_path):
     assert lift.mean() == pytest.approx(600.0 * 0.12 * 0.12 * 0.09 * G, rel=0.25)
     change = 600.0 * 0.12 * 0.12 * 0.09 * (recording.body_qd[-1, 0, 2] / 0.2 + G)
     assert lift.mean() == pytest.approx(change, rel=0.01)  # momentum: what it gained is what it was given
+    finding = CheckFluidMomentum().run(Evidence(recording))[0]
+    assert finding.passed and finding.value < 0.1 * finding.limit
+    lighter = replace(recording, applied_impulse=0.99 * recording.applied_impulse)
+    assert not CheckFluidMomentum().run(Evidence(lighter))[0].passed
 
 
 def test_what_nothing_drives_keeps_no_books(tmp_path):

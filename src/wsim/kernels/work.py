@@ -11,14 +11,27 @@ def accumulate_push(
     after: wp.array(dtype=wp.spatial_vector),  # and at its end
     dt: float,
     # Data out:
-    impulse: wp.array(dtype=wp.vec3),
+    impulse: wp.array(dtype=wp.spatial_vector),
     work: wp.array(dtype=wp.float32),
 ):
-    """Add a step's impulse [N s] and work [J] on each body; the work is that of the mean of the two twists."""
+    """Add a step's impulse [N s, N m s] and work [J] on each body; the work is that of the mean of the two twists."""
     body = wp.tid()
     push = body_f[body]
-    impulse[body] = impulse[body] + wp.spatial_top(push) * dt
+    impulse[body] = impulse[body] + push * dt
     work[body] = work[body] + 0.5 * dt * wp.dot(push, before[body] + after[body])
+
+
+@wp.kernel(enable_backward=False)
+def accumulate_control(
+    # Data in:
+    force: wp.array(dtype=wp.spatial_vector),
+    dt: float,
+    # Data out:
+    impulse: wp.array(dtype=wp.spatial_vector),
+):
+    """Add a step's impulse of control on each body [N s, N m s]."""
+    body = wp.tid()
+    impulse[body] = impulse[body] + force[body] * dt
 
 
 @wp.kernel(enable_backward=False)

@@ -40,14 +40,28 @@ class BodyBuffer:
         self._times: list[int] = []
         self._seconds: list[float] = []
         self._rows: list[tuple[Floats, ...]] = []
+        self._causes: list[dict[str, Floats]] = []
+        self._whole: list[dict[str, Floats]] = []
         self._bytes = 0
 
-    def add(self, ns: int, t: float, rows: tuple[Floats, ...]) -> None:
-        """Keep one frame: its time [ns] and as given [s]; (B, 7), (B, 6), (B, 3), and (B, 4) of what is applied."""
+    def add(
+        self, ns: int, t: float, rows: tuple[Floats, ...], causes: dict[str, Floats], whole: dict[str, Floats]
+    ) -> None:
+        """Keep one frame.
+
+        Args:
+            ns: Its time [ns],
+            t: and as given [s].
+            rows: (B, 7), (B, 6), (B, 3).
+            causes: Columns of what pushed the bodies, (B, width).
+            whole: Columns that a frame has once, (width,).
+        """
         self._times.append(ns)
         self._seconds.append(t)
         self._rows.append(rows)
-        self._bytes += sum(row.nbytes for row in rows)
+        self._causes.append(causes)
+        self._whole.append(whole)
+        self._bytes += sum(row.nbytes for row in [*rows, *causes.values()])
         if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
             self.flush()
 
@@ -56,18 +70,21 @@ class BodyBuffer:
         if not self._times:
             return
         # Bodies first, so that each body's rows are one contiguous block.
-        q, qd, force, *applied = (np.stack(arrays, axis=1) for arrays in zip(*self._rows, strict=True))
+        q, qd, force = (np.stack(arrays, axis=1) for arrays in zip(*self._rows, strict=True))
+        causes = {name: np.stack([each[name] for each in self._causes], axis=1) for name in self._causes[0]}
         index = names.time_column(self._times)
         for i, entity in enumerate(self._entities):
-            own = [*_motion(qd[i], force[i]), *(names.column(names.APPLIED, array[i]) for array in applied)]
+            own = [*_motion(qd[i], force[i]), *(names.column(name, array[i]) for name, array in causes.items())]
             self._stream.send_columns(entity, [index], [*self._pose(q[i], self._nested[i]), *own], strict=True)
         for i, entity in enumerate(self._heights):
             height = names.column(names.SCALARS, q[i, :, 2].astype(np.float64))
             self._stream.send_columns(entity, [index], [height], strict=True)
         # Last, so that a frame that the file knows of has all its bodies, even if the process is killed here.
         seconds = names.column(names.FRAME_TIME, np.array(self._seconds))
-        self._stream.send_columns(names.FRAME_ENTITY, [index], [seconds], strict=True)
+        whole = [names.column(name, np.stack([each[name] for each in self._whole])) for name in self._whole[0]]
+        self._stream.send_columns(names.FRAME_ENTITY, [index], [seconds, *whole], strict=True)
         self._times, self._seconds, self._rows, self._bytes = [], [], [], 0
+        self._causes, self._whole = [], []
 
     @staticmethod
     def _pose(q: Floats, nested: bool) -> list[Any]:

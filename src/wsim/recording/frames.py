@@ -39,6 +39,9 @@ class Frame:
     # What fluid and control did to each body since the last frame; in all frames of a recording, or in none.
     applied_impulse: Floats | None = None  # (B, 3) [N s]
     applied_work: Floats | None = None  # (B,) [J]
+    applied_turn: Floats | None = None  # (B, 3) [N m s], about the centre of mass
+    control_impulse: Floats | None = None  # (B, 3) [N s], what of the applied one is control's
+    wall_impulse: Floats | None = None  # (3,) [N s], of fluid on all that stands still
 
 
 @dataclass(frozen=True)

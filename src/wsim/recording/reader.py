@@ -18,6 +18,7 @@ from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
 from wsim.recording import columns as names
+from wsim.recording.causes import read_bodies, read_frames
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
 from wsim.recording.table import Clock, Table
@@ -42,7 +43,9 @@ def read(path: str | Path) -> Recording:
     frame_ns, frame_time = table.get(names.FRAME_ENTITY, names.FRAME_TIME, (), np.float64)
     clock = Clock(frame_ns, frame_time)
     body_q, body_qd, force = _bodies(table, world, frame_ns, path)
-    applied = _applied(table, world, frame_ns)
+    applied, turn, control = (
+        read_bodies(table, world, frame_ns, name) for name in (names.APPLIED, names.APPLIED_TURN, names.CONTROLLED)
+    )
     return Recording(
         path=path,
         world=world,
@@ -58,6 +61,9 @@ def read(path: str | Path) -> Recording:
         seen=_seen(table, clock),
         applied_impulse=None if applied is None else applied[:, :, :3],
         applied_work=None if applied is None else applied[:, :, 3],
+        applied_turn=turn,
+        control_impulse=control,
+        wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
     )
 
 
@@ -122,17 +128,6 @@ def _bodies(table: Table, world: World, frame_ns: NDArray[np.int64], path: Path)
                 raise UserError(f"{path}: {body.prim} has {len(ns)} rows of {name}, the recording {count} frames")
             target[:] = values[rows]
     return q, qd, force
-
-
-def _applied(table: Table, world: World, frame_ns: NDArray[np.int64]) -> Floats | None:
-    """Impulse and work of what is applied to bodies (T, B, 4), where they were recorded."""
-    found = np.full((len(frame_ns), len(world.bodies), 4), np.nan, np.float32)
-    for i, body in enumerate(world.bodies):
-        ns, values = table.get(names.entity_path(body.prim), names.APPLIED, (4,), np.float32)
-        if not len(ns):
-            return None
-        found[:, i] = values[np.searchsorted(ns, frame_ns)]
-    return found if world.bodies else None
 
 
 def _seen(table: Table, clock: Clock) -> dict[str, SeenTrack]:

@@ -88,6 +88,9 @@ class Recording:
     seen: Mapping[str, SeenTrack] = field(default_factory=dict)  # by camera prim; empty where nothing was drawn
     applied_impulse: Floats | None = None  # (T, B, 3) [N s], of fluid and control since the frame before
     applied_work: Floats | None = None  # (T, B) [J], likewise
+    applied_turn: Floats | None = None  # (T, B, 3) [N m s], likewise, about the centre of mass
+    control_impulse: Floats | None = None  # (T, B, 3) [N s], what of the applied one is control's
+    wall_impulse: Floats | None = None  # (T, 3) [N s], of fluid on all that stands still since the frame before
 
     @property
     def complete(self) -> bool:

@@ -19,6 +19,9 @@ from wsim.errors import UserError
 from wsim.recording import columns as names
 from wsim.recording.blueprint import make_blueprint
 from wsim.recording.buffers import BodyBuffer, FluidBuffer, RowBuffer
+from wsim.recording.causes import WIDTHS
+from wsim.recording.causes import of_bodies as causes_of_bodies
+from wsim.recording.causes import of_frame as causes_of_frame
 from wsim.recording.frames import Frame
 from wsim.recording.shapes import is_nested, log_camera, log_scene
 from wsim.scene.world import World
@@ -64,7 +67,7 @@ class RecordingWriter:
         self._log_count = 0
         self._image_sizes = {c.prim: (c.width, c.height) for c in world.cameras}
         self._seen_objects: dict[str, list[str]] = {}
-        self._applied = False
+        self._causes: set[str] = set()
         self._closed = False
         self._flushed_at = time.monotonic()
         self._stream = _open_stream(self.partial_path, world.name)
@@ -81,13 +84,14 @@ class RecordingWriter:
         """
         ns = self._frame_time(t)
         rows = self._check_bodies(frame)
+        causes = self._check_causes(frame)
         fluids = {prim: self._fluid(prim).check(value) for prim, value in frame.fluids.items()}
         for name in frame.scalars:
             if not SCALAR_NAME.fullmatch(name):
                 raise ValueError(f"scalar {name!r}: a name is letters, digits and _.-, its parts separated by /")
         self._last_ns = ns
         self.frame_count += 1
-        self._bodies.add(ns, float(t), rows)
+        self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame))
         for prim, arrays in fluids.items():
             self._fluids[prim].add(ns, *arrays)
         for name, value in frame.scalars.items():
@@ -231,11 +235,6 @@ class RecordingWriter:
         count = len(self.world.bodies)
         arrays = []
         fields = {"body_q": (frame.body_q, 7), "body_qd": (frame.body_qd, 6), "contact_force": (frame.contact_force, 3)}
-        if frame.applied_impulse is not None and frame.applied_work is not None:
-            fields["applied_impulse and applied_work"] = (np.c_[frame.applied_impulse, frame.applied_work], 4)
-        if self.frame_count and ("applied_impulse and applied_work" in fields) != self._applied:
-            raise ValueError("frame: applied_impulse and applied_work come in all frames or in none")
-        self._applied = len(fields) == 4
         for name, (given, width) in fields.items():
             # A copy: a simulator may hand out the same array each frame.
             array = np.array(given, dtype=np.float32)
@@ -245,6 +244,18 @@ class RecordingWriter:
                 )
             arrays.append(array)
         return tuple(arrays)
+
+    def _check_causes(self, frame: Frame) -> dict[str, NDArray[np.float32]]:
+        """What pushed the bodies, by column."""
+        arrays = {name: np.array(given, dtype=np.float32) for name, given in causes_of_bodies(frame).items()}
+        known = {*arrays, *causes_of_frame(frame)}
+        if self.frame_count and known != self._causes:
+            raise ValueError(f"frame: {sorted(known ^ self._causes)} come in all frames or in none")
+        self._causes = known
+        for name, array in arrays.items():
+            if array.shape != (expected := (len(self.world.bodies), WIDTHS[name])):
+                raise ValueError(f"frame: {name} has shape {array.shape}, expected {expected}")
+        return arrays
 
     def _fluid(self, prim: str) -> FluidBuffer:
         if prim not in self._fluids:

@@ -8,19 +8,21 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from wsim.kernels.work import accumulate_drive, accumulate_push
+from wsim.kernels.work import accumulate_control, accumulate_drive, accumulate_push
 
 
 @dataclass(frozen=True)
 class Entry:
     """The sums since the last entry.
 
-    `impulse` (bodies, 3) [N s] and `work` (bodies,) [J] are those of `State.body_f`, by the model's bodies. `drives` is
-    the work of drives and joint forces [J], and `unsure` how far it may be from that; `effort` is what each degree of
-    freedom's drive gives now [N m or N].
+    `impulse` (bodies, 6) [N s, N m s about the centre of mass] and `work` (bodies,) [J] are those of `State.body_f`, by
+    the model's bodies; `control` is what of the impulse is the controller's. `drives` is the work of drives and joint
+    forces [J], and `unsure` how far it may be from that; `effort` is what each degree of freedom's drive gives now
+    [N m or N].
     """
 
     impulse: np.ndarray
+    control: np.ndarray
     work: np.ndarray
     drives: float
     unsure: float
@@ -33,16 +35,20 @@ class Ledger:
     Args:
         model: The Newton model; only its first world is read.
         observables: The solver's, with `qfrc_actuator` at the end of a step, where the model has drives.
+
+    Attributes:
+        control: What of the bodies' force a controller gives, where there is one.
     """
 
     def __init__(self, model: Any, observables: Any | None) -> None:
         worlds = max(1, model.world_count)
         self.model, self.observables = model, observables
+        self.control: Any | None = None
         self.bodies, self.dofs = model.body_count // worlds, model.joint_dof_count // worlds
         with wp.ScopedDevice(model.device):
             self._twist = wp.zeros(model.body_count, dtype=wp.spatial_vector)
             self._rate = wp.zeros(model.joint_dof_count, dtype=wp.float32)
-            self._impulse = wp.zeros(self.bodies, dtype=wp.vec3)
+            self._impulse, self._controlled = (wp.zeros(self.bodies, dtype=wp.spatial_vector) for _ in range(2))
             self._work = wp.zeros(self.bodies, dtype=wp.float32)
             self._drives = wp.zeros(self.dofs, dtype=wp.float32)
             self._unsure = wp.zeros(self.dofs, dtype=wp.float32)
@@ -65,6 +71,14 @@ class Ledger:
             outputs=[self._impulse, self._work],
             device=device,
         )
+        if self.control is not None:
+            wp.launch(
+                accumulate_control,
+                dim=self.bodies,
+                inputs=[self.control, dt],
+                outputs=[self._controlled],
+                device=device,
+            )
         if not self.dofs:
             return
         effort = self._none if self.observables is None else self.observables.qfrc_actuator
@@ -97,6 +111,7 @@ class Ledger:
         effort = self._none if self.observables is None else self.observables.qfrc_actuator
         entry = Entry(
             self._impulse.numpy().astype(np.float64),
+            self._controlled.numpy().astype(np.float64),
             self._work.numpy().astype(np.float64),
             float(self._drives.numpy().sum(dtype=np.float64)),
             float(self._unsure.numpy().sum(dtype=np.float64)),
@@ -111,5 +126,5 @@ class Ledger:
         self._last.zero_()
 
     def _empty(self) -> None:
-        for array in (self._impulse, self._work, self._drives, self._unsure):
+        for array in (self._impulse, self._controlled, self._work, self._drives, self._unsure):
             array.zero_()

@@ -12,11 +12,12 @@ from wsim.scene.cord_paths import spring_track
 from wsim.sim.ledger import Ledger
 from wsim.sim.model import Built
 from wsim.sim.rigid import RigidBodies
+from wsim.solvers.solver_sph import SolverSPH
 
 Array = np.ndarray
 
 
-def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
+def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSPH | None) -> Frame:
     """Poses, velocities, contact forces, fluid, energies and errors of the first world.
 
     Energies [J] are relative to z = 0. The fluid's density error is relative to its rest density.
@@ -24,7 +25,7 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
     scalars: dict[str, float] = {}
     fluids = _fluids(built, state, scalars)
     count = len(built.bodies)
-    pushed = worked = None
+    applied: dict[str, Array] = {}
     body_q, body_qd, force = np.zeros((0, 7)), np.zeros((0, 6)), np.zeros((0, 3))
     if count:
         body_q = state.body_q.numpy()[built.bodies]
@@ -38,7 +39,7 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         if built.world.springs:
             scalars["energy/potential_springs"] = _spring_energy(built, body_q, body_qd)
         if rigid and rigid.ledger:
-            pushed, worked = _from_outside(built, rigid.ledger, scalars)
+            applied = _from_outside(built, rigid.ledger, scalars)
     scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
     parts = ("bodies", "fluid", "springs")
     scalars["energy/potential"] = sum(scalars.get(f"energy/potential_{part}", 0.0) for part in parts)
@@ -48,13 +49,13 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None) -> Frame:
         contact_force=force.astype(np.float32),
         fluids=fluids,
         scalars=scalars,
-        applied_impulse=pushed,
-        applied_work=worked,
+        wall_impulse=fluid.take_wall_impulse().astype(np.float32) if fluid else None,
+        **applied,
     )
 
 
-def _from_outside(built: Built, ledger: Ledger, scalars: dict[str, float]) -> tuple[Array, Array]:
-    """Impulse (B, 3) [N s] and work (B,) [J] on each body since the last frame; the drives' work and efforts."""
+def _from_outside(built: Built, ledger: Ledger, scalars: dict[str, float]) -> dict[str, Array]:
+    """What was applied to each body since the last frame, by the frame's field; the drives' work and efforts."""
     entry = ledger.take()
     scalars["work/drives"] = entry.drives
     scalars["work/drives_unsure"] = entry.unsure
@@ -65,7 +66,12 @@ def _from_outside(built: Built, ledger: Ledger, scalars: dict[str, float]) -> tu
             if joint.drive is not None:
                 name = "drive" + joint.prim.removeprefix("/World")
                 scalars[name] = float(entry.effort[starts[labels.index(joint.prim)]])
-    return entry.impulse[built.bodies].astype(np.float32), entry.work[built.bodies].astype(np.float32)
+    impulse = entry.impulse[built.bodies].astype(np.float32)
+    applied = {"applied_impulse": impulse[:, :3], "applied_turn": impulse[:, 3:]}
+    applied["applied_work"] = entry.work[built.bodies].astype(np.float32)
+    if ledger.control is not None:
+        applied["control_impulse"] = entry.control[built.bodies, :3].astype(np.float32)
+    return applied
 
 
 def _fluids(built: Built, state: Any, scalars: dict[str, float]) -> dict[str, FluidFrame]:

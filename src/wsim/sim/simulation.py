@@ -110,6 +110,8 @@ class Simulation:
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
         start_joints(self.model, self.world, self.built.bodies, self.state)
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
+        if self.rigid and self.rigid.ledger and controller is not None:
+            self.rigid.ledger.control = self.control_force
         self._controller = controller
         self._control_every = max(1, round(control_interval / self.dt))
         self._graph: Any = None
@@ -128,6 +130,7 @@ class Simulation:
             self.rigid.reset(self.state)
         if self.fluid:
             self.fluid.reset_search()
+            self.fluid.take_wall_impulse()
         wp.synchronize_device(self.device)
 
     def step(self) -> None:
@@ -212,7 +215,7 @@ class Simulation:
                 if frame:
                     self.advance_frame()
                 problems = self.problems()
-                measured = measure(self.built, self.state, self.rigid)
+                measured = measure(self.built, self.state, self.rigid, self.fluid)
                 writer.frame(self.time, measured)
                 for prim, text in self._breakages(measured.scalars):
                     writer.log(self.time, "INFO", text, prim)

@@ -121,6 +121,7 @@ class SolverSPH(SolverBase):
         """Fill the solids with particles, and bring walls and worlds into order."""
         model = self.model
         place, world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
+        self._first_world = int(np.count_nonzero(world == 0))  # Newton's worlds follow one another
         solids = sample_boundary(model, self.config, containers, place, world)
         fixed = int(solids.body_first[0])
         self.wall_count, self.body_particle_count = fixed, len(solids.local) - fixed
@@ -156,10 +157,19 @@ class SolverSPH(SolverBase):
         self.lanes = max(LEAST_LANES, math.isqrt(largest))
         self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
+        self._on_walls = wp.zeros(self.fluid_count if self.wall_count else 0, dtype=wp.vec3)
+        self._wall_lanes = wp.zeros(max(LEAST_LANES, math.isqrt(self._first_world)), dtype=wp.vec3d)
+        self._wall_impulse = wp.zeros(1, dtype=wp.vec3d)
 
     def reset_search(self) -> None:
         """Forget the neighbour lists; for a state that did not come from the last step."""
         self.search.stale = True
+
+    def take_wall_impulse(self) -> np.ndarray:
+        """Impulse that the fluid of the first world gave to all that stands still since the last call, (3,) [N s]."""
+        impulse: np.ndarray = self._wall_impulse.numpy()[0].astype(np.float64)
+        self._wall_impulse.zero_()
+        return impulse
 
     def check(self, state: newton.State) -> int:
         """Look for what makes the fluid's state worthless; call it once in a while, as often as once a frame.
@@ -326,8 +336,21 @@ class SolverSPH(SolverBase):
             self.programs.momentum,
             dim=self.fluid_count,
             inputs=[*method, self.model.gravity, fluid, walls, bodies, self.model.particle_mass, dt],
-            outputs=[state_out.particle_q, state_out.particle_qd],
+            outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
+        if self.wall_count:
+            wp.launch(
+                boundary_kernels.sum_wall_lanes,
+                dim=len(self._wall_lanes),
+                inputs=[self._on_walls, self._first_world],
+                outputs=[self._wall_lanes],
+            )
+            wp.launch(
+                boundary_kernels.add_wall_impulse,
+                dim=1,
+                inputs=[self._wall_lanes, dt],
+                outputs=[self._wall_impulse],
+            )
 
     def _return_wrenches(self, state_in: newton.State, state_out: newton.State) -> None:
         if not self.body_particle_count:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.judge.theory import ask, only
+from wsim.judge.checks.fluid_height import CheckFluidHeight
 from wsim.judge.checks.water import CheckDraft, CheckLeak, CheckLevelSurface
 from wsim.recording.recording import FluidTrack, Recording
 from wsim.scene.world import Container, Fluid, Shape, Static, World
@@ -43,7 +44,7 @@ def lattice():
 def test_water_that_lies_in_its_tank_is_sound():
     recording = still(lattice())
     assert only(ask(CheckLeak(), recording)).passed
-    assert [finding.passed for finding in ask(CheckLevelSurface(), recording)] == [True, True]
+    assert only(ask(CheckLevelSurface(), recording)).passed and only(ask(CheckFluidHeight(), recording)).passed
 
 
 @pytest.mark.parametrize("height", [-0.005, -0.3, -11.0])
@@ -66,15 +67,15 @@ def test_a_splash_beside_the_tank_is_no_leak():
 def test_a_surface_that_is_not_level_at_rest(degrees, sound, axis):
     points = lattice()
     points[:, 2] += (points[:, 2] - WALL) / LEVEL * np.tan(np.radians(degrees)) * points[:, axis]
-    tilt, _ = ask(CheckLevelSurface(), still(points))
+    tilt = only(ask(CheckLevelSurface(), still(points)))
     assert tilt.passed is sound and tilt.value == pytest.approx(degrees, rel=0.02)
 
 
-@pytest.mark.parametrize(("stretched", "sound"), [(1.02, True), (1.1, False), (0.9, False)])
+@pytest.mark.parametrize(("stretched", "sound"), [(1.005, True), (1.05, False), (0.95, False)])
 def test_water_that_stands_higher_than_its_volume(stretched, sound):
     points = lattice()
     points[:, 2] = WALL + stretched * (points[:, 2] - WALL)
-    _, weight = ask(CheckLevelSurface(), still(points))
+    weight = only(ask(CheckFluidHeight(), still(points)))
     assert weight.passed is sound and weight.value == pytest.approx(abs(stretched - 1.0) * LEVEL, abs=1e-6)
 
 
@@ -82,7 +83,28 @@ def test_what_still_sloshes_may_be_tilted():
     """At 0.3 m/s waves are v sqrt(H / g) = 4 cm high."""
     points = lattice()
     points[:, 2] += (points[:, 2] - WALL) / LEVEL * np.tan(np.radians(5.0)) * points[:, 0]
-    assert ask(CheckLevelSurface(), still(points, speed=0.3))[0].passed
+    assert only(ask(CheckLevelSurface(), still(points, speed=0.3))).passed
+
+
+@pytest.mark.parametrize(("share", "sound"), [(0.8, True), (5.0, False)])
+def test_waves_lift_the_weight_by_their_own_energy(share, sound):
+    """v^2 / 2 g of the centre of mass, twice that of what the check calls the level: 9.2 mm at 0.3 m/s."""
+    points = lattice()
+    points[:, 2] += share * 0.5 * 0.3**2 / 9.81
+    assert only(ask(CheckFluidHeight(), still(points, speed=0.3))).passed is sound
+
+
+def test_a_pool_with_bodies_in_it_is_weighed_without_what_they_displace(pool):
+    """Water that is 8 % higher than its volume and its three bodies say."""
+    case = pool()
+    assert only(ask(CheckFluidHeight(), case.recording)).passed
+    track = case.recording.fluids[(prim := case.recording.world.fluids[0].prim)]
+    box = case.recording.world.containers[0]
+    floor = box.inner_center[2] - box.inner_size[2] / 2
+    higher = track.position.copy()
+    higher[..., 2] = floor + 1.08 * (higher[..., 2] - floor)
+    wrong = replace(case.recording, fluids={prim: replace(track, position=higher)})
+    assert not only(ask(CheckFluidHeight(), wrong)).passed
 
 
 @pytest.mark.parametrize(("raised", "sound"), [(0.0, True), (0.05, False), (-0.05, False)])

@@ -150,7 +150,7 @@ def test_walking_the_cells_gives_the_sums_of_the_lists(periodic):
             density, viscosity = (wp.full(2, v, dtype=float) for v in (1000.0, 2.0))
             gravity = wp.array([(0.0, 0.0, -9.8)] * 2, dtype=wp.vec3)
             pressure, force = wp.zeros(n, dtype=float), wp.zeros(kinds[2].count, dtype=wp.vec3)
-            moved, mass = [wp.zeros(n, dtype=wp.vec3) for _ in range(2)], wp.full(n, 0.1, dtype=float)
+            moved, mass = [wp.zeros(n, dtype=wp.vec3) for _ in range(3)], wp.full(n, 0.1, dtype=float)
             shared = [0, grid, method, density]
             wp.launch(programs.compress, kinds[1].count, [*shared, gravity, fluid, walls], [walls.motion])
             given_back = original(kinds[1], walls.motion)[:, 3]

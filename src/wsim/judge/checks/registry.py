@@ -13,6 +13,8 @@ from wsim.judge.checks import (
     cord,
     energy,
     fluid,
+    fluid_books,
+    fluid_height,
     forces,
     friction,
     impacts,
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 RUN = (run,)
 PHYSICS = (
     physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_closed,
-    plan_joints, plan_contacts, plan_motion, fluid, water, camera,
+    plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
 )  # fmt: skip
 
 

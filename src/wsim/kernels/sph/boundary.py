@@ -172,6 +172,40 @@ def sum_body_lanes(
 
 
 @wp.kernel(enable_backward=False)
+def sum_wall_lanes(
+    # Data in:
+    force: wp.array(dtype=wp.vec3),
+    count: int,
+    # Data out:
+    lane_force: wp.array(dtype=wp.vec3d),
+):
+    """Each lane adds up every n-th of the first `count` particles' forces on the walls.
+
+    In double precision: what presses on the walls of a tank is many times what is left of it in sum.
+    """
+    lane = wp.tid()
+    total = wp.vec3d()
+    for i in range(lane, count, lane_force.shape[0]):
+        total += wp.vec3d(force[i])
+    lane_force[lane] = total
+
+
+@wp.kernel(enable_backward=False)
+def add_wall_impulse(
+    # Data in:
+    lane_force: wp.array(dtype=wp.vec3d),
+    dt: float,
+    # Data out:
+    impulse: wp.array(dtype=wp.vec3d),
+):
+    """Add the lanes' force over a step to the impulse on the walls [N s]."""
+    total = wp.vec3d()
+    for lane in range(lane_force.shape[0]):
+        total += lane_force[lane]
+    impulse[0] = impulse[0] + wp.float64(dt) * total
+
+
+@wp.kernel(enable_backward=False)
 def add_body_wrench(
     # Data in:
     lane_wrench: wp.array2d(dtype=wp.spatial_vector),

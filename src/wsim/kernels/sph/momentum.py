@@ -40,8 +40,9 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         # Data out:
         position: wp.array(dtype=wp.vec3),
         velocity: wp.array(dtype=wp.vec3),
+        on_walls: wp.array(dtype=wp.vec3),
     ):
-        """Move each fluid particle; positions and velocities are in original order.
+        """Move each fluid particle, and keep its force on the walls [N]; all are in original order.
 
         F_i = -V_i sum V_j (p_i + p_j) grad W                                (Colagrossi & Landrini 2003)
             + V_i sum V_j alpha h c rho_0 min(v_ij.x_ij, 0) / r^2 grad W      (Monaghan 1992)
@@ -64,8 +65,11 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         own = m[3] + 2.0 * method.background_pressure
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
         if wp.static(WALLS in solids):
+            of_wall = wp.vec3(0.0, 0.0, 0.0)
             if is_near(grid, walls, world, x):
-                total += of_walls(grid, fluid, walls, s, world, method.shape, x, v, own, viscous)
+                of_wall = of_walls(grid, fluid, walls, s, world, method.shape, x, v, own, viscous)
+                total += of_wall
+            on_walls[i] = -p[3] * of_wall
         if wp.static(BODIES in solids):
             if is_near(grid, bodies, world, x):
                 total += of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, own, viscous)
