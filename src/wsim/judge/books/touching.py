@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
-from wsim.judge.books.meshes import Triangles, touching
+from wsim.judge.books.meshes import Triangles, colliding, touching
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
@@ -93,8 +93,9 @@ class Touching:
         if not shape.collides:
             return
         if shape.kind == "mesh":
-            self._meshes[len(self.shapes)] = Triangles(shape)
-            self.shapes.append((row, owner, shape))
+            for piece in colliding(shape):
+                self._meshes[len(self.shapes)] = Triangles(piece)
+                self.shapes.append((row, owner, piece))
             return
         kinds = mujoco.mjtGeom
         x, y, z, w = shape.rotation
