@@ -22,7 +22,7 @@ from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
 from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
-from wsim.scene.usd_shapes import collides_exactly, read_shape, to_quat, to_vec3
+from wsim.scene.usd_shapes import collides_as_hull, collides_exactly, read_shape, to_quat, to_vec3
 from wsim.scene.world import (
     Body,
     Camera,
@@ -124,6 +124,7 @@ def _solids(prims: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[S
         if shape is None:
             continue
         shape = with_surface_velocity(shape, prim, base)
+        shape = shape.model_copy(update={"convex": collides_as_hull(prim, moves=bool(owner))})
         if owner:
             of_body[owner].append(shape)
         else:

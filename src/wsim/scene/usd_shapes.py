@@ -86,6 +86,14 @@ def collides_exactly(prim: Usd.Prim) -> bool:
     return UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get() in (None, UsdPhysics.Tokens.none)
 
 
+def collides_as_hull(prim: Usd.Prim, *, moves: bool) -> bool:
+    """Whether a mesh's convex hull collides for it: as its stage says, or where it moves and says nothing else."""
+    if not prim.IsA(UsdGeom.Mesh) or not collides(prim):
+        return False
+    said = UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get()
+    return said == UsdPhysics.Tokens.convexHull or (moves and said != UsdPhysics.Tokens.convexDecomposition)
+
+
 def solid(shape: Shape) -> Solid:
     """Volume, centre and inertia of a shape at density 1, in its own frame; zero for a plane."""
     size = shape.size

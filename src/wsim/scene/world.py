@@ -46,6 +46,8 @@ class Shape(_Model):
     triangles: list[tuple[int, int, int]] = Field(default_factory=list)
     normals: list[Vec3] = Field(default_factory=list)  # of each triangle's corners in turn, where it stands for a curve
     exact: bool = False  # its triangles collide; else, of a mesh, its convex hull or its convex parts
+    convex: bool = False  # of a mesh: its convex hull collides for it
+    pieces: list[list[Vec3]] = Field(default_factory=list)  # corners [m] of what a simulator let collide for a mesh
 
 
 class Path(_Model):

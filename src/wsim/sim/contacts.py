@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import newton
@@ -59,7 +60,7 @@ def spare_tied(builder: Any, world: World) -> None:
 
 def _shapes_of(builder: Any, prim: str) -> list[int]:
     labels = [str(label) for label in builder.shape_label]
-    return [k for k, label in enumerate(labels) if label == prim or label.startswith(prim + "/")]
+    return [k for k, label in enumerate(labels) if prim in (label, whole(label)) or label.startswith(prim + "/")]
 
 
 def let_roll(builder: Any, world: World) -> None:
@@ -124,12 +125,13 @@ def _shapes(world: World) -> dict[str, Shape]:
 
 
 def _of_label(label: str, known: dict[str, Shape]) -> Shape:
-    """The stage's shape behind one of the model's, which may be a part of it (a mesh in convex pieces).
-
-    Newton keeps a mesh beside the hull that collides for it, as a shape to look at.
-    """
-    if label not in known:
-        label = label.removesuffix("_visual")
+    """The stage's shape behind one of the model's, which may be a part of it."""
+    label = label if label in known else whole(label)
     while label not in known and "/" in label:
         label = label.rsplit("/", 1)[0]
     return known[label]
+
+
+def whole(label: str) -> str:
+    """The label of the mesh that Newton made a shape of: to collide, its second convex part and so on; to look at."""
+    return re.sub(r"_convex_\d+$", "", label).removesuffix("_visual")

@@ -18,6 +18,7 @@ from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
+from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -76,6 +77,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     spare_kinematic(single)
     spare_tied(single, world)
     surfaces = take_surfaces(single, world)
+    world = with_pieces(single, world)
     add_cords(single, world, ContactConfig())
     add_drives(single, world)
     if world_count == 1:

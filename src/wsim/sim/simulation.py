@@ -89,8 +89,8 @@ class Simulation:
         progress("compiling kernels", 0, 3)
         self.stage = Path(stage)
         self.device = wp.get_device(pick_device(device))
-        self.world: World = describe(self.stage)
-        self.built = build_model(self.stage, self.world, self.device, world_count, time_step)
+        self.built = build_model(self.stage, describe(self.stage), self.device, world_count, time_step)
+        self.world: World = self.built.world
         self.model = self.built.model
         self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps
         self.time, self.step_count = 0.0, 0

@@ -8,7 +8,7 @@ hold. What no sum of them gives is the finding.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ import numpy as np
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
+from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.steps import step_error
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
@@ -36,7 +37,7 @@ PARTS = 4  # of an interval with a blow in it: where shapes meet is looked for a
 SOFT = 2.0  # times gravity's pull over the interval: what changes a velocity by less is no blow
 ENOUGH = 0.001  # of gravity: a rest that is as good as none
 AGAIN = 0.003  # of gravity: where more is left, contacts are looked for between the frames
-CHUNK = 64  # intervals worked out at once
+CHUNK = 4000  # bodies times intervals worked out at once
 LOADS = 3.0  # of its weight, that a body in motion may press with
 FAST = 0.3  # [m]: no blow is looked for beyond
 
@@ -58,7 +59,7 @@ class Balance:
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence, self._motion = evidence, evidence.motion
-        self._touching = Touching(evidence.world)
+        self._touching = Touching.of(evidence)
         self._ties = Ties(evidence)
         motion = self._motion
         self._unit = max(float(np.linalg.norm(motion.gravity)), 1.0)  # [m/s^2]
@@ -75,18 +76,20 @@ class Balance:
         judged = ~self._left_out()
         given, wrong = self._ties.laws.given()
         scale, arm = self._scale(), np.stack([motion.mass, motion.mass * self.size], axis=1)
-        left, turned = np.concatenate([force, torque], axis=2) - given * scale, np.zeros((*blow.shape, 2))
+        wanted = np.where(judged[..., None], np.concatenate([force, torque], axis=2) - given * scale, 0.0)
+        left, turned = wanted.copy(), np.zeros((*blow.shape, 2))
         hit = judged & (blow > SOFT * self._unit * motion.h[:, None])
-        for start in range(0, len(motion.h), CHUNK):
-            ks = np.arange(start, min(start + CHUNK, len(motion.h)))
-            change = left[ks]
-            left[ks], turned[ks] = self._explained(ks, change, judged[ks], hit[ks], hit[ks])
-            odd = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & ~hit[ks]
-            again = odd.any(axis=1)
-            if again.any():  # they may have touched between the frames alone
-                some = ks[again]
-                between = hit[some] | odd[again]
-                left[some], turned[some] = self._explained(some, change[again], judged[some], hit[some], between)
+        anew = fresh(self._evidence, wanted, hit, self.size, self._unit)
+        for ks in _parts(np.flatnonzero(anew.any(axis=1)), len(motion.mass)):
+            change, asked = left[ks], judged[ks] & anew[ks]
+            left[ks], turned[ks] = self._explained(ks, change, asked, hit[ks], hit[ks] & anew[ks])
+            odd = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & ~hit[ks] & asked
+            strange = odd.any(axis=1)
+            if strange.any():  # they may have touched between the frames alone
+                some = ks[strange]
+                between = (hit[some] | odd[strange]) & anew[some]
+                left[some], turned[some] = self._explained(some, change[strange], asked[strange], hit[some], between)
+        left, turned = again(anew, left, wanted), again(anew, turned)
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
@@ -126,7 +129,7 @@ class Balance:
         count, bodies = judged.shape
         rest = np.where(judged[..., None], change, 0.0).reshape(-1, 6)
         passed = np.zeros((len(rest), 2))
-        columns = self._pushes(ks, hit, between)
+        columns = self._pushes(ks, judged, hit, between)
         for n, k in enumerate(ks) if self._ties.any else ():
             columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
         if columns:
@@ -137,20 +140,28 @@ class Balance:
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
 
     # ---- contacts
-    def _pushes(self, ks: Rows, hit: Bools, between: Bools) -> list[Columns]:
+    def _pushes(self, ks: Rows, asked: Bools, hit: Bools, between: Bools) -> list[Columns]:
         h = self._motion.h[ks]
         ends = self._poses(ks), self._poses(ks + 1)
+        some = np.flatnonzero(between.any(axis=1))
         far = np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
         reach = NEAR + np.where(between.any(axis=1), far, 2.0 * self._unit * h**2)
-        shares = np.linspace(0.0, 1.0, PARTS + 1) if between.any() else np.array([0.0])
         found = []
-        for side, end in enumerate(ends):
-            for share in shares:
-                moved = _moved(end, np.repeat((share if side == 0 else -share) * h, hit.shape[1]))
-                contacts = self._touching.of_many(moved.q.reshape(len(ks), -1, 7), reach)
-                contacts = contacts.only(self._within_reach(contacts, moved, h, share, between))
-                if len(contacts):
-                    found.append((contacts, moved, side))
+        for side, contacts in enumerate(self._at_frames(ks, reach)):
+            contacts = contacts.only(_any(asked, contacts))
+            contacts = contacts.only(self._within_reach(contacts, ends[side], h, 0.0, between))
+            if len(contacts):
+                found.append((contacts, ends[side], side))
+        for side, share in ((side, share) for side in (0, 1) for share in np.linspace(0.0, 1.0, PARTS + 1)[1:]):
+            if not len(some):
+                break
+            moved = _moved(ends[side], np.repeat((share if side == 0 else -share) * h, hit.shape[1]))
+            poses = moved.q.reshape(len(ks), -1, 7)[some]
+            contacts = self._touching.of_many(poses, reach[some], some)
+            contacts = contacts.only(_any(asked, contacts))
+            contacts = contacts.only(self._within_reach(contacts, moved, h, share, between))
+            if len(contacts):
+                found.append((contacts, moved, side))
         if not found:
             return []
         lasting = self._lasting(found, ends, hit)
@@ -159,6 +170,25 @@ class Balance:
             friction, rolling = self._touching.laws(contacts.shapes)
             columns.append(pushes(contacts, moved, friction, along, self._rolling(contacts, rolling, friction)))
         return columns
+
+    def _at_frames(self, ks: Rows, reach: Floats) -> tuple[Contacts, Contacts]:
+        """Contacts at both ends of some intervals; a frame that ends one and begins another is looked at once."""
+        frames, which = np.unique(np.concatenate([ks, ks + 1]), return_inverse=True)
+        far, sides = np.zeros(len(frames)), which.reshape(2, -1)
+        np.maximum.at(far, which.ravel(), np.tile(reach, 2))
+        bodies = self._evidence.body_q.shape[1]
+        every = self._touching.of_many(self._evidence.body_q[frames], far, np.arange(len(frames)))
+        frame = np.maximum(every.one, every.two) // max(bodies, 1)
+        first = np.searchsorted(frame, np.arange(len(frames) + 1))
+        found = []
+        for side in sides:
+            counts = first[side + 1] - first[side]
+            row = np.repeat(np.arange(len(ks)), counts)
+            at = np.arange(counts.sum()) + np.repeat(first[side] - np.cumsum(counts) + counts, counts)
+            chosen, by = every.only(at), (row - frame[at]) * bodies
+            one, two = (np.where(rows >= 0, rows + by, rows) for rows in (chosen.one, chosen.two))
+            found.append(replace(chosen, one=one, two=two).only(chosen.gap <= reach[row]))
+        return found[0], found[1]
 
     def _within_reach(self, contacts: Contacts, poses: Poses, h: Floats, share: float, between: Bools) -> Bools:
         """Contacts whose gap may close within the part of the interval that a pose stands for."""
@@ -236,6 +266,11 @@ def _moved(poses: Poses, dt: Floats) -> Poses:
     com = poses.com + poses.v * dt[:, None]
     place = com + rotate(turn, poses.q[:, :3] - poses.com)
     return Poses(np.concatenate([place, multiply(turn, poses.q[:, 3:])], axis=1), com, poses.v, poses.w)
+
+
+def _parts(ks: Rows, bodies: int) -> list[Rows]:
+    """Intervals by as many as are worked out at once."""
+    return [] if not len(ks) else np.array_split(ks, -(-len(ks) * bodies // CHUNK))
 
 
 def _any(bodies: Bools, contacts: Contacts) -> Bools:

@@ -51,7 +51,7 @@ def blows(evidence: Evidence) -> list[Blow]:
     changed &= ~motion.jointed & ~motion.kinematic
     if not changed.any():
         return []
-    touching, found = Touching(evidence.world), []
+    touching, found = Touching.of(evidence), []
     for k in np.flatnonzero(changed.any(axis=1)):
         found += _of_interval(evidence, touching, int(k), changed[k])
     return found

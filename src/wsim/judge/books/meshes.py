@@ -36,6 +36,34 @@ MANY = 32  # contacts of one pair: more are thinned to the deepest and the outer
 WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0
 
 
+def colliding(shape: Shape) -> list[Shape]:
+    """What collides for a mesh: the convex pieces that a simulator cut, its hull, or its triangles as they are."""
+    pieces = [np.array(piece, dtype=np.float64) for piece in shape.pieces]
+    if not pieces and shape.convex:
+        pieces = [np.array(shape.vertices, dtype=np.float64)]
+    hulls = [_hull(piece) for piece in pieces]
+    if not hulls or any(faces is None for faces in hulls):
+        return [shape]
+    return [
+        shape.model_copy(update={"vertices": corners.tolist(), "triangles": faces.tolist(), "normals": []})
+        for corners, faces in zip(pieces, hulls, strict=True)
+        if faces is not None
+    ]
+
+
+def _hull(corners: Floats) -> Rows | None:
+    """The triangles of a convex hull (F, 3), all outwards; None where it is flat."""
+    try:
+        hull = ConvexHull(corners)
+    except QhullError:
+        return None
+    faces = np.array(hull.simplices, dtype=np.intp)
+    a, b, c = (corners[faces[:, k]] for k in range(3))
+    inwards = np.einsum("fi,fi->f", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return faces
+
+
 @dataclass(frozen=True)
 class Near:
     """Contacts of a shape with a mesh, in the mesh's frame, n of them; normals from the mesh to the shape."""

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
-from wsim.judge.books.meshes import Triangles, touching
+from wsim.judge.books.meshes import Triangles, colliding, touching
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.scene.world import Joint, Shape, World
 
     Floats = NDArray[np.float64]
@@ -55,6 +56,15 @@ def together(parts: list[Contacts]) -> Contacts:
 class Touching:
     """The shapes of a world that collide: what MuJoCo finds between those of its own kinds, and meshes' triangles."""
 
+    @staticmethod
+    def of(evidence: Evidence) -> Touching:
+        """Of a recording's world, made once for all who ask."""
+        if Touching not in evidence.kept:
+            evidence.kept[Touching] = Touching(evidence.world)
+        kept = evidence.kept[Touching]
+        assert isinstance(kept, Touching)
+        return kept
+
     def __init__(self, world: World) -> None:
         import mujoco  # heavy, and wanted where there are bodies alone
 
@@ -83,8 +93,9 @@ class Touching:
         if not shape.collides:
             return
         if shape.kind == "mesh":
-            self._meshes[len(self.shapes)] = Triangles(shape)
-            self.shapes.append((row, owner, shape))
+            for piece in colliding(shape):
+                self._meshes[len(self.shapes)] = Triangles(piece)
+                self.shapes.append((row, owner, piece))
             return
         kinds = mujoco.mjtGeom
         x, y, z, w = shape.rotation
@@ -159,11 +170,11 @@ class Touching:
         q = poses[row]
         return np.concatenate([q[:3] + rotate(q[3:], own[:3]), multiply(q[3:], own[3:])])
 
-    def of_many(self, poses: Floats, reach: Floats) -> Contacts:
-        """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of K B."""
+    def of_many(self, poses: Floats, reach: Floats, rows: Rows) -> Contacts:
+        """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of `rows` (K,) by B."""
         parts = []
-        for n, (q, far) in enumerate(zip(poses, reach, strict=True)):
-            found, by = self.at(q, float(far)), n * poses.shape[1]
+        for q, far, n in zip(poses, reach, rows, strict=True):
+            found, by = self.at(q, float(far)), int(n) * poses.shape[1]
             one, two = (np.where(rows >= 0, rows + by, rows) for rows in (found.one, found.two))
             parts.append(replace(found, one=one, two=two))
         return together(parts)

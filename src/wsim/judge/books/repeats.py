@@ -1,0 +1,110 @@
+"""Which bodies do in an interval what they did in one before, so that the same impulses explain it again.
+
+What stands is solved once: where it, and all that it may touch, is where it was and goes as it went, the impulses that
+were admissible still are. What they then leave is the change now less the change then, added to what they left.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
+
+PLACE = 1e-5  # of a body's size, and [rad]: an arm that is off by less
+SPEED = 1e-3  # of what gravity gives in an interval
+CHANGE = 1e-4  # of gravity
+LONGER = 1.5  # times as long is another interval
+CHUNK = 64  # frames whose distances between all bodies are held at once
+
+
+def fresh(evidence: Evidence, wanted: Floats, hit: Bools, size: Floats, unit: float) -> Bools:
+    """Where a body, or what it may touch or hangs on, differs from the last interval of its kind, (T - 1, B).
+
+    Args:
+        evidence: T frames of B bodies.
+        wanted: Changes to be explained, (T - 1, B, 6) [m/s^2].
+        hit: Whether something hit a body, (T - 1, B).
+        size: (B,) [m].
+        unit: A strength of gravity [m/s^2].
+    """
+    changed = _changed(_seen(evidence, size, unit), np.concatenate([wanted / (CHANGE * unit), hit[..., None]], axis=2))
+    motion = evidence.motion
+    longer = np.abs(np.diff(np.log(motion.h), prepend=np.log(motion.h[:1]))) > np.log(LONGER)
+    changed |= longer[:, None]
+    breaks = {end for joint in evidence.world.joints if joint.may_break for end in (joint.parent, joint.child)}
+    changed[:, [body.prim in breaks for body in evidence.world.bodies]] = True
+    some = np.flatnonzero(changed.any(axis=1) & ~changed.all(axis=1))
+    for start in range(0, len(some), CHUNK):
+        ks = some[start : start + CHUNK]
+        changed[ks] = _spread(changed[ks], _near(evidence, ks))
+    return changed
+
+
+def again(fresh: Bools, found: Floats, wanted: Floats | None = None) -> Floats:
+    """What was found of fresh bodies, (T - 1, B, …), for those that repeat it; plus what they want more than then."""
+    source = np.maximum.accumulate(np.where(fresh, np.arange(len(fresh))[:, None], 0), axis=0)
+    body = np.arange(fresh.shape[1])
+    repeated = found[source, body]
+    return repeated if wanted is None else np.asarray(repeated + wanted - wanted[source, body])
+
+
+def _seen(evidence: Evidence, size: Floats, unit: float) -> Floats:
+    """Poses and velocities of each frame, (T, B, 13), by what they may differ by."""
+    motion = evidence.motion
+    speed = SPEED * unit * motion.dt_frames
+    place, turn = evidence.body_q[..., :3] / (PLACE * size[:, None]), evidence.body_q[..., 3:] / PLACE
+    return np.concatenate([place, turn, motion.v / speed, motion.w * size[:, None] / speed], axis=2)
+
+
+def _changed(frames: Floats, intervals: Floats) -> Bools:
+    """Whether anything of a body in an interval is more than one off what it was when it last was."""
+    found = np.ones(intervals.shape[:2], dtype=bool)
+    if not len(found):
+        return found
+    steps = np.any(frames[1:] != frames[:-1], axis=(1, 2))
+    steps[1:] |= steps[:-1] | np.any(intervals[1:] != intervals[:-1], axis=(1, 2))
+    last = np.concatenate([frames[0], frames[1], intervals[0]], axis=1)
+    for k in range(1, len(found)):
+        if not steps[k]:  # to the bit
+            found[k] = False
+            continue
+        now = np.concatenate([frames[k], frames[k + 1], intervals[k]], axis=1)
+        found[k] = np.any(np.abs(now - last) > 1.0, axis=1)
+        last[found[k]] = now[found[k]]
+    return found
+
+
+def _near(evidence: Evidence, ks: Rows) -> Bools:
+    """Whether two bodies may touch, or hang together, in an interval or at the frame before it, (K, B, B)."""
+    motion = evidence.motion
+    reach = np.concatenate([motion.reach, motion.reach[-1:]])
+    margins = [max((shape.margin for shape in body.shapes), default=0.0) for body in evidence.world.bodies]
+    range_ = motion.radius + np.array(margins) + 2.0 * np.maximum(reach, np.roll(reach, 1, axis=0))
+    near = np.tile(motion.unit[:, None] == motion.unit[None, :], (len(ks), 1, 1))
+    for frames in (np.maximum(ks - 1, 0), ks, ks + 1):
+        c = motion.com[frames].astype(np.float32)
+        c = c - c.mean(axis=1, keepdims=True)
+        square = np.einsum("kbi,kbi->kb", c, c)
+        apart2 = square[:, :, None] + square[:, None, :] - 2.0 * c @ c.transpose(0, 2, 1)
+        bound = (range_[frames][:, :, None] + range_[frames][:, None, :]).astype(np.float32) * 1.001 + 0.004
+        near |= apart2 < bound * bound
+    return near
+
+
+def _spread(some: Bools, near: Bools) -> Bools:
+    """All that some bodies (K, B) are connected to."""
+    links = near.astype(np.float32)
+    while True:
+        more = (links @ some[..., None].astype(np.float32))[..., 0] > 0.0
+        if np.array_equal(more, some):
+            return some
+        some = more
