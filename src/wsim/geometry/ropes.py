@@ -27,6 +27,16 @@ class Stop:
 
 
 @dataclass(frozen=True)
+class Strand:
+    """A straight part of a taut rope at T moments, from where it leaves one stop to where it comes to another."""
+
+    stops: tuple[int, int]  # their places in the list
+    start: Array  # (T, 3) [m]
+    end: Array
+    along: Array  # unit vectors from start to end, (T, 3)
+
+
+@dataclass(frozen=True)
 class _Wrap:
     """Where the way from one point to another meets a cylinder between them, in the plane across its axis."""
 
@@ -48,6 +58,33 @@ def path_length(stops: list[Stop]) -> Array:
         else:
             total += _wrap(before.position, after.position, stop).length
     return total
+
+
+def strands(stops: list[Stop]) -> list[Strand]:
+    """The straight parts of a taut rope, which pull at what is at their ends.
+
+    Between them it lies on cylinders, which it presses as both its ends there pull: without friction and mass it has
+    one tension. Where it passes a cylinder by, its straight way counts as two whose pulls there cancel.
+    """
+    place = {id(stop): k for k, stop in enumerate(stops)}
+    found = []
+    for before, stop, after in _legs(stops):
+        along = _unit(after.position - before.position)
+        if stop is None:
+            found.append(Strand((place[id(before)], place[id(after)]), before.position, after.position, along))
+            continue
+        wrap = _wrap(before.position, after.position, stop)
+        come, leave = _touches(before.position, stop, wrap)
+        past = (wrap.angle == 0.0)[:, None]
+        middle = 0.5 * (before.position + after.position)
+        for ends, start, end in (((before, stop), before.position, come), ((stop, after), leave, after.position)):
+            one, other = (place[id(each)] for each in ends)
+            way = np.where(past, along, _unit(end - start))
+            start, end = (
+                np.where(past & (each is stop), middle, at) for each, at in zip(ends, (start, end), strict=True)
+            )
+            found.append(Strand((one, other), start, end, way))
+    return found
 
 
 def strayed(stops: list[Stop]) -> list[tuple[int, Array]]:
@@ -189,6 +226,24 @@ def _cross(a: Array, b: Array, c: Array, d: Array) -> Array:
 
     meets: Array = (side(a, b, c) * side(a, b, d) < 0.0) & (side(c, d, a) * side(c, d, b) < 0.0)
     return meets
+
+
+def _unit(vectors: Array) -> Array:
+    unit: Array = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-12)
+    return unit
+
+
+def _touches(start: Array, stop: Stop, wrap: _Wrap) -> tuple[Array, Array]:
+    """Where a rope from `start` (T, 3) comes to a cylinder and where it leaves it, (T, 3) each [m]."""
+    across, along, axis = wrap.frame
+    centre = stop.position[: len(start)]
+    height = ((start - centre) * axis).sum(axis=1)
+    turn = np.arctan2(wrap.first[:, 1], wrap.first[:, 0])
+    found = []
+    for way, angle in ((wrap.before, turn), (wrap.before + stop.radius * np.abs(wrap.angle), turn + wrap.angle)):
+        x, y = _on_circle(stop.radius, angle).T[:, :, None]
+        found.append(centre + x * across + y * along + (height + wrap.climb * way)[:, None] * axis)
+    return found[0], found[1]
 
 
 def _arc(before: Stop, stop: Stop, wrap: _Wrap) -> Array:

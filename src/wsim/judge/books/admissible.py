@@ -70,7 +70,7 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
     hard = _easy(columns, problems, rest, scale, enough)
     for bodies, chosen in ((problems.bodies[k], problems.columns[k]) for k in hard):
         matrix = _matrices(columns, bodies[None], [chosen], scale)[0]
-        ties = columns.both[chosen]
+        ties = columns.both[chosen][~columns.goes_on[chosen]]
         strength = least(matrix, rest[bodies].ravel(), ties)
         rest[bodies] -= (matrix @ strength).reshape(-1, 6)
         if ties.any():
@@ -141,9 +141,10 @@ def _projected(matrices: Floats, wanted: Floats) -> Floats:
 def _matrices(columns: Columns, bodies: Rows, chosen: list[Rows], scale: Floats) -> Floats:
     """The problems' columns for their bodies (g, b), (g, 6 b, c); zeros where one has fewer than another."""
     every, members = np.concatenate(chosen), bodies.shape[1]
-    counts = np.array([len(part) for part in chosen])
-    problem = np.repeat(np.arange(len(chosen)), counts)
-    column = np.arange(len(every)) - np.repeat(np.cumsum(counts) - counts, counts)
+    problem = np.repeat(np.arange(len(chosen)), [len(part) for part in chosen])
+    new = ~columns.goes_on[every]
+    counts = np.bincount(problem[new], minlength=len(chosen))
+    column = np.cumsum(new) - 1 - (np.cumsum(counts) - counts)[problem]
     place = np.full(len(scale), -1)
     place[bodies] = np.arange(members)
     made = np.zeros((len(chosen), int(counts.max()), members, 6))

@@ -73,7 +73,7 @@ class Balance:
         torque = np.diff(motion.angular_momentum, axis=0) / motion.h[:, None, None] / arm
         turning = np.linalg.norm(torque, axis=2)
         blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
-        judged = ~self._left_out()
+        judged = np.tile(~motion.kinematic, (len(motion.h), 1))
         given, wrong = self._ties.laws.given()
         scale, arm = self._scale(), np.stack([motion.mass, motion.mass * self.size], axis=1)
         wanted = np.where(judged[..., None], np.concatenate([force, torque], axis=2) - given * scale, 0.0)
@@ -93,7 +93,7 @@ class Balance:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        turned += wrong / arm + step_error(self._evidence)[..., None]
+        turned += (wrong + self._ties.ropes.error()) / arm + step_error(self._evidence)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
 
     @cached_property
@@ -110,15 +110,6 @@ class Balance:
         scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
         scale[:, 3:] /= self.size[:, None]
         return scale
-
-    def _left_out(self) -> Bools:
-        """Bodies that nobody judges: what is moved by hand, or hangs in a rope."""
-        motion, world = self._motion, self._evidence.world
-        out = np.tile(motion.kinematic, (len(motion.h), 1))
-        roped = {guide.body for rope in world.ropes for guide in rope.path}
-        rows = [i for i, body in enumerate(world.bodies) if body.prim in roped]
-        out[:, rows] = True
-        return np.asarray(out)
 
     def _explained(self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
         """What is left of the changes (K, B, 6) of some intervals, and how much ties passed on, (K, B, 2).

@@ -5,7 +5,7 @@ Columns are impulses on bodies, 6 rows a body: momentum and angular momentum abo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,17 +43,23 @@ class Columns:
     on_one: Floats  # (c, 6)
     on_two: Floats
     both: NDArray[np.bool_]  # (c,) whether it may act both ways, or only as it is
+    more: NDArray[np.bool_] | None = None  # (c,) whether it is the one before it, on more bodies; None: none is
+
+    @property
+    def goes_on(self) -> NDArray[np.bool_]:
+        """Whether each is one with the column before it, whose strength it has, (c,)."""
+        return np.zeros(len(self.one), dtype=bool) if self.more is None else self.more
 
     def shifted(self, by: int) -> Columns:
         """The same on bodies whose rows are higher."""
         one, two = (np.where(rows >= 0, rows + by, rows) for rows in (self.one, self.two))
-        return Columns(one, two, self.on_one, self.on_two, self.both)
+        return replace(self, one=one, two=two)
 
     @staticmethod
     def of(parts: list[Columns]) -> Columns:
         """All of several."""
         return Columns(*(np.concatenate([getattr(part, name) for part in parts])
-                         for name in ("one", "two", "on_one", "on_two", "both")))  # fmt: skip
+                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on")))  # fmt: skip
 
 
 def slip(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:
@@ -118,6 +124,13 @@ def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torqu
     count = len(on_two)
     rows = np.full(count, one, dtype=np.intp), np.full(count, two, dtype=np.intp)
     return Columns(*rows, on_one, on_two, np.ones(count, dtype=bool))
+
+
+def shared(rows: NDArray[np.intp], on: Floats) -> Columns:
+    """One impulse on several bodies at once, (n, 6), which only acts as it is."""
+    count = len(rows)
+    before = np.concatenate([[-1], rows[:-1]]).astype(np.intp)
+    return Columns(before, rows, np.zeros((count, 6)), on, np.zeros(count, dtype=bool), np.arange(count) > 0)
 
 
 def turns(rows: NDArray[np.intp]) -> Columns:

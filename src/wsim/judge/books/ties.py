@@ -1,4 +1,4 @@
-"""What ties bodies together: joints by the ways that they hold, springs by their line."""
+"""What ties bodies together: joints by the ways that they hold, springs by their line, ropes along their way."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.forces import Columns, holds
 from wsim.judge.books.laws import Laws
+from wsim.judge.books.ropes import Ropes
 from wsim.judge.books.touching import WORLD
 from wsim.judge.evidence import compound
 from wsim.judge.evidence.joints import AXES, anchors_of, broken, track_of
@@ -39,13 +40,14 @@ class Acting:
 
 
 class Ties:
-    """The impulses of all joints and springs of a world in any interval between frames."""
+    """The impulses of all joints, springs and ropes of a world in any interval between frames."""
 
     def __init__(self, evidence: Evidence) -> None:
         self._evidence = evidence
         world = evidence.world
         self._row = {body.prim: i for i, body in enumerate(world.bodies)}
         self.laws = Laws(evidence)
+        self.ropes = Ropes(evidence)
         self._moves: dict[str, list[compound.Placed | None]] = {}
         geared = {prim for gear in world.gears for prim in (gear.first, gear.second)}
         self._joints = [acting for joint in world.joints if (acting := self._acting(joint, joint.prim in geared))]
@@ -68,7 +70,7 @@ class Ties:
     @property
     def any(self) -> bool:
         """Whether there are any."""
-        return bool(self._joints or self._evidence.world.springs)
+        return bool(self._joints or self._evidence.world.springs or self.ropes.ropes)
 
     @cached_property
     def arms(self) -> Floats:
@@ -84,13 +86,14 @@ class Ties:
             if prim in self._row and place is not None:
                 row = self._row[prim]
                 far[row] = max(far[row], float(np.linalg.norm(np.subtract(place, world.bodies[row].com))))
-        return far
+        return np.maximum(far, self.ropes.arms)
 
     def columns(self, k: int) -> list[Columns]:
         """What may act between frames k and k + 1."""
         found = [columns for joint in self._joints if not joint.gone[k] for columns in self._joint(joint, k)]
         springs = zip(self._evidence.world.springs, self.laws.springs, strict=True)
-        return found + [self._spring(spring, k) for spring, law in springs if not law.known[k]]
+        found += [self._spring(spring, k) for spring, law in springs if not law.known[k]]
+        return found + self.ropes.columns(k)
 
     def _joint(self, acting: Acting, k: int) -> list[Columns]:
         joint, acts = acting.joint, bool(acting.free[k])
