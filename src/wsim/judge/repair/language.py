@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.repair.asked import decider
+from wsim.judge.objectives.objective import support_of
+from wsim.judge.repair.asked import decider, objective_of
+from wsim.judge.repair.drive import by_drive, to_point
 from wsim.judge.repair.objectives import (
+    beside,
     collides_with,
     fallen_through,
     floats,
@@ -25,7 +28,7 @@ from wsim.judge.repair.rule import (
 )
 from wsim.judge.repair.run import leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
-from wsim.plan.schema.formula import Predicate
+from wsim.plan.schema.formula import Eventually, Formula, Predicate
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
@@ -35,6 +38,9 @@ if TYPE_CHECKING:
 def formula(finding: Finding, evidence: Evidence) -> RepairTarget:
     """The rule of the predicate that decides; an event that comes about after its window is late."""
     found = decider(finding, evidence)
+    covered = _uncovered(finding, evidence)
+    if covered is not None:
+        return covered
     if found is None:
         why = "an event is missing, or comes in another order: compare the times in the message"
         return RepairTarget(kind="program", prim=finding.prim, parameter="order", direction="change", why=why)
@@ -43,12 +49,32 @@ def formula(finding: Finding, evidence: Evidence) -> RepairTarget:
     return late or RULES[predicate.op](finding.model_copy(update={"span": None}), evidence)
 
 
+def _uncovered(finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """The target where a window ends after the recording."""
+    item = objective_of(finding, evidence)
+    needed = _looks_ahead(item.formula) if item is not None and item.formula is not None else 0.0
+    if finding.value is not None or needed <= evidence.world.duration:
+        return None
+    return longer_run(evidence, needed, "a window of the objective ends later than the run")
+
+
+def _looks_ahead(formula: Formula) -> float:
+    """How far into a recording a formula looks [s]."""
+    windows = getattr(formula, "windows", None) or (getattr(formula, "window", None),)
+    own = sum(window[1] or window[0] for window in windows if window is not None)
+    own = max(own, getattr(formula, "seconds", None) or 0.0)
+    return own + max((_looks_ahead(part) for part in formula.parts()), default=0.0)
+
+
 def _late(predicate: Predicate, measure: Measure, finding: Finding, evidence: Evidence) -> RepairTarget | None:
     """The target of an event that happens, but after the moment that decides."""
     margin = np.broadcast_to(measure.margin, (1, len(evidence.time)))[0]
     after = evidence.time[(margin >= 0.0) & (evidence.time > (finding.time or 0.0))]
     if predicate.alone != "eventually" or not len(after):
         return None
+    driven = _driven_there(finding, evidence)
+    if driven is not None:
+        return driven
     late = float(after[0]) - (finding.time or 0.0)
     why = f"it comes about at {after[0]:.3g} s, {late:.3g} s after the moment that decides: a nearer or a faster start"
     return RepairTarget(
@@ -64,6 +90,8 @@ def rests(finding: Finding, evidence: Evidence) -> RepairTarget:
     predicate = decider(finding, evidence)
     ref = evidence.prim(getattr(predicate[0], "ref", "")) if predicate is not None else ""
     i = evidence.index(finding.prim or "")
+    if ref and not support_of(evidence, i, ref).over[evidence.window].any():
+        return beside(evidence, finding.prim or "", ref)
     fall = -float((evidence.body_qd[evidence.window, i, :3] @ evidence.up).mean())
     if fall > 0.0 and evidence.static(ref) is not None:
         return fallen_through(finding, evidence, finding.prim or "", ref)
@@ -73,12 +101,27 @@ def rests(finding: Finding, evidence: Evidence) -> RepairTarget:
 def reaches(finding: Finding, evidence: Evidence) -> RepairTarget:
     """It stops short, or goes another way."""
     short = abs((finding.value or 0.0) - (finding.limit or 0.0))
+    driven = by_drive(evidence, finding.prim or "", None, f"its drive is set to {short:.3g} m beside that")
+    if driven is not None:
+        return driven if driven.suggested is not None else _driven_there(finding, evidence) or driven
     start = evidence.body(finding.prim or "").velocity
     why = f"it stays {short:.3g} m short of where it must get: faster, or aimed better"
     return RepairTarget(
         kind="physical parameter", prim=finding.prim, parameter="velocity",
         direction="change", current=float(np.linalg.norm(start)), unit="m/s", why=why,
     )  # fmt: skip
+
+
+def _driven_there(finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """What a drive is to be set to, so that its body comes to the point in the middle of the time for it."""
+    found, item = decider(finding, evidence), objective_of(finding, evidence)
+    point = getattr(found[0], "target", None) if found is not None else None
+    if not isinstance(point, tuple) or item is None:
+        return None
+    windows = [node.window for node in item.formula.walk() if isinstance(node, Eventually)] if item.formula else []
+    window = next((window for window in windows if window is not None and window[1] is not None), None)
+    seconds = (window[0] + window[1]) / 2 if window is not None and window[1] is not None else None
+    return to_point(evidence, finding.prim or "", np.array(point), seconds)
 
 
 def apart(finding: Finding, evidence: Evidence) -> RepairTarget:
@@ -159,10 +202,10 @@ def ranged(finding: Finding, evidence: Evidence) -> RepairTarget:
     """What a joint moves, its drive does; what is free, its start."""
     prim, value, limit = finding.prim or "", finding.value or 0.0, finding.limit or 0.0
     way, short = ("raise" if value < limit else "lower"), f"{abs(limit - value):.3g} {finding.unit}"
-    joint = next((j for j in evidence.world.joints if prim in (j.child, j.parent) and j.drive is not None), None)
-    if joint is not None:
-        why = f"its drive brings it {short} off: another target, or a stronger drive"
-        return RepairTarget(kind="drive", prim=joint.prim, parameter="drive", direction=way, why=why)
+    share = limit / value if value * limit > 0.0 else None
+    driven = by_drive(evidence, prim, share, f"its drive brings it {short} off")
+    if driven is not None:
+        return driven
     why = f"it is {short} off: it starts otherwise, or something stops it"
     return RepairTarget(kind="physical parameter", prim=prim, parameter="velocity", direction=way, unit="m/s", why=why)
 
