@@ -87,7 +87,7 @@ def drawn(kind: str, half: str, k: int) -> tuple[SoundWorld, int, Plan, Plan, st
             told = mistake.opened(plan) if mistake.opened else plan
             if judged(right, plan).status != "accepted" or judged(program, told).status != "rejected":
                 continue
-        except (SceneError, ValueError, KeyError, TypeError):
+        except (SceneError, ValueError, KeyError, TypeError, AssertionError):
             continue  # this mistake cannot be made in this world
         return world, variant, plan, told, program, mistake
     return None

@@ -100,6 +100,8 @@ def to_point(evidence: Evidence, prim: str, point: Floats, seconds: float | None
             return None
         why = f"it is to be there after {seconds:.3g} s"
         return _part(joint, "velocity", motor.velocity, q / seconds, why)
+    if not motor.damping:
+        return _part(joint, "position", motor.position, q / 2, "undamped it swings to twice where it is set to")
     return _part(joint, "position", motor.position, q, "there it is at the place that is asked for")
 
 

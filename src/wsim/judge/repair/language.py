@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import level
+from wsim.judge.evidence.contact import distance
 from wsim.judge.objectives.objective import support_of
-from wsim.judge.repair.asked import decider, objective_of
-from wsim.judge.repair.drive import by_drive, to_point
+from wsim.judge.repair.asked import decider, objective_of, ref_of
+from wsim.judge.repair.drive import by_drive, drive_of, to_point
 from wsim.judge.repair.objectives import (
     beside,
     collides_with,
@@ -26,7 +28,7 @@ from wsim.judge.repair.rule import (
     longer_run,
     shorter_step,
 )
-from wsim.judge.repair.run import leak, settled
+from wsim.judge.repair.run import damped, leak, settled
 from wsim.judge.verdict import Finding, RepairTarget
 from wsim.plan.schema.formula import Eventually, Formula, Predicate
 
@@ -228,6 +230,49 @@ def counts(finding: Finding, evidence: Evidence) -> RepairTarget:
     return RepairTarget(kind="settlement", prim=finding.prim, parameter="position", direction="change", why=why)
 
 
+def dies_down(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What goes on as far is taken energy from: by its joint's drive, or where it touches."""
+    prim = finding.prim or ""
+    joint = drive_of(evidence, prim)
+    if joint is None or joint.drive is None:
+        return damped(evidence, evidence.index(prim), "nothing takes its energy: it goes as far each time")
+    why = "nothing damps it: it goes as far each time"
+    return RepairTarget(
+        kind="drive", prim=joint.prim, parameter="drive.damping", direction="raise", current=joint.drive.damping,
+        why=why,
+    )  # fmt: skip
+
+
+def climbs(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What comes up too little has lost too much on its way."""
+    return friction(finding, evidence, "lower", None, "it loses too much on its way up")
+
+
+def stops(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Under friction it goes v^2 / (2 mu g): as much friction as lets it stop in the gap that it starts with."""
+    if finding.unit == "m/s":
+        return settled(finding, evidence)
+    prim, ref = finding.prim or "", ref_of(finding, evidence)
+    body = evidence.body(prim)
+    speed = float(np.linalg.norm(level(np.array(body.velocity), evidence.up)))
+    gap = float(distance(evidence, prim, ref)[0])
+    to = speed**2 / (2.0 * evidence.gravity * gap) if gap > 0.0 and evidence.gravity > 0.0 else None
+    return friction(finding, evidence, "raise", to, f"to stop within {gap:.3g} m it needs a friction of v^2 / (2 g s)")
+
+
+def swirls(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What turns a fluid is a body, a wall or a jet that goes round."""
+    why = "something must drive it round: a paddle, a wall that turns, an inlet along the wall"
+    return RepairTarget(kind="fluid", prim=finding.prim, parameter="motion", direction="change", why=why)
+
+
+def level_in(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """More or less of the fluid must come into the vessel."""
+    way = "raise" if (finding.value or 0.0) < (finding.expected or 0.0) else "lower"
+    why = "what comes into the vessel stands as high as its volume over the vessel's floor"
+    return RepairTarget(kind="fluid", prim=finding.prim, parameter="size", direction=way, unit="m", why=why)
+
+
 def fills_to(finding: Finding, evidence: Evidence) -> RepairTarget:
     """As much fluid as the level needs: the level is as high as the volume."""
     value, expected = finding.value or 0.0, finding.expected
@@ -268,4 +313,11 @@ RULES: dict[str, Rule] = {
     "bounces_to": bounces,
     "counts": counts,
     "fills_to": fills_to,
+    "own_spin_between": ranged,
+    "tilt_between": ranged,
+    "dies_down": dies_down,
+    "climbs_to": climbs,
+    "stops_before": stops,
+    "swirls_between": swirls,
+    "level_in": level_in,
 }

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 # What is wrong before anything has moved, in the order in which one hides the next: what is not there has no place,
 # and what has another size another weight.
 CAUSES = (
-    "build", "stage", "control", "CheckPlanObjects", "CheckPlanClosed", "CheckPlanControl", "CheckPlanJoints",
+    "build", "stage", "control", "CheckPlanObjects", "CheckPlanClosed", "CheckPlanJoints", "CheckPlanControl",
     "CheckPlanSizes", "CheckPlanPlaces", "CheckGravity", "CheckPlanFluid", "CheckMass", "CheckPlanMotion",
     "CheckPlanLooks", "CheckPlanContacts", "CheckComplete",
 )  # fmt: skip

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import level, sides_of
+from wsim.geometry.rotations import sides_of
 from wsim.judge.evidence.contact import distance, overlaps
 from wsim.judge.language.signals import Signals
 from wsim.judge.verdict import RepairTarget
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-TRIED = 24  # places along a direction, twice: the second time between the last that will not do and the first that will
+TRIED = 48  # places along a way
 FARTHEST = 3.0  # sizes of the body that it may be moved by to part it from what it starts in
 TOUCHING = 1e-3  # of its smallest extent: what overlaps no more than this touches
 DIGITS = 5
@@ -43,17 +43,23 @@ def overlapping_start(evidence: Evidence, prim: str | None) -> RepairTarget | No
     size = min(part.kind.thinnest for part in (deepest.a, deepest.b) if part.body >= 0)
     if depth <= TOUCHING * size:
         return None
-    moved, other = deepest.a, deepest.b
-    if prim == other.owner and other.body >= 0:
-        moved, other = other, moved
+    ends = ((deepest.a, deepest.b), (deepest.b, deepest.a))
+    # Of two that may be moved, the one that is out of everything the sooner.
+    ways = [(each, other, _parted(evidence, each.body)) for each, other in ends if each.body >= 0]
+    ways = sorted((way for way in ways if way[2] is not None), key=lambda way: _way(evidence, way[0].body, way[2]))
+    moved, other, to = ways[0] if ways else (deepest.a, deepest.b, None)
     body = evidence.body(moved.owner)
-    to = _parted(evidence, moved.body, other.owner)
     why = f"it starts {depth:.3g} m inside {other.owner}: move them apart by that"
     if to is None:
         return RepairTarget(
             kind="settlement", prim=body.prim, parameter="position", direction="change", unit="m", why=why
         )
     return start_at(body, to, why)
+
+
+def _way(evidence: Evidence, i: int, to: Floats | None) -> float:
+    assert to is not None
+    return float(np.linalg.norm(to - evidence.body_q[0, i, :3]))
 
 
 def over(evidence: Evidence, prim: str, ref: str, why: str) -> RepairTarget | None:
@@ -111,39 +117,36 @@ def _others(evidence: Evidence, i: int) -> list[str]:
     return sorted({placed.owner for placed in evidence.placed} - held - {prim})
 
 
-def _parted(evidence: Evidence, i: int, other: str) -> Floats | None:
-    """The nearest place (3,) along a level way or up at which a body is in nothing, against where it starts."""
+def _parted(evidence: Evidence, i: int) -> Floats | None:
+    """The nearest place (3,) up, or level, at which a body starts in nothing; None if none is near.
+
+    Along each way it goes on by as much as it is still in something: it cannot pass over the first free place.
+    """
     solid, others = evidence.solid(i), _others(evidence, i)
     here = evidence.body_q[0, i, :3].astype(np.float64)
     size = max(solid.smallest, float(np.ptp([end[0] for end in evidence.ends(i)])))
-    found = []
-    for way in (evidence.up, *sides_of(evidence.up), *(-sides_of(evidence.up))):
-        place = _free_along(evidence, i, here, way, FARTHEST * size, others)
-        if place is not None:
-            found.append(place)
-    # Of ways as long, up: what stands on something was most likely put too low.
-    return min(found, key=lambda place: float(np.linalg.norm(place - here)) * (1.0 + (level(place - here, evidence.up)
-               .any() * 0.1)), default=None)  # fmt: skip
-
-
-def _free_along(evidence: Evidence, i: int, here: Floats, way: Floats, most: float, others: list[str]) -> Floats | None:
-    limit = -0.5 * TOUCHING * evidence.solid(i).smallest
-    low, high = 0.0, most
-    for _ in range(2):
-        ways = np.linspace(low, high, TRIED + 1)[1:]
-        free = np.flatnonzero(_gaps(evidence, i, here + ways[:, None] * way, others) >= limit)
-        if not len(free):
-            return None
-        high = float(ways[free[0]])
-        low = high - (high - low) / TRIED if free[0] == 0 else float(ways[free[0] - 1])
-    return here + high * way
+    sides = sides_of(evidence.up)
+    ways = np.concatenate([evidence.up[None], sides, -sides])
+    gone, limit = np.zeros(len(ways)), 0.5 * TOUCHING * solid.smallest
+    for _ in range(TRIED):
+        depth = -_gaps(evidence, i, here + gone[:, None] * ways, others)
+        if (depth <= limit).all():
+            break
+        gone = np.where(depth > limit, gone + depth, gone)
+    free = (depth <= limit) & (gone <= FARTHEST * size)
+    if not free.any():
+        return None
+    # Of ways about as long, up: what stands on something was most likely put too low.
+    cost = np.where(free, gone * np.array([1.0, 1.1, 1.1, 1.1, 1.1]), np.inf)
+    best = int(np.argmin(cost))
+    return np.asarray(here + gone[best] * ways[best])
 
 
 def _first_free(evidence: Evidence, i: int, start: Floats, way: Floats, most: float, ref: str) -> Floats | None:
     """The last place along a way down to an object before it is touched."""
     low, high = 0.0, most
     for _ in range(2):
-        ways = np.linspace(low, high, 2 * TRIED)
+        ways = np.linspace(low, high, TRIED)
         touched = np.flatnonzero(_gaps(evidence, i, start + ways[:, None] * way, [ref]) < 0.0)
         if not len(touched) or touched[0] == 0:
             return None
