@@ -86,7 +86,6 @@ def sound_rows(outcomes: Sequence[Judged]) -> list[tuple[str, ...]]:
     return rows
 
 
-BEGIN, END = "<!-- faults:begin -->", "<!-- faults:end -->"
 FAULTS_HEADER = ("fault", "planted in", "runs", "caught", "false accepts", "caught by")
 SOUND_HEADER = ("sound worlds", "runs", "accepted", "false rejects", "rejected by")
 
@@ -124,14 +123,15 @@ def markdown(outcomes: Sequence[Judged]) -> str:
     return "\n".join([*parts, " ".join(_rates(outcomes)) + "\n"])
 
 
-def between_marks(text: str, tables: str) -> str:
-    """A document with its tables in place of those between its two marks.
+def between_marks(text: str, tables: str, name: str = "faults") -> str:
+    """A document with its tables in place of those between the two marks of a name.
 
     Raises:
         ValueError: If the marks are not there, in order.
     """
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
+    first, last = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
+    before, begin, rest = text.partition(first)
+    _, end, after = rest.partition(last)
     if not begin or not end:
-        raise ValueError(f"the document has no {BEGIN} followed by {END}; add the two lines where the tables go")
-    return f"{before}{begin}\n{tables}{end}{after}"
+        raise ValueError(f"the document has no {first} followed by {last}; add the two lines where the tables go")
+    return f"{before}{begin}\n{tables.rstrip()}\n{end}{after}"

@@ -10,7 +10,7 @@ from benchmarks import judge_planted
 from benchmarks.judge_worlds import FAULTS, WORLDS, in_program
 from benchmarks.judge_worlds.fault import halves
 from benchmarks.judge_worlds.in_recording import Teleport
-from benchmarks.judge_worlds.tables import BEGIN, END, between_marks, interval, markdown, summary
+from benchmarks.judge_worlds.tables import between_marks, interval, markdown, summary
 from benchmarks.judge_worlds.world import with_arguments
 
 
@@ -129,9 +129,9 @@ def test_tables_count_what_was_missed_and_what_was_wronged():
 
 
 def test_tables_go_between_the_marks_of_a_document():
-    text = f"before\n{BEGIN}\nold\n{END}\nafter\n"
-    assert between_marks(text, "new\n") == f"before\n{BEGIN}\nnew\n{END}\nafter\n"
-    assert between_marks(between_marks(text, "x\n"), "new\n") == between_marks(text, "new\n")
+    marks = "before\n<!-- faults:begin -->\n{}\n<!-- faults:end -->\nafter\n"
+    assert between_marks(marks.format("old"), "new\n") == marks.format("new")
+    assert between_marks(between_marks(marks, "x\n"), "new\n") == marks.format("new")
     with pytest.raises(ValueError, match="faults:begin"):
         between_marks("no marks", "new")
 

@@ -18,7 +18,9 @@ RepairKind = Literal[
 class RepairTarget(BaseModel):
     """What to change so that a finding passes: one of a closed list, with parameter and direction where physics says.
 
-    `suggested` is the value that the physics gives, where it gives one, and `current` what it is now.
+    `suggested` is the value that the physics or the plan gives, where one does, and `current` what it is now; of what
+    has several numbers (a place, a velocity, edges, limits) that is `vector`, and of what has a name `text`. Each is as
+    the program writes it, so that a suggestion can be applied as it stands.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -29,6 +31,8 @@ class RepairTarget(BaseModel):
     direction: Literal["raise", "lower", "change", "add", "remove", ""] = ""
     current: float | None = None
     suggested: float | None = None
+    vector: tuple[float, ...] | None = None
+    text: str = ""
     unit: str = ""
     why: str = ""
 
@@ -37,9 +41,16 @@ class RepairTarget(BaseModel):
         """What to do, in words: "lower density of /World/block from 2500 to 600 kg/m^3"."""
         of = f"{self.parameter} of {self.prim}" if self.parameter and self.prim else self.parameter or self.prim
         words = f"{self.direction or 'look at'} {of or f'the {self.kind}'}"
-        given = [(word, x) for word, x in (("from", self.current), ("to", self.suggested)) if x is not None]
-        numbers = " ".join(f"{word} {x:.4g}" for word, x in given)
+        now = "" if self.current is None else f"{self.current:.4g}"
+        numbers = " ".join(f"{word} {x}" for word, x in (("from", now), ("to", self.value)) if x)
         return " ".join(part for part in (words, numbers, self.unit if numbers else "") if part)
+
+    @property
+    def value(self) -> str:
+        """What is suggested, in words: a number, (x, y, z), or a name; nothing where no value is."""
+        if self.vector is not None:
+            return "(" + ", ".join(f"{x:.4g}" for x in self.vector) + ")"
+        return self.text if self.suggested is None else f"{self.suggested:.4g}"
 
 
 class Finding(BaseModel):

@@ -10,6 +10,7 @@ from tests.judge.theory import UPRIGHT, ask, box, edited, only, record, swinging
 from wsim.judge.checks.joint import CheckBreakage, CheckDrives, CheckGears, CheckJointLimits, CheckJoints
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.joints import track_of
+from wsim.judge.repair.aim import aim
 from wsim.scene.world import Gear, Joint, Motor
 
 
@@ -128,7 +129,8 @@ def test_a_drive_must_not_strain_at_the_end(strained, passes):
     right.scalars["drive/hinge"] = effort
     finding = only(ask(CheckDrives(), right))
     assert finding.passed == passes and finding.value == pytest.approx(strained, abs=0.02)
-    assert passes or (finding.target.kind, finding.target.direction) == ("drive", "raise")
+    aim([finding], Evidence(right))
+    assert passes or (finding.target.parameter, finding.target.direction) == ("drive.max_force", "raise")
 
 
 def test_a_drive_without_a_bound_cannot_strain():

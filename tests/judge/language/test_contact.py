@@ -297,3 +297,23 @@ def test_two_balls_collide_by_their_relative_speed():
     # Out of each other's reach the same change of speed is none of theirs.
     apart = moving(world, TIME, a, b + 5.0 * X, v=v)
     assert not evaluate(parse("collides_with(a, b)"), apart).satisfied[0]
+
+
+@pytest.mark.parametrize(("friction", "holds"), [(0.3, True), (0.22, True), (0.18, False), (0.1, False)])
+def test_what_stops_before_a_wall_has_not_touched_it(tank_world, friction, holds):
+    """At 2 m/s it goes v^2 / (2 mu g): 1.02 m at 0.2, which is the gap to the wall at 1 m; or it is stopped there."""
+    time = times(3.0, 60.0)
+    way = np.minimum(time, 2.0 / (friction * G))
+    x = 2.0 * way - friction * G * way**2 / 2
+    start = 1.0 - 0.1 - 4.0 / (2.0 * 0.2 * G)
+    x = np.minimum(start + x, 0.9)  # at the wall it stays
+    v = np.where(x < 0.9, 2.0 - friction * G * way, 0.0)
+    ball = np.stack([x, 0.0 * x, 0.0 * x + 0.1], axis=1)
+    speed = np.zeros((len(time), 2, 3))
+    speed[:, 0, 0] = v
+    signals = moving(tank_world, time, ball, np.broadcast_to([3.0, 0.0, 0.2], ball.shape), v=speed)
+    outcome = evaluate(parse("stops_before(ball, wall)"), signals)
+    assert outcome.satisfied[0] == holds
+    gap = 0.9 - x[-1]
+    assert evaluate(parse(f"stops_before(ball, wall, within {gap + 0.01} m)"), signals).satisfied[0] == holds
+    assert not evaluate(parse(f"stops_before(ball, wall, within {max(gap - 0.01, 1e-3)} m)"), signals).satisfied[0]

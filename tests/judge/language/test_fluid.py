@@ -105,3 +105,31 @@ def test_what_needs_particles_says_so_of_many_worlds(pool):
         with pytest.raises(MissingError, match="only a recording of one world has; these signals are of 2 worlds"):
             evaluate(parse(text), many)
     assert evaluate(parse(f"stays_inside({BALL}, tank)"), many).margin.shape == (2,)
+
+
+@pytest.mark.parametrize("rate", [1.5, -0.7])
+def test_a_fluid_that_turns_as_a_whole_swirls(pool, rate):
+    """v = w x r about any middle, with any speed besides, has L / I = w."""
+    case = pool()
+    track = case.recording.fluids[WATER]
+    carried = np.array([0.3, 0.0, 0.1])
+    turn = np.cross([0.0, 0.0, rate], track.position - [0.1, -0.2, 0.0])
+    water = case.water(velocity=(turn + carried).astype(np.float32))
+    low, high = np.degrees(rate) - 5.0, np.degrees(rate) + 20.0
+    assert found(f"swirls_between(water, z, {low} deg/s, {high} deg/s)", water).margin[0] == pytest.approx(
+        5.0, rel=1e-3
+    )
+    assert found("swirls_between(water, x, -1 deg/s, 1 deg/s)", water).satisfied[0]
+    assert not found(f"swirls_between(water, z, {low} deg/s, {high} deg/s)", case).satisfied[0]  # at rest
+
+
+def test_a_level_in_a_vessel_is_that_of_what_is_in_it(pool):
+    """Half of the water, poured in at 2 s: the other half stands at half the height before."""
+    case, share = pouring(pool())
+    assert found("level_in(water, tank, 0.3 m)", case).margin[0] == pytest.approx(0.015, abs=1e-3)
+    early = found("always[0, 1](level_in(water, tank, 0.3 m, within 1 cm))", case)
+    assert early.margin[0] == pytest.approx(0.01 - share * 0.3, abs=1e-3)
+    half = (1.0 - share) * 0.3
+    assert found(f"always[0, 1](level_in(water, tank, {half} m, within 1 cm))", case).margin[0] == pytest.approx(
+        0.01, abs=1e-3
+    )

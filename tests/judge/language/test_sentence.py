@@ -55,11 +55,8 @@ def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
             lambda v: SpeedBetween(object=v[0], low=min(v[1:]), high=max(v[1:]))
         )
     if {"low", "high", "axis"} <= set(kind.model_fields):
-        return st.tuples(names, st.sampled_from("xyz"), numbers, numbers, st.one_of(st.none(), names)).map(
-            lambda v: kind.model_validate(
-                {"object": v[0], "axis": v[1], "low": -max(v[2:4]), "high": min(v[2:4]), "of": v[4]}
-            )
-        )
+        taken |= {"low": numbers.map(lambda x: -x), "high": numbers, "of": st.one_of(st.none(), names)}
+        taken["axis"] = st.sampled_from(kind.model_fields["axis"].annotation.__args__)
     chosen = {name: taken[name] for name in kind.model_fields if name != "op"}
     return st.fixed_dictionaries(chosen).map(kind.model_validate)
 
@@ -112,7 +109,9 @@ def test_python_calls_every_predicate_by_its_fields(name):
     samples = {"path": ((0, 0, 0), (1, 0, 0)), "axis": "x", "target": "c", "center": "c", "objects": ("c", "d")}
     wanted = [field for field, info in kind.model_fields.items() if info.is_required()]
     values = [
-        samples.get(field, 0.5 if field in ("radius", "low", "high", "at", "level", "height", "least") else "a")
+        samples.get(
+            field, 0.5 if field in ("radius", "low", "high", "at", "level", "height", "least", "share") else "a"
+        )
         for field in wanted
     ]
     assert getattr(python, name)(*values) == kind(**dict(zip(wanted, values, strict=True)))

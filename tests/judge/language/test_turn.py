@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
+from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.language import evaluate, parse
 from wsim.scene.world import Shape, World
 
@@ -92,3 +93,34 @@ def test_counts_what_is_in_a_vessel(tank_world):
     assert margin("counts(tank, 2, ball, box)", both) == 0.0
     assert margin("counts(tank, 2, ball, box)", one) == -1.0
     assert margin("counts(tank, 1, ball, box)", one) == 0.0
+
+
+@pytest.mark.parametrize("tumble", [0.0, 0.4, 3.0])
+def test_a_spin_about_an_own_axis_goes_with_the_body(tumble):
+    """A wheel on an axle along its own y, which is itself carried round the world's z: w = carried z + spin y'."""
+    spin = 2.0
+    own, carried = about_axis("y", spin * TIME), about_axis("z", tumble * TIME)
+    q = multiply(carried, own)
+    w = np.array([0.0, 0.0, tumble]) + spin * rotate(carried, np.broadcast_to([0.0, 1.0, 0.0], ONE.shape))
+    world = World(bodies=[solid("wheel", shape("cylinder", 0.3, 0.1))])
+    signals = moving(world, TIME, 0.0 * ONE, q=q[:, None], w=w[:, None])
+    assert margin("own_spin_between(wheel, y, 1.5 rad/s, 2.5 rad/s)", signals) == pytest.approx(math.degrees(0.5))
+    assert margin("own_spin_between(wheel, y, -3 rad/s, 0 rad/s)", signals) == pytest.approx(-math.degrees(2.0))
+    # About the world's y it turns by the cosine of how far it was carried: after half a turn backwards.
+    least = math.degrees(spin * np.cos(tumble * TIME).min())
+    assert margin("spin_between(wheel, y, 0 deg/s, 999 deg/s)", signals) == pytest.approx(least, abs=0.1)
+
+
+@pytest.mark.parametrize("angle", [-40.0, 25.0, 110.0])
+def test_a_tilt_has_a_sign(angle):
+    """About +y what pointed up leans towards +x, about +x towards -y, by the angle of the turn."""
+    turn = np.radians(np.linspace(0.0, angle, len(TIME)))
+    world = World(bodies=[solid("box", shape("box", 0.2, 0.2, 0.4))])
+    to_x = moving(world, TIME, 0.0 * ONE, q=about_axis("y", turn)[:, None])
+    to_y = moving(world, TIME, 0.0 * ONE, q=about_axis("x", turn)[:, None])
+    end = "eventually[2, 2](tilt_between(box, {}, {} deg, {} deg))"
+    assert margin(end.format("x", angle - 3, angle + 9), to_x) == pytest.approx(3.0)
+    assert margin(end.format("y", -angle - 3, -angle + 9), to_y) == pytest.approx(3.0)
+    assert margin(end.format("x", -angle - 3, -angle + 3), to_x) < 0.0  # the other way is another tilt
+    about_itself = moving(world, TIME, 0.0 * ONE, q=about_axis("z", turn)[:, None])
+    assert margin("always(tilt_between(box, x, -1 deg, 1 deg))", about_itself) == pytest.approx(1.0)

@@ -11,6 +11,11 @@ from wsim.judge.evidence.pendulum import pivot_of, swing_stretch
 from wsim.judge.language import Signals, evaluate, parse
 from wsim.scene.world import World
 
+
+def margin(text, signals):
+    return evaluate(parse(text), signals).margin[0]
+
+
 ARM, RADIUS = 1.0, 0.1
 
 
@@ -170,3 +175,32 @@ def test_gravity_takes_no_momentum_sideways():
     assert evaluate(parse("conserves(momentum)"), signals).satisfied[0]
     signals.world = world.model_copy(update={"gravity": (0.0, 0.0, 0.0)})
     assert not evaluate(parse("conserves(momentum)"), signals).satisfied[0]
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.1])
+def test_a_damped_swing_dies_down_by_its_decrement(ratio):
+    """x = exp(-z w t) cos(w t): after each period exp(-2 pi z / sqrt(1 - z^2)) is left of it."""
+    time = times(6.0, 100.0)
+    damped = math.sqrt(1.0 - ratio**2)
+    x = np.exp(-ratio * 5.0 * time) * np.cos(5.0 * damped * time)
+    world = World(bodies=[solid("bob", shape("sphere", 0.1))])
+    signals = moving(world, time, np.stack([x, 0.0 * x, 0.0 * x], axis=1))
+    left = math.exp(-2.0 * math.pi * ratio / damped)
+    assert margin("dies_down(bob, x, share 99 %)", signals) == pytest.approx(0.99 - left, abs=0.01)
+    assert not evaluate(parse(f"dies_down(bob, x, share {left - 0.05})"), signals).satisfied[0]
+    for_ever = moving(world, time, np.stack([np.cos(5.0 * time), 0.0 * x, 0.0 * x], axis=1))
+    assert margin("dies_down(bob, x)", for_ever) == pytest.approx(-0.02, abs=0.005)
+    assert not evaluate(parse("dies_down(bob, y)"), signals).satisfied[0]  # what stands still has no peaks
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.8])
+def test_a_bounce_climbs_to_the_square_of_its_restitution(restitution):
+    time = times(1.2, 240.0)
+    fall = math.sqrt(2.0 / G)
+    after = time - fall
+    z = np.where(after < 0.0, 1.0 - G * time**2 / 2, restitution * G * fall * after - G * after**2 / 2)
+    keep = z >= 0.0
+    world = World(bodies=[solid("ball", shape("sphere", 0.05))])
+    signals = moving(world, time[keep], np.stack([0.0 * z, 0.0 * z, z + 0.05], axis=1)[keep])
+    assert margin(f"climbs_to(ball, {restitution**2 - 0.1})", signals) == pytest.approx(0.1, abs=0.02)
+    assert not evaluate(parse(f"climbs_to(ball, {restitution**2 + 0.05})"), signals).satisfied[0]

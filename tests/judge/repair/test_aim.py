@@ -230,7 +230,7 @@ def test_what_rolls_on_for_ever_is_told_no_run_that_long(stack):
     found = aimed(
         case.body("/World/box_1", shapes=[round_]), failed("CheckSettled", "/World/box_1", value=0.5, limit=0.005)
     )
-    assert (found.parameter, found.direction, found.suggested) == ("rolling", "raise", None)
+    assert (found.parameter, found.direction, found.suggested) == ("rolling_friction", "raise", None)
 
 
 def test_a_way_goes_as_the_square_of_the_speed(stack):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.framing import framed, in_frame
 from wsim.judge.objectives.registry import check_of
 from wsim.judge.verdict import RepairTarget
 from wsim.plan.schema.formula import And, Eventually, Predicate, Then
@@ -53,13 +53,13 @@ class CheckInFrame(Check):
         found = []
         for camera in world.cameras:
             anything: Bools = np.asarray(inside[camera.prim].any(axis=1))
-            target = RepairTarget(kind="camera", prim=camera.prim, parameter="target", direction="change")
+            target = _reframed(evidence, camera)
             found += self._out(evidence, frames, anything, camera.prim, "has nothing that moves in frame", target)
         anywhere: Bools = np.asarray(np.any(list(inside.values()), axis=0))
         plan = evidence.plan
         asked = {evidence.prim(objective.object) for objective in plan.objectives} if plan is not None else set()
         for prim, shown in zip(things, anywhere.T, strict=True):
-            target = RepairTarget(kind="camera", prim=world.cameras[0].prim, parameter="target", direction="change")
+            target = _reframed(evidence, world.cameras[0])
             found += self._out(evidence, frames, shown, prim, "is in frame of no camera", target)
             if prim in asked and shown.any():
                 found += self._briefly(evidence, frames, shown, prim, target)
@@ -107,10 +107,8 @@ class CheckInFrame(Check):
                 continue
             if not any(bool(_inside(evidence, camera, about)[:, rows[prim]].any()) for camera in cameras):
                 told.add(prim)
-                target = RepairTarget(
-                    kind="camera", prim=cameras[0].prim, parameter="target", direction="change",
-                    why="what the plan asks for happens out of the picture: frame that place too",
-                )  # fmt: skip
+                why = "what the plan asks for happens out of the picture: frame that place too"
+                target = _reframed(evidence, cameras[0]).model_copy(update={"why": why})
                 yield self.measured(
                     f"{prim} is in frame of no camera at {time:.3f} s, when it comes true: {sentence}",
                     0.0, 1.0, "frames", at_most=False, prim=prim, time=time, limit_from=ASKED, target=target,
@@ -202,38 +200,40 @@ def _things(evidence: Evidence) -> list[str]:
     return [body.prim for body in evidence.world.bodies] + [fluid.prim for fluid in evidence.world.fluids]
 
 
+def _reframed(evidence: Evidence, camera: Camera) -> RepairTarget:
+    """Where a camera is to stand and look, so that it sees all that moves, all the time."""
+    frames = _moments(len(evidence.time))
+    points = np.concatenate([each.reshape(-1, 3) for each in _points(evidence, frames)])
+    points = points[np.isfinite(points).all(axis=1)]
+    found = framed(camera, points) if len(points) else None
+    target = RepairTarget(kind="camera", prim=camera.prim, parameter="target", direction="change", unit="m")
+    if found is None:
+        return target
+    eye, at = (tuple(float(x) for x in place) for place in found)
+    if eye == camera.eye:
+        return target.model_copy(update={"vector": at})
+    return target.model_copy(update={"parameter": "eye, target", "vector": (*eye, *at)})
+
+
 def _moments(frames: int) -> NDArray[np.intp]:
     return np.unique(np.linspace(0, frames - 1, min(frames, MOMENTS)).astype(int))
 
 
 def _inside(evidence: Evidence, camera: Camera, frames: NDArray[np.intp]) -> Bools:
     """Whether each thing is in a camera's picture, (frames, things): a body's centre, some of a fluid's particles."""
-    bodies = _in_frame(camera, evidence.motion.com[frames])
-    fluids = []
+    bodies, *fluids = _points(evidence, frames)
+    return np.column_stack([in_frame(camera, bodies), *(in_frame(camera, some).any(axis=1) for some in fluids)])
+
+
+def _points(evidence: Evidence, frames: NDArray[np.intp]) -> list[Floats]:
+    """Centres of the bodies (frames, B, 3), and some hundred particles of each fluid (frames, n, 3) [m]."""
+    found = [evidence.motion.com[frames]]
     for fluid in evidence.world.fluids:
         track = evidence.track(fluid)
         at = np.abs(track.time[None] - evidence.time[frames, None]).argmin(axis=1)
         some = track.position[at, :: max(1, track.position.shape[1] // 100)]
-        fluids.append(_in_frame(camera, np.asarray(some, dtype=np.float64)).any(axis=1))
-    return np.column_stack([bodies, *fluids])
-
-
-def _in_frame(camera: Camera, points: Floats) -> Bools:
-    """Which points (..., 3) are in a camera's picture, (...)."""
-    eye, up = np.array(camera.eye), np.array(camera.up)
-    ahead = np.array(camera.target) - eye
-    ahead /= max(float(np.linalg.norm(ahead)), 1e-12)
-    right = np.cross(ahead, up)
-    if float(np.linalg.norm(right)) < 1e-9:  # it looks along its own up: any side will do
-        right = np.cross(ahead, np.eye(3)[int(np.argmin(np.abs(ahead)))])
-    right /= float(np.linalg.norm(right))
-    local = points - eye
-    depth = local @ ahead
-    half = math.tan(math.radians(camera.fov) / 2.0)
-    tall = half * camera.height / camera.width
-    inside: Bools = (depth > 0.0) & (np.abs(local @ right) <= half * depth)
-    inside &= np.abs(local @ np.cross(right, ahead)) <= tall * depth
-    return inside
+        found.append(np.asarray(some, dtype=np.float64))
+    return found
 
 
 CHECKS: Checks = (CheckInFrame, CheckSeen)

@@ -112,7 +112,10 @@ class CheckPlanFluid(Check):
         limit = max(fluid.spacing, self.share * max(item.size))
         if off <= limit:
             return []
-        target = RepairTarget(kind="fluid", prim=fluid.prim, parameter="size", direction="change", unit="m")
+        target = RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="size, position", direction="change", unit="m",
+            vector=(*item.size, *item.pose.position),
+        )  # fmt: skip
         return [
             self.measured(
                 f"{fluid.prim} stands as a block of {listed(fluid.size)} m at {listed(fluid.center)} m; the plan has "

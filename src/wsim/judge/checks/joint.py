@@ -122,15 +122,11 @@ class CheckDrives(Check):
                 continue
             full = np.abs(effort[evidence.window]) >= self.share * joint.drive.max_effort
             value = float(full.mean())
-            target = RepairTarget(
-                kind="drive", prim=joint.prim, parameter="drive.max_force", direction="raise", why="it is at its limit"
-            )
             found.append(
                 self.measured(
                     f"{joint.prim}: its drive is at its full {joint.drive.max_effort:g} at {value:.0%} of the end",
                     value, 0.5, "share of frames", prim=joint.prim, time=evidence.window_start,
                     limit_from="half of the final window: a drive that gets where it is to go no longer strains",
-                    target=target,
                 )
             )  # fmt: skip
         return found

@@ -241,8 +241,8 @@ class CheckGravity(Check):
 
 def _gravity_target(to: float, why: str, above: bool | None = None) -> RepairTarget:
     return RepairTarget(
-        kind="physical parameter", parameter="gravity", suggested=to, unit="m/s^2", why=why,
-        direction="" if above is None else "lower" if above else "raise",
+        kind="physical parameter", parameter="gravity", suggested=to, vector=(0.0, 0.0, -to), unit="m/s^2", why=why,
+        direction="change" if above is None else "lower" if above else "raise",
     )  # fmt: skip
 
 

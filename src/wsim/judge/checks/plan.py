@@ -77,11 +77,13 @@ class CheckPlanSizes(Check):
             return self._compare(made.prim, _edges(item.primitive, item.size), shape.size)
         if shape.kind != item.primitive:
             message = f"{made.prim} is a {shape.kind}; the plan has it as a {item.primitive}"
-            target = RepairTarget(kind="geometry", prim=made.prim, parameter="shape", direction="change")
+            target = RepairTarget(
+                kind="geometry", prim=made.prim, parameter="shape", direction="change", text=item.primitive
+            )
             return [self.failed(message, prim=made.prim, time=0.0, limit_from="the plan's primitive", target=target)]
         if shape.kind == "box":
             sizes = (tuple(sorted(item.size)), tuple(sorted(shape.size)))
-        return self._compare(made.prim, *sizes)
+        return self._compare(made.prim, *sizes, item.size)
 
     def _fills(self, shape: Shape, item: PlanObject) -> bool:
         """Whether a mesh stands for the plan's primitive: its hull has the primitive's volume."""
@@ -121,7 +123,10 @@ class CheckPlanSizes(Check):
             )
         ]  # fmt: skip
 
-    def _compare(self, prim: str, planned: tuple[float, ...], made: tuple[float, ...]) -> list[Finding]:
+    def _compare(
+        self, prim: str, planned: tuple[float, ...], made: tuple[float, ...], whole: tuple[float, ...] | None = None
+    ) -> list[Finding]:
+        """The finding of sizes that differ; `whole` is the plan's size in the order of the program."""
         ratios = [b / a for a, b in zip(planned, made, strict=True)]
         if not ratios:
             return []
@@ -129,7 +134,9 @@ class CheckPlanSizes(Check):
         if abs(off - 1.0) <= self.share:
             return []
         suggested = planned[ratios.index(off)]
-        target = RepairTarget(kind="geometry", prim=prim, parameter="size", suggested=suggested, unit="m")
+        target = RepairTarget(
+            kind="geometry", prim=prim, parameter="size", suggested=suggested, vector=whole or planned, unit="m"
+        )
         return [
             self.between(
                 f"{prim} measures {listed(made)} m; the plan has {listed(planned)} m",
@@ -167,7 +174,10 @@ class CheckPlanPlaces(Check):
         limit = self.share * max(_edges(item.primitive, item.size))
         if far > limit:
             where = listed(tuple(float(x) for x in place))
-            target = RepairTarget(kind="geometry", prim=made.prim, parameter="position", direction="change", unit="m")
+            target = RepairTarget(
+                kind="geometry", prim=made.prim, parameter="position", direction="change", vector=item.pose.position,
+                unit="m",
+            )  # fmt: skip
             yield self.measured(
                 f"{made.prim} starts at {where} m, {far:.3g} m from the plan's {listed(item.pose.position)} m",
                 far, limit, "m", expected=0.0, prim=made.prim, time=0.0,
@@ -175,7 +185,10 @@ class CheckPlanPlaces(Check):
             )  # fmt: skip
         off = _turned(item, turn, shape)
         if off > self.turn:
-            target = RepairTarget(kind="geometry", prim=made.prim, parameter="rotation_deg", direction="change")
+            target = RepairTarget(
+                kind="geometry", prim=made.prim, parameter="rotation_deg", direction="change",
+                vector=item.pose.rotation_deg, unit="deg",
+            )  # fmt: skip
             yield self.measured(
                 f"{made.prim} starts turned by {off:.3g} degrees against the plan",
                 off, self.turn, "deg", expected=0.0, prim=made.prim, time=0.0,
@@ -190,7 +203,7 @@ class CheckPlanPlaces(Check):
         if off > limit and not evidence.varied:
             target = RepairTarget(
                 kind="physical parameter", prim=body.prim, parameter="velocity", direction="change",
-                suggested=float(np.linalg.norm(planned)), unit="m/s",
+                suggested=float(np.linalg.norm(planned)), vector=item.velocity, unit="m/s",
             )  # fmt: skip
             yield self.measured(
                 f"{body.prim} starts at {listed(body.velocity)} m/s; the plan has {listed(item.velocity)} m/s",
@@ -221,20 +234,23 @@ class CheckPlanLooks(Check):
         wanted = (
             ("friction", friction_of, material.friction, max(self.surface * material.friction, self.least)),
             ("restitution", restitution_of, material.restitution, max(self.surface * material.restitution, self.least)),
-            ("rolling", rolling_of, material.rolling or 0.0, self.rolling),
+            ("rolling_friction", rolling_of, material.rolling or 0.0, self.rolling),
         )
         for what, of, planned, limit in wanted:
             value = of(shape)
             if abs(value - planned) > limit:
                 target = RepairTarget(kind="physical parameter", prim=made.prim, parameter=what, suggested=planned)
+                said = what.replace("_", " ")
                 yield self.between(
-                    f"{made.prim} has a {what} of {value:g}; the plan's {material.name} has {planned:g}",
+                    f"{made.prim} has a {said} of {value:g}; the plan's {material.name} has {planned:g}",
                     value, (planned - limit, planned + limit), "1", expected=planned, prim=made.prim,
                     time=0.0, limit_from="the plan's material", target=target,
                 )  # fmt: skip
         off = float(np.abs(np.subtract(shape.color, material.color)).max())
         if off > self.color:
-            target = RepairTarget(kind="visual mismatch", prim=made.prim, parameter="color", direction="change")
+            target = RepairTarget(
+                kind="visual mismatch", prim=made.prim, parameter="color", direction="change", vector=material.color
+            )
             yield self.measured(
                 f"{made.prim} has the colour {listed(shape.color)}; the plan's {material.name} has "
                 f"{listed(material.color)}",

@@ -51,7 +51,9 @@ class CheckPlanJoints(Check):
                 continue
             if made.kind != JOINTS[planned.kind]:
                 message = f"{made.prim} is a {made.kind} joint; the plan's {planned.name} is a {planned.kind}"
-                target = RepairTarget(kind="joint", prim=made.prim, parameter="kind", direction="change")
+                target = RepairTarget(
+                    kind="joint", prim=made.prim, parameter="kind", direction="change", text=planned.kind
+                )
                 found.append(self.failed(message, prim=made.prim, time=0.0, target=target))
                 continue
             found += [*self._axis(evidence, made, planned), *self._anchor(evidence, made, planned)]
@@ -85,7 +87,9 @@ class CheckPlanJoints(Check):
                 f"{made.prim} is about {listed(tuple(float(x) for x in axis))}; the plan's {planned.name} is about "
                 f"{planned.axis}",
                 off, self.turn, "deg", expected=0.0, prim=made.prim, time=0.0, limit_from="the plan's axis",
-                target=RepairTarget(kind="joint", prim=made.prim, parameter="axis", direction="change"),
+                target=RepairTarget(
+                    kind="joint", prim=made.prim, parameter="axis", direction="change", text=planned.axis
+                ),
             )  # fmt: skip
 
     def _anchor(self, evidence: Evidence, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
@@ -106,7 +110,10 @@ class CheckPlanJoints(Check):
                 f"{listed(planned.anchor or (0.0, 0.0, 0.0))} m",
                 off, limit, "m", expected=0.0, prim=made.prim, time=0.0,
                 limit_from=f"{self.place:g} of its largest extent",
-                target=RepairTarget(kind="joint", prim=made.prim, parameter="anchor", direction="change", unit="m"),
+                target=RepairTarget(
+                    kind="joint", prim=made.prim, parameter="anchor", direction="change", unit="m",
+                    vector=_in_the_world(evidence, planned),
+                ),
             )  # fmt: skip
 
     def _holds(self, plan: Plan, made: Joint) -> Iterator[Finding]:
@@ -140,7 +147,10 @@ class CheckPlanJoints(Check):
                 f"{listed((low, high))} {unit}",
                 off, limit, unit, expected=0.0, prim=made.prim, time=0.0,
                 limit_from=f"{self.share:g} of the plan's range",
-                target=RepairTarget(kind="joint", prim=made.prim, parameter="limits", direction="change"),
+                target=RepairTarget(
+                    kind="joint", prim=made.prim, parameter="limits_deg" if planned.kind == "hinge" else "limits",
+                    direction="change", vector=planned.limits, unit="deg" if planned.kind == "hinge" else "m",
+                ),
             )  # fmt: skip
 
     def _drive(self, evidence: Evidence, made: Joint, planned: PlanJoint) -> Iterator[Finding]:
@@ -219,6 +229,13 @@ class CheckPlanJoints(Check):
                 suggested=wanted, unit=unit,
             ),
         )  # fmt: skip
+
+
+def _in_the_world(evidence: Evidence, planned: PlanJoint) -> tuple[float, ...]:
+    """Where the plan has a joint, in the world's axes at the start [m], as a program gives it."""
+    child = evidence.body(evidence.prim(planned.child))
+    at = np.array(child.position) + rotate(np.array(child.rotation), np.array(planned.anchor or (0.0, 0.0, 0.0)))
+    return tuple(round(float(x), 6) for x in at)
 
 
 def _paired(evidence: Evidence, plan: Plan) -> list[tuple[PlanJoint, Joint | None]]:

@@ -63,7 +63,8 @@ class CheckPlanMotion(Check):
             if off > limit:
                 told = listed(tuple(float(x) for x in np.degrees(spin)))
                 message = f"{body.prim} starts turning at {told} deg/s; the plan has {listed(stated)}"
-                yield self._off(message, off, limit, "rad/s", body, "angular_velocity_deg", "give it the plan's spin")
+                why = "give it the plan's spin"
+                yield self._off(message, off, limit, "rad/s", body, "angular_velocity_deg", why, stated)
 
     def _belt(self, made: Body | Static, item: PlanObject, *, fixed: bool) -> Iterator[Finding]:
         """In the body's axes, or the world's for what is static."""
@@ -79,10 +80,11 @@ class CheckPlanMotion(Check):
             yield self._off(message, off, limit, "m/s", made, "surface_velocity", "call scene.surface_velocity")
 
     def _off(
-        self, message: str, value: float, limit: float, unit: str, made: Body | Static, parameter: str, why: str
-    ) -> Finding:
+        self, message: str, value: float, limit: float, unit: str, made: Body | Static, parameter: str, why: str,
+        vector: tuple[float, ...] | None = None,
+    ) -> Finding:  # fmt: skip
         target = RepairTarget(
-            kind="physical parameter", prim=made.prim, parameter=parameter, direction="change", why=why
+            kind="physical parameter", prim=made.prim, parameter=parameter, direction="change", vector=vector, why=why
         )
         return self.measured(
             message, value, limit, unit, expected=0.0, prim=made.prim, time=0.0, line=made.line,

@@ -11,7 +11,7 @@ from wsim.geometry.kinds import ROUND
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.contacts import about, moving_size, swept_gap, touch_reach
+from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.objectives.objective import support_of
 from wsim.plan.schema.formula import (
@@ -21,6 +21,7 @@ from wsim.plan.schema.formula import (
     RestsOn,
     RollsWithoutSlip,
     Settles,
+    StopsBefore,
     SupportedBy,
     Touches,
 )
@@ -107,6 +108,21 @@ def _settles(asked: Settles, signals: Signals) -> list[Measure]:
     source = "the objective's" if asked.speed else f"{QUIET:g} sqrt(g L), L = {size:.3g} m"
     what, prim = "speed of its fastest point", signals.prim(asked.object)
     return [Measure(what, prim, value, limit, "m/s", limit, source, expected=0.0)]
+
+
+@measures(StopsBefore)
+def _stops_before(asked: StopsBefore, signals: Signals) -> list[Measure]:
+    prim, gaps = signals.prim(asked.object), swept_gap(signals, asked.object, asked.ref)
+    size = moving_size(signals, asked.object, asked.ref)
+    # Before a frame they have not touched: what touches in the interval after it does so later.
+    so_far = np.minimum.accumulate(np.concatenate([gaps[:, :1], gaps[:, :-1]], axis=1), axis=1)
+    what = f"least gap to {signals.prim(asked.ref)} so far"
+    source = f"{NEAR:g} L: what is nearer touches"
+    found = [Measure(what, prim, so_far, NEAR * size, "m", size, source, at_most=False)]
+    if asked.within is not None:
+        what, source = f"gap to {signals.prim(asked.ref)}", "the objective's"
+        found.append(Measure(what, prim, gaps, asked.within, "m", asked.within, source))
+    return [*found, *_settles(Settles(object=asked.object), signals)]
 
 
 @measures(RollsWithoutSlip)

@@ -16,7 +16,7 @@ from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.welded import unheld_lift, welded
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
-from wsim.plan.schema.formula import FillsTo, Floats, Sinks, Submerged
+from wsim.plan.schema.formula import FillsTo, Floats, LevelIn, Sinks, Submerged, SwirlsBetween
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -136,3 +136,38 @@ def _fills_to(asked: FillsTo, signals: Signals) -> list[Measure]:
             limit_from=source,
         )
     ]  # fmt: skip
+
+
+@measures(LevelIn)
+def _level_in(asked: LevelIn, signals: Signals) -> list[Measure]:
+    """By the volume of the particles that are in the vessel, as if they stood level in it."""
+    evidence, fluid = signals.fluid(asked.fluid)
+    container, track = signals.container(asked.ref), evidence.track(fluid)
+    share = evidence.containment(container, fluid).inside()[latest(track.time, signals.time)]
+    value = share * math.prod(fluid.size) / (container.inner_size[0] * container.inner_size[1])
+    tolerance = asked.within or SPACINGS * fluid.spacing
+    source = "the objective's" if asked.within else f"{SPACINGS:g} particle spacings: what the particles resolve"
+    return [
+        Measure.about(
+            value[None], asked.level, tolerance, what=f"level in {container.prim}", prim=fluid.prim, unit="m",
+            limit_from=source,
+        )
+    ]  # fmt: skip
+
+
+@measures(SwirlsBetween)
+def _swirls(asked: SwirlsBetween, signals: Signals) -> list[Measure]:
+    """The rate of the rigid turn with the fluid's angular momentum about its middle: L / I, particles being alike."""
+    evidence, fluid = signals.fluid(asked.fluid)
+    track, k = evidence.track(fluid), "xyz".index(asked.axis)
+    r, v = (np.asarray(each, dtype=np.float64) for each in (track.position, track.velocity))
+    r, v = r - r.mean(axis=1, keepdims=True), v - v.mean(axis=1, keepdims=True)
+    momentum = np.cross(r, v)[..., k].sum(axis=1)
+    inertia = (np.sum(r**2, axis=-1) - r[..., k] ** 2).sum(axis=1)
+    rate = np.degrees(momentum / np.maximum(inertia, np.finfo(np.float64).tiny))
+    value = rate[latest(track.time, signals.time)][None]
+    what, scale = f"rate at which it turns about {asked.axis}", max(abs(asked.low), abs(asked.high), 1e-9)
+    return [
+        Measure(what, fluid.prim, value, limit, "deg/s", scale, "the objective's range", at_most=at_most)
+        for limit, at_most in ((asked.low, False), (asked.high, True))
+    ]

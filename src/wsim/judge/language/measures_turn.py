@@ -10,7 +10,15 @@ from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.language.contacts import about, gap, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import room_in
-from wsim.plan.schema.formula import BouncesTo, Counts, GoneBetween, SpinBetween, TurnedBetween
+from wsim.plan.schema.formula import (
+    BouncesTo,
+    Counts,
+    GoneBetween,
+    OwnSpinBetween,
+    SpinBetween,
+    TiltBetween,
+    TurnedBetween,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,6 +63,22 @@ def _spin(asked: SpinBetween, signals: Signals) -> list[Measure]:
     value = np.degrees(w[..., "xyz".index(asked.axis)])
     what = f"rate of turning about {asked.axis}" + (f" against {signals.prim(asked.of)}" if asked.of else "")
     return _range(what, signals.prim(asked.object), value, asked.low, asked.high, "deg/s")
+
+
+@measures(OwnSpinBetween)
+def _own_spin(asked: OwnSpinBetween, signals: Signals) -> list[Measure]:
+    w = rotate(conjugate(_turn(signals, asked.object)), signals.qd(asked.object)[..., 3:])
+    value = np.degrees(w[..., "xyz".index(asked.axis)])
+    what = f"rate of turning about its own {asked.axis}"
+    return _range(what, signals.prim(asked.object), value, asked.low, asked.high, "deg/s")
+
+
+@measures(TiltBetween)
+def _tilt(asked: TiltBetween, signals: Signals) -> list[Measure]:
+    up = rotate(_turn(signals, asked.object), signals.up)
+    value = np.degrees(np.arctan2(up[..., "xy".index(asked.axis)], up @ signals.up))
+    what = f"tilt towards {asked.axis}"
+    return _range(what, signals.prim(asked.object), value, asked.low, asked.high, "deg")
 
 
 @measures(GoneBetween)

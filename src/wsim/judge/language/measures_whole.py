@@ -11,7 +11,7 @@ from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.pendulum import Pendulum, period_of, pivot_of
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
-from wsim.plan.schema.formula import Conserves, Swings
+from wsim.plan.schema.formula import ClimbsTo, Conserves, DiesDown, Swings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+FAINT = 0.02  # of the farthest way: what goes less far trembles
 REST = 0.5  # [deg]: a smaller swing is rest
 
 
@@ -105,6 +106,47 @@ def _at_least(values: Floats, known: NDArray[np.bool_]) -> Floats:
     before = np.maximum.accumulate(np.where(known, frames, -1), axis=1)
     after = np.minimum.accumulate(np.where(known, frames, frames[-1])[:, ::-1], axis=1)[:, ::-1]
     return np.maximum(values, np.take_along_axis(values, np.where(before >= 0, before, after), axis=1))
+
+
+@measures(DiesDown)
+def _dies_down(asked: DiesDown, signals: Signals) -> list[Measure]:
+    """The worst share of a way between two turning points over that two ways before it, at every frame (W, T)."""
+    place = signals.centre_of_mass(signals.row(asked.object))[..., "xyz".index(asked.axis)]
+    value = np.repeat([[_worst_share(each)] for each in place], len(signals.time), axis=1)
+    source = "the objective's: of the way two turns before, the same way round"
+    return [
+        Measure("share that it goes as far", signals.prim(asked.object), value, asked.share, "1", asked.share, source)
+    ]
+
+
+def _worst_share(place: Floats) -> float:
+    """Of one world (T,); infinite where it turns back too seldom to tell, NaN where it is not finite."""
+    if not np.isfinite(place).all():
+        return math.nan
+    way = np.diff(place)
+    moves = np.flatnonzero(way)  # what stands still for a while has not turned back
+    if not len(moves):
+        return math.inf
+    turns = moves[1:][way[moves[1:]] * way[moves[:-1]] < 0.0]
+    points = np.concatenate([place[:1], place[turns], place[-1:]])
+    ways = np.abs(np.diff(points))
+    # The last one is broken off where the recording ends: it may be as far, but not farther, than it is seen.
+    ways = ways[: len(ways) - (len(ways) > 3)]
+    large = ways > FAINT * ways.max(initial=0.0)
+    ways = ways[: int(np.argmin(large)) if not large.all() else len(ways)]
+    return float((ways[2:] / ways[:-2]).max()) if len(ways) > 2 else math.inf
+
+
+@measures(ClimbsTo)
+def _climbs_to(asked: ClimbsTo, signals: Signals) -> list[Measure]:
+    height = signals.centre_of_mass(signals.row(asked.object)) @ signals.up
+    lowest = np.minimum.accumulate(height, axis=1)
+    fall = height[:, :1] - lowest
+    least = FLOAT32 * max(signals.solid(asked.object).smallest, float(np.nanmax(np.abs(height), initial=0.0)))
+    value = np.where(fall > least, (height - lowest) / np.maximum(fall, least), 0.0)
+    what, source = "share of its start's height", "the objective's, over its lowest place so far"
+    prim = signals.prim(asked.object)
+    return [Measure(what, prim, value, asked.share, "1", asked.share, source, at_most=False, expected=1.0)]
 
 
 @measures(Conserves)

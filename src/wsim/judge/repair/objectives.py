@@ -12,6 +12,8 @@ from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.repair.asked import ref_of
+from wsim.judge.repair.drive import by_drive
+from wsim.judge.repair.place import over, overlapping_start
 from wsim.judge.repair.rule import (
     ROOM,
     Rule,
@@ -20,7 +22,6 @@ from wsim.judge.repair.rule import (
     density,
     finer,
     longer_run,
-    overlapping_start,
     planned_density,
     shapes_of,
     shorter_step,
@@ -32,9 +33,10 @@ from wsim.scene.contact import friction_of, pair_law
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Fluid, Static
+    from wsim.scene.world import Container, Fluid, Static
 
 NEAR = 0.1  # of a body's smallest extent: a gap below is that of what stands on something
+AFLOAT, SUNK = 0.5, 2.0  # of the fluid's density: as light as wood, as heavy as stone, where nothing says more
 SAME = 0.01  # share by which two densities differ by rounding alone
 
 
@@ -61,10 +63,12 @@ def floats(finding: Finding, evidence: Evidence) -> RepairTarget:
     prim, fluid = finding.prim or "", evidence.fluid(ref_of(finding, evidence))
     container = evidence.container_of(fluid)
     if container is not None and finding.expected == 0.0:
-        return _too_small(evidence, container.prim, finding.value or 0.0)
+        why = f"it starts beside {container.prim}"
+        beside = None if _started_in(evidence, prim, container) else over(evidence, prim, container.prim, why)
+        return beside or _too_small(evidence, container.prim, finding.value or 0.0)
     now, planned = density(evidence, prim), planned_density(evidence, prim)
     if now >= fluid.density:
-        to = planned if planned is not None and planned < fluid.density else None
+        to = planned if planned is not None and planned < fluid.density else AFLOAT * fluid.density
         why = f"what floats is lighter than the fluid's {fluid.density:g} kg/m^3"
         return own_density(evidence, prim, to, why).model_copy(update={"direction": "lower"})
     if planned is not None and abs(planned / now - 1.0) > SAME:
@@ -80,12 +84,19 @@ def floats(finding: Finding, evidence: Evidence) -> RepairTarget:
 
 def _too_small(evidence: Evidence, prim: str, beyond: float) -> RepairTarget:
     container = evidence.container(prim)
-    now = min(container.inner_size[:2]) if container is not None else None
+    more = 2 * beyond * (1.0 + ROOM)
+    x, y, z = container.inner_size if container is not None else (0.0, 0.0, 0.0)
     return RepairTarget(
-        kind="geometry", prim=prim, parameter="inner_size", direction="raise", current=now,
-        suggested=None if now is None else (1.0 + ROOM) * (now + 2 * beyond), unit="m",
+        kind="geometry", prim=prim, parameter="inner_size", direction="raise",
+        vector=None if container is None else (x + more, y + more, z), unit="m",
         why="a body gets out of it: room for its way",
     )  # fmt: skip
+
+
+def _started_in(evidence: Evidence, prim: str, container: Container) -> bool:
+    """Whether a body's centre starts over a container's floor."""
+    at = evidence.local(container, evidence.body_q[:1, evidence.index(prim), :3])[0]
+    return bool(np.all(np.abs(at[:2]) <= np.array(container.inner_size[:2]) / 2))
 
 
 def submerged(finding: Finding, evidence: Evidence) -> RepairTarget:
@@ -93,7 +104,7 @@ def submerged(finding: Finding, evidence: Evidence) -> RepairTarget:
     prim, fluid = finding.prim or "", evidence.fluid(ref_of(finding, evidence))
     now, planned = density(evidence, prim), planned_density(evidence, prim)
     if now <= fluid.density:
-        to = planned if planned is not None and planned > fluid.density else None
+        to = planned if planned is not None and planned > fluid.density else SUNK * fluid.density
         why = f"what sinks is heavier than the fluid's {fluid.density:g} kg/m^3"
         return own_density(evidence, prim, to, why).model_copy(update={"direction": "raise"})
     level = evidence.level(fluid)
@@ -114,8 +125,7 @@ def rests_on(finding: Finding, evidence: Evidence) -> RepairTarget:
     if finding.unit == "N":
         return settled(finding, evidence)
     if finding.value is None:
-        why = f"it must come down over {ref}"
-        return RepairTarget(kind="settlement", prim=prim, parameter="position", direction="change", unit="m", why=why)
+        return beside(evidence, prim, ref)
     if finding.value < 0:
         return fallen_through(finding, evidence, prim, ref)
     fluid = _fluid(finding, evidence)
@@ -128,6 +138,14 @@ def rests_on(finding: Finding, evidence: Evidence) -> RepairTarget:
         return longer_run(evidence, wanted, f"it is still coming down at {fall:.2g} m/s")
     why = f"it hangs {finding.value:.3g} m above {ref}: its collision shape is larger than it looks"
     return RepairTarget(kind="geometry", prim=prim, parameter="collision", direction="change", why=why)
+
+
+def beside(evidence: Evidence, prim: str, ref: str) -> RepairTarget:
+    """What comes down beside what is to carry it."""
+    why = f"it must come down over {ref}"
+    return over(evidence, prim, ref, why) or RepairTarget(
+        kind="settlement", prim=prim, parameter="position", direction="change", unit="m", why=why
+    )
 
 
 def fallen_through(finding: Finding, evidence: Evidence, prim: str, ref: str) -> RepairTarget:
@@ -159,8 +177,10 @@ def tunnelled(finding: Finding, evidence: Evidence, prim: str, ref: str) -> Repa
 
 
 def stays_on(finding: Finding, evidence: Evidence) -> RepairTarget:
-    """It slides off: on a slope friction must be more than its tangent."""
+    """It slides off: on a slope friction must be more than its tangent. Or it was never on it."""
     prim, ref = finding.prim or "", ref_of(finding, evidence)
+    if finding.value is None and finding.time is not None and finding.time <= float(evidence.time[0]):
+        return beside(evidence, prim, ref)
     slope = _slope(finding, evidence, evidence.static(ref))
     if slope > 0.01:
         why = f"a body stays on a slope of {math.degrees(slope):.3g} degrees where friction is above its tangent"
@@ -214,12 +234,17 @@ def friction(finding: Finding, evidence: Evidence, way: str, to: float | None, w
     """Another friction of the finding's body, with room to the value at which it just holds, or just lets go."""
     to = None if to is None else to * (1.0 + ROOM if way == "raise" else 1.0 - ROOM)
     body = evidence.body(finding.prim or "")
-    now = friction_of(body.shapes[0]) if body.shapes else None
+    shapes = {body.prim: body.shapes[:1]}
+    if way == "raise":  # of two surfaces the smoother counts
+        under = ref_of(finding, evidence)
+        shapes[under] = [shape for shape in shapes_of(evidence, under) if shape.collides][:1]
+    known = {prim: friction_of(found[0]) for prim, found in shapes.items() if found}
+    prim = min(known, key=lambda each: known[each], default=body.prim)
+    now = known.get(prim)
     if to is not None and now is not None and (to > now) != (way == "raise"):
         to = None  # friction is on the right side of it already: it is not what is wrong, or not alone
     return RepairTarget(
-        kind="physical parameter", prim=body.prim, parameter="friction", direction=way, current=now, suggested=to,
-        why=why,
+        kind="physical parameter", prim=prim, parameter="friction", direction=way, current=now, suggested=to, why=why,
     )  # fmt: skip
 
 
@@ -233,6 +258,8 @@ def stays_inside(finding: Finding, evidence: Evidence) -> RepairTarget:
         return RepairTarget(kind="missing object", prim=ref, direction="add", why="there is nothing to stay inside of")
     frame = evidence.recording.frame_index(finding.time or 0.0)
     p = evidence.local(container, evidence.body_q[frame, evidence.index(prim), :3])
+    if not _started_in(evidence, prim, container):
+        return beside(evidence, prim, ref)
     if p[2] > container.inner_size[2] / 2:
         return _too_small(evidence, ref, abs(finding.value or 0.0))
     return fallen_through(finding, evidence, prim, ref)
@@ -284,9 +311,13 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
     body = evidence.body(finding.prim or "")
     speed = float(np.linalg.norm(body.velocity))
     value, limit = finding.value or 0.0, finding.limit or 0.0
+    share = (1.0 + ROOM) * limit / value if 0.0 < value < limit else None
+    driven = by_drive(evidence, body.prim, share, "its drive gets where it is set to, which is not far enough")
+    if driven is not None and not speed:
+        return driven
     if any(joint.child == body.prim or joint.parent == body.prim for joint in evidence.world.joints) and not speed:
-        why = "a joint moves it: its drive must push harder or longer"
-        return RepairTarget(kind="drive", prim=body.prim, parameter="target", direction="raise", why=why)
+        why = "a joint holds it, and nothing drives that"
+        return RepairTarget(kind="drive", prim=body.prim, parameter="drive", direction="add", why=why)
     if speed > 0.0:
         to = (1.0 + ROOM / 2) * speed * math.sqrt(limit / value) if 0.0 < value < limit else None
         return RepairTarget(
@@ -294,8 +325,19 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
             suggested=to, unit="m/s", why="under friction it gets as far as v^2 / (2 mu g)",
         )  # fmt: skip
     return friction(
-        finding, evidence, "lower", _tangent(finding, evidence), "it starts at rest: less friction lets it go"
+        finding, evidence, "lower", _to_get_there(finding, evidence), "it starts at rest: less friction lets it go"
     )
+
+
+def _to_get_there(finding: Finding, evidence: Evidence) -> float | None:
+    """The friction with which it slides as far as asked, from rest: tan - 2 s / (g cos t^2); None of what is level."""
+    tangent = _tangent(finding, evidence)
+    if tangent is None:
+        return None
+    t = float(evidence.time[-1] - evidence.time[0])
+    cosine = 1.0 / math.hypot(1.0, tangent)
+    most = tangent - 2.0 * (finding.limit or 0.0) / (evidence.gravity * cosine * t**2)
+    return max(0.0, most)
 
 
 def _tangent(finding: Finding, evidence: Evidence) -> float | None:

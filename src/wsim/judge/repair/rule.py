@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.verdict import Finding, RepairTarget
 
@@ -17,7 +16,8 @@ Rule = Callable[[Finding, Evidence], RepairTarget]
 
 ROOM = 0.1  # of a limit that a suggested value keeps from it: what just meets it fails by rounding
 # What a number may be: rubber on rubber has a friction of 1.2, osmium 22 600 kg/m^3.
-BOUNDS = {"friction": (0.0, 1.5), "restitution": (0.0, 1.0), "rolling": (0.0, 1.0), "density": (1.0, 22_600.0)}
+BOUNDS = {"friction": (0.0, 1.5), "restitution": (0.0, 1.0), "rolling_friction": (0.0, 1.0), "density": (1.0, 22_600.0)}
+SAME = 1e-3  # of a number: what is nearer is the same
 FARTHEST = {"duration": 5.0, "time_step": 50.0, "spacing": 10.0}  # times what it is: beyond, something else is wrong
 
 
@@ -31,8 +31,10 @@ def shorter_step(evidence: Evidence, share: float, why: str) -> RepairTarget:
 
 
 def longer_run(evidence: Evidence, seconds: float | None, why: str) -> RepairTarget:
-    """A run that lasts so long [s]."""
+    """A run that lasts so long [s]; twice as long where nothing says how long."""
     now = evidence.world.duration
+    if seconds is None:
+        seconds, why = 2.0 * now, f"{why}; twice as long is the first to try"
     return RepairTarget(
         kind="settlement", parameter="duration", direction="raise", current=now, suggested=seconds, unit="s", why=why
     )
@@ -44,12 +46,16 @@ def tried(target: RepairTarget) -> RepairTarget:
     What a rule's formula gives beyond that it does not know; the number is left out, and the direction stays.
     """
     now, to = target.current, target.suggested
+    if target.parameter == "time_step" and to is None and now:
+        return target.model_copy(update={"suggested": now / 2})
     if to is None:
         return target
     low, high = BOUNDS.get(target.parameter, (-math.inf, math.inf))
     wrong = not low <= to <= high
     if now is not None:
-        wrong |= (target.direction == "lower" and to >= now) or (target.direction == "raise" and to <= now)
+        same = SAME * abs(now)
+        wrong |= target.direction == "lower" and to > now - same
+        wrong |= target.direction == "raise" and to < now + same
         wrong |= (
             target.parameter in FARTHEST
             and not now / FARTHEST[target.parameter] <= to <= now * FARTHEST[target.parameter]
@@ -90,21 +96,6 @@ def add_collision(prim: str) -> RepairTarget:
     """A collision shape for what has none."""
     why = "none of its shapes collides, so that nothing can stand on it or stop at it"
     return RepairTarget(kind="geometry", prim=prim, parameter="collision", direction="add", why=why)
-
-
-def overlapping_start(evidence: Evidence, prim: str | None) -> RepairTarget | None:
-    """The target for a body that starts inside another object: apart by as much."""
-    pairs = [pair for pair in overlaps(evidence) if prim in (pair.a.owner, pair.b.owner) or prim is None]
-    deepest = max(pairs, key=lambda pair: float(pair.depth[0]), default=None)
-    if deepest is None:
-        return None
-    depth = float(deepest.depth[0])
-    size = min(part.kind.thinnest for part in (deepest.a, deepest.b) if part.body >= 0)
-    if depth <= 1e-3 * size:  # touching
-        return None
-    why = f"it starts {depth:.3g} m inside {deepest.b.owner}: move them apart by that"
-    owner = deepest.a.owner
-    return RepairTarget(kind="settlement", prim=owner, parameter="position", direction="change", unit="m", why=why)
 
 
 def faster_sound(evidence: Evidence, fluid: Fluid, wanted: float, why: str) -> RepairTarget:

@@ -9,6 +9,8 @@ import numpy as np
 
 from wsim.geometry.kinds import ROUND
 from wsim.geometry.shapes import kind_of
+from wsim.judge.repair.drive import by_drive, drive_of, stronger
+from wsim.judge.repair.place import overlapping_start
 from wsim.judge.repair.rule import (
     FARTHEST,
     ROOM,
@@ -18,7 +20,6 @@ from wsim.judge.repair.rule import (
     faster_sound,
     finer,
     longer_run,
-    overlapping_start,
     shorter_step,
     sound_speed,
 )
@@ -176,9 +177,21 @@ def water_level(finding: Finding, evidence: Evidence) -> RepairTarget:
     return finer(evidence, fluid, 0.5, "particles that do not fill their volume are too coarse for this vessel")
 
 
+def drives(finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A drive at its full strength is to be stronger."""
+    joint = next(joint for joint in evidence.world.joints if joint.prim == finding.prim)
+    assert joint.drive is not None
+    return stronger(joint, joint.drive)
+
+
 def settled(finding: Finding, evidence: Evidence) -> RepairTarget:
-    """What dies down needs time, by its own decay; what does not is kept going by the solver."""
-    i = evidence.index(finding.prim or "")
+    """What dies down needs time, by its own decay; what does not is kept going by its drive, or the solver."""
+    prim = finding.prim or ""
+    if drive_of(evidence, prim) is not None:
+        driven = by_drive(evidence, prim, None, "its drive keeps it going")
+        if driven is not None and driven.suggested is not None:
+            return driven
+    i = evidence.index(prim)
     speed = np.linalg.norm(evidence.body_qd[:, i, :3], axis=1)
     end = float(evidence.time[-1])
     half = min(1.0, 0.25 * (end - float(evidence.time[0])))
@@ -201,9 +214,9 @@ def damped(evidence: Evidence, i: int, why: str) -> RepairTarget:
     body = evidence.world.bodies[i]
     rolls = any(shape.kind in ROUND for shape in body.shapes)
     has = (rolling_of if rolls else friction_of)(body.shapes[0]) if body.shapes else None
+    parameter = "rolling_friction" if rolls else "friction"
     return RepairTarget(
-        kind="physical parameter", prim=body.prim, parameter="rolling" if rolls else "friction", direction="raise",
-        current=has, why=why,
+        kind="physical parameter", prim=body.prim, parameter=parameter, direction="raise", current=has, why=why
     )  # fmt: skip
 
 
@@ -218,4 +231,5 @@ CHECKS: dict[str, Rule] = {
     "CheckDensity": fluid_density,
     "CheckWaterLevel": water_level,
     "CheckSettled": settled,
+    "CheckDrives": drives,
 }

@@ -274,6 +274,11 @@ class StaysInside(Predicate):
     share: Positive = quantity("1", 0.01, lt=1.0)
 
 
+def _ordered_range(op: str, low: float, high: float) -> None:
+    if high < low:
+        raise ValueError(f"{op}: low {low:g} is above high {high:g}; swap them")
+
+
 class _Ranged(Predicate):
     """A number of the object, against another object if one is named, in a range; either end may be negative."""
 
@@ -286,8 +291,7 @@ class _Ranged(Predicate):
 
     @model_validator(mode="after")
     def _range(self) -> _Ranged:
-        if self.high < self.low:
-            raise ValueError(f"{self.op}: low {self.low:g} is above high {self.high:g}; swap them")
+        _ordered_range(self.op, self.low, self.high)
         return self
 
 
@@ -315,6 +319,92 @@ class GoneBetween(_Ranged):
     alone: ClassVar[Literal["finally"]] = "finally"
     low: Number = quantity("m")
     high: Number = quantity("m")
+
+
+class OwnSpinBetween(Predicate):
+    """The object turns about an axis of its own, as it started along the world's, at a rate, however it moves."""
+
+    op: Literal["own_spin_between"] = "own_spin_between"
+    object: Named
+    axis: Literal["x", "y", "z"]
+    low: Number = quantity("deg/s")
+    high: Number = quantity("deg/s")
+
+    @model_validator(mode="after")
+    def _range(self) -> OwnSpinBetween:
+        _ordered_range(self.op, self.low, self.high)
+        return self
+
+
+class TiltBetween(Predicate):
+    """What pointed up at the start leans towards +x or +y of the world by an angle; the other way it is negative."""
+
+    op: Literal["tilt_between"] = "tilt_between"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    object: Named
+    axis: Literal["x", "y"]
+    low: Number = quantity("deg")
+    high: Number = quantity("deg")
+
+    @model_validator(mode="after")
+    def _range(self) -> TiltBetween:
+        _ordered_range(self.op, self.low, self.high)
+        return self
+
+
+class DiesDown(Predicate):
+    """The object goes to and fro, up and down along an axis, each time at most a share as far as the time before."""
+
+    op: Literal["dies_down"] = "dies_down"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    object: Named
+    axis: Literal["x", "y", "z"]
+    share: Positive = quantity("1", 0.98, le=1.0)
+
+
+class ClimbsTo(Predicate):
+    """After its lowest place so far the object comes up again by a share of its start's height over that."""
+
+    op: Literal["climbs_to"] = "climbs_to"
+    alone: ClassVar[Literal["eventually"]] = "eventually"
+    object: Named
+    share: Positive = quantity("1")
+
+
+class StopsBefore(Predicate):
+    """The object stands still, and has not touched the other on its way."""
+
+    op: Literal["stops_before"] = "stops_before"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    object: Named
+    ref: Named
+    within: Positive | None = quantity("m", None)
+
+
+class SwirlsBetween(Predicate):
+    """The fluid turns as a whole about its middle, about an axis of the world, at a rate: a vortex."""
+
+    op: Literal["swirls_between"] = "swirls_between"
+    fluid: Named
+    axis: Literal["x", "y", "z"]
+    low: Number = quantity("deg/s")
+    high: Number = quantity("deg/s")
+
+    @model_validator(mode="after")
+    def _range(self) -> SwirlsBetween:
+        _ordered_range(self.op, self.low, self.high)
+        return self
+
+
+class LevelIn(Predicate):
+    """What of the fluid is in a vessel stands there at a height above the vessel's floor."""
+
+    op: Literal["level_in"] = "level_in"
+    alone: ClassVar[Literal["finally"]] = "finally"
+    fluid: Named
+    ref: Named
+    level: Positive = quantity("m")
+    within: Positive | None = quantity("m", None)
 
 
 class BouncesTo(Predicate):
@@ -347,6 +437,7 @@ _KINDS: tuple[type[Node], ...] = (
     Reaches, StaysWithin, RestsOn, SupportedBy, ContainedIn, Floats, Sinks, Submerged, Touches, NeverTouches,
     Upright, SpeedBetween, FollowsPath, Crosses, Ordered, Swings, RollsWithoutSlip, Settles, Conserves,
     CollidesWith, Pushes, FillsTo, StaysInside, TurnedBetween, SpinBetween, GoneBetween, BouncesTo, Counts,
+    OwnSpinBetween, TiltBetween, DiesDown, ClimbsTo, StopsBefore, SwirlsBetween, LevelIn,
 )  # fmt: skip
 if TYPE_CHECKING:
     Formula = Node
