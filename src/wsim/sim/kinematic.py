@@ -51,6 +51,11 @@ class Kinematic:
             hangs = _hang(model, kinematic)
             self._hanging = wp.array(hangs, dtype=bool) if hangs.any() else None
 
+    @property
+    def idle(self) -> bool:
+        """Whether there is none."""
+        return not len(self._led) and not len(self._carried[0])
+
     def before(self, state: Any) -> None:
         """Set the bodies on paths where a step starts, with the velocity that they have in it."""
         if not len(self._led):

@@ -93,6 +93,7 @@ class RigidBodies:
         smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
+        self._touching = touching
         may_touch = _may_touch(model) or bool(world.ropes or touching) or jumps
         if touching:
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
@@ -131,6 +132,15 @@ class RigidBodies:
                 outputs=[self.overflow_seen],
                 device=self.model.device,
             )
+
+    @property
+    def alone(self) -> bool:
+        """Whether nothing but the solver reads or writes the state between two frames."""
+        return self.on_c and self.ledger is None and self._touching is None and self._kinematic.idle
+
+    def steps(self, state: Any, control: Any, dt: float, count: int) -> None:
+        """Advance by `count` steps of `dt` [s] in one go, if the bodies are `alone`."""
+        self.solver.steps(state, control, dt, count)
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""

@@ -150,6 +150,12 @@ class Simulation:
 
     def advance_frame(self) -> None:
         """Advance by one recorded frame; on CUDA its steps are captured in a graph once and replayed."""
+        if self.rigid and self.rigid.alone and not self.fluid and self._controller is None:
+            self.state.clear_forces()
+            self.rigid.steps(self.state, self.control, self.dt, self.substeps)
+            self.step_count += self.substeps
+            self.time = self.step_count * self.dt
+            return
         if not self.device.is_cuda or self._controller is not None:
             for _ in range(self.substeps):
                 self.step()

@@ -228,15 +228,29 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if not self.use_mujoco_cpu:
             super().step(state_in, state_out, control, contacts, dt, observables=observables)
             return
-        # As the parent's, but for the step itself.
         self.validate_observables(observables, contacts)
+        self._steps_c(state_in, state_out, control, dt, 1, observables)
+
+    def steps(self, state: Any, control: Any, dt: float, count: int) -> None:
+        """Advance by `count` steps of `dt` [s] in C, between which nobody reads or writes `state` and `control`.
+
+        Twice as quick as one by one: what Newton's state costs, with its kernels, is as much as a small world's step.
+        """
+        self._dt = dt
+        self._steps_c(state, state, control, dt, count, None)
+
+    def _steps_c(self, state_in: Any, state_out: Any, control: Any, dt: float, count: int, observables: Any) -> None:
+        """As the parent's step, but for the steps themselves."""
         self._apply_mjc_control(self.model, state_in, control, self.mj_data)
         self._update_mjc_data(self.mj_data, self.model, state_in)
         self._update_kinematic_weld_references()
         self.mj_model.opt.timestep = dt
-        self._law_c.step(self.mj_data)
+        for k in range(count):
+            if k and self._flight:
+                self._flight.keep()
+            self._law_c.step(self.mj_data)
         self._update_newton_state(self.model, state_out, self.mj_data, state_prev=state_in, observables=observables)
-        self._step += 1
+        self._step += count
 
     def reset(self, state: Any, *args: Any, **options: Any) -> None:
         """Start anew from `state`; see `newton.solvers.SolverMuJoCo.reset`."""
