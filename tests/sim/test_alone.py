@@ -14,7 +14,7 @@ from wsim.sim import Simulation
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-@pytest.mark.parametrize("name", ["stack_and_ball", "double_pendulum", "breaking_chain", "conveyor"])
+@pytest.mark.parametrize("name", ["stack_and_ball", "double_pendulum", "breaking_chain", "pulleys"])
 def test_a_frame_in_one_go_is_its_steps(tmp_path: Path, name: str) -> None:
     scene = Scene()
     runpy.run_path(str(EXAMPLES / f"{name}.py"))["build"](scene)
@@ -33,7 +33,7 @@ def test_a_frame_in_one_go_is_its_steps(tmp_path: Path, name: str) -> None:
         assert (ours == theirs).all(), array
 
 
-@pytest.mark.parametrize("name", ["marble_run", "rack_and_pinion"])
+@pytest.mark.parametrize("name", ["conveyor", "marble_run", "rack_and_pinion"])
 def test_who_is_looked_at_between_frames_is_not_alone(tmp_path: Path, name: str) -> None:
     scene = Scene()
     runpy.run_path(str(EXAMPLES / f"{name}.py"))["build"](scene)
