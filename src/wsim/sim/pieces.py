@@ -39,7 +39,9 @@ def with_pieces(builder: Any, world: World) -> World:
         return shape.model_copy(update={"pieces": found}) if found else shape
 
     bodies = [body.model_copy(update={"shapes": [cut(shape) for shape in body.shapes]}) for body in world.bodies]
-    statics = [static.model_copy(update={"shapes": [cut(shape) for shape in static.shapes]}) for static in world.statics]
+    statics = [
+        static.model_copy(update={"shapes": [cut(shape) for shape in static.shapes]}) for static in world.statics
+    ]
     return world.model_copy(update={"bodies": bodies, "statics": statics})
 
 
@@ -47,5 +49,4 @@ def _corners(builder: Any, k: int, shape: Shape) -> list[tuple[float, float, flo
     """Of one of the builder's shapes, in the frame of the stage's [m]."""
     own = np.asarray(builder.shape_source[k].vertices, dtype=np.float64) * np.array(builder.shape_scale[k])
     place = np.array(builder.shape_transform[k], dtype=np.float64)
-    found: list[tuple[float, float, float]] = into(shape, rotate(place[3:], own) + place[:3]).tolist()
-    return found
+    return [(x, y, z) for x, y, z in into(shape, rotate(place[3:], own) + place[:3]).tolist()]

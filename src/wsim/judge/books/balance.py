@@ -200,8 +200,8 @@ class Balance:
             flat.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
         every, own = together([contacts for contacts, _, _ in found]), np.concatenate(flat)
         side = np.repeat([end for _, _, end in found], [len(contacts) for contacts, _, _ in found])
-        pair, which = np.unique(np.stack([every.one, every.two], axis=1), axis=0, return_inverse=True)
-        which = which.ravel()
+        rows = len(ends[0].v) + 1
+        pair, which = np.unique((every.one + 1) * rows + every.two + 1, return_inverse=True)
         mean, count = np.zeros((2, len(pair), 3)), np.zeros((2, len(pair)))
         np.add.at(mean, (side, which), own)
         np.add.at(count, (side, which), 1.0)

@@ -114,6 +114,21 @@ class Triangles:
         np.logical_and.at(out, edge, rise < -FLAT * np.linalg.norm(beyond, axis=2).max(axis=1))
         return pairs[first[out]], owner[first[out]]
 
+    def edges_of(self, faces: Rows) -> Rows:
+        """Edges that stick out and whose first face is one of some, (e, 2)."""
+        edges, _ = self.edges
+        order, first = self._by_face
+        counts = first[faces + 1] - first[faces]
+        at = np.arange(counts.sum()) + np.repeat(first[faces] - np.cumsum(counts) + counts, counts)
+        return edges[order[at]]
+
+    @cached_property
+    def _by_face(self) -> tuple[Rows, Rows]:
+        """Edges in the order of their faces, and where each face's begin."""
+        _, owner = self.edges
+        order = np.argsort(owner, kind="stable")
+        return order, np.searchsorted(owner[order], np.arange(len(self.faces) + 1))
+
     @cached_property
     def points(self) -> Floats:
         """The corners of its hull, at most `MOST` of them."""
@@ -205,8 +220,7 @@ def _shares(corners: Floats, normals: Floats, points: Floats) -> Floats:
 
 def _edges_in(mesh: Triangles, faces: Rows, depth: Depth, pose: Floats, radius: float, reach: float) -> Near:
     """Points of edges that stick out, as near a shape's sides as `reach`."""
-    edges, owner = mesh.edges
-    edges = edges[np.isin(owner, faces)]
+    edges = mesh.edges_of(faces)
     start, way = mesh.vertices[edges[:, 0]], mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]]
     # Only the part within the ball about the shape.
     length2 = np.maximum(np.einsum("ei,ei->e", way, way), 1e-300)
@@ -242,12 +256,16 @@ def _thinned(near: Near) -> Near:
     """Contacts with about one normal, of which the outermost carry whatever all of them do."""
     if len(near.gap) <= MANY:
         return near
-    kept = [int(np.argmin(near.gap))]
-    alike = np.unique(near.normal.round(1), axis=0, return_inverse=True)[1].ravel()
-    for group in np.unique(alike):
-        rows = np.flatnonzero(alike == group)
-        normal = near.normal[rows].mean(axis=0)
-        ways = WAYS - np.outer(WAYS @ normal, normal)
-        kept += rows[np.argmax(near.point[rows] @ ways.T, axis=0)].tolist()
+    tenths = np.rint(10.0 * near.normal).astype(np.intp) + 10  # 0 to 20
+    group = np.unique(tenths @ [441, 21, 1], return_inverse=True)[1]
+    order = np.argsort(group, kind="stable")
+    group, point = group[order], near.point[order]
+    first = np.flatnonzero(np.diff(group, prepend=-1))
+    counts = np.diff(first, append=len(group))[:, None]
+    normal = (np.add.reduceat(near.normal[order], first) / counts)[group]
+    along = point @ WAYS.T - np.einsum("ni,ni->n", point, normal)[:, None] * (normal @ WAYS.T)
+    row, way = np.nonzero(along == np.maximum.reduceat(along, first)[group])
+    outermost = np.unique(group[row] * len(WAYS) + way, return_index=True)[1]
+    kept = [int(np.argmin(near.gap)), *order[row[outermost]]]
     chosen = np.unique(kept)
     return Near(near.point[chosen], near.normal[chosen], near.gap[chosen])

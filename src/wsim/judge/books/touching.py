@@ -181,9 +181,10 @@ class Touching:
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""
-        pairs, which = np.unique(shapes, axis=0, return_inverse=True)
-        laws = [self._law(int(one), int(two)) for one, two in pairs]
-        both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which.ravel()]
+        count = max(len(self.shapes), 1)
+        pairs, which = np.unique(shapes @ [count, 1], return_inverse=True)
+        laws = [self._law(int(pair) // count, int(pair) % count) for pair in pairs]
+        both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which]
         return both[:, 0], both[:, 1]
 
     def _law(self, one: int, two: int) -> Pair:

@@ -135,7 +135,7 @@ class CheckSupport(Check):
     def _limit(self, evidence: Evidence, i: int, frames: Indices) -> Floats:
         """How far a body may have come from what pressed on it, (n,) [m]."""
         motion = evidence.motion
-        surface = motion.speed + np.linalg.norm(motion.w, axis=2) * motion.radius
+        surface = motion.surface_speed
         fastest = np.maximum(surface[frames], surface[np.maximum(frames - 1, 0)]).max(axis=1)
         rounding = 4.0 * FLOAT32 * np.abs(motion.com[frames, i]).max(axis=1)
         way = self.steps * 2.0 * (fastest + evidence.gravity * motion.dt) * motion.dt
@@ -157,13 +157,18 @@ class CheckSupport(Check):
 
 def _nearest(evidence: Evidence, i: int, frames: Indices, limit: Floats) -> Floats:
     """How far body i is from the nearest other shape at least, (n,) [m]; what is within the limit is not looked at."""
-    nearest = np.full(len(frames), np.inf)
-    for own in (shape for shape in evidence.placed if shape.body == i):
-        for other in (shape for shape in evidence.placed if shape.owner != own.owner):
-            apart = np.linalg.norm(own.position[frames] - other.position[frames], axis=1) - own.radius - other.radius
-            asked = np.flatnonzero((nearest > limit) & (apart < nearest))
-            if len(asked):
-                bound = np.maximum(separation(own, other, frames[asked]), apart[asked])
+    nearest, shapes = np.full(len(frames), np.inf), evidence.placed
+    radius = np.array([shape.radius for shape in shapes])
+    for own in (shape for shape in shapes if shape.body == i):
+        apart = np.linalg.norm(own.position[frames][:, None] - evidence.places[frames], axis=2) - own.radius - radius
+        least = apart.min(axis=0)
+        for n in np.argsort(least, kind="stable"):
+            wanted = nearest > limit
+            if not wanted.any() or least[n] >= nearest[wanted].max():
+                break  # all others are farther
+            asked = np.flatnonzero(wanted & (apart[:, n] < nearest))
+            if len(asked) and shapes[n].owner != own.owner:
+                bound = np.maximum(separation(own, shapes[n], frames[asked]), apart[asked, n])
                 nearest[asked] = np.minimum(nearest[asked], bound)
     return nearest
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 def carriers(evidence: Evidence) -> list[Placed]:
     """The colliding shapes that move, and are moved by nothing that they touch."""
     motion = evidence.motion
-    goes = motion.kinematic & (motion.speed.any(axis=0) | motion.w.any(axis=(0, 2)))
+    goes = motion.kinematic.copy()
+    goes[goes] = (motion.speed[:, goes] != 0.0).any(axis=0) | (motion.w[:, goes] != 0.0).any(axis=(0, 2))
     return [
         shape
         for shape in evidence.placed

@@ -175,6 +175,12 @@ class Recorded:
         """All colliding shapes through time, those of bodies first."""
         return placed_shapes(self.world, self.body_q)
 
+    @cached_property
+    def places(self) -> Floats:
+        """Where all colliding shapes are, (T, shapes, 3) [m]."""
+        found = [shape.position for shape in self.placed]
+        return np.stack(found, axis=1) if found else np.zeros((len(self.time), 0, 3))
+
     # ---- fluid
     def container_of(self, fluid: Fluid) -> Container | None:
         """The container that a fluid fills."""
