@@ -1,8 +1,9 @@
-"""Blows between two bodies that nothing else holds: how fast they met, and how fast they parted.
+"""Blows between two bodies that nothing else holds: how fast the points met that touch, and how fast they parted.
 
-Between two frames bodies fly on parabolas but for the blow itself. The speed at which the gap closes, and the gap, give
-when they met and how fast; those of the next frame, when they parted and how fast. If both moments agree there was one
-blow, short beside the frames, and Newton's law of impact holds for it: parting over approach is the restitution.
+Between two frames bodies go on as they did before and as they will after, but for the blow itself. Where the course of
+one frame, carried on, meets that of the next, carried back, in place and in turning, there was one blow, short beside
+the frames; there the shapes touch, and Newton's law of impact holds for the points that do: no point parts at less than
+the restitution times its approach, and one that pushes at no more.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.forces import Poses, slip
 from wsim.judge.books.touching import Contacts, Touching
+from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
@@ -22,10 +25,17 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
 
-LEAST = 0.2  # [m/s] of approach: slower ones are lost in what a step does
+SLIGHT = 0.003  # of a body's speed: what changes by less is no blow
+SHOWS = 0.1  # of an approach: where it is less sure than that the frames say nothing of the parting
 ACROSS = 0.2  # cosine between the normals of two contacts that do not share a blow
-SPIN = 0.05  # of the approach: the surface of what turns by less meets the other as its centre does
+FINE = 0.05  # of the time between frames: the longest step at which frames show when a blow was
+STAYS = 0.05  # of the approach: what was to bounce and parts by less may have done so more than once
+WITHIN = 0.2  # of a step: courses that pass each other by no more of the jump meet
+SURE = 0.02  # of a step: points that come to touch within it do so together,
+APART = 3.0  # and those that do after so many do not
 
 
 @dataclass(frozen=True)
@@ -45,115 +55,173 @@ class Blow:
 def blows(evidence: Evidence) -> list[Blow]:
     """All of a recording that stand alone."""
     motion = evidence.motion
-    changed = np.linalg.norm(motion.acceleration - motion.gravity, axis=2) * motion.h[:, None] > LEAST
-    # What lies still is pushed as well, and changes nothing: of a pair that meets one changes by half of it at least.
-    changed &= np.linalg.norm(np.diff(motion.v, axis=0), axis=2) > 0.5 * LEAST
-    changed &= ~motion.jointed & ~motion.kinematic
+    changed = _jumps(evidence) & ~motion.jointed & ~motion.kinematic
     if not changed.any():
         return []
-    touching, found = Touching.of(evidence), []
-    for k in np.flatnonzero(changed.any(axis=1)):
-        found += _of_interval(evidence, touching, int(k), changed[k])
-    return found
+    touching, courses = Touching.of(evidence), _Courses(evidence, changed)
+    return [blow for k in np.flatnonzero(changed.any(axis=1)) for blow in _of_interval(courses, touching, int(k))]
 
 
-def _of_interval(evidence: Evidence, touching: Touching, k: int, changed: NDArray[np.bool_]) -> list[Blow]:
+def _jumps(evidence: Evidence) -> Bools:
+    """Where a velocity changes otherwise than in the intervals around and in a fall, (T - 1, B), beyond a step."""
     motion = evidence.motion
+    gained = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0) * motion.radius[:, None]], axis=2)
+    fall = np.zeros_like(gained) + motion.h[:, None, None] * np.concatenate([motion.gravity, np.zeros(3)])
+    around = np.concatenate([fall[:1], gained, fall[:1]])
+    jump = np.min([np.linalg.norm(gained - other, axis=2) for other in (around[:-2], around[2:], fall)], axis=0)
+    fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
+    return np.asarray(jump > 2.0 * evidence.gravity * min(motion.dt, FINE * motion.dt_frames) + SLIGHT * fastest)
+
+
+class _Courses:
+    """How bodies go on from a frame, or came to it: with what sped them up in the interval before, or after."""
+
+    def __init__(self, evidence: Evidence, changed: Bools) -> None:
+        self.evidence, self.changed, motion = evidence, changed, evidence.motion
+        self.dt = float(min(motion.dt, FINE * motion.dt_frames))
+        falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
+        # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
+        own = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0)], axis=2) / motion.h[:, None, None]
+        fall = np.concatenate([falls, np.zeros_like(falls)], axis=1)[None]
+        known = np.where(changed[..., None], fall, own)
+        # How far its steps take a body from its course in the intervals around.
+        trapezoid = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
+        own = np.where(changed, 0.0, np.linalg.norm(np.diff(motion.com, axis=0) - trapezoid, axis=2))
+        none = np.zeros((1, own.shape[1]))
+        self.strays = np.minimum(np.concatenate([none, own[:-1]]), np.concatenate([own[1:], none]))
+        self.before = np.concatenate([fall, known[:-1]])
+        self.after = np.concatenate([known[1:], fall])
+
+    def at(self, k: int, side: int, when: float) -> Poses:
+        """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
+        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
+        frame, by = k + side, when - side * h
+        speed_up = (self.after if side else self.before)[k]
+        v, w = motion.v[frame] + speed_up[:, :3] * by, motion.w[frame] + speed_up[:, 3:] * by
+        com = motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+        angle = 0.5 * (motion.w[frame] + w) * by
+        size = np.linalg.norm(angle, axis=1, keepdims=True)
+        turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
+        q = self.evidence.body_q[frame]
+        place = com + rotate(turn, q[:, :3] - motion.com[frame])
+        return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
+
+    def meet(self, k: int, rows: list[int]) -> float | None:
+        """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
+        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
+        ends = [[self.at(k, side, when) for side in (0, 1)] for when in (0.0, h)]
+        first, last = (before.com[rows] - after.com[rows] for before, after in ends)
+        apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
+        when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
+        when = min(max(when, 0.0), h)
+        before, after = (self.at(k, side, when) for side in (0, 1))
+        far = np.linalg.norm(before.com[rows] - after.com[rows], axis=1)
+        jump = np.linalg.norm(after.v[rows] - before.v[rows], axis=1)
+        rounding = 4.0 * FLOAT32 * np.linalg.norm(motion.com[k, rows], axis=1)
+        if np.any(far > WITHIN * jump * self.dt + 2.0 * self.strays[k, rows] + rounding):
+            return None
+        turn = multiply(after.q[rows, 3:], conjugate(before.q[rows, 3:]))
+        angle = 2.0 * np.linalg.norm(turn[:, :3], axis=1)
+        rate = np.maximum(np.linalg.norm(before.w[rows], axis=1), np.linalg.norm(after.w[rows], axis=1))
+        spun = np.linalg.norm(after.w[rows] - before.w[rows], axis=1)
+        if np.any(angle > spun * self.dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
+            return None
+        return when
+
+
+def _of_interval(courses: _Courses, touching: Touching, k: int) -> list[Blow]:
+    motion, changed = courses.evidence.motion, courses.changed[k]
     reach = 2.0 * float(motion.reach[k].max())
-    ends = [_poses(evidence, frame) for frame in (k, k + 1)]
-    near = [touching.at(end.q, reach) for end in ends]
-    closing = [_closing(touching, contacts, end) for contacts, end in zip(near, ends, strict=True)]
+    ends = [touching.at(courses.evidence.body_q[frame], reach) for frame in (k, k + 1)]
+    near = {(int(a), int(b)) for c in ends for a, b in zip(c.one, c.two, strict=True)}
     found = []
-    for pair in sorted({(int(a), int(b)) for a, b in zip(near[0].one, near[0].two, strict=True)}):
+    for pair in sorted(near):
         rows = [row for row in pair if row >= 0]
-        if not any(changed[row] for row in rows) or any(motion.jointed[row] for row in rows):
+        hit = [row for row in rows if changed[row]]
+        if any(motion.jointed[row] for row in rows):
             continue
-        at = [_of_pair(contacts, pair) for contacts in near]
-        if not len(at[0]) or not len(at[1]):
-            continue
-        before, after = (int(n[np.argmin(c.gap[n])]) for n, c in zip(at, near, strict=True))
-        if not _alone(near, (before, after), pair):
-            continue
-        blow = _blow(evidence, touching, k, pair, near, (before, after), closing)
+        when = None if not hit or _straddles(courses, k, hit) else courses.meet(k, hit)
+        blow = None if when is None else _blow(courses, touching, k, pair, when)
         if blow is not None:
             found.append(blow)
     return found
 
 
-def _blow(
-    evidence: Evidence, touching: Touching, k: int, pair: tuple[int, int], near: list[Contacts],
-    which: tuple[int, int], closing: list[Floats],
-) -> Blow | None:  # fmt: skip
-    motion, h = evidence.motion, float(evidence.motion.h[k])
-    normal = near[0].normal[which[0]]
-    pulled = [motion.gravity if row >= 0 and not motion.kinematic[row] else np.zeros(3) for row in pair]
-    pull = float((pulled[0] - pulled[1]) @ normal)  # at which gravity closes the gap
-    gaps = [max(float(contacts.gap[n]), 0.0) for contacts, n in zip(near, which, strict=True)]
-    towards, back = float(closing[0][which[0]]), -float(closing[1][which[1]])
-    approach, parting = (np.sqrt(max(speed * speed + 2.0 * pull * gap, 0.0)) for speed, gap in
-                         zip((towards, back), gaps, strict=True))  # fmt: skip
-    if towards <= 0.0 or approach < LEAST or _turns(evidence, k, pair, approach):
+def _straddles(courses: _Courses, k: int, rows: list[int]) -> bool:
+    """Whether a blow's push goes on in the next interval, or began in the one before: it may take several steps."""
+    around = courses.changed[max(k - 1, 0) : k + 2, rows]
+    return bool(np.any(around.sum(axis=0) > 1))
+
+
+def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], when: float) -> Blow | None:
+    evidence, motion, dt = courses.evidence, courses.evidence.motion, courses.dt
+    before, after = (courses.at(k, side, when) for side in (0, 1))
+    reach = 2.0 * APART * dt * float(motion.surface_speed[k : k + 2].max())
+    contacts = touching.at(before.q, reach)
+    closing = _closing(touching, contacts, before)
+    ours = np.flatnonzero((contacts.one == pair[0]) & (contacts.two == pair[1]))
+    if not len(ours) or closing[ours].max() <= 0.0:
         return None
-    shapes = [touching.shapes[s][2] for s in near[0].shapes[which[0]]]
+    approach, lowest = float(closing[ours].max()), float(contacts.gap[ours].min())
+    rounding = 8.0 * FLOAT32 * float(np.abs(before.com).max())
+    touches, near = (ours[contacts.gap[ours] <= lowest + share * approach * dt + rounding] for share in (SURE, APART))
+    jump = max(float(np.linalg.norm(after.v[row] - before.v[row])) for row in pair if row >= 0)
+    rest = float(motion.h[k]) - when
+    if (
+        approach < SHOWS * jump
+        or len(near) > len(touches)  # they may have been in the blow, or in one of their own
+        or abs(lowest) > approach * dt + rounding
+        or (k == len(motion.h) - 1 and rest < APART * dt)  # its push may go on beyond what is recorded
+        or not _alone(contacts, closing, touches, pair)
+    ):
+        return None
+    shapes = [touching.shapes[s][2] for s in contacts.shapes[touches[0]]]
     law = pair_law(evidence.world, *shapes)
-    spent = 2.0 * gaps[0] / (towards + approach)
-    flown = 2.0 * gaps[1] / (back + parting) if back > 0.0 else 0.0
-    slack = motion.dt + 0.02 * h + 2.0 * gaps[0] * 1e-3 / approach
-    lies = abs(back) < 0.05 * approach and gaps[1] < 0.01 * approach * h
-    again = 2.0 * law.restitution * approach < pull * (h - spent)  # it may have bounced and come back
-    if (not lies and (back <= 0.0 or abs(spent + flown - h) > slack)) or again:
+    parting = -_closing(touching, contacts, after)[touches]
+    n = int(np.argmin(parting - law.restitution * closing[touches]))
+    met, speed = contacts.only(touches[n : n + 1]), float(closing[touches[n]])
+    # As bodies fall and turn, and their surfaces do, points that touch a step earlier meet at another speed.
+    faster = _changing(courses, touching, k, when, met, speed)
+    returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
+    # or its rim rolls on from point to point, and each bounces in turn
+    returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
+    unsure = 2.0 * faster
+    if returns or unsure > SHOWS * approach:
         return None
-    across = [
-        slip(touching, c, _poses(evidence, k + end))[n] for end, (c, n) in enumerate(zip(near, which, strict=True))
-    ]
-    turned = float(np.linalg.norm(np.cross(normal, near[1].normal[which[1]])))
-    unsure = 2.0 * evidence.gravity * motion.dt + turned * max(float(np.linalg.norm(u)) for u in across)
-    prims = tuple(_owner(evidence, touching, near[0], which[0], side) for side in (0, 1))
-    return Blow(k, *pair, (prims[0], prims[1]), float(approach), 0.0 if lies else float(parting), law.restitution,
-                unsure)  # fmt: skip
+    prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
+    return Blow(k, *pair, (prims[0], prims[1]), speed, float(parting[n]), law.restitution, unsure)
 
 
-def _owner(evidence: Evidence, touching: Touching, contacts: Contacts, n: int, side: int) -> str:
-    return touching.shapes[int(contacts.shapes[n, side])][1]
+def _changing(
+    courses: _Courses, touching: Touching, k: int, when: float, contact: Contacts, speed: float
+) -> float:  # fmt: skip
+    """By how much a contact closes faster or slower than its pair does a step earlier [m/s]."""
+    earlier = courses.at(k, 0, when - courses.dt)
+    contacts = touching.at(earlier.q, 2.0 * abs(speed) * courses.dt + float(abs(contact.gap[0])))
+    same = np.flatnonzero(np.all(contacts.shapes == contact.shapes[0], axis=1))
+    apart = np.linalg.norm(contacts.point[same] - contact.point[0], axis=1)
+    if not len(same):
+        return abs(speed)
+    return float(abs(_closing(touching, contacts, earlier)[same[int(np.argmin(apart))]] - speed))
 
 
-def _turns(evidence: Evidence, k: int, pair: tuple[int, int], approach: float) -> bool:
-    """Whether what is no ball turns, so that one point of it may part while another still comes."""
-    motion = evidence.motion
+def _balls(evidence: Evidence, pair: tuple[int, int]) -> bool:
+    solid = [[shape for shape in evidence.world.bodies[row].shapes if shape.collides] for row in pair if row >= 0]
+    return all(len(shapes) == 1 and shapes[0].kind == "sphere" for shapes in solid)
+
+
+def _alone(contacts: Contacts, closing: Floats, touches: Rows, pair: tuple[int, int]) -> bool:
+    """Whether neither body has another contact that pushes along the same way, or is hit there, too."""
+    shared = np.zeros(len(contacts), dtype=bool)
     for row in pair:
-        if row < 0:
-            continue
-        solid = [shape for shape in evidence.world.bodies[row].shapes if shape.collides]
-        ball = len(solid) == 1 and solid[0].kind == "sphere"
-        rate = float(np.linalg.norm(motion.w[k : k + 2, row], axis=1).max())
-        if not ball and rate * motion.radius[row] > SPIN * approach:
-            return True
-    return False
-
-
-def _alone(near: list[Contacts], which: tuple[int, int], pair: tuple[int, int]) -> bool:
-    """Whether neither body has another contact that pushes along the same way."""
-    for contacts, n in zip(near, which, strict=True):
-        shared = np.zeros(len(contacts), dtype=bool)
-        for row in pair:
-            if row >= 0:
-                shared |= (contacts.one == row) | (contacts.two == row)
-        shared &= ~((contacts.one == pair[0]) & (contacts.two == pair[1]))
-        if np.any(shared & (np.abs(contacts.normal @ contacts.normal[n]) > ACROSS)):
-            return False
-    return True
-
-
-def _of_pair(contacts: Contacts, pair: tuple[int, int]) -> NDArray[np.intp]:
-    return np.flatnonzero((contacts.one == pair[0]) & (contacts.two == pair[1]))
+        if row >= 0:
+            shared |= (contacts.one == row) | (contacts.two == row)
+    shared &= ~((contacts.one == pair[0]) & (contacts.two == pair[1]))
+    along = np.abs(contacts.normal @ contacts.normal[touches].T).max(axis=1, initial=0.0)
+    return not np.any(shared & ((along > ACROSS) | (closing > SHOWS * closing[touches].max())))
 
 
 def _closing(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:
     """How fast each gap closes, (n,) [m/s]."""
     found: Floats = -np.einsum("ni,ni->n", slip(touching, contacts, poses), contacts.normal)
     return found
-
-
-def _poses(evidence: Evidence, frame: int) -> Poses:
-    motion = evidence.motion
-    return Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
