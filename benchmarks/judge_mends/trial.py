@@ -109,14 +109,15 @@ def run(kind: str, half: str, k: int) -> Outcome:
             mistake.what,
             mistake.opened is not None,
         )
-        _mend(outcome, program, plan, told)
+        mend(outcome, program, plan, told)
     except Exception:  # noqa: BLE001 - the other trials go on; it is told, and sets the exit code
         outcome.error = "broke: " + traceback.format_exc().strip().splitlines()[-1]
     outcome.seconds = round(time.perf_counter() - started, 1)
     return outcome
 
 
-def _mend(outcome: Outcome, program: str, plan: Plan, told: Plan) -> None:
+def mend(outcome: Outcome, program: str, plan: Plan, told: Plan) -> None:
+    """Apply first suggestions until the world is accepted, three at most, and note them."""
     verdict = judged(program, told)
     for n in range(1, ROUNDS + 1):
         first = next(iter(suggestions(verdict)), None)
