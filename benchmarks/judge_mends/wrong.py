@@ -324,7 +324,7 @@ def size(plan: Plan, draw: Draw) -> Mistake | None:
     if not items:
         return None
     item, by = draw.pick(items), _factor(draw, 1.2, 2.0)
-    return Mistake(f"{item.name}: size x {by:g}", plan=in_program.scaled(item.name, by))
+    return Mistake(f"{item.name}: size x {by:g}", plan=in_program.scaled(item.name, by, lift=False))
 
 
 @wrong

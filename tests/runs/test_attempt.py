@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.agents.flies import flies
+from tests.agents.flies import BALL, GROUND, flies
 from wsim.judge.verdict import Finding, Verdict
 from wsim.program.compose import compose
 from wsim.runs.attempt import Attempt, Reached, attempt
@@ -61,8 +61,21 @@ def test_a_camera_that_sees_nothing_is_found_before_anything_moves(tmp_path: Pat
     (finding,) = made.verdict.findings
     assert (finding.check, finding.prim) == ("CheckView", "/World/side")
     assert finding.target is not None
-    assert finding.target.kind == "camera"
+    assert (finding.target.kind, finding.target.parameter) == ("camera", "eye, target")
     assert not (made.folder / "recording.rrd").exists()
+    # The picture from there shows it.
+    eye, target = finding.target.vector[:3], finding.target.vector[3:]
+    there = PROGRAM.replace("eye=(0.0, -4.0, 1.5), target=(0.0, 0.0, 1.2)", f"eye={eye}, target={target}")
+    assert there != PROGRAM
+    assert tried(tmp_path / "again", there, Settings(device="cpu")).reached > Reached.FRAMES
+
+
+def test_a_world_of_clear_things_alone_is_not_said_to_show_nothing(tmp_path: Path) -> None:
+    """What is clear is in no picture of what is opaque, by which the pixels are counted."""
+    glass = {"name": "glass", "density": 2500, "opacity": 0.3}
+    plan = flies(objects=[GROUND, {**BALL, "material": glass}])
+    made = attempt(Iteration(RunFolder(tmp_path).add(compose(plan)), plan, Settings(device="cpu")))
+    assert made.reached > Reached.FRAMES and "CheckView" not in {f.check for f in made.verdict.findings}
 
 
 def test_a_world_that_does_not_pass_has_no_pictures(tmp_path: Path) -> None:

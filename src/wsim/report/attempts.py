@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from wsim.judge.repair.order import suggestions
 from wsim.report.diff import Diff, make_diff
 from wsim.report.fixes import describe
 
@@ -93,9 +94,8 @@ def _reached(tried: Tried) -> str:
 
 
 def _asked_by_checks(item: Iteration) -> str:
-    """What the first failed finding asks for: the change, where physics gives one, else what is wrong."""
-    failures = item.verdict.failures if item.verdict else []
-    first = next((finding for finding in failures if finding.target), None)
+    """What is to be tried first: the change, where physics or the plan gives one, else what is wrong."""
+    first = next(iter(suggestions(item.verdict)), None) if item.verdict else None
     if first is None or first.target is None:
         return ""
     return describe([first.target]) if first.target.direction else first.message

@@ -44,7 +44,7 @@ def make_fixes(failed: Iterable[tuple[int, Finding]], world: World | None, run: 
     for index, finding in failed:
         target = finding.target
         if target is not None:
-            same = (target.kind, target.parameter, target.direction, _rounded(target.suggested), target.unit)
+            same = (target.kind, target.parameter, target.direction, _value(target), target.unit)
             groups.setdefault(same, []).append((index, target))
     return [
         Fix(
@@ -68,8 +68,8 @@ def describe(targets: list[RepairTarget]) -> str:
     thing = f"{parameter} of {whose}" if parameter and whose else parameter or whose or f"the {first.kind}"
     same = first.current is not None and len({_rounded(target.current) for target in targets}) == 1
     now, unit = number(first.current, DIGITS) if same else "", nice_unit(first.unit)
-    if first.suggested is not None:
-        numbers = f"{f' from {now}' if now else ''} to {number(first.suggested, DIGITS)} {unit}"
+    if _value(first):
+        numbers = f"{f' from {now}' if now else ''} to {_value(first)} {unit}"
     else:
         numbers = f", now {now} {unit}" if now else ""
     return f"{(first.direction or 'look at').capitalize()} {thing}{numbers}".rstrip()
@@ -92,6 +92,13 @@ def command(target: RepairTarget, world: World | None, run: Path) -> str:
     ]
     # Where two parameters have the number, nothing says which of them it came from.
     return f"{start} --set {names[0]}={target.suggested:.6g}" if len(names) == 1 else ""
+
+
+def _value(target: RepairTarget) -> str:
+    """What is suggested: a number, (x, y, z), or a name; nothing where no value is."""
+    if target.vector is not None:
+        return "(" + ", ".join(number(x, DIGITS) for x in target.vector) + ")"
+    return target.text if target.suggested is None else number(target.suggested, DIGITS)
 
 
 def _rounded(x: float | None) -> str:

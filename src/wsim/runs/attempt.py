@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import ast
+import math
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from pathlib import Path
 
+import numpy as np
+
 from wsim import sim
+from wsim.geometry.shapes import kind_of
+from wsim.judge.evidence.framing import framed
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.program.validator import validate
 from wsim.runs.iteration import Iteration, no_world, reject
 from wsim.runs.trajectory import Trajectory
+from wsim.scene.describe import describe
+from wsim.scene.world import Camera
 
 
 class Reached(IntEnum):
@@ -153,12 +160,28 @@ def _framed(made: Attempt, iteration: Iteration) -> Verdict | None:
                     prim=still.camera.prim,
                     time=0.0,
                     limit_from="a camera is there to show something",
-                    target=RepairTarget(kind="camera", prim=still.camera.prim, why="look at the objects"),
+                    target=_look_at(still.camera, iteration.stage),
                 )
             )
     if not findings:
         return None
     return Verdict(status="rejected", summary=f"Cameras that show nothing: {len(findings)}.", findings=findings)
+
+
+def _look_at(camera: Camera, stage: Path) -> RepairTarget:
+    """Where a camera is to stand and look, so that it sees where everything starts that moves."""
+    target = RepairTarget(
+        kind="camera", prim=camera.prim, parameter="eye, target", direction="change", unit="m",
+        why="look at the objects",
+    )  # fmt: skip
+    world = describe(stage)
+    starts = [body.position for body in world.bodies] + [fluid.center for fluid in world.fluids]
+    sizes = [kind_of(shape).radius_about for body in world.bodies for shape in body.shapes]
+    radius = max((size for size in sizes + [max(fluid.size) for fluid in world.fluids] if size < math.inf), default=0.1)
+    found = framed(camera, np.array(starts), radius) if starts else None
+    if found is None:
+        return target
+    return target.model_copy(update={"vector": tuple(float(x) for place in found for x in place)})
 
 
 def _moved(made: Attempt, iteration: Iteration) -> Verdict | None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from wsim.judge.repair.order import suggestions
 from wsim.judge.verdict import Verdict
 from wsim.tools.base import Result, Tool, Workspace
 from wsim.tools.iterations import OfIteration, file_of
@@ -42,6 +43,9 @@ def verdict_lines(path: Path, passed: bool = False) -> list[str]:
     verdict = Verdict.model_validate_json(path.read_text(encoding="utf-8"))
     good = [finding for finding in verdict.findings if finding.passed]
     lines = [f"{verdict.status}: {len(verdict.failures)} of {len(verdict.findings)} findings fail"]
+    first = next(iter(suggestions(verdict)), None)
+    if first is not None and first.target is not None and len(verdict.failures) > 1:
+        lines.append(f"try first: {first.target.sentence} ({first.check})".replace(ROOT, ""))
     if verdict.failures:
         lines += table(HEAD, [_row(finding) for finding in verdict.failures])
         lines += dict.fromkeys(line for finding in verdict.failures for line in _words(finding))  # each is said once

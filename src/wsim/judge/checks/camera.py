@@ -205,7 +205,8 @@ def _reframed(evidence: Evidence, camera: Camera) -> RepairTarget:
     frames = _moments(len(evidence.time))
     points = np.concatenate([each.reshape(-1, 3) for each in _points(evidence, frames)])
     points = points[np.isfinite(points).all(axis=1)]
-    found = framed(camera, points) if len(points) else None
+    sizes = evidence.motion.radius[np.isfinite(evidence.motion.radius)]
+    found = framed(camera, points, float(sizes.max(initial=0.0))) if len(points) else None
     target = RepairTarget(kind="camera", prim=camera.prim, parameter="target", direction="change", unit="m")
     if found is None:
         return target

@@ -38,19 +38,18 @@ def in_frame(camera: Camera, points: Floats) -> Bools:
     return inside
 
 
-def framed(camera: Camera, points: Floats) -> tuple[Floats, Floats] | None:
-    """The eye and the target (3,) [m] from which a camera sees all points (n, 3); None if they are too far apart.
+def framed(camera: Camera, points: Floats, radius: float) -> tuple[Floats, Floats] | None:
+    """The eye and the target (3,) [m] from which a camera sees balls about points (n, 3); None if those are too far.
 
     It turns where it stands if that is enough; else it goes back, or comes nearer, on the side where it is.
     """
-    low, high = points.min(axis=0), points.max(axis=0)
+    low, high = points.min(axis=0) - radius, points.max(axis=0) + radius
     target, extent = np.round((low + high) / 2, DIGITS), float(np.linalg.norm(high - low))
     corners = np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
-    shown = np.concatenate([points, corners])
     eye = np.array(camera.eye)
     half = math.tan(math.radians(camera.fov) / 2.0) * camera.height / camera.width
     far = float(np.linalg.norm(eye - target))
-    if far * half <= 3.0 * extent and _sees(camera, eye, target, shown):
+    if far * half <= 3.0 * extent and _sees(camera, eye, target, corners):
         return eye, target
     way = eye - target
     level = float(np.hypot(way[0], way[1]))
@@ -59,7 +58,7 @@ def framed(camera: Camera, points: Floats) -> tuple[Floats, Floats] | None:
     back = max(0.5 * extent, 1e-3)
     for _ in range(STEPS):
         eye = np.round(target + back * way, DIGITS)
-        if _sees(camera, eye, target, shown):
+        if _sees(camera, eye, target, corners):
             return eye, target
         back *= STEP
     return None

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.repair.language import formula
 from wsim.judge.repair.objectives import OBJECTIVES
-from wsim.judge.repair.rule import Rule, tried
+from wsim.judge.repair.place import overlapping_start
+from wsim.judge.repair.rule import Rule, time_step, tried
 from wsim.judge.repair.run import CHECKS
 from wsim.judge.verdict import Finding, RepairTarget
 
@@ -25,6 +26,12 @@ STAGES = {
 }
 
 
+# Of what starts inside something else the solver makes a push that no law explains.
+PUSHED_APART = ("CheckRestitution", "CheckEnergy", "CheckForces", "CheckContinuity", "CheckSupport", "CheckJitter",
+                "CheckFreeFlight", "CheckFreeTurning")  # fmt: skip
+DEEP = 0.02  # of the smallest extent: what starts no deeper is hardly pushed
+
+
 def aim(findings: Sequence[Finding], evidence: Evidence | None = None) -> None:
     """Give every failed finding its repair target, in place.
 
@@ -33,12 +40,23 @@ def aim(findings: Sequence[Finding], evidence: Evidence | None = None) -> None:
         evidence: What they were made from; without it only the program's own failures have a rule.
     """
     for finding in findings:
-        finding.target = None if finding.passed else tried(finding.target or _target(finding, evidence))
+        finding.target = None if finding.passed else tried(_told(finding, evidence))
     broken = next((finding for finding in findings if finding.check == "CheckFinite" and not finding.passed), None)
     if broken is not None:
         for finding in findings:
             if finding.objective is not None and not finding.passed:
                 finding.target = broken.target  # nothing can be told of it before its numbers are finite
+
+
+def _told(finding: Finding, evidence: Evidence | None) -> RepairTarget:
+    """What a check says itself, unless how its body starts explains what it found; else what its rule says."""
+    start = None
+    if evidence is not None and finding.check in PUSHED_APART:
+        start = overlapping_start(evidence, finding.prim, DEEP) if finding.prim is not None else None
+    target = start or finding.target or _target(finding, evidence)
+    if evidence is not None and target.parameter == "time_step" and target.current is None:
+        return target.model_copy(update={"current": time_step(evidence)})
+    return target
 
 
 def _target(finding: Finding, evidence: Evidence | None) -> RepairTarget:

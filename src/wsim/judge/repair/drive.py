@@ -72,14 +72,14 @@ def by_drive(evidence: Evidence, prim: str, share: float | None, why: str) -> Re
     return _part(joint, what, now, to, why)
 
 
-def to_point(evidence: Evidence, prim: str, point: Floats, seconds: float | None) -> RepairTarget | None:
+def to_point(evidence: Evidence, prim: str, point: Floats, window: tuple[float, float] | None) -> RepairTarget | None:
     """What a drive from the world is to be set to, so that a body comes to a point; None of what none moves.
 
     Args:
         evidence: What happened.
         prim: The body.
         point: (3,) [m].
-        seconds: When it is to be there; of a drive that turns at a rate.
+        window: From when to when it is to be there [s]; of a drive that turns at a rate.
     """
     joint = drive_of(evidence, prim)
     if joint is None or joint.drive is None or joint.parent is not None or joint.kind not in ("revolute", "prismatic"):
@@ -96,10 +96,12 @@ def to_point(evidence: Evidence, prim: str, point: Floats, seconds: float | None
         q = float(ways[int(np.argmin(off))])
     motor = joint.drive
     if not motor.stiffness:
-        if not seconds:
+        if window is None or not sum(window):
             return None
-        why = f"it is to be there after {seconds:.3g} s"
-        return _part(joint, "velocity", motor.velocity, q / seconds, why)
+        # As fast as it is, and the other way round, if that will do; else so that it is there in the middle of it.
+        back = -q / motor.velocity if motor.velocity else -1.0
+        to = -motor.velocity if window[0] <= back <= window[1] else 2.0 * q / sum(window)
+        return _part(joint, "velocity", motor.velocity, to, f"it is to be there after {q / to:.3g} s" if to else "")
     if not motor.damping:
         return _part(joint, "position", motor.position, q / 2, "undamped it swings to twice where it is set to")
     return _part(joint, "position", motor.position, q, "there it is at the place that is asked for")

@@ -121,9 +121,8 @@ def _driven_there(finding: Finding, evidence: Evidence) -> RepairTarget | None:
     if not isinstance(point, tuple) or item is None:
         return None
     windows = [node.window for node in item.formula.walk() if isinstance(node, Eventually)] if item.formula else []
-    window = next((window for window in windows if window is not None and window[1] is not None), None)
-    seconds = (window[0] + window[1]) / 2 if window is not None and window[1] is not None else None
-    return to_point(evidence, finding.prim or "", np.array(point), seconds)
+    closed = [(window[0], window[1]) for window in windows if window is not None and window[1] is not None]
+    return to_point(evidence, finding.prim or "", np.array(point), closed[0] if closed else None)
 
 
 def apart(finding: Finding, evidence: Evidence) -> RepairTarget:

@@ -318,6 +318,9 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
     if any(joint.child == body.prim or joint.parent == body.prim for joint in evidence.world.joints) and not speed:
         why = "a joint holds it, and nothing drives that"
         return RepairTarget(kind="drive", prim=body.prim, parameter="drive", direction="add", why=why)
+    going = _gets_there(finding, evidence)
+    if going is not None:
+        return longer_run(evidence, going, "it is on its way, and fast enough to get there")
     if speed > 0.0:
         to = (1.0 + ROOM / 2) * speed * math.sqrt(limit / value) if 0.0 < value < limit else None
         return RepairTarget(
@@ -327,6 +330,22 @@ def moves(finding: Finding, evidence: Evidence) -> RepairTarget:
     return friction(
         finding, evidence, "lower", _to_get_there(finding, evidence), "it starts at rest: less friction lets it go"
     )
+
+
+def _gets_there(finding: Finding, evidence: Evidence) -> float | None:
+    """When what still moves at the end has gone as far as asked [s], slowed as it is; None if it stops before."""
+    missing = (finding.limit or 0.0) - (finding.value or 0.0)
+    i, late = evidence.index(finding.prim or ""), evidence.window
+    speed = np.linalg.norm(level(evidence.body_qd[late, i, :3].astype(np.float64), evidence.up), axis=1)
+    time = evidence.time[late]
+    if missing <= 0.0 or len(time) < 2 or speed[-1] <= 0.0:
+        return None
+    slowed = max(0.0, float((speed[0] - speed[-1]) / (time[-1] - time[0])))
+    v, wanted = float(speed[-1]), (1.0 + ROOM) * missing
+    if v**2 <= 2.0 * slowed * wanted:
+        return None
+    left = wanted / v if slowed == 0.0 else (v - math.sqrt(v**2 - 2.0 * slowed * wanted)) / slowed
+    return float(evidence.time[-1]) + left
 
 
 def _to_get_there(finding: Finding, evidence: Evidence) -> float | None:

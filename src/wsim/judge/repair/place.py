@@ -33,15 +33,21 @@ def start_at(body: Body, to: Floats, why: str) -> RepairTarget:
     )
 
 
-def overlapping_start(evidence: Evidence, prim: str | None) -> RepairTarget | None:
-    """The target for a body that starts inside another object: out of it, the shortest way that is free."""
+def overlapping_start(evidence: Evidence, prim: str | None, least: float = TOUCHING) -> RepairTarget | None:
+    """The target for a body that starts inside another object: out of it, the shortest way that is free.
+
+    Args:
+        evidence: What happened.
+        prim: The body, or what it starts in; any, if None.
+        least: How deep it is in that at least, of the smaller one's smallest extent.
+    """
     pairs = [pair for pair in overlaps(evidence) if prim in (pair.a.owner, pair.b.owner) or prim is None]
     deepest = max(pairs, key=lambda pair: float(pair.depth[0]), default=None)
     if deepest is None:
         return None
     depth = float(deepest.depth[0])
     size = min(part.kind.thinnest for part in (deepest.a, deepest.b) if part.body >= 0)
-    if depth <= TOUCHING * size:
+    if depth <= least * size:
         return None
     ends = ((deepest.a, deepest.b), (deepest.b, deepest.a))
     # Of two that may be moved, the one that is out of everything the sooner.
