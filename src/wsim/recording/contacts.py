@@ -60,7 +60,8 @@ class ContactTrack:
     @property
     def point(self) -> Floats:
         """Mean place of the normal impulses, in the world, (n, 3) [m]."""
-        return self.sums[:, 7:10] / np.maximum(self.sums[:, 3:4], np.finfo(np.float32).tiny)
+        least = np.float32(np.finfo(np.float32).tiny)
+        return np.asarray(self.sums[:, 7:10] / np.maximum(self.sums[:, 3:4], least), dtype=np.float32)
 
     @property
     def turn(self) -> Floats:
@@ -70,7 +71,8 @@ class ContactTrack:
 
 def shapes_of(world: World) -> list[Shape]:
     """All shapes of a world, in the order that `Pushes.pair` counts them: bodies', then those of what stands still."""
-    return [shape for owner in [*world.bodies, *world.statics] for shape in owner.shapes]
+    still = [shape for static in world.statics for shape in static.shapes]
+    return [shape for body in world.bodies for shape in body.shapes] + still
 
 
 def columns_of(pushes: list[Pushes]) -> list[object]:

@@ -124,6 +124,25 @@ class RecordedContacts:
                 found[:, end] += sign * self._belt(side, frame)
         return found
 
+    def swing(self, normal: Floats, speed: Floats) -> Floats:
+        """How far the slips of a pair's points may turn from their mean's way, (n,) [rad].
+
+        Args:
+            normal: Of each row, (n, 3).
+            speed: Of its slip, (n,) [m/s].
+        """
+        motion, fastest = self._evidence.motion, np.zeros(len(speed))
+        size = np.append(motion.radius, np.inf)[self.body].min(axis=1)  # the smaller body's: where both can touch
+        for end in (0, 1):
+            frame = np.maximum(self.track.frame - 1 + end, 0)
+            spin = [
+                np.where((self.body[:, side] >= 0)[:, None], motion.w[frame, np.maximum(self.body[:, side], 0)], 0.0)
+                for side in (0, 1)
+            ]
+            fastest = np.maximum(fastest, np.abs(np.einsum("ni,ni->n", spin[1] - spin[0], normal)))
+        found: Floats = fastest * size / np.maximum(speed, 1e-12)
+        return found
+
     def _belt(self, side: int, frame: Rows) -> Floats:
         """How the surfaces of one side run by themselves, (n, 3) [m/s]."""
         belts = np.array([shape.surface_velocity for shape in self.shapes], dtype=np.float64).reshape(-1, 3)

@@ -113,14 +113,15 @@ class CheckRecordedForces(Check):
         way = mean / np.linalg.norm(mean, axis=1, keepdims=True)
         rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
         friction = contacts.friction[rows]
-        slack = (self.edge + 1.0 - cosine[rows]) * friction + self.cone
+        turned = contacts.swing(normal, speed.min(axis=1))[rows]
+        slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2) * friction + self.cone
         worst = int(np.argmax(np.abs(rubs - friction) / slack))
         k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(friction[worst]), float(slack[worst])
         return [
             self._of_row(
                 evidence, contacts, k, f"slip, and rub with {value:.3g} of what they press; their friction is "
                 f"{expected:.3g}", abs(value - expected), limit, "1",
-                "What slips rubs with all its friction", f"{self.edge:g} of the friction, and how far the slip turns",
+                "What slips rubs with all its friction", f"{self.edge:g} of the friction, and how far slips turn",
             )
         ]  # fmt: skip
 
