@@ -19,6 +19,7 @@ import numpy as np
 from benchmarks.judge_families.stepping import Push, Stepper
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.importers.trajectory import from_arrays
+from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame
 from wsim.recording.recording import FluidTrack, Recording
 from wsim.scene.cord_paths import spring_track
@@ -27,7 +28,7 @@ from wsim.scene.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 CACHE = ROOT / "build" / "judge_faults" / "families"
-FORMAT = 2  # of what is kept: raise it where the simulator records more
+FORMAT = 4  # of what is kept: raise it where the simulator records more
 Array = np.ndarray
 
 
@@ -81,6 +82,8 @@ def _simulate(stage: Path, push: Push | None) -> Track:
     from wsim.sim.measure import measure
 
     simulation = Simulation(stage, device="cpu")
+    if simulation.rigid:
+        simulation.rigid.keep_contacts()
     advance = Stepper(simulation, push).frame
     frames: list[Frame] = []
     times: list[float] = []
@@ -91,9 +94,14 @@ def _simulate(stage: Path, push: Push | None) -> Track:
         frames.append(measure(simulation.built, simulation.state, simulation.rigid, simulation.fluid))
     if problems := simulation.problems():
         raise RuntimeError("; ".join(problems))
-    names = [f.name for f in fields(Frame) if f.name not in ("fluids", "scalars")]
+    names = [f.name for f in fields(Frame) if f.name not in ("fluids", "scalars", "contacts")]
     arrays = {name: np.array([getattr(frame, name) for frame in frames]) for name in names
               if getattr(frames[-1], name) is not None}  # fmt: skip
+    if frames[-1].contacts is not None:
+        counts = [len(frame.contacts.pair) for frame in frames]  # type: ignore[union-attr]
+        arrays["contact_frame"] = np.repeat(np.arange(len(frames), dtype=np.int32), counts)
+        arrays["contact_pair"] = np.concatenate([frame.contacts.pair for frame in frames])  # type: ignore[union-attr]
+        arrays["contact_sums"] = np.concatenate([frame.contacts.sums for frame in frames])  # type: ignore[union-attr]
     scalars = {name: np.array([frame.scalars.get(name, math.nan) for frame in frames]) for name in frames[-1].scalars}
     time = np.array(times)
     fluids = {
@@ -117,8 +125,14 @@ def own(track: Track, world: World) -> Recording:
         scalars={**track.scalars, **_energies(track, world)},
         log=[],
         images={},
+        contacts=_contacts(track),
         **{name: array for name, array in track.frames.items() if name in names},
     )
+
+
+def _contacts(track: Track) -> ContactTrack | None:
+    parts = [track.frames.get(f"contact_{name}") for name in ("frame", "pair", "sums")]
+    return None if any(part is None for part in parts) else ContactTrack(*parts)  # type: ignore[arg-type]
 
 
 def other(track: Track, world: World) -> Recording:
@@ -164,6 +178,13 @@ def edited(track: Track, q: Array | None = None, qd: Array | None = None, **flui
 def cut(track: Track, count: int) -> Track:
     """The first frames of a track without fluid."""
     frames, scalars = ({name: array[:count] for name, array in each.items()} for each in (track.frames, track.scalars))
+    if "contact_frame" in track.frames:
+        kept = track.frames["contact_frame"] < count
+        frames |= {
+            name: array[kept]
+            for name, array in track.frames.items()
+            if name.startswith("contact_") and name != "contact_force"
+        }
     return replace(track, time=track.time[:count], frames=frames, scalars=scalars)
 
 

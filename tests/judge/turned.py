@@ -67,4 +67,13 @@ def turned(recording, q):
         applied_turn=all_of(recording.applied_turn),
         control_impulse=all_of(recording.control_impulse),
         wall_impulse=all_of(recording.wall_impulse),
+        contacts=None if recording.contacts is None else _turned_contacts(recording.contacts, all_of),
     )
+
+
+def _turned_contacts(track, all_of):
+    """What pairs gave each other: the vectors among their sums."""
+    sums = track.sums.copy()
+    for first in (0, 4, 7, 10, 13):
+        sums[:, first : first + 3] = all_of(sums[:, first : first + 3])
+    return replace(track, sums=sums)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from wsim.recording import RecordingWriter, read
+from wsim.recording.contacts import WIDTH, Pushes
 
 
 def test_impulse_and_work_come_back_bit_for_bit(world, make_frame, tmp_path):
@@ -32,6 +33,7 @@ def test_a_recording_without_them_has_none(world, make_frame, tmp_path):
     recording = read(tmp_path / "r.rrd")
     assert recording.applied_impulse is None and recording.applied_work is None and recording.seen == {}
     assert recording.applied_turn is None and recording.control_impulse is None and recording.wall_impulse is None
+    assert recording.contacts is None
 
 
 def test_they_come_in_all_frames_or_in_none(world, make_frame, tmp_path):
@@ -55,3 +57,28 @@ def test_what_a_camera_saw_comes_back(world, make_frame, tmp_path):
     assert track.objects == ["/World/block", "/World/ball"]
     assert track.share.tolist() == [list(share.values()) for share in shares]
     assert track.time == pytest.approx([0.0, 0.1])
+
+
+def test_what_pairs_gave_each_other_comes_back(world, make_frame, tmp_path):
+    """Some frames have no contact at all."""
+    rng = np.random.default_rng(4)
+    pushes = [
+        Pushes(rng.integers(0, 3, (n, 2)).astype(np.int32), rng.standard_normal((n, WIDTH)).astype(np.float32))
+        for n in (0, 2, 0, 3, 1)
+    ]
+    with RecordingWriter(tmp_path / "r.rrd", world) as writer:
+        for k, each in enumerate(pushes):
+            writer.frame(0.1 * k, replace(make_frame(k), contacts=each))
+        with pytest.raises(ValueError, match="in all frames or in none"):
+            writer.frame(0.5, make_frame(5))
+    track = read(tmp_path / "r.rrd").contacts
+    assert track.frame.tolist() == [1, 1, 3, 3, 3, 4]
+    assert track.pair.tobytes() == np.concatenate([each.pair for each in pushes]).tobytes()
+    assert track.sums.tobytes() == np.concatenate([each.sums for each in pushes]).tobytes()
+    assert track.impulse.shape == (6, 3) and track.turn.shape == (6, 2, 3) and track.pressed.shape == (6,)
+
+
+def test_pushes_of_another_width_are_refused(world, make_frame, tmp_path):
+    wrong = Pushes(np.zeros((2, 2), np.int32), np.zeros((2, 5), np.float32))
+    with RecordingWriter(tmp_path / "r.rrd", world) as writer, pytest.raises(ValueError, match="contacts have shapes"):
+        writer.frame(0.0, replace(make_frame(0), contacts=wrong))

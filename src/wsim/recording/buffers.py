@@ -12,11 +12,13 @@ import numpy as np
 import rerun as rr
 
 from wsim.recording import columns as names
+from wsim.recording.contacts import columns_of
 from wsim.recording.shapes import ROOT_FRAME, is_nested, rgba
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.recording.contacts import Pushes
     from wsim.recording.frames import FluidFrame
     from wsim.scene.world import Fluid, World
 
@@ -42,10 +44,17 @@ class BodyBuffer:
         self._rows: list[tuple[Floats, ...]] = []
         self._causes: list[dict[str, Floats]] = []
         self._whole: list[dict[str, Floats]] = []
+        self._contacts: list[Pushes] = []
         self._bytes = 0
 
     def add(
-        self, ns: int, t: float, rows: tuple[Floats, ...], causes: dict[str, Floats], whole: dict[str, Floats]
+        self,
+        ns: int,
+        t: float,
+        rows: tuple[Floats, ...],
+        causes: dict[str, Floats],
+        whole: dict[str, Floats],
+        contacts: Pushes | None,
     ) -> None:
         """Keep one frame.
 
@@ -55,12 +64,16 @@ class BodyBuffer:
             rows: (B, 7), (B, 6), (B, 3).
             causes: Columns of what pushed the bodies, (B, width).
             whole: Columns that a frame has once, (width,).
+            contacts: What pairs of shapes gave each other.
         """
         self._times.append(ns)
         self._seconds.append(t)
         self._rows.append(rows)
         self._causes.append(causes)
         self._whole.append(whole)
+        if contacts is not None:
+            self._contacts.append(contacts)
+            self._bytes += contacts.sums.nbytes
         self._bytes += sum(row.nbytes for row in [*rows, *causes.values()])
         if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
             self.flush()
@@ -79,12 +92,14 @@ class BodyBuffer:
         for i, entity in enumerate(self._heights):
             height = names.column(names.SCALARS, q[i, :, 2].astype(np.float64))
             self._stream.send_columns(entity, [index], [height], strict=True)
+        if self._contacts:
+            self._stream.send_columns(names.CONTACT_ENTITY, [index], columns_of(self._contacts), strict=True)
         # Last, so that a frame that the file knows of has all its bodies, even if the process is killed here.
         seconds = names.column(names.FRAME_TIME, np.array(self._seconds))
         whole = [names.column(name, np.stack([each[name] for each in self._whole])) for name in self._whole[0]]
         self._stream.send_columns(names.FRAME_ENTITY, [index], [seconds, *whole], strict=True)
         self._times, self._seconds, self._rows, self._bytes = [], [], [], 0
-        self._causes, self._whole = [], []
+        self._causes, self._whole, self._contacts = [], [], []
 
     @staticmethod
     def _pose(q: Floats, nested: bool) -> list[Any]:

@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from wsim.recording.contacts import Pushes
+
     Floats = NDArray[np.float32]
 else:
     Floats = object
@@ -42,6 +44,7 @@ class Frame:
     applied_turn: Floats | None = None  # (B, 3) [N m s], about the centre of mass
     control_impulse: Floats | None = None  # (B, 3) [N s], what of the applied one is control's
     wall_impulse: Floats | None = None  # (3,) [N s], of fluid on all that stands still
+    contacts: Pushes | None = None  # what pairs of shapes gave each other
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from rerun.chunk import RrdReader
 from wsim.errors import UserError
 from wsim.recording import columns as names
 from wsim.recording.causes import read_bodies, read_frames
+from wsim.recording.contacts import read_contacts
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
 from wsim.recording.table import Clock, Table
@@ -64,6 +65,7 @@ def read(path: str | Path) -> Recording:
         applied_turn=turn,
         control_impulse=control,
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
+        contacts=read_contacts(table, frame_ns),
     )
 
 

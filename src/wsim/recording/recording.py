@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image
 
+from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame, LogLine
 from wsim.scene.world import World
 
@@ -91,6 +92,7 @@ class Recording:
     applied_turn: Floats | None = None  # (T, B, 3) [N m s], likewise, about the centre of mass
     control_impulse: Floats | None = None  # (T, B, 3) [N s], what of the applied one is control's
     wall_impulse: Floats | None = None  # (T, 3) [N s], of fluid on all that stands still since the frame before
+    contacts: ContactTrack | None = None  # what pairs of shapes gave each other since the frame before
 
     @property
     def complete(self) -> bool:

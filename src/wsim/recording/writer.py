@@ -22,6 +22,7 @@ from wsim.recording.buffers import BodyBuffer, FluidBuffer, RowBuffer
 from wsim.recording.causes import WIDTHS
 from wsim.recording.causes import of_bodies as causes_of_bodies
 from wsim.recording.causes import of_frame as causes_of_frame
+from wsim.recording.contacts import WIDTH as CONTACT_WIDTH
 from wsim.recording.frames import Frame
 from wsim.recording.shapes import is_nested, log_camera, log_scene
 from wsim.scene.world import World
@@ -91,7 +92,7 @@ class RecordingWriter:
                 raise ValueError(f"scalar {name!r}: a name is letters, digits and _.-, its parts separated by /")
         self._last_ns = ns
         self.frame_count += 1
-        self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame))
+        self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame), frame.contacts)
         for prim, arrays in fluids.items():
             self._fluids[prim].add(ns, *arrays)
         for name, value in frame.scalars.items():
@@ -248,13 +249,19 @@ class RecordingWriter:
     def _check_causes(self, frame: Frame) -> dict[str, NDArray[np.float32]]:
         """What pushed the bodies, by column."""
         arrays = {name: np.array(given, dtype=np.float32) for name, given in causes_of_bodies(frame).items()}
-        known = {*arrays, *causes_of_frame(frame)}
+        known = {*arrays, *causes_of_frame(frame), *(["contacts"] if frame.contacts is not None else [])}
         if self.frame_count and known != self._causes:
             raise ValueError(f"frame: {sorted(known ^ self._causes)} come in all frames or in none")
         self._causes = known
         for name, array in arrays.items():
             if array.shape != (expected := (len(self.world.bodies), WIDTHS[name])):
                 raise ValueError(f"frame: {name} has shape {array.shape}, expected {expected}")
+        if frame.contacts is not None:
+            pair, sums = frame.contacts.pair, frame.contacts.sums
+            if pair.shape != (len(sums), 2) or sums.shape != (len(pair), CONTACT_WIDTH):
+                raise ValueError(
+                    f"frame: contacts have shapes {pair.shape} and {sums.shape}; (n, 2), (n, {CONTACT_WIDTH})"
+                )
         return arrays
 
     def _fluid(self, prim: str) -> FluidBuffer:

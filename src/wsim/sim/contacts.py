@@ -8,6 +8,7 @@ from typing import Any
 import newton
 import numpy as np
 
+from wsim.recording.contacts import shapes_of
 from wsim.scene.contact import curvature, pair_law, within
 from wsim.scene.world import Shape, World
 from wsim.solvers.contact_law import ContactConfig
@@ -114,6 +115,14 @@ def surface_velocities(model: Any, world: World) -> Array:
     count = model.shape_count // max(1, model.world_count)
     labels = [str(label) for label in model.shape_label[:count]]
     return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
+
+
+def shape_numbers(model: Any, world: World) -> Array:
+    """The number of each shape of the first world as a recording counts them, (shapes,); -1 for what it has not."""
+    known = _shapes(world)
+    number = {shape.prim: k for k, shape in enumerate(shapes_of(world))}
+    labels = [str(label) for label in model.shape_label[: model.shape_count // max(1, model.world_count)]]
+    return np.array([number.get(_of_label(label, known).prim, -1) for label in labels], dtype=np.int64)
 
 
 def _shapes(world: World) -> dict[str, Shape]:

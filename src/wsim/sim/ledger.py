@@ -48,7 +48,8 @@ class Ledger:
         with wp.ScopedDevice(model.device):
             self._twist = wp.zeros(model.body_count, dtype=wp.spatial_vector)
             self._rate = wp.zeros(model.joint_dof_count, dtype=wp.float32)
-            self._impulse, self._controlled = (wp.zeros(self.bodies, dtype=wp.spatial_vector) for _ in range(2))
+            self._impulse: Any = wp.zeros(self.bodies, dtype=wp.spatial_vector)
+            self._controlled: Any = wp.zeros(self.bodies, dtype=wp.spatial_vector)
             self._work = wp.zeros(self.bodies, dtype=wp.float32)
             self._drives = wp.zeros(self.dofs, dtype=wp.float32)
             self._unsure = wp.zeros(self.dofs, dtype=wp.float32)

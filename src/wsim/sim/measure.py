@@ -50,6 +50,7 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
         fluids=fluids,
         scalars=scalars,
         wall_impulse=fluid.take_wall_impulse().astype(np.float32) if fluid else None,
+        contacts=rigid.take_contacts() if rigid else None,
         **applied,
     )
 

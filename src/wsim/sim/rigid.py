@@ -11,9 +11,10 @@ from mujoco_warp import OverflowType
 from newton import ShapeFlags
 
 from wsim.kernels.overflow import accumulate_overflow
+from wsim.recording.contacts import Pushes
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
-from wsim.sim.contacts import surface_velocities, surfaces_of
+from wsim.sim.contacts import shape_numbers, surface_velocities, surfaces_of
 from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
@@ -83,7 +84,7 @@ class RigidBodies:
         breakable: Sequence[Breakable] = (),
         surfaces: SurfaceParts | None = None,
     ) -> None:
-        self.model, self.breakable = model, breakable
+        self.model, self.breakable, self._world = model, breakable, world
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
@@ -142,11 +143,21 @@ class RigidBodies:
         """Advance by `count` steps of `dt` [s] in one go, if the bodies are `alone`."""
         self.solver.steps(state, control, dt, count)
 
+    def keep_contacts(self) -> None:
+        """Sum from here on what pairs of the first world's shapes give each other."""
+        self.solver.keep_impulses(shape_numbers(self.model, self._world))
+
+    def take_contacts(self) -> Pushes | None:
+        """The sums since the last call; None where nobody asked to keep them."""
+        return self.solver.impulses.take() if self.solver.impulses else None
+
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
         self._kinematic.reset(state)
         self.solver.reset(state, flags=0)
         self.solver.mend()
+        if self.solver.impulses:
+            self.solver.impulses.clear()
         if self.ledger:
             self.ledger.clear()
         if not self.on_c:
@@ -173,7 +184,11 @@ class RigidBodies:
             seen = self.overflow_seen.numpy() & ~STAGNATED
             worlds = np.flatnonzero(seen)
             which = OverflowType(int(np.bitwise_or.reduce(seen, initial=0)))
-            return [f"contact buffers overflowed in worlds {worlds[:8].tolist()}: {which.name}"] if len(worlds) else []
+            lost = getattr(self.solver.impulses, "lost", 0)
+            full = [f"{lost} contacts found no room in the sums of a frame"] if lost else []
+            if not len(worlds):
+                return full
+            return [f"contact buffers overflowed in worlds {worlds[:8].tolist()}: {which.name}", *full]
         mujoco = self.solver.import_mujoco()[0]
         found = []
         for kind in range(len(self.solver.mj_data.warning)):

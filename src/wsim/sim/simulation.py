@@ -210,6 +210,8 @@ class Simulation:
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
         problems: list[str] = []
+        if self.rigid:
+            self.rigid.keep_contacts()
         with ExitStack() as stack:
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
             pictures = None

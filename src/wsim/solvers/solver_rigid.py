@@ -14,6 +14,7 @@ from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
+from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
@@ -66,6 +67,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     ) -> None:
         self.contact_config = ContactConfig()
         self._flight: Flight | None = None
+        self.impulses: ContactImpulsesC | ContactImpulsesWarp | None = None
         super().__init__(
             model,
             use_mujoco_cpu=on_c,
@@ -173,6 +175,20 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             return BreakingC(self.import_mujoco()[0], self.mj_model, constraints, strength)
         with wp.ScopedDevice(self.model.device):
             return BreakingWarp(self.mj_model, constraints, strength, self.mjw_data.nworld)
+
+    def keep_impulses(self, numbers: Array) -> None:
+        """Sum what contacts of the first world give, from here on.
+
+        Args:
+            numbers: Of the first world's shapes, as a recording counts them, (shapes,); below 0 for none.
+        """
+        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
+        of_geoms = np.where(shapes >= 0, numbers[np.maximum(shapes, 0)], -1)
+        if self.use_mujoco_cpu:
+            self.impulses = self._law_c.impulses = ContactImpulsesC(self.mj_model, of_geoms)
+            return
+        capacity = self.mjw_data.naconmax // self.mjw_data.nworld
+        self.impulses = ContactImpulsesWarp(self.mj_model, of_geoms, self.model.device, capacity)
 
     def mend(self) -> None:
         """Make all joints whole that broke."""
@@ -297,6 +313,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.give_way(model, data)
             warp.solve(model, data)
+        if isinstance(self.impulses, ContactImpulsesWarp):
+            self.impulses.add(data, self._dt)
         self._implicit(model, data)
         if self._flight:
             self._flight.fly(self._dt)

@@ -27,6 +27,7 @@ from wsim.judge.checks import (
     plan_contacts,
     plan_joints,
     plan_motion,
+    recorded,
     rest,
     run,
     settled,
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, forces, impacts, energy, contact, friction, rest, joint, cord, mass, plan, plan_closed,
-    plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
+    physics, settled, motion, forces, recorded, impacts, energy, contact, friction, rest, joint, cord, mass, plan,
+    plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
 )  # fmt: skip
 
 

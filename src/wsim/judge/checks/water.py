@@ -154,7 +154,7 @@ class CheckDraft(Check):
             f"{body.prim} hangs in {fluid.prim} with {below[0]:.4g} kg displaced, and weighs {body.mass:.4g} kg",
             below[0], (least, most), "kg", body.mass, prim=body.prim,
             time=evidence.window_start,
-            limit_from=f"Archimedes; {self.share:g} of its mass, {self.high:g} spacing of draft less, {self.low:g} more",
+            limit_from=f"Archimedes; {self.share:g} of its mass, {self.high:g} spacing higher, {self.low:g} lower",
         )  # fmt: skip
 
 

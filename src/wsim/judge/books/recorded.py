@@ -1,0 +1,189 @@
+"""The books of what a recording says that contacts gave: they balance by themselves, and are such as contacts can give.
+
+Where poses alone are known, contacts are unknowns and anything admissible may have acted (`wsim.judge.books.balance`).
+Where the impulse of each pair is recorded there is nothing left to choose: what a body gained is gravity's, the
+fluid's, control's and theirs, to the rounding of the solver.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, rotate
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.recording.contacts import shapes_of
+from wsim.scene.contact import pair_law
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.recording.contacts import ContactTrack
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Balanced:
+    """What contacts leave unexplained, for T - 1 intervals and B bodies."""
+
+    force: Floats  # (T - 1, B, 3) over the mass [m/s^2]
+    torque: Floats  # (T - 1, B, 3) over m R [m/s^2]
+    moved: Floats  # (T - 1, B) what contacts gave, over the mass, and the rounding of velocities [m/s^2]
+    judged: Bools  # (B,)
+    turned: Bools  # (B,) whether its torques are known, too
+
+
+class RecordedContacts:
+    """What pairs of shapes gave each other, as the recording has it."""
+
+    def __init__(self, evidence: Evidence, track: ContactTrack) -> None:
+        self._evidence, self.track = evidence, track
+        self.shapes = shapes_of(evidence.world)
+        bodies = [i for i, body in enumerate(evidence.world.bodies) for _ in body.shapes]
+        self._owner = np.array(bodies + [-1] * (len(self.shapes) - len(bodies)), dtype=np.intp)
+
+    @cached_property
+    def body(self) -> Rows:
+        """The bodies of each row, (n, 2); -1 is the world."""
+        return self._owner[self.track.pair]
+
+    @cached_property
+    def given(self) -> tuple[Floats, Floats]:
+        """Impulse and angular impulse on each body since the frame before, (T, B, 3) each."""
+        found = np.zeros((2, len(self._evidence.time), len(self._evidence.world.bodies), 3))
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            moves = self.body[:, side] >= 0
+            at = self.track.frame[moves], self.body[moves, side]
+            np.add.at(found[0], at, sign * self.track.impulse[moves].astype(np.float64))
+            np.add.at(found[1], at, self.track.turn[moves, side].astype(np.float64))
+        return found[0], found[1]
+
+    def balanced(self) -> Balanced:
+        """The books of loose bodies."""
+        motion, recording = self._evidence.motion, self._evidence.recording
+        push, turn = (array[1:] for array in self.given)
+        h, size = motion.h[:, None, None], np.maximum(motion.radius, 1e-9)
+        force = motion.acceleration - motion.gravity - push / motion.mass[:, None] / h
+        gained = np.diff(motion.angular_momentum, axis=0) - turn
+        if recording.applied_turn is not None:
+            gained = gained - recording.applied_turn[1:]
+        torque = gained / (motion.mass * size)[:, None] / h
+        applied = np.zeros(push.shape[:2])
+        if recording.applied_impulse is not None:
+            applied = np.linalg.norm(np.asarray(recording.applied_impulse[1:], dtype=np.float64), axis=2)
+        speed = motion.speed + np.linalg.norm(motion.w, axis=2) * motion.radius
+        rounding = 8.0 * FLOAT32 * np.maximum(speed[1:], speed[:-1])
+        moved = (np.linalg.norm(push, axis=2) + applied) / motion.mass / motion.h[:, None]
+        loose = ~motion.kinematic & ~motion.jointed
+        pushed = recording.applied_impulse is not None or bool(recording.metadata.get("controlled"))
+        known = loose & (recording.applied_turn is not None or not pushed)
+        return Balanced(force, torque, moved + rounding / motion.h[:, None], loose, known)
+
+    @cached_property
+    def friction(self) -> Floats:
+        """The coefficient of each row's pair, (n,)."""
+        world = self._evidence.world
+        pairs, which = np.unique(self.track.pair, axis=0, return_inverse=True)
+        laws = [pair_law(world, self.shapes[a], self.shapes[b]).friction for a, b in pairs.tolist()]
+        return np.array(laws, dtype=np.float64)[which.ravel()] if len(laws) else np.zeros(0)
+
+    @cached_property
+    def rubbed(self) -> Floats:
+        """The part of each row's impulse that is along the surfaces, (n,) [N s]."""
+        return np.linalg.norm(self.track.impulse.astype(np.float64) - self.track.along, axis=1)
+
+    @cached_property
+    def lasting(self) -> Bools:
+        """Rows of pairs that press in the intervals before and after, too, (n,): no blow, which has another place."""
+        pair = self.track.pair.astype(np.int64)
+        key = self.track.frame * np.int64(len(self.shapes)) ** 2 + pair[:, 0] * len(self.shapes) + pair[:, 1]
+        step = np.int64(len(self.shapes)) ** 2
+        return np.asarray(np.isin(key - step, key) & np.isin(key + step, key))
+
+    @cached_property
+    def slip(self) -> Floats:
+        """Velocity of the second shape over the first at the place of each row, at both ends, (n, 2, 3) [m/s]."""
+        found = np.zeros((len(self.track.frame), 2, 3))
+        motion, point = self._evidence.motion, self.track.point.astype(np.float64)
+        for end in (0, 1):
+            frame = np.maximum(self.track.frame - 1 + end, 0)
+            for side, sign in ((0, -1.0), (1, 1.0)):
+                rows = np.maximum(self.body[:, side], 0)
+                moves = (self.body[:, side] >= 0)[:, None]
+                if len(motion.mass):
+                    arm = point - motion.com[frame, rows]
+                    speed = motion.v[frame, rows] + np.cross(motion.w[frame, rows], arm)
+                    found[:, end] += sign * np.where(moves, speed, 0.0)
+                found[:, end] += sign * self._belt(side, frame)
+        return found
+
+    def swing(self, normal: Floats, speed: Floats) -> Floats:
+        """How far the slips of a pair's points may turn from their mean's way, (n,) [rad].
+
+        Args:
+            normal: Of each row, (n, 3).
+            speed: Of its slip, (n,) [m/s].
+        """
+        motion, fastest = self._evidence.motion, np.zeros(len(speed))
+        size = np.append(motion.radius, np.inf)[self.body].min(axis=1)  # the smaller body's: where both can touch
+        for end in (0, 1):
+            frame = np.maximum(self.track.frame - 1 + end, 0)
+            spin = [
+                np.where((self.body[:, side] >= 0)[:, None], motion.w[frame, np.maximum(self.body[:, side], 0)], 0.0)
+                for side in (0, 1)
+            ]
+            fastest = np.maximum(fastest, np.abs(np.einsum("ni,ni->n", spin[1] - spin[0], normal)))
+        found: Floats = fastest * size / np.maximum(speed, 1e-12)
+        return found
+
+    def _belt(self, side: int, frame: Rows) -> Floats:
+        """How the surfaces of one side run by themselves, (n, 3) [m/s]."""
+        belts = np.array([shape.surface_velocity for shape in self.shapes], dtype=np.float64).reshape(-1, 3)
+        own = belts[self.track.pair[:, side]]
+        rows = self.body[:, side]
+        if not own.any() or not len(self._evidence.world.bodies):
+            return own
+        turn = np.where(
+            (rows >= 0)[:, None], self._evidence.body_q[frame, np.maximum(rows, 0), 3:], (0.0, 0.0, 0.0, 1.0)
+        )
+        found: Floats = rotate(turn, own)
+        return found
+
+    def gap(self, share: float) -> tuple[Floats, Floats]:
+        """How far each row's place is from the surfaces that it is said to be of, and may be, (n,) each [m].
+
+        It is taken at the nearer end of the interval, of the surface for which it is the more by what it may be: how
+        far points of its body may go in the interval, and those of both bodies in a step, as contacts are found
+        before surfaces meet; and a share of the smallest extent of the bodies.
+        """
+        track, motion = self.track, self._evidence.motion
+        worst, most = np.zeros(len(track.frame)), np.full(len(track.frame), np.inf)
+        placed = {(shape.body, shape.shape.prim): shape for shape in self._evidence.placed}
+        point, interval = track.point.astype(np.float64), np.maximum(track.frame - 1, 0)
+        small = np.array([self._evidence.solid(i).smallest for i in range(len(motion.mass))] + [np.inf])
+        reach = np.column_stack([motion.reach, np.zeros(len(motion.h))])
+        of_step = (reach[interval[:, None], self.body] * (motion.dt / motion.h[interval])[:, None]).sum(axis=1)
+        slop = share * small[self.body].min(axis=1) + of_step
+        for side in (0, 1):
+            for k in np.unique(track.pair[:, side]):
+                rows = np.flatnonzero(track.pair[:, side] == k)
+                shape = placed.get((int(self._owner[k]), self.shapes[k].prim))
+                if shape is None or shape.shape.kind == "mesh":
+                    continue
+                off = np.full(len(rows), np.inf)
+                for end in (0, 1):
+                    frame = interval[rows] + end
+                    at = rotate(conjugate(shape.rotation[frame]), point[rows] - shape.position[frame])
+                    off = np.minimum(off, np.abs(shape.kind.depth(at)))
+                limit = slop[rows] + reach[interval[rows], shape.body]
+                worse = off * most[rows] > worst[rows] * limit
+                worse |= np.isinf(most[rows])
+                worst[rows], most[rows] = np.where(worse, off, worst[rows]), np.where(worse, limit, most[rows])
+        return worst, np.where(np.isinf(most), 1.0, most)

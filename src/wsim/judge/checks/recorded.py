@@ -1,0 +1,153 @@
+"""What a recording says that contacts gave: it balances by itself, and is what contacts of these surfaces can give."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.books.forces import ONE_WAY, STILL
+from wsim.judge.books.recorded import RecordedContacts
+from wsim.judge.checks.check import Check, Checks, listed
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckRecordedForces(Check):
+    """Where the impulses of contacts are recorded, they explain each loose body's motion, and each is admissible.
+
+    They push, inside the cone of their pair's friction and on its edge against a slip that lasts, where both surfaces
+    are. Where they are not recorded nothing is asked: then `CheckForces` looks for some that would do.
+    """
+
+    share: float = 0.005  # of gravity and of what contacts gave
+    single: float = 0.02  # likewise, of a solver in single precision
+    cone: float = 0.001  # of the normal impulse: the solver's tolerance
+    edge: float = 0.02  # of the friction of a slip that lasts
+    near: float = 0.01  # of a body's smallest extent
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """Momentum, angular momentum, friction and places, each where it is worst by its limit."""
+        track, bodies = evidence.recording.contacts, evidence.world.bodies
+        if track is None or not bodies or len(evidence.time) < 2:
+            return []
+        contacts = RecordedContacts(evidence, track)
+        found = self._balance(evidence, contacts)
+        if len(track.frame):
+            found += [self._inside(evidence, contacts), *self._against(evidence, contacts)]
+            found.append(self._there(evidence, contacts))
+        return found
+
+    # ---- the sums
+    def _balance(self, evidence: Evidence, contacts: RecordedContacts) -> list[Finding]:
+        books, motion = contacts.balanced(), evidence.motion
+        about = evidence.recording.metadata
+        single = str(about.get("device", "cpu")).startswith("cuda") or int(about.get("world_count") or 1) > 1
+        share = self.single if single else self.share
+        limits = share * (max(evidence.gravity, 1.0) + books.moved)
+        found = []
+        for left, judged, weight, unit in (
+            (books.force, books.judged, motion.mass, "N"),
+            (books.torque, books.turned, motion.mass * motion.radius, "N m"),
+        ):
+            if not judged.any():
+                continue
+            size = np.where(judged, np.linalg.norm(left, axis=2), 0.0)
+            k, i = (int(at) for at in np.unravel_index(int(np.argmax(size / limits)), size.shape))
+            prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + 1])
+            way = listed(tuple((left[k, i] / max(float(size[k, i]), 1e-300)).round(2)))
+            value, limit = float(size[k, i] * weight[i]), float(limits[k, i] * weight[i])
+            verb, kind = ("pushed", "momentum") if unit == "N" else ("turned", "angular momentum")
+            found.append(
+                self.measured(
+                    f"{prim} is {verb} by {value:.3g} {unit} towards {way} that no recorded contact gives, from "
+                    f"{start:.3f} to {end:.3f} s",
+                    value, limit, unit, prim=prim, time=end, span=(start, end), expected=0.0,
+                    fine=f"The recorded contacts give each loose body the {kind} that it gained",
+                    limit_from=f"{share:g} of gravity and of what contacts and fluid gave",
+                    target=RepairTarget(kind="program", prim=prim, why=f"a {unit} that is not recorded acts on it"),
+                )
+            )  # fmt: skip
+        return found
+
+    # ---- each of them
+    def _inside(self, evidence: Evidence, contacts: RecordedContacts) -> Finding:
+        """They push, and rub no more than they may."""
+        pressed = contacts.track.pressed.astype(np.float64)
+        unit = np.maximum(np.abs(pressed), 1e-30)
+        turned = np.linalg.norm(contacts.track.along.astype(np.float64), axis=1) - pressed
+        over = np.maximum(contacts.rubbed - contacts.friction * pressed, np.maximum(turned, -pressed)) / unit
+        k = int(np.argmax(over))
+        return self._of_row(
+            evidence, contacts, k,
+            f"rub with {contacts.rubbed[k] / unit[k]:.3g} of what they press; their friction is "
+            f"{contacts.friction[k]:.3g}",
+            float(contacts.rubbed[k] / unit[k] if pressed[k] > 0.0 else np.inf),
+            float(contacts.friction[k] + self.cone), "1",
+            "Every recorded contact pushes, and rubs inside its friction's cone",
+            f"the pair's friction, and {self.cone:g} for the solver",
+        )  # fmt: skip
+
+    def _against(self, evidence: Evidence, contacts: RecordedContacts) -> list[Finding]:
+        """Where a slip lasts, they rub against it with all their friction."""
+        track, slip = contacts.track, contacts.slip
+        pressed = np.maximum(track.pressed.astype(np.float64), 1e-30)
+        normal = track.along.astype(np.float64) / pressed[:, None]
+        across = slip - np.einsum("nei,ni->ne", slip, normal)[..., None] * normal[:, None]
+        speed = np.linalg.norm(across, axis=2)
+        cosine = np.einsum("ni,ni->n", across[:, 0], across[:, 1]) / np.maximum(speed.prod(axis=1), 1e-30)
+        lasts = contacts.lasting & (speed.min(axis=1) > STILL) & (cosine > ONE_WAY)
+        rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
+        if not len(rows):
+            return []
+        mean = across[rows].mean(axis=1)
+        way = mean / np.linalg.norm(mean, axis=1, keepdims=True)
+        rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
+        friction = contacts.friction[rows]
+        turned = contacts.swing(normal, speed.min(axis=1))[rows]
+        slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2) * friction + self.cone
+        worst = int(np.argmax(np.abs(rubs - friction) / slack))
+        k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(friction[worst]), float(slack[worst])
+        return [
+            self._of_row(
+                evidence, contacts, k, f"slip, and rub with {value:.3g} of what they press; their friction is "
+                f"{expected:.3g}", abs(value - expected), limit, "1",
+                "What slips rubs with all its friction", f"{self.edge:g} of the friction, and how far slips turn",
+            )
+        ]  # fmt: skip
+
+    def _there(self, evidence: Evidence, contacts: RecordedContacts) -> Finding:
+        """They act where both surfaces are."""
+        gap, allowed = contacts.gap(self.near)
+        k = int(np.argmax(gap - allowed))
+        return self._of_row(
+            evidence, contacts, k, f"press at a place that is {gap[k]:.3g} m from one of them", float(gap[k]),
+            float(allowed[k]), "m", "Every recorded contact is where both surfaces are",
+            f"{self.near:g} of the body's smallest extent, and how far bodies go in the interval",
+        )  # fmt: skip
+
+    def _of_row(
+        self, evidence: Evidence, contacts: RecordedContacts, k: int, what: str, value: float, limit: float, unit: str,
+        fine: str, limit_from: str,
+    ) -> Finding:  # fmt: skip
+        frame, (one, two) = int(contacts.track.frame[k]), contacts.track.pair[k].tolist()
+        prims, time = (contacts.shapes[one].prim, contacts.shapes[two].prim), float(evidence.time[frame])
+        i = int(contacts.body[k].max())
+        prim = evidence.world.bodies[i].prim if i >= 0 else prims[1]
+        return self.measured(
+            f"{prims[0]} and {prims[1]} {what}, at {time:.3f} s",
+            value, limit, unit, prim=prim, time=time, expected=0.0, fine=fine, limit_from=limit_from,
+            target=RepairTarget(kind="program", prim=prim, why="its contacts are not those of the stated surfaces"),
+        )  # fmt: skip
+
+
+CHECKS: Checks = (CheckRecordedForces,)

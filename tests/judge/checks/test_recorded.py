@@ -1,0 +1,124 @@
+"""Recorded contacts of real runs: as they are, and with one number of the recording changed."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask
+from wsim.judge.checks.recorded import CheckRecordedForces
+from wsim.judge.evidence.evidence import Evidence
+from wsim.recording import read
+from wsim.recording.contacts import shapes_of
+from wsim.scene import Scene
+from wsim.sim import Simulation
+
+G, FRICTION = 9.81, 0.3
+
+
+def run(folder, **options):
+    """A box that slides and stops, two that stand on each other, and a ball that bounces."""
+    scene = Scene()
+    scene.simulation(duration=0.5, frame_rate=60.0)
+    scene.ground(friction=FRICTION)
+    scene.box(
+        "slider", size=(0.3, 0.2, 0.1), mass=2.0, position=(0, 0, 0.05), velocity=(1.2, 0.4, 0), friction=FRICTION
+    )
+    scene.box("lower", size=(0.2, 0.2, 0.2), mass=4.0, position=(0, 2, 0.1))
+    scene.box("upper", size=(0.2, 0.2, 0.2), mass=1.0, position=(0.05, 2, 0.3))
+    scene.sphere("ball", radius=0.1, mass=1.5, position=(0, -2, 0.25), restitution=0.6, friction=0.5)
+    Simulation(scene.save(folder / "stage.usda"), device="cpu", **options).run(folder / "r.rrd")
+    return read(folder / "r.rrd")
+
+
+@pytest.fixture(scope="module", params=[1, 2], ids=["C", "Warp"])
+def recording(request, tmp_path_factory):
+    """In C, and by the kernels that batches of worlds and CUDA devices take."""
+    return run(tmp_path_factory.mktemp("recorded"), world_count=request.param)
+
+
+def failed(recording):
+    return {finding.unit for finding in ask(CheckRecordedForces(), recording) if not finding.passed}
+
+
+def moved(recording, name, row, by):
+    """A recording with something added to one body's numbers, (T, …)."""
+    array = np.array(getattr(recording, name))
+    array[:, row] += by
+    return replace(recording, **{name: array})
+
+
+def test_what_is_recorded_adds_up(recording):
+    found = ask(CheckRecordedForces(), recording)
+    assert [finding.unit for finding in found] == ["N", "N m", "1", "1", "m"]
+    assert all(finding.passed for finding in found)
+
+
+def test_contacts_carry_weights_and_rub_as_coulomb_has_it(recording):
+    track, shapes, h = recording.contacts, shapes_of(recording.world), 1.0 / 60.0
+    prims = [(shapes[a].prim.split("/")[2], shapes[b].prim.split("/")[2]) for a, b in track.pair.tolist()]
+    pressed = {pair: np.median([track.pressed[k] for k, each in enumerate(prims) if set(each) == set(pair)]) / h
+               for pair in (("upper", "lower"), ("lower", "ground"), ("slider", "ground"))}  # fmt: skip
+    assert pressed[("upper", "lower")] == pytest.approx(1.0 * G, rel=0.02)
+    assert pressed[("lower", "ground")] == pytest.approx(5.0 * G, rel=0.02)
+    early = [k for k, each in enumerate(prims) if "slider" in each and 2 < track.frame[k] < 15]
+    rubbed = np.linalg.norm((track.impulse - track.along)[early], axis=1) / h
+    assert rubbed.mean() == pytest.approx(FRICTION * 2.0 * G, rel=0.01)
+    blow = max(track.pressed[k] for k, each in enumerate(prims) if "ball" in each)
+    fallen = np.sqrt(2.0 * G * 0.15)
+    assert blow == pytest.approx(1.5 * 1.6 * fallen, rel=0.02)  # m (1 + e) v
+
+
+def test_poses_that_were_changed_do_not_fit_what_was_recorded(recording):
+    """A hundredth of a metre a second, put in from one frame to the next, of which poses know."""
+    t = recording.time
+    kick = np.where(t[:, None] > 0.3, [[0.01, 0.0, 0.0]], 0.0)
+    qd = moved(recording, "body_qd", 1, np.c_[kick, np.zeros((len(t), 3))])
+    both = moved(qd, "body_q", 1, np.c_[kick * np.maximum(t - 0.3, 0.0)[:, None], np.zeros((len(t), 4))])
+    assert "N" in failed(both)
+
+
+@pytest.mark.parametrize("off", [1.05, 0.95])
+def test_a_body_of_another_mass_needs_other_contacts(recording, off):
+    """The ball's blow is of its own mass: the world says another."""
+    bodies = list(recording.world.bodies)
+    bodies[3] = bodies[3].model_copy(update={"mass": off * bodies[3].mass})
+    assert "N" in failed(replace(recording, world=recording.world.model_copy(update={"bodies": bodies})))
+
+
+@pytest.mark.parametrize(("friction", "said"), [(0.9 * FRICTION, "inside"), (1.1 * FRICTION, "edge")])
+def test_contacts_that_rub_more_or_less_than_their_surfaces(recording, friction, said):
+    statics = list(recording.world.statics)
+    shapes = [shape.model_copy(update={"friction": friction}) for shape in statics[0].shapes]
+    bodies = list(recording.world.bodies)
+    own = [shape.model_copy(update={"friction": friction}) for shape in bodies[0].shapes]
+    world = recording.world.model_copy(
+        update={
+            "statics": [statics[0].model_copy(update={"shapes": shapes}), *statics[1:]],
+            "bodies": [bodies[0].model_copy(update={"shapes": own}), *bodies[1:]],
+        }
+    )
+    found = [finding for finding in ask(CheckRecordedForces(), replace(recording, world=world)) if finding.unit == "1"]
+    inside, edge = found
+    assert not edge.passed
+    assert inside.passed is (said == "edge")
+
+
+def test_a_contact_that_pulls_or_is_elsewhere(recording):
+    track = recording.contacts
+    pulling, elsewhere = track.sums.copy(), track.sums.copy()
+    pulling[0, :7] *= -1.0
+    elsewhere[3, 7:10] += elsewhere[3, 3] * np.array([0.0, 0.0, 0.3])
+    assert failed(replace(recording, contacts=replace(track, sums=pulling))) >= {"N", "1"}
+    assert failed(replace(recording, contacts=replace(track, sums=elsewhere))) == {"m"}
+
+
+def test_a_turn_that_nothing_gives(recording):
+    t = recording.time
+    spin = np.where(t[:, None] > 0.3, [[0.0, 0.0, 0.3]], 0.0)
+    assert "N m" in failed(moved(recording, "body_qd", 1, np.c_[np.zeros((len(t), 3)), spin]))
+
+
+def test_without_recorded_contacts_nothing_is_asked(recording):
+    assert not ask(CheckRecordedForces(), replace(recording, contacts=None))
+    assert Evidence(recording).recording.contacts is not None
