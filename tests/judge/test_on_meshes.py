@@ -26,13 +26,21 @@ def slides(scene):
 def test_a_ball_beside_its_track_is_carried_by_nothing(tmp_path):
     sound = simulated(tmp_path, rolls, 1.0)
     assert failing(sound) == set()
-    assert failing(edited(sound, "body_q", (slice(None), 0, 1), 0.3)) == {"CheckForces", "CheckSupport"}
+    assert failing(edited(sound, "body_q", (slice(None), 0, 1), 0.3)) == {
+        "CheckForces",
+        "CheckRecordedForces",
+        "CheckSupport",
+    }
 
 
 def test_a_crate_that_hovers_or_slides_up_a_height_field_is_found(tmp_path):
     sound = simulated(tmp_path, slides, 1.0)
     assert failing(sound) == set()
-    assert failing(edited(sound, "body_q", (slice(None), 0, 2), 0.1)) == {"CheckForces", "CheckSupport"}
+    assert failing(edited(sound, "body_q", (slice(None), 0, 2), 0.1)) == {
+        "CheckForces",
+        "CheckRecordedForces",
+        "CheckSupport",
+    }
     q, qd = sound.body_q.copy(), sound.body_qd.copy()
     q[:, 0, :3] = 2 * q[0, 0, :3] - q[:, 0, :3]
     qd[:, 0, :3] *= np.float32(-1)
