@@ -17,7 +17,6 @@ from wsim.judge.checks import (
     fluid_books,
     fluid_height,
     forces,
-    friction,
     impacts,
     joint,
     mass,
@@ -40,8 +39,7 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, impacts, energy, contact, friction, rest, joint, cord, mass,
-    plan,
+    physics, settled, continuity, motion, forces, recorded, impacts, energy, contact, rest, joint, cord, mass, plan,
     plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
 )  # fmt: skip
 
