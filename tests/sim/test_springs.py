@@ -128,10 +128,10 @@ def test_the_judge_knows_a_spring_and_sees_one_that_is_switched_off(tmp_path):
     Simulation(stage, "cpu").run(tmp_path / "right.rrd")
     right = judge(read(tmp_path / "right.rrd"))
     assert right.failures == []
-    assert {"CheckEnergy", "CheckSprings"} <= {finding.check for finding in right.findings}
+    assert {"CheckEnergy", "CheckForces"} <= {finding.check for finding in right.findings}
 
     off = Simulation(stage, "cpu")
     off.rigid.solver.mj_model.tendon_stiffness[:] = 0.0
     off.run(tmp_path / "off.rrd")
     wrong = {finding.check for finding in judge(read(tmp_path / "off.rrd")).failures}
-    assert {"CheckEnergy", "CheckSprings"} <= wrong
+    assert {"CheckEnergy", "CheckForces"} <= wrong

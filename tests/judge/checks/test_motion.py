@@ -5,15 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from tests.judge.theory import (
     RATE,
     STEP,
     G,
     ask,
+    ball,
     bouncing,
     box,
     edited,
+    ground,
     only,
     record,
     resting,
@@ -24,9 +28,11 @@ from tests.judge.theory import (
     with_world,
 )
 from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.judge.checks.continuity import CheckContinuity
 from wsim.judge.checks.energy import CheckEnergy
-from wsim.judge.checks.motion import CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity
+from wsim.judge.checks.motion import CheckFreeFlight, CheckFreeTurning, CheckGravity
 from wsim.rules.planner import plan as make_plan
+from wsim.scene.world import Joint, Motor
 
 SOUND = [thrown, resting, lambda: bouncing(0.8), lambda: sliding(0.5 * G), swinging]
 
@@ -70,10 +76,61 @@ def test_a_turn_for_one_frame_is_found():
     assert ask(CheckContinuity(), replace(right, body_q=q))[1].passed
 
 
-def test_a_body_that_is_moved_by_a_script_may_jump():
-    wrong = edited(resting(), "body_q", (20, 0, 0), 0.5)
-    body = wrong.world.bodies[0].model_copy(update={"kinematic": True})
-    assert ask(CheckContinuity(), with_world(wrong, bodies=[body])) == []
+def test_a_body_that_is_moved_by_hand_goes_by_its_velocity_as_well():
+    """A lift that starts within a frame is half of its speed's change off; one that jumps, or outruns it, is found."""
+    t = times(2.0)
+    lift = [box(kinematic=True)]
+    speed = np.where(t > 0.51, 0.8, 0.0)
+    place, velocity = np.zeros((len(t), 3)), np.zeros((len(t), 3))
+    place[:, 2], velocity[:, 2] = 0.8 * np.maximum(t - 0.51, 0.0), speed
+    right = record(lift, place, velocity, t)
+    assert [f.passed for f in ask(CheckContinuity(), right)] == [True, True, True]
+    assert not ask(CheckContinuity(), edited(right, "body_q", (slice(20, None), 0, 0), 0.05))[0].passed
+    fast = replace(right, body_qd=right.body_qd * np.float32(1.1))
+    assert not all(f.passed for f in ask(CheckContinuity(), fast))
+
+
+@given(speed=st.floats(2e-3, 0.1), seconds=st.sampled_from([2.0, 10.0]), away=st.sampled_from([0.0, 100.0]))
+@settings(max_examples=20, deadline=None)
+def test_what_stands_and_drifts_without_a_velocity_is_found(speed, seconds, away):
+    """Each frame's way is far within what a fall and a catch would give; their sum is not, wherever it stands."""
+    t = times(seconds)
+    place = np.stack([away + 0.0 * t, speed * t, 0.1 + 0.0 * t], axis=1)
+    findings = ask(CheckContinuity(), record([box()], place, np.zeros_like(place), t, statics=[ground()]))
+    assert [f.passed for f in findings] == [True, True, False]
+    assert findings[2].value == pytest.approx(speed * seconds, rel=1e-2, abs=1e-4)
+
+
+@pytest.mark.parametrize("away", [0.0, 10.0])
+@pytest.mark.parametrize("seconds", [2.0, 40.0])
+def test_the_limit_of_a_drift_grows_with_no_run(seconds, away):
+    """A ball that swings to and fro as cosine, by steps of first order: late by half a step of its speed."""
+    t = times(seconds)
+    place = np.stack([away + 0.3 * np.cos(4.0 * t), 0.0 * t, 0.1 + 0.0 * t], axis=1)
+    velocity = np.stack([-1.2 * np.sin(4.0 * (t + STEP / 2)), 0.0 * t, 0.0 * t], axis=1)
+    findings = ask(CheckContinuity(), record([ball()], place, velocity, t))
+    assert [f.passed for f in findings] == [True, True, True]
+    slow = replace(record([ball()], place, 0.97 * velocity + [0.02, 0.0, 0.0], t))
+    assert not ask(CheckContinuity(), slow)[2].passed
+
+
+def driven(shift, toward=0.1):
+    """A slider whose drive takes it over within a frame, with no speed at either end."""
+    t = times(1.0)
+    x = np.where(t > 0.4, shift, 0.0)
+    place = np.stack([x, 0.0 * t, 0.1 + 0.0 * t], axis=1)
+    slider = Joint(
+        prim="/World/slide", kind="prismatic", parent=None, child="/World/box", axis="X", parent_anchor=(0, 0, 0.1),
+        child_anchor=(0, 0, 0), drive=Motor(stiffness=1e6, damping=4e3, position=toward),
+    )  # fmt: skip
+    return record([box()], place, np.zeros_like(place), t, joints=[slider])
+
+
+def test_a_drive_faster_than_the_frames_may_come_and_go_between_two():
+    assert [f.passed for f in ask(CheckContinuity(), driven(0.096))] == [True, True, True]
+    assert not ask(CheckContinuity(), driven(-0.096))[0].passed  # away from what it is set to
+    slow = with_world(driven(0.096), joints=[])
+    assert not ask(CheckContinuity(), slow)[0].passed
 
 
 # ---- in the air
@@ -243,6 +300,6 @@ def test_a_body_that_stays_where_there_is_no_gravity_is_sound():
     t = times(1.0)
     still = with_world(record([box()], np.zeros((len(t), 3)), np.zeros((len(t), 3)), t), gravity=(0.0, 0.0, 0.0))
     with np.errstate(all="raise"):
-        assert [f.passed for f in ask(CheckContinuity(), still)] == [True, True]
+        assert [f.passed for f in ask(CheckContinuity(), still)] == [True, True, True]
     jumps = edited(still, "body_q", (slice(10, None), 0, 0), 0.01)
     assert [f.passed for f in ask(CheckContinuity(), jumps)] == [False, True]

@@ -1,14 +1,15 @@
-"""Checks of how bodies move: by their own velocity from frame to frame, and in the air by gravity alone."""
+"""Checks of what moves in the air: by gravity alone, and by as much of it as the world states."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks, share_about
+from wsim.judge.checks.strangest import strangest
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
@@ -24,78 +25,6 @@ EARTH = (9.78, 9.835)  # [m/s^2]: at sea level on the equator and at a pole, rou
 # Where else a prompt may be: NASA's planetary fact sheets (nssdc.gsfc.nasa.gov/planetary/factsheet), to 2 %.
 PLACES = {place: (0.98 * g, 1.02 * g) for place, g in (("moon", 1.62), ("mars", 3.71), ("jupiter", 24.8))}
 FREE = ("gravity", "space", "weightless", "planet")  # words after which it may be any
-
-
-@dataclass
-class CheckContinuity(Check):
-    """A body goes from frame to frame by its own velocity: it does not jump, and does not turn at once."""
-
-    alias: float = 2.0  # [rad] a frame: beyond, a rotation cannot be told from its shorter way round
-    roundings: float = 8.0  # of float32, in a position
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """The place and the turn that the velocity explains least."""
-        motion = evidence.motion
-        if len(motion.h) == 0 or not (~motion.kinematic).any():
-            return []
-        return [self._places(evidence), self._turns(evidence)]
-
-    def _places(self, evidence: Evidence) -> Finding:
-        motion, h = evidence.motion, evidence.motion.h[:, None]
-        moved = np.diff(motion.com, axis=0)
-        strayed = np.linalg.norm(moved - 0.5 * (motion.v[1:] + motion.v[:-1]) * h[:, :, None], axis=2)
-        rounding = self.roundings * FLOAT32 * np.abs(motion.com).max(axis=2)[1:]
-        # Within a frame the velocity may be anything between its ends, a body may fall and be caught, and one that is
-        # hit may hand it on.
-        limit = h * (0.5 * _around(motion.v) + evidence.gravity * h + self._handed_on(evidence)) + rounding
-        source = "half the velocity's change about then, g h, and the speed of what may hit it, over the frame's h"
-        return self._worst(evidence, strayed, limit, "m", "jumps by", source)
-
-    def _turns(self, evidence: Evidence) -> Finding:
-        motion, h = evidence.motion, evidence.motion.h[:, None]
-        q = evidence.body_q[:, :, 3:]
-        cosine = np.abs(np.einsum("tbi,tbi->tb", q[1:], q[:-1]))
-        turned = 2.0 * np.arccos(np.clip(cosine, 0.0, 1.0))
-        rate = np.linalg.norm(motion.w, axis=2)
-        fastest = np.maximum(rate[1:], rate[:-1])
-        half = np.array([evidence.solid(i).smallest / 2 for i in range(len(motion.mass))])
-        # A body that tips over an edge turns at most as g pulls its centre about it.
-        pushed = (evidence.gravity * h + self._handed_on(evidence)) / half
-        limit = h * (fastest + 0.5 * _around(motion.w) + pushed) + 1e-3
-        turned = np.where(fastest * h > self.alias, 0.0, turned)
-        source = "its fastest rate then, half the rate's change, and g h / r or a hit's v / r, over the frame's h"
-        return self._worst(evidence, turned, limit, "rad", "turns by", source)
-
-    @staticmethod
-    def _handed_on(evidence: Evidence) -> Floats:
-        """The speed of the fastest body, where another may hit a body within an interval, (T - 1, B) [m/s]."""
-        motion = evidence.motion
-        fastest = np.maximum(motion.speed[1:], motion.speed[:-1]).max(axis=1, keepdims=True)
-        handed: Floats = np.where(motion.meets, fastest, 0.0)
-        if evidence.world.stepped == "joints":  # a stop or a contact of one link catches the others within a step
-            for unit in np.unique(motion.unit[motion.jointed]):
-                rows = np.flatnonzero(motion.unit == unit)
-                apart = np.linalg.norm(motion.v[:, rows, None] - motion.v[:, None, rows], axis=3).max(axis=2)
-                handed[:, rows] = np.maximum(handed[:, rows], np.maximum(apart[1:], apart[:-1]))
-        return handed
-
-    def _worst(self, evidence: Evidence, value: Floats, limit: Floats, unit: str, verb: str, source: str) -> Finding:
-        share = np.divide(value, limit, out=np.where(value > 0.0, np.inf, 0.0), where=limit > 0.0)
-        share = np.where(evidence.motion.kinematic, 0.0, share)
-        return _strangest(
-            self, evidence, value, limit, unit, share=share, limit_from=source, expected=0.0 if unit == "m" else None,
-            story=f"{{prim}} {verb} {{value:.3g}} {unit} more than its velocity gives, at {{time:.3f}} s",
-            fine=f"Every body {'moves' if unit == 'm' else 'turns'} by its own velocity", why="its pose is set by hand",
-        )  # fmt: skip
-
-
-def _around(rate: Floats) -> Floats:
-    """The greatest change of a rate (T, B, 3) over an interval or its neighbours, (T - 1, B)."""
-    change = np.linalg.norm(np.diff(rate, axis=0), axis=2)
-    around = change.copy()
-    around[1:] = np.maximum(around[1:], change[:-1])
-    around[:-1] = np.maximum(around[:-1], change[1:])
-    return around
 
 
 @dataclass
@@ -123,7 +52,7 @@ class CheckFreeFlight(Check):
             source = f"{self.share:g} of g, and the rounding of recorded velocities"
             fine = "Bodies that touch nothing are moved by gravity alone"
             strange = np.where(free, strange, 0.0)
-            found.append(_strangest(self, evidence, strange, limit, "m/s^2", story, fine, limit_from=source))
+            found.append(strangest(self, evidence, strange, limit, "m/s^2", story, fine, limit_from=source))
         if int(free.sum()) >= self.fewest and evidence.gravity > 0.0:
             found.append(self._gravity(evidence, free))
         return found
@@ -173,25 +102,7 @@ class CheckFreeTurning(Check):
         source = f"{self.share:g} m g R, w^2 dt of what it has, and the rounding of recorded velocities"
         fine, why = "Bodies that touch nothing keep their angular momentum", "something turns it unseen"
         torque = np.where(free, torque, 0.0)
-        return [_strangest(self, evidence, torque, limit, "N m", story, fine, why, limit_from=source)]
-
-
-def _strangest(
-    check: Check, evidence: Evidence, value: Floats, limit: Floats, unit: str, story: str, fine: str, why: str = "",
-    share: Floats | None = None, **details: object
-) -> Finding:  # fmt: skip
-    """A finding about the body and the interval between frames where a value is largest by its limit, (T - 1, B) both.
-
-    `story` is filled in with prim, time and value; `why` says what is wrong with the program.
-    """
-    if share is None:
-        share = np.divide(value, limit, out=np.zeros_like(value), where=limit > 0.0)
-    k, i = np.unravel_index(int(np.argmax(share)), share.shape)
-    prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + 1])
-    target = RepairTarget(kind="program", prim=prim, why=why) if why else None
-    fields: dict[str, Any] = {"prim": prim, "time": end, "span": (start, end), "expected": 0.0, **details}
-    message = story.format(prim=prim, time=end, value=value[k, i])
-    return check.measured(message, value[k, i], limit[k, i], unit, fine=fine, target=target, **fields)
+        return [strangest(self, evidence, torque, limit, "N m", story, fine, why, limit_from=source)]
 
 
 def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: NDArray[np.bool_], dry: bool) -> None:
@@ -246,4 +157,4 @@ def _gravity_target(to: float, why: str, above: bool | None = None) -> RepairTar
     )  # fmt: skip
 
 
-CHECKS: Checks = (CheckContinuity, CheckFreeFlight, CheckFreeTurning, CheckGravity)
+CHECKS: Checks = (CheckFreeFlight, CheckFreeTurning, CheckGravity)

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from wsim.judge.checks import (
     camera,
     contact,
+    continuity,
     cord,
     energy,
     fluid,
     fluid_books,
     fluid_height,
     forces,
-    friction,
     impacts,
     joint,
     mass,
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, motion, forces, recorded, impacts, energy, contact, friction, rest, joint, cord, mass, plan,
+    physics, settled, continuity, motion, forces, recorded, impacts, energy, contact, rest, joint, cord, mass, plan,
     plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
 )  # fmt: skip
 

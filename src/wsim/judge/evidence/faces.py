@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate
-from wsim.geometry.shapes import kind_of
+from wsim.geometry.rotations import rotate
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -83,12 +82,3 @@ def normal_under(shapes: Iterable[Shape], points: Floats, up: Floats) -> Floats:
     if any(under):
         return facing[int(np.argmax(under))].normal
     return max(facing, key=lambda face: face.seen(up)).normal
-
-
-def rises_above(shape: Shape, face: Face, tolerance: float) -> bool:
-    """Whether a static shape comes out of a face's plane by more than a tolerance [m]."""
-    place = float(face.height(np.array(shape.position, dtype=np.float64)))
-    own = rotate(conjugate(np.array(shape.rotation, dtype=np.float64)), face.normal)
-    if shape.kind == "plane":
-        return bool(own[2] < 1.0 - 1e-6) or place > tolerance
-    return place + float(kind_of(shape).heights(own[None])[1][0]) > tolerance
