@@ -20,7 +20,7 @@ from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
 from wsim.scene import Scene, SceneError
 
-SEEDS = {"tuning": 1, "held-out": 3}  # 2 was looked at
+SEEDS = {"tuning": 1, "held-out": 4}  # 2, and what was seen of 3, were looked at
 TRIES = 12  # worlds that a mistake is put into until the judge rejects what it made of a sound one
 ROUNDS = 3
 SLOW = ("pour", "submerged", "dominoes", "seesaw", "cradle")  # whose runs take minutes, or whose steps are short

@@ -39,6 +39,7 @@ windows = st.one_of(
 def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
     """Predicates of a kind, with whatever its fields take."""
     shares = st.floats(1e-6, 0.999)
+    needs = kind.model_fields.get("within") is not None and kind.model_fields["within"].default is not None
     taken = {
         "object": names, "ref": names, "fluid": names, "on": st.one_of(st.none(), names),
         "target": st.one_of(names, points), "center": st.one_of(names, points), "radius": numbers, "share": shares,
@@ -48,7 +49,7 @@ def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
         "amplitude": st.one_of(st.none(), st.floats(0.1, 180)), "speed": st.one_of(st.none(), numbers),
         "restitution": st.one_of(st.none(), st.floats(0, 1)), "what": st.sampled_from(["energy", "momentum"]),
         "objects": st.lists(names, min_size=kind is VOCABULARY["counts"], max_size=3), "height": numbers,
-        "within": shares if kind is VOCABULARY["collides_with"] else st.one_of(st.none(), st.floats(1e-6, 180)),
+        "within": st.floats(1e-6, 0.9) if needs else st.one_of(st.none(), st.floats(1e-6, 180)),
     }  # fmt: skip
     if kind is SpeedBetween:
         return st.tuples(names, numbers, numbers).map(

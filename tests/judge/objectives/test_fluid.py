@@ -28,8 +28,8 @@ def submerged(case):
 
 
 def test_wood_on_the_floor_of_a_tank_lacks_its_lift(pool):
-    depth, lift = submerged(lies(pool))
-    assert depth.passed and not lift.passed and lift.value == pytest.approx(LIFT, rel=1e-3)
+    (lift,) = submerged(lies(pool))
+    assert not lift.passed and lift.unit == "N" and lift.value == pytest.approx(LIFT, rel=1e-3)
     for text in ("submerged(wooden_block, water)", "sinks(wooden_block, water)"):
         found = evaluate(parse(text), Signals.of_recording(lies(pool).recording))
         assert not found.satisfied[0] and found.units == ["N"]

@@ -293,3 +293,72 @@ def test_a_check_may_know_better_and_what_nobody_knows_is_said(pool):
     passed = Finding(check="CheckFinite", passed=True, message="", target=own)
     aim([passed])
     assert passed.target is None
+
+
+def test_where_the_plan_has_no_material_what_floats_is_to_be_as_light_as_wood(pool):
+    case = pool(density=2500.0)
+    item = case.plan.object("wooden_block")
+    item.material = None
+    found = target(judge(case.recording, case.plan), "ObjectiveFloats")
+    assert (found.parameter, found.direction, found.suggested) == ("density", "lower", 500.0)
+
+
+def going(stack, speed, slowed):
+    """The first box goes along x from the start on, slowed evenly until it stands."""
+    case = stack()
+    t = case.recording.time
+    stop = speed / slowed if slowed else np.inf
+    now = np.minimum(t, stop)
+    case = case.edit("body_q", (slice(None), 0, 0), speed * now - slowed * now**2 / 2)
+    return case.edit("body_qd", (slice(None), 0, 0), np.maximum(speed - slowed * t, 0.0)).body(
+        "/World/box_1", velocity=(speed, 0.0, 0.0)
+    )
+
+
+@pytest.mark.parametrize(
+    ("speed", "slowed", "asked", "parameter"),
+    [
+        (1.0, 0.0, 4.0, "duration"), (2.0, 0.2, 6.0, "duration"), (2.0, 0.6, 4.0, "velocity"),
+        (1e-3, 0.0, 1.0, "velocity"),
+    ],
+)  # fmt: skip
+def test_what_is_on_its_way_is_given_time_and_what_stops_short_speed(stack, speed, slowed, asked, parameter):
+    case = going(stack, speed, slowed)
+    end = float(case.recording.time[-1])
+    value = speed * end - slowed * end**2 / 2
+    found = aimed(case, failed("ObjectiveMoves", "/World/box_1", value=value, limit=asked, unit="m"))
+    assert found.parameter == parameter
+    if parameter == "duration":  # it gets there by then, and not long before
+        t = found.suggested
+        assert asked < speed * t - slowed * t**2 / 2 < 1.2 * asked
+
+
+def test_a_window_that_ends_after_the_run_asks_for_as_long_a_run(stack):
+    case = stack()
+    formula = {"op": "eventually", "window": [0.0, 2.0], "of": {
+        "op": "always", "window": [0.0, 2.5], "of": {"op": "settles", "object": "box_1"}}}  # fmt: skip
+    objective = Objective.model_validate({"kind": "formula", "object": "box_1", "formula": formula})
+    case.plan = case.plan.model_copy(update={"objectives": [objective]})
+    found = target(judge(case.recording, case.plan), "ObjectiveFormula")
+    assert (found.parameter, found.suggested) == ("duration", pytest.approx(4.5))
+
+
+def test_a_wrong_start_explains_what_it_does(stack):
+    """What energy a push out of the ground gives is not mended by a shorter step."""
+    case = stack().edit("body_q", (slice(None), slice(None), 2), np.array([0.06, 0.26, 0.46]))
+    found = aimed(case, failed("CheckEnergy", "/World/box_1"))
+    assert (found.parameter, found.prim) == ("position", "/World/box_1")
+    sound = aimed(stack(), failed("CheckEnergy", "/World/box_1"))
+    assert sound.parameter != "position"
+
+
+def test_friction_is_raised_on_the_smoother_of_two_surfaces(stack):
+    case = stack()
+    half = math.radians(30.0) / 2
+    ramp = Shape(prim="/World/ramp/g", kind="box", size=(2, 1, 0.1), rotation=(0, math.sin(half), 0, math.cos(half)),
+                 friction=0.1)  # fmt: skip
+    case = case.world(statics=[Static(prim="/World/ramp", shapes=[ramp])])
+    objective = Objective(kind="stays_on", object="box_1", ref="ramp")
+    case.plan = case.plan.model_copy(update={"objectives": [objective]})
+    found = aimed(case, failed("ObjectiveStaysOn", "/World/box_1", objective="box_1 stays_on ramp", unit="m"))
+    assert (found.prim, found.parameter, found.current) == ("/World/ramp", "friction", 0.1)

@@ -99,18 +99,19 @@ def _sinks(asked: Sinks, signals: Signals) -> list[Measure]:
         "height above the floor", signals.prim(asked.object), wet.low - wet.floor, wet.tolerance, "m", wet.tolerance,
         wet.source, expected=0.0,
     )  # fmt: skip
-    return [above, *_under(signals, asked.object, wet)]
+    return [above, *_under(signals, asked.object, wet, 0.0)]
 
 
 @measures(Submerged)
 def _submerged(asked: Submerged, signals: Signals) -> list[Measure]:
-    return _under(signals, asked.object, _wet(signals, asked.object, asked.fluid, None))
+    return _under(signals, asked.object, _wet(signals, asked.object, asked.fluid, None), asked.within)
 
 
-def _under(signals: Signals, name: str, wet: _Wet) -> list[Measure]:
-    """The depth of its highest point; of what should rise, the lift that nothing holds."""
+def _under(signals: Signals, name: str, wet: _Wet, above: float) -> list[Measure]:
+    """The depth of its highest point, which may be `above` [m]; of what should rise, the lift that nothing holds."""
     depth, prim = wet.surface - wet.high, signals.prim(name)
-    found = [Measure("depth of its highest point", prim, depth, 0.0, "m", wet.tolerance, "the surface", at_most=False)]
+    source = "the objective's" if above else "the surface"
+    found = [Measure("depth of its highest point", prim, depth, -above, "m", wet.tolerance, source, at_most=False)]
     i = wet.evidence.index(prim)
     weight = sum(wet.evidence.world.bodies[k].mass for k in welded(wet.evidence, i)) * wet.evidence.gravity
     volume = sum(wet.evidence.solid(k).volume for k in welded(wet.evidence, i))

@@ -97,7 +97,8 @@ def _stays_inside(asked: StaysInside, signals: Signals) -> list[Measure]:
     room = np.minimum((half[:2] - np.abs(p[..., :2])).min(axis=-1), p[..., 2] + half[2])
     size = signals.solid(asked.object).smallest
     what = f"way from its centre to the walls and floor of {container.prim}"
-    return [Measure(what, prim, room, 0.0, "m", size, "the walls' inner faces", at_most=False)]
+    source = "the objective's" if asked.within else "the walls' inner faces"
+    return [Measure(what, prim, room, -asked.within, "m", size, source, at_most=False)]
 
 
 def _fluid_inside(asked: StaysInside, signals: Signals, container: Container) -> Measure:

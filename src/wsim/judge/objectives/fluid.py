@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.checks.physics import contained
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.evidence.welded import unheld_lift, welded
+from wsim.judge.evidence.welded import welded
+from wsim.judge.language.objective import findings
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
-from wsim.judge.verdict import RepairTarget
+from wsim.plan.schema.formula import StaysInside, Submerged
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -138,75 +138,24 @@ class ObjectiveFloats(ObjectiveCheck):
 
 @dataclass
 class ObjectiveSubmerged(ObjectiveCheck):
-    """The body is wholly under the surface, and what is lighter than the fluid is held there."""
-
-    lift: float = 0.25  # of its weight, that may be missing
+    """The body is wholly under the surface, and what is lighter is held there: the language's predicate."""
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """The least depth of its highest point over the final window [m]; of what should rise, the lift [N]."""
-        a = _afloat(evidence, self.objective.object, self.ref())
-        _, high = evidence.ends(a.i)
-        depth = a.level.height - high
-        value = float(depth[evidence.window].min())
-        prim = evidence.world.bodies[a.i].prim
-        limit = -(self.objective.tolerance or 0.0)
-        story = "is under water" if value >= limit else "is not under water"
-        return [
-            self.measured(
-                f"{prim} {story}: its highest point is {value:.4g} m below the surface at the least",
-                value, limit, "m", at_most=False, time=evidence.earliest(evidence.since(depth < limit)),
-                limit_from="the surface",
-            ),
-            *self._lift(evidence, a),
-        ]  # fmt: skip
-
-    def _lift(self, evidence: Evidence, a: _Afloat) -> list[Finding]:
-        """What is lighter than the fluid rises in it, but where it is held."""
-        left = unheld_lift(evidence, a.i, a.fluid) if a.ratio < 1.0 else None
-        if left is None:
-            return []
-        weight = sum(evidence.world.bodies[k].mass for k in a.joined) * evidence.gravity
-        target = RepairTarget(
-            kind="physical parameter", prim=evidence.world.bodies[a.i].prim, parameter="density", direction="raise",
-            current=a.ratio * a.fluid.density, unit="kg/m^3", why="what is lighter than the fluid rises in it",
-        )  # fmt: skip
-        return [
-            self.measured(
-                f"{evidence.world.bodies[a.i].prim} is lighter than {a.fluid.prim}, and nothing holds it down: "
-                f"{left:.3g} N of lift are missing",
-                left, self.lift * weight, "N", expected=0.0, time=evidence.window_start, target=target,
-                fine=f"{evidence.world.bodies[a.i].prim} is held under", limit_from=f"{self.lift:g} of its weight",
-            )
-        ]  # fmt: skip
+        """One finding: of the depth of its highest point [m] and the lift that nothing holds [N], what decides."""
+        asked = self.objective
+        return findings(self, Submerged(object=asked.object, fluid=self.ref(), within=asked.tolerance or 0.0), evidence)
 
 
 @dataclass
 class ObjectiveStaysInside(ObjectiveCheck):
-    """A fluid, or a body's centre, stays within the walls and above the floor of a container."""
-
-    share: float = 0.01  # of a fluid's particles that may be out
+    """A fluid, or a body's centre, stays within the walls and above the floor: the language's predicate."""
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding: share of particles outside, or how far the body's centre is from the nearest wall [m]."""
-        prim = evidence.prim(self.objective.object)
-        if any(fluid.prim == prim for fluid in evidence.world.fluids):
-            return [contained(self, evidence, evidence.fluid(prim), self.objective.tolerance or self.share)]
-        container = evidence.container(evidence.prim(self.ref()))
-        if container is None:
-            raise MissingError(f"the world has no container {evidence.prim(self.ref())}")
-        p = evidence.local(container, evidence.body_q[:, evidence.index(prim), :3])
-        half = np.array(container.inner_size) / 2
-        room = np.minimum((half[:2] - np.abs(p[:, :2])).min(axis=1), p[:, 2] + half[2])
-        value = float(room.min())
-        limit = -(self.objective.tolerance or 0.0)
-        at = float(evidence.time[np.argmax(room < limit)] if value < limit else evidence.time[np.argmin(room)])
-        story = "stays in" if value >= limit else "leaves"
-        return [
-            self.measured(
-                f"{prim} {story} {container.prim}: its centre comes within {value:.4g} m of a wall or the floor",
-                value, limit, "m", at_most=False, time=at, limit_from="the walls' inner faces",
-            )
-        ]  # fmt: skip
+        asked, within = self.objective, self.objective.tolerance
+        fluid = any(each.prim == evidence.prim(asked.object) for each in evidence.world.fluids)
+        room = {} if within is None else {"share": within} if fluid else {"within": within}
+        return findings(self, StaysInside(object=asked.object, ref=self.ref(), **room), evidence)
 
 
 @dataclass

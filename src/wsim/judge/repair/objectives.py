@@ -15,6 +15,7 @@ from wsim.judge.repair.asked import ref_of
 from wsim.judge.repair.drive import by_drive
 from wsim.judge.repair.place import over, overlapping_start
 from wsim.judge.repair.rule import (
+    FARTHEST,
     ROOM,
     Rule,
     add_collision,
@@ -345,7 +346,8 @@ def _gets_there(finding: Finding, evidence: Evidence) -> float | None:
     if v**2 <= 2.0 * slowed * wanted:
         return None
     left = wanted / v if slowed == 0.0 else (v - math.sqrt(v**2 - 2.0 * slowed * wanted)) / slowed
-    return float(evidence.time[-1]) + left
+    end = float(evidence.time[-1])
+    return end + left if end + left <= FARTHEST["duration"] * end else None  # what creeps gets nowhere
 
 
 def _to_get_there(finding: Finding, evidence: Evidence) -> float | None:

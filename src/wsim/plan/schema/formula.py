@@ -112,6 +112,7 @@ class Submerged(Predicate):
     alone: ClassVar[Literal["finally"]] = "finally"
     object: Named
     fluid: Named
+    within: NotNegative = quantity("m", 0.0)
 
 
 class Touches(Predicate):
@@ -272,6 +273,7 @@ class StaysInside(Predicate):
     object: Named
     ref: Named
     share: Positive = quantity("1", 0.01, lt=1.0)
+    within: NotNegative = quantity("m", 0.0)
 
 
 def _ordered_range(op: str, low: float, high: float) -> None:
