@@ -74,7 +74,7 @@ class ContactConfig:
     """A slower approach than this times the step is no blow [m/s^2]: gravity alone makes such speeds in a step."""
     solutions: int = 3
     """Solutions of a step after which the slip need only be known roughly."""
-    most_solutions: int = 12
+    most_solutions: int = 20
     """Solutions of a step at most."""
     solutions_warp: int = 6
     """Solutions of a step where worlds are batched, always."""
