@@ -53,6 +53,22 @@ def test_a_ball_with_fast_spin_bounces_as_one_without(simulate, worlds):
     assert run.v["two"][-1, 0] - run.v["one"][-1, 0] == pytest.approx(0.9 * 2.0, rel=2e-3)
 
 
+@pytest.mark.parametrize(("worlds", "speed", "friction"), [(1, 1.0, 0.5), (1, 2.0, 0.9), (2, 1.0, 0.5)])
+def test_what_a_plough_hits_goes_with_it_at_once(simulate, worlds, speed, friction):
+    """The push of the blow rubs on the plough, which presses the crate down, where it rubs in turn: none may hop."""
+
+    def build(scene):
+        scene.ground()
+        motion = {"kinematic": True, "velocity": (speed, 0, 0), "friction": friction}
+        scene.box("plough", size=(0.2, 1, 0.4), position=(-0.3, 0, 0.21), **motion)
+        scene.box("crate", size=(0.3,) * 3, density=600, position=(0, 0, 0.15), friction=friction)
+
+    run = simulate(build, 0.1, worlds)
+    assert run.v["crate"][-1, 0] == pytest.approx(speed, rel=2e-3)
+    assert run.v["crate"][:, 0].max() < speed * 1.002
+    assert run.q["crate"][:, 2].max() - 0.15 < 2e-5
+
+
 def test_a_rod_that_grips_leaves_as_newton_and_coulomb_say(simulate):
     """On one contact, A P = v' - v: v_n' = -e v_n and, where it grips, v_t' = 0. At e = 1 that is P_t v_t / 2 more
     energy than before, 14 % here (Kane and Levinson 1985), for the push alone would have turned the slip round."""

@@ -14,7 +14,7 @@ TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
 CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
 ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
 SMALL_CHANGE = wp.constant(1.0e-5)  # [m/s], and
-STEEPEST = wp.constant(0.95)  # of what is left by the slip's guess, as wsim.solvers.contact_law has them
+MOST_SHARE = wp.constant(19.0)  # of the solution before, as wsim.solvers.contact_law has them
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 vec5 = wp.types.vector(length=5, dtype=float)
 
@@ -228,15 +228,17 @@ def aim(
 
 
 @wp.kernel(enable_backward=False)
-def aim_again(
+def weigh(
     # Data in:
     count: wp.array(dtype=int),
     contact_world: wp.array(dtype=int),
+    contact_geom: wp.array(dtype=wp.vec2i),
     contact_row: wp.array2d(dtype=int),
     contact_dim: wp.array(dtype=int),
     contact_friction: wp.array(dtype=vec5),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    geom_body: wp.array(dtype=int),
     acceleration: wp.array2d(dtype=float),
     sparse: bool,
     nv: int,
@@ -244,6 +246,46 @@ def aim_again(
     row_nnz: wp.array2d(dtype=int),
     row_start: wp.array2d(dtype=int),
     column: wp.array3d(dtype=int),
+    slip: wp.array(dtype=float),
+    before: wp.array(dtype=wp.vec2),  # guess, and what was left, of the solution before
+    # Data out:
+    remaining: wp.array(dtype=float),
+    sums: wp.array2d(dtype=wp.vec2),  # of each body's contacts
+):
+    """What slip a solution leaves, and what the bodies' contacts say together of how it goes with the guess."""
+    k = wp.tid()
+    if k >= count[0] or contact_row[k, 0] < 0:
+        return
+    world, geom = contact_world[k], contact_geom[k]
+    h = timestep[world % timestep.shape[0]]
+    friction = contact_friction[k]
+    slipped = float(0.0)
+    for j in range(contact_dim[k] - 1):
+        r = contact_row[k, j + 1]
+        change = along(world, r, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
+        v = friction[j] * (velocity[world, r] + h * change)
+        slipped += v * v
+    remaining[k] = wp.sqrt(slipped)
+    rest = remaining[k] - slip[k]
+    change = rest - (before[k][1] - before[k][0])
+    for side in range(2):
+        body = geom_body[geom[side]]
+        if body > 0:
+            wp.atomic_add(sums, world, body, wp.vec2(change * rest, change * change))
+
+
+@wp.kernel(enable_backward=False)
+def aim_again(
+    # Data in:
+    count: wp.array(dtype=int),
+    contact_world: wp.array(dtype=int),
+    contact_geom: wp.array(dtype=wp.vec2i),
+    contact_row: wp.array2d(dtype=int),
+    velocity: wp.array2d(dtype=float),
+    timestep: wp.array(dtype=float),
+    geom_body: wp.array(dtype=int),
+    remaining: wp.array(dtype=float),
+    sums: wp.array2d(dtype=wp.vec2),
     target: wp.array(dtype=float),
     blow: wp.array(dtype=float),
     inertia: wp.array2d(dtype=float),  # of the rows' regularisation, 1 / R
@@ -263,22 +305,17 @@ def aim_again(
     row = contact_row[k, 0]
     if row < 0:
         return
-    world = contact_world[k]
+    world, geom = contact_world[k], contact_geom[k]
     h = timestep[world % timestep.shape[0]]
-    friction = contact_friction[k]
-    slipped = float(0.0)
-    for j in range(contact_dim[k] - 1):
-        r = contact_row[k, j + 1]
-        change = along(world, r, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
-        v = friction[j] * (velocity[world, r] + h * change)
-        slipped += v * v
-    left = wp.sqrt(slipped)
-    change = slip[k] - before[k][0]
-    slope = float(0.0)
-    if blow[k] > 0.0 and wp.abs(change) > SMALL_CHANGE:
-        slope = wp.clamp((left - before[k][1]) / change, 0.0, STEEPEST)
-    before[k] = wp.vec2(slip[k], left)
-    slip[k] = wp.max(slip[k] + (left - slip[k]) / (1.0 - slope), 0.0)
+    both = wp.vec2(0.0, 0.0)
+    for side in range(2):
+        both += sums[world, wp.max(geom_body[geom[side]], 0)]  # nothing is added to the world's
+    share = float(0.0)
+    if both[1] > SMALL_CHANGE * SMALL_CHANGE:
+        share = wp.clamp(both[0] / both[1], -MOST_SHARE, 1.0)
+    changed = remaining[k] - before[k][1]
+    before[k] = wp.vec2(slip[k], remaining[k])
+    slip[k] = wp.max(remaining[k] - share * changed, 0.0)
     given = float(0.0)
     if blow[k] > 0.0:
         given = force[world, row] / inertia[world, row]

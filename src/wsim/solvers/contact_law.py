@@ -43,7 +43,7 @@ from wsim.solvers.surfaces import Surfaces
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
 SMALL_CHANGE = 1e-5  # [m/s]: less says nothing about how what is left goes with the guess
-STEEPEST = 0.95
+MOST_SHARE = 19.0  # of the solution before: as where what is left is 0.95 of what was
 ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
 
 
@@ -73,9 +73,15 @@ class ContactConfig:
     threshold: float = 2 * 9.81
     """A slower approach than this times the step is no blow [m/s^2]: gravity alone makes such speeds in a step."""
     solutions: int = 3
-    """Solutions of a step at most; where worlds are batched, always."""
+    """Solutions of a step after which the slip need only be known roughly."""
+    most_solutions: int = 20
+    """Solutions of a step at most."""
+    solutions_warp: int = 6
+    """Solutions of a step where worlds are batched, always."""
     tolerance: float = 3e-4
     """Change of the slip, times friction, below which it stays [m/s]."""
+    rough: float = 3e-3
+    """The same after `solutions` [m/s]: what is hit would hop by 0.5 um."""
     smallest_friction: float = 1e-5
     """MuJoCo's least, and ours for none."""
 
@@ -147,22 +153,33 @@ def targets(
     return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
 
-def extrapolated(slip: Array, left: Array, before: tuple[Array, Array]) -> Array:
-    """Slips that a solution will leave as they were guessed, by the secant through two solutions (Aitken 1926).
+def extrapolated(slip: Array, left: Array, before: tuple[Array, Array], bodies: Array) -> Array:
+    """Slips that a solution will leave as they were guessed, by the secant through two solutions (Anderson 1965).
 
-    A blow's friction changes the slip that its push was asked for by: what is left goes by a / (1 + a) with the guess,
-    a = mu² A_t / A_n, A what the contact yields to a push along and across, 3.5 mu² for balls. Where a contact slides
-    that is a straight line, and where it comes to stick its fixed point is none and what is left is 0. It is for blows
-    alone, which are far apart: of many contacts that press at once, as of a cable on a post, it may diverge.
+    A push is asked for by the slip, and its friction changes the slip. What is left goes by a / (1 + a) with the guess
+    where a ball slides, a = mu² A_t / A_n, A what it yields to a push along and across: 3.5 mu². It goes against the
+    guess where a crate is shoved off, and what comes to stick leaves nothing. The contacts of a body change together:
+    the share of each of two solutions is that which would have left the least over all of them, for a contact over
+    those of both its bodies.
 
     Args:
         slip: Guessed, times friction [m/s], (contacts,).
         left: By the solution with that guess.
         before: The same two of the solution before; equal ones where there was none.
+        bodies: (contacts, 2), 0 for the world.
     """
-    change = slip - before[0]
-    slope = np.divide(left - before[1], change, out=np.zeros(len(slip)), where=np.abs(change) > SMALL_CHANGE)
-    return np.maximum(slip + (left - slip) / (1.0 - np.clip(slope, 0.0, STEEPEST)), 0.0)
+    rest = left - slip
+    change = rest - (before[1] - before[0])
+    over, under = _of_both_bodies(change * rest, bodies), _of_both_bodies(change * change, bodies)
+    share = np.divide(over, under, out=np.zeros(len(slip)), where=under > SMALL_CHANGE**2)
+    return np.maximum(left - np.clip(share, -MOST_SHARE, 1.0) * (left - before[1]), 0.0)
+
+
+def _of_both_bodies(values: Array, bodies: Array) -> Array:
+    """Sums of contacts' values over all contacts of their first body and of their second, the world's left out."""
+    sums = np.bincount(bodies.ravel(), np.repeat(values, 2))
+    sums[0] = 0.0
+    return np.asarray(sums[bodies].sum(axis=1))
 
 
 def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
@@ -338,14 +355,17 @@ class ContactLawC:
         slip = np.linalg.norm(weight * velocity, axis=1)
         before: tuple[Array, Array] = slip, slip
         given = np.zeros(len(normal))  # by the regularisation under a blow [m/s^2]
-        for k in range(config.solutions):
+        for k in range(config.most_solutions):
             data.efc_aref[normal] = (goal - slip - speed) / h + given
             mujoco.mj_fwdConstraint(model, data)
             mujoco.mj_mulJacVec(model, data, image, data.qacc)
             left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
-            if np.abs(left - slip).max() < config.tolerance and (k or not blow.any()):
+            change = float(np.abs(left - slip).max())
+            if change < config.tolerance and (k or not blow.any()):
                 return
-            slip, before = np.where(blow, extrapolated(slip, left, before), left), (slip, left)
+            if change < config.rough and k + 1 >= config.solutions:
+                return
+            slip, before = extrapolated(slip, left, before, bodies), (slip, left)
             given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc
 

@@ -11,7 +11,7 @@ import warp as wp
 from mujoco_warp import OverflowType
 
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.kernels.contact_law import aim, aim_again, stop, strike
+from wsim.kernels.contact_law import aim, aim_again, stop, strike, weigh
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
 from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
@@ -216,6 +216,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
             self._slip = wp.zeros(data.naconmax, dtype=float)
             self._before = wp.zeros(data.naconmax, dtype=wp.vec2)
+            self._remaining = wp.zeros(data.naconmax, dtype=float)
+            self._sums = wp.zeros((data.nworld, self.mj_model.nbody), dtype=wp.vec2)
             self._bow = wp.zeros(data.naconmax, dtype=float)
         self.mjw_model.callback.contactfilter = self._mend_contacts
 
@@ -306,7 +308,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._aim(model, data)
         if self._drives:
             self._drives.aim(model, data)
-        for k in range(self.contact_config.solutions):
+        for k in range(self.contact_config.solutions_warp):
             if k:
                 self._aim_again(model, data)
             warp.solve(model, data)
@@ -374,13 +376,23 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _aim_again(self, model: Any, data: Any) -> None:
         efc, contact = data.efc, data.contact
         wp.copy(data.qacc_warmstart, data.qacc)
+        self._sums.zero_()
+        touching, h = [data.nacon, contact.worldid, contact.geom, contact.efc_address], model.opt.timestep
+        wp.launch(
+            weigh,
+            dim=data.naconmax,
+            inputs=[
+                *touching, contact.dim, contact.friction, efc.vel, h, model.geom_bodyid, data.qacc,
+                *self._jacobian(model, efc), self._slip, self._before,
+            ],
+            outputs=[self._remaining, self._sums],
+        )  # fmt: skip
         wp.launch(
             aim_again,
             dim=data.naconmax,
             inputs=[
-                data.nacon, contact.worldid, contact.efc_address, contact.dim, contact.friction, efc.vel,
-                model.opt.timestep, data.qacc, *self._jacobian(model, efc), self._target,
-                self._blow, efc.D, efc.force,
+                *touching, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target, self._blow, efc.D,
+                efc.force,
             ],
             outputs=[self._slip, self._before, efc.aref],
         )  # fmt: skip
