@@ -7,6 +7,7 @@ import pytest
 
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.fluid_books import CheckFluidMomentum
+from wsim.judge.checks.motion import CheckFreeTurning
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Drive, Scene
@@ -124,3 +125,12 @@ def test_the_work_of_a_steered_joint_is_in_the_books(tmp_path, by):
     assert kinetic.max() > 0.1  # [J]
     assert work == pytest.approx(kinetic, abs=0.02 * kinetic.max())
     assert all(finding.passed for finding in CheckEnergy().run(evidence))
+
+
+def test_what_control_turns_is_not_turned_by_nothing(tmp_path):
+    """The torque of the kite is in the books; ten times of it is not."""
+    recording = run(tmp_path, kite, controller=Push())
+    told = recording.applied_turn
+    assert all(finding.passed for finding in CheckFreeTurning().run(Evidence(recording)))
+    wrong = replace(recording, applied_turn=10.0 * told)
+    assert not all(finding.passed for finding in CheckFreeTurning().run(Evidence(wrong)))

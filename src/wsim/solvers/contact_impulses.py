@@ -30,32 +30,31 @@ class ContactImpulsesC:
 
     def add(self, data: Any, h: float) -> None:
         """Keep what the contacts of a step of `h` [s] gave, once the step is solved."""
-        count = data.ncon
-        if not count:
-            return
-        contact = data.contact
-        first = contact.efc_address
-        chosen = np.flatnonzero(first[:count] >= 0)
-        if not len(chosen):
-            return
-        rows = first[chosen, None] + ROWS
-        given = np.where(contact.dim[chosen, None] > ROWS, data.efc_force[np.minimum(rows, data.nefc - 1)], 0.0)
-        geom = contact.geom[chosen]
-        self._kept.append((geom, contact.pos[chosen], contact.frame[chosen], h * given, data.xipos[self._body[geom]]))
+        if data.ncon:
+            # Copies alone: what is made of them is made once a frame.
+            contact = data.contact
+            arrays = (contact.efc_address, contact.dim, contact.geom, contact.pos, contact.frame)
+            self._kept.append((*(array.copy() for array in arrays), h * data.efc_force, data.xipos.copy()))
 
     def take(self) -> Pushes:
         """The sums since the last call, which start anew."""
         kept, self._kept = self._kept, []
         if not kept:
             return Pushes(np.zeros((0, 2), np.int32), np.zeros((0, WIDTH), np.float32))
-        geom, point, frame, given, center = (np.concatenate(parts) for parts in zip(*kept, strict=True))
-        x, y, z = np.moveaxis(frame.reshape(-1, 3, 3), 1, 0)
-        push = given[:, :1] * x + given[:, 1:2] * y + given[:, 2:3] * z
-        spin = given[:, 3:4] * x + given[:, 4:5] * y + given[:, 5:] * z
-        press, arms = given[:, :1], point[:, None] - center
-        turn_one, turn_two = (_cross(arms[:, side], push) + spin for side in (0, 1))
-        rows = np.concatenate([push, press, press * x, press * point, -turn_one, turn_two], axis=1)
-        pairs, sums = _summed(self._shapes[geom], rows)
+        first, dim, geom, point, frame, force, center = (np.concatenate(parts) for parts in zip(*kept, strict=True))
+        counts = [len(each[0]) for each in kept]
+        starts = np.cumsum([0, *(len(each[5]) for each in kept[:-1])])
+        bodies = self._body[geom] + np.repeat(np.arange(len(kept)) * len(kept[0][6]), counts)[:, None]
+        chosen = np.flatnonzero(first >= 0)
+        rows = (first + np.repeat(starts, counts))[chosen, None] + ROWS
+        given = np.where(dim[chosen, None] > ROWS, force[np.minimum(rows, len(force) - 1)], 0.0)
+        point, axes = point[chosen], frame[chosen].reshape(-1, 3, 3)
+        push, spin = np.moveaxis(np.einsum("nri,nsr->nsi", axes, given.reshape(-1, 2, 3)), 1, 0)
+        press, arms = given[:, :1], point[:, None] - center[bodies[chosen]]
+        turn = _cross(arms, push[:, None]) + spin[:, None]
+        turn[:, 0] *= -1.0
+        parts = [push, press, press * axes[:, 0], press * point, turn.reshape(-1, 6)]
+        pairs, sums = _summed(self._shapes[geom[chosen]], np.concatenate(parts, axis=1))
         return _known(pairs, sums, self._still)
 
     def clear(self) -> None:
@@ -123,10 +122,10 @@ def _still_shapes(shapes: Array, body: Array) -> Array:
 
 
 def _cross(one: Array, two: Array) -> Array:
-    """Cross products, (n, 3); NumPy's own takes five times as long."""
-    x, y, z = one.T
-    u, v, w = two.T
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1)
+    """Cross products along the last axis; NumPy's own takes five times as long."""
+    x, y, z = (one[..., k] for k in range(3))
+    u, v, w = (two[..., k] for k in range(3))
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
 def _summed(pair: Array, rows: Array) -> tuple[Array, Array]:

@@ -70,7 +70,7 @@ class Balance:
         motion = self._motion
         force = motion.acceleration - motion.gravity
         arm = (motion.mass * self.size)[:, None]
-        torque = np.diff(motion.angular_momentum, axis=0) / motion.h[:, None, None] / arm
+        torque = motion.torque / arm
         turning = np.linalg.norm(torque, axis=2)
         blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
         judged = np.tile(~motion.kinematic, (len(motion.h), 1))
@@ -98,11 +98,17 @@ class Balance:
 
     @cached_property
     def unseen(self) -> Bools:
-        """Bodies that something turns by a torque that is not recorded, (B,): a fluid, or what a controller pushes."""
-        pushed = self._evidence.recording.applied_impulse
-        if self._evidence.recording.metadata.get("controlled"):
+        """Bodies that something turns by a torque that is not recorded, (B,): what a controller does to joints.
+
+        In older recordings a fluid's torques, too, and all of a controller's.
+        """
+        recording = self._evidence.recording
+        controlled = bool(recording.metadata.get("controlled"))
+        if recording.applied_turn is not None:
+            return ~self._motion.kinematic & self._motion.jointed & controlled
+        if controlled:
             return ~self._motion.kinematic
-        none = np.zeros(len(self._motion.mass), dtype=bool)
+        pushed, none = recording.applied_impulse, np.zeros(len(self._motion.mass), dtype=bool)
         return none if pushed is None else np.any(pushed != 0.0, axis=(0, 2))
 
     def _scale(self) -> Floats:

@@ -71,10 +71,7 @@ class RecordedContacts:
         push, turn = (array[1:] for array in self.given)
         h, size = motion.h[:, None, None], np.maximum(motion.radius, 1e-9)
         force = motion.acceleration - motion.gravity - push / motion.mass[:, None] / h
-        gained = np.diff(motion.angular_momentum, axis=0) - turn
-        if recording.applied_turn is not None:
-            gained = gained - recording.applied_turn[1:]
-        torque = gained / (motion.mass * size)[:, None] / h
+        torque = (motion.torque - turn / h) / (motion.mass * size)[:, None]
         applied = np.zeros(push.shape[:2])
         if recording.applied_impulse is not None:
             applied = np.linalg.norm(np.asarray(recording.applied_impulse[1:], dtype=np.float64), axis=2)

@@ -80,12 +80,12 @@ class CheckFreeTurning(Check):
     roundings: float = 8.0  # of float32: of a velocity and a rotation, at both ends
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """The torque that nothing explains; nothing where a controller may turn bodies, whose torques are not kept."""
-        motion = evidence.motion
-        if len(motion.h) == 0 or evidence.recording.metadata.get("controlled"):
+        """The torque that nothing explains; nothing where a controller's torques were not recorded."""
+        motion, recording = evidence.motion, evidence.recording
+        if len(motion.h) == 0 or (recording.metadata.get("controlled") and recording.applied_turn is None):
             return []
         momentum = motion.angular_momentum
-        torque = np.linalg.norm(np.diff(momentum, axis=0), axis=2) / motion.h[:, None]
+        torque = np.linalg.norm(motion.torque, axis=2)
         most = np.linalg.norm(momentum, axis=2)
         most = np.maximum(most[1:], most[:-1])
         rate = np.linalg.norm(motion.w, axis=2)

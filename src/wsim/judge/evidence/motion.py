@@ -106,6 +106,16 @@ class Motion:
         return rotate(q, np.einsum("bij,tbj->tbi", self.inertia, rotate(conjugate(q), self.w)))
 
     @cached_property
+    def torque(self) -> Floats:
+        """Mean torque over each interval less what fluid and control gave, where that was recorded, (T - 1, B, 3)."""
+        turn = self._recorded.recording.applied_turn
+        gained = np.diff(self.angular_momentum, axis=0)
+        if turn is not None:
+            gained = gained - np.asarray(turn[1:], dtype=np.float64)
+        found: Floats = gained / self.h[:, None, None]
+        return found
+
+    @cached_property
     def kinetic(self) -> Floats:
         """Kinetic energy, (T, B) [J]."""
         spin = rotate(conjugate(self._recorded.body_q[:, :, 3:]), self.w)
