@@ -52,6 +52,7 @@ class Books:
     turned: Floats  # (T - 1, B, 2): what may be missing of both, as bodies turn while they are held [m/s^2]
     judged: Bools  # (T - 1, B)
     hit: Bools  # (T - 1, B), whether it is so much that something hit the body
+    wanted: Floats  # (T - 1, B, 6), what contacts and ties were asked for, as what is left over
 
 
 class Balance:
@@ -94,7 +95,7 @@ class Balance:
         turn = np.maximum(rate[1:], rate[:-1]) * motion.h
         turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
         turned += (wrong + self._ties.ropes.error()) / arm + step_error(self._evidence)[..., None]
-        return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit)
+        return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted)
 
     @cached_property
     def unseen(self) -> Bools:

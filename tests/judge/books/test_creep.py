@@ -1,0 +1,61 @@
+"""Slow slips by closed form: what goes steadily by some mm/s has what pushes it, or friction would have stopped it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import EDGE, G, ask, box, record, slab, times
+from wsim.judge.checks.forces import CheckForces
+
+
+def creeping(rate, slope=0.0, friction=0.5, belt=0.0, told=True, seconds=1.0):
+    """A box that goes at `rate` [m/s] down a slope [rad], on a surface that goes at `belt`; its velocities say so."""
+    t = times(seconds, 60.0)
+    down = np.array([math.cos(slope), 0.0, -math.sin(slope)])
+    out = np.array([math.sin(slope), 0.0, math.cos(slope)])
+    lean = (0.0, math.sin(slope / 2), 0.0, math.cos(slope / 2))
+    under = slab("slope", (9.0, 9.0, 0.2), tuple(-0.1 * out))
+    shape = under.shapes[0].model_copy(
+        update={"rotation": lean, "friction": friction, "surface_velocity": (belt, 0.0, 0.0)}
+    )
+    place = EDGE / 2 * out + np.outer(rate * t, down)
+    velocity = np.tile(rate * down, (len(t), 1)) * (1.0 if told else 0.0)
+    return record([box(friction=friction)], place, velocity, t, rotation=np.tile(lean, (len(t), 1)),
+                  statics=[under.model_copy(update={"shapes": [shape]})])  # fmt: skip
+
+
+def off(recording):
+    return [finding for finding in ask(CheckForces(), recording) if not finding.passed]
+
+
+SLOPE = math.atan(0.5)
+
+
+@pytest.mark.parametrize("recording", [
+    creeping(0.0), creeping(0.0, 0.3), creeping(0.005, belt=0.005), creeping(0.005, SLOPE), creeping(0.0004, SLOPE),
+])  # fmt: skip
+def test_what_stands_rides_or_slides_where_its_weight_pays_for_it_is_sound(recording):
+    """It stands, on the level and on a slope below the angle of friction; a belt takes it; it slides at that angle."""
+    assert off(recording) == []
+
+
+@pytest.mark.parametrize(("recording", "share"), [
+    (creeping(0.0004), 0.5), (creeping(0.005), 0.5), (creeping(0.005, told=False), 0.5),
+    (creeping(0.005, 0.3), 0.5 * math.cos(0.3) - math.sin(0.3)), (creeping(0.005, belt=-0.005), 0.5),
+    (creeping(0.005, SLOPE, 0.6), 0.1 * math.cos(SLOPE)), (creeping(0.005, SLOPE, 0.4), 0.1 * math.cos(SLOPE)),
+])  # fmt: skip
+def test_what_creeps_with_nothing_to_push_it_is_found(recording, share):
+    """By the force that it takes along, of its weight; the books put a part of it into how hard it is pressed."""
+    found = off(recording)
+    assert found
+    value = found[-1].value / recording.world.bodies[0].mass / G
+    assert 0.75 * share < value < 1.01 * share
+
+
+def test_a_slip_that_comes_and_goes_may_stick_meanwhile():
+    """A box that is jerked on, a frame in four, may be held by friction in the others: it does not creep."""
+    recording = creeping(0.0)
+    steps = np.repeat(np.arange(16), 4)[: len(recording.time)]
+    recording.body_q[:, 0, 0] += 1e-4 * steps
+    assert not any("creeps" in finding.message for finding in ask(CheckForces(), recording))
