@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from wsim.errors import UserError
-from wsim.rules.cast import Beside, Thing
+from wsim.rules.cast import CARRIERS, Beside, Thing
 from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
 from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import arrange, common, do, hang, part, put, put_inside, stand, support, where
 from wsim.rules.reader import Reader
 
 MOVES = ("roll", "slide", "push", "throw", "swing", "meet", "hang", "tilt")  # what a thing does on the ground alone
-CARRIERS = ("belt", "turntable")  # what moves under what stands on it
 _INTO = ("into", "to", "against", "towards", "at")
 
 
@@ -270,6 +269,10 @@ def _ride(reader: Reader, thing: Thing, action: Action) -> None:
         raise NotUnderstood([action.words], "lets things ride on a conveyor or a turntable; name it after")
 
 
+def _move(reader: Reader, thing: Thing, action: Action) -> None:
+    (_carry if action.target is not None else _run)(reader, thing, action)
+
+
 def _run(reader: Reader, thing: Thing, action: Action) -> None:
     if thing.noun.family not in CARRIERS:
         raise NotUnderstood([f"{thing.words} {action.words}"], "lets a conveyor run and a turntable turn, not this:")
@@ -344,6 +347,6 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "topple": _topple, "fall": _fall, "drop": _fall, "bounce": _bounce,
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
-    "carry": _carry, "ride": _ride, "run": _run,
+    "carry": _carry, "move": _move, "ride": _ride, "run": _run,
     "stack": _stack, "face": _face, "rest": _rest, "hold": _refused, "pour": _refused,
 }  # fmt: skip

@@ -9,6 +9,7 @@ from wsim.rules.lexicon import Noun, lexicon
 from wsim.rules.phrases import Phrase
 
 ROUND = ("sphere", "cylinder", "capsule")
+CARRIERS = ("belt", "turntable")  # families of what moves under what stands on it
 
 
 @dataclass

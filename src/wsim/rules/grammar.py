@@ -19,6 +19,7 @@ from lark.lexer import Lexer
 from wsim.errors import UserError
 from wsim.rules.lexicon import Lexicon, Named, grammar_text, lexicon
 from wsim.rules.phrases import Action, Clause, Phrase, Place
+from wsim.rules.running import with_running
 
 _WORD = re.compile(r"\d+(?:\.\d+)?|[^\W\d_]+/[^\W\d_]+(?:\^?\d)?|[^\W\d_]+(?:'[^\W\d_]+)?|\S")
 _SHOWN = 6  # words of what is not in order
@@ -131,7 +132,7 @@ class _Tokens:
             if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
                 tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
             tokens.append(token)
-        return tokens
+        return with_running(tokens)
 
     def fail(self, position: int) -> NotUnderstood:
         """The words from a position of the text on, not understood in this order."""
@@ -281,6 +282,9 @@ class _Clauses(Transformer):
     def tilted(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
         return children[0], {"angle": _meaning(children[1])}
 
+    def running(self, _meta: Any, children: list[Any]) -> tuple[Token, dict[str, Any]]:
+        return children[0], {"runs": True, **{place.preposition: place.value for place in children[1:]}}
+
     def group(self, meta: Any, children: list[Any]) -> Phrase:
         phrase = Phrase("group", self._words(meta), arrangement=_meaning(children[0]))
         phrase.members = next((child for child in children if isinstance(child, Phrase)), None)
@@ -376,8 +380,8 @@ def _phrase(head: Token) -> Phrase:
 
 
 _FIELDS = {"COUNT": "count", "SCALE": "scale", "MATERIAL": "material", "COLOR": "color", "EDGES": "edges"}
-_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FILLED": "filled"}
+_FIELDS |= {"MASS": "mass", "ANGLE": "angle", "FILLED": "filled", "RUNNING": "runs"}
 
 
 def _changes(token: Token) -> dict[str, Any]:
-    return {_FIELDS[token.type]: True if token.type == "FILLED" else _meaning(token)}
+    return {_FIELDS[token.type]: True if token.type in ("FILLED", "RUNNING") else _meaning(token)}

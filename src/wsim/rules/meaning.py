@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wsim.errors import UserError
 from wsim.rules.actions import MOVES, act, meet
-from wsim.rules.cast import Cast, Pour, Thing
+from wsim.rules.cast import CARRIERS, Cast, Pour, Thing
 from wsim.rules.grammar import NotUnderstood
 from wsim.rules.phrases import Action, Clause, Phrase
 from wsim.rules.places import stand
@@ -137,7 +137,7 @@ def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
     moving = thing.target is not None or {"roll", "slide", "push", "throw", "meet", "ride", "run"} & {*thing.does}
-    carries = family in ("belt", "turntable")
+    carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
     posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
     ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")
     for given, problem in (

@@ -29,6 +29,9 @@ class Phrase:
     members: Phrase | None = None  # of a group
     part: str | None = None  # "surface", "top", "bottom", "end", "middle", "edge", of `owner`
     owner: Phrase | None = None
+    runs: bool = False  # "that runs at 1 m/s"
+    speed: float | None = None  # of what runs [m/s]
+    spin: float | None = None  # of what turns [deg/s]
     filled: bool = False  # a container that was said to hold water
     places: list[Place] = field(default_factory=list)
 

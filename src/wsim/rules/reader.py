@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from wsim.errors import UserError
-from wsim.rules.cast import Cast, Thing
+from wsim.rules.cast import CARRIERS, Cast, Thing
 from wsim.rules.grammar import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Phrase
@@ -66,6 +66,8 @@ class Reader:
         """The thing that a phrase names: one spoken of before, or a new one."""
         if id(phrase) not in self.named:
             self.named[id(phrase)] = self._find(phrase)
+            if phrase.runs:
+                _let_run(self.named[id(phrase)], phrase)
         return self.named[id(phrase)]
 
     def _find(self, phrase: Phrase) -> Thing:
@@ -102,6 +104,16 @@ class Reader:
         return phrase.count
 
 
+def _let_run(thing: Thing, phrase: Phrase) -> None:
+    """Take in what a phrase says of how it runs: "a belt that runs at 1 m/s"."""
+    if thing.noun.family not in CARRIERS:
+        raise NotUnderstood([phrase.words], "lets a conveyor run and a turntable turn, but not this")
+    thing.place = "ground"
+    thing.does.append("run")
+    thing.speed = thing.speed if phrase.speed is None else phrase.speed
+    thing.spin = thing.spin if phrase.spin is None else phrase.spin
+
+
 def _check_adjectives(phrase: Phrase) -> None:
     """Refuse adjectives that the noun cannot carry, rather than drop them."""
     vessel = phrase.kind not in ("water", "ground", "part", "group")
@@ -111,7 +123,7 @@ def _check_adjectives(phrase: Phrase) -> None:
     sized = phrase.scale is not None or phrase.length is not None or bool(phrase.measures)
     counted = phrase.count is not None and phrase.count != 1
     filled = phrase.filled and not vessel
-    if carried or sized or counted or filled or phrase.angle is not None:
+    if phrase.runs or carried or sized or counted or filled or phrase.angle is not None:
         raise NotUnderstood([phrase.words], "can give these words to a block or a ball, but not to this")
 
 
