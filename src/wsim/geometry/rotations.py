@@ -11,12 +11,12 @@ Floats = NDArray[np.float64]
 def rotate(q: Floats, v: Floats) -> Floats:
     """Vectors (..., 3) turned by quaternions (..., 4); shapes broadcast."""
     axis, w = q[..., :3], q[..., 3:4]
-    t = 2.0 * _cross(axis, v)
-    turned: Floats = v + w * t + _cross(axis, t)
+    t = 2.0 * cross(axis, v)
+    turned: Floats = v + w * t + cross(axis, t)
     return turned
 
 
-def _cross(a: Floats, b: Floats) -> Floats:
+def cross(a: Floats, b: Floats) -> Floats:
     """Cross products (..., 3); for short arrays several times as fast as NumPy's own."""
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
@@ -31,7 +31,7 @@ def conjugate(q: Floats) -> Floats:
 def multiply(a: Floats, b: Floats) -> Floats:
     """Hamilton products (..., 4) of quaternions: first b, then a."""
     va, wa, vb, wb = a[..., :3], a[..., 3:4], b[..., :3], b[..., 3:4]
-    vector = wa * vb + wb * va + _cross(va, vb)
+    vector = wa * vb + wb * va + cross(va, vb)
     scalar = wa * wb - np.sum(va * vb, axis=-1, keepdims=True)
     return np.concatenate([vector, scalar], axis=-1)
 

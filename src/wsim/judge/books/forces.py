@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import cross, rotate
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -73,7 +73,7 @@ def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) ->
     at = np.maximum(rows, 0)
     if not len(poses.v):
         return np.zeros((len(rows), 3))
-    velocity = poses.v[at] + np.cross(poses.w[at], contacts.point - poses.com[at])
+    velocity = poses.v[at] + cross(poses.w[at], contacts.point - poses.com[at])
     belts = touching.surface_velocity[contacts.shapes[:, side]]
     turn = np.where(moving[:, None], poses.q[at, 3:], (0.0, 0.0, 0.0, 1.0))
     found: Floats = np.where(moving[:, None], velocity, 0.0) + rotate(turn, belts)
@@ -92,9 +92,9 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
     """
     n, lasting = contacts.normal, np.any(along != 0.0, axis=(1, 2))
     other = np.where(np.abs(n[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
-    t1 = np.cross(n, other)
+    t1 = cross(n, other)
     t1 /= np.linalg.norm(t1, axis=1, keepdims=True)
-    t2 = np.cross(n, t1)
+    t2 = cross(n, t1)
     angle = 2.0 * np.pi * np.arange(EDGES) / EDGES
     ring = (np.cos(angle)[:, None, None] * t1 + np.sin(angle)[:, None, None] * t2) / np.cos(np.pi / EDGES)
     cone = (n + friction[:, None] * ring).reshape(-1, 3)
@@ -111,16 +111,16 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
             spin = np.concatenate([spin, way * (rolling[:, None] * axis)[turns]])
             which = np.concatenate([which, turns])
     arms = [contacts.point - poses.com[np.maximum(rows, 0)] for rows in (contacts.one, contacts.two)]
-    on_two = np.concatenate([force, np.cross(arms[1][which], force) + spin], axis=1)
-    on_one = np.concatenate([-force, -np.cross(arms[0][which], force) - spin], axis=1)
+    on_two = np.concatenate([force, cross(arms[1][which], force) + spin], axis=1)
+    on_one = np.concatenate([-force, -cross(arms[0][which], force) - spin], axis=1)
     return Columns(contacts.one[which], contacts.two[which], on_one, on_two, np.zeros(len(which), dtype=bool))
 
 
 def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torques: Floats) -> Columns:
     """A joint's impulses: forces (f, 3) at its anchor, `arms` (3,) from both centres of mass, and torques (t, 3)."""
     twist = np.concatenate([np.zeros_like(torques), torques], axis=1)
-    on_two = np.concatenate([np.concatenate([forces, np.cross(arms[1], forces)], axis=1), twist])
-    on_one = -np.concatenate([np.concatenate([forces, np.cross(arms[0], forces)], axis=1), twist])
+    on_two = np.concatenate([np.concatenate([forces, cross(arms[1], forces)], axis=1), twist])
+    on_one = -np.concatenate([np.concatenate([forces, cross(arms[0], forces)], axis=1), twist])
     count = len(on_two)
     rows = np.full(count, one, dtype=np.intp), np.full(count, two, dtype=np.intp)
     return Columns(*rows, on_one, on_two, np.ones(count, dtype=bool))

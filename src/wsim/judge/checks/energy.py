@@ -50,12 +50,19 @@ class CheckEnergy(Check):
         # The work on joints, by drives or by a controller, is not known of each mechanism.
         found = (
             []
-            if any(joint.drive for joint in evidence.world.joints) or np.any(worked)
+            if any(joint.drive for joint in evidence.world.joints) or np.any(worked) or self._one(evidence)
             else self._by_mechanism(evidence, energy, stored)
         )
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
         rows = np.flatnonzero(~motion.kinematic)
+        if any(not finding.passed for finding in found):
+            return found  # what one gains all have together
         return [*found, self._finding(evidence, rows, together, stored)] if len(rows) else found
+
+    @staticmethod
+    def _one(evidence: Evidence) -> bool:
+        """Whether all that moves is one mechanism."""
+        return len(np.unique(evidence.motion.unit[~evidence.motion.kinematic])) < 2
 
     @staticmethod
     def _unknown(evidence: Evidence) -> bool:
