@@ -36,18 +36,18 @@ ENOUGH = 1e-3  # of gravity: a rest that is as good as none
 
 
 @dataclass(frozen=True)
-class Creep:
-    """A body that creeps over what it touches, and what pushes it on."""
+class Lacking:
+    """What a body lacks to go on as it does for many frames."""
 
     row: int
     first: int  # frame
     last: int
-    drift: Floats  # (3,) [m], of it over what it touches
+    drift: Floats  # (3,) [m], of it over what it touches; 0 if it stands
     force: Floats  # (3,) [m/s^2], of its mass: what nothing gives
     limit: float  # [m/s^2]
 
 
-def creeps(evidence: Evidence, books: Books, size: Floats, limits: Floats) -> list[Creep]:
+def creeps(evidence: Evidence, books: Books, size: Floats, limits: Floats) -> list[Lacking]:
     """All of a recording, in spans that overlap by a half.
 
     Args:
@@ -70,7 +70,7 @@ def creeps(evidence: Evidence, books: Books, size: Floats, limits: Floats) -> li
 
 def _of_span(
     evidence: Evidence, books: Books, size: Floats, limits: Floats, calm: NDArray[np.bool_], first: int, last: int
-) -> list[Creep]:
+) -> list[Lacking]:
     motion, touching, middle = evidence.motion, Touching.of(evidence), (first + last) // 2
     poses = Poses(evidence.body_q[middle], motion.com[middle], motion.v[middle], motion.w[middle])
     contacts = touching.at(poses.q, NEAR)
@@ -96,7 +96,7 @@ def _of_span(
         own = slips & ((contacts.one == row) | (contacts.two == row))
         sign = np.where(contacts.two[own] == row, 1.0, -1.0)
         found.append(
-            Creep(row, first, last, (sign[:, None] * drift[own]).mean(axis=0), rest[row, :3],
+            Lacking(row, first, last, (sign[:, None] * drift[own]).mean(axis=0), rest[row, :3],
                   float(limits[first:last, row].mean()))
         )  # fmt: skip
     return found

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.judge.books.balance import Balance, rounding
 from wsim.judge.books.creep import creeps
+from wsim.judge.books.standing import standing
 from wsim.judge.checks.check import Check, Checks, listed
 from wsim.judge.verdict import RepairTarget
 
@@ -49,29 +50,33 @@ class CheckForces(Check):
         if not balance.unseen.all():
             torque, slack = np.where(balance.unseen[None, :, None], 0.0, books.torque), slack + books.turned[..., 1]
             found.append(self._missing(evidence, books, torque, slack, motion.mass * balance.size, "N m"))
-        return found + self._creeping(evidence, balance, books)
+        return found + self._over_many(evidence, balance, books)
 
-    def _creeping(self, evidence: Evidence, balance: Balance, books: Books) -> list[Finding]:
-        """The body that most is missing of to creep as it does; none where all that creeps is pushed on."""
+    def _over_many(self, evidence: Evidence, balance: Balance, books: Books) -> list[Finding]:
+        """The body that lacks most to creep, or to stand, as it does; none where nothing lacks more than its limit."""
         share = max(SHARES[8], SHARES[1] if evidence.recording.applied_impulse is not None else 0.0)
         least = share * max(evidence.gravity, 1.0)
         limits = least + rounding(evidence) + books.turned[..., 0]
-        found = creeps(evidence, books, balance.size, limits)
-        worst = max(found, key=lambda creep: np.linalg.norm(creep.force) / creep.limit, default=None)
+        args = evidence, books, balance.size, limits
+        found = creeps(*args) + standing(*args)
+        worst = max(found, key=lambda lacking: np.linalg.norm(lacking.force) / lacking.limit, default=None)
         if worst is None or np.linalg.norm(worst.force) <= worst.limit:
             return []
         body, mass = evidence.world.bodies[worst.row], float(evidence.motion.mass[worst.row])
         span = float(evidence.time[worst.first]), float(evidence.time[worst.last])
         far, size = float(np.linalg.norm(worst.drift)), float(np.linalg.norm(worst.force))
-        way = listed(tuple((worst.drift / far).round(2)))
+        if far > 0.0:
+            way = listed(tuple((worst.drift / far).round(2)))
+            story = f"creeps by {far * 1e3:.3g} mm towards {way} over what it touches, against friction, by"
+        else:
+            story = "stands where it is, with all that may carry it too far away, by"
         return [
             self.measured(
-                f"{body.prim} creeps by {far * 1e3:.3g} mm towards {way} over what it touches, against a "
-                f"friction of {size * mass:.3g} N that nothing in the world makes up for, from {span[0]:.3f} to "
+                f"{body.prim} {story} {size * mass:.3g} N that nothing in the world gives, from {span[0]:.3f} to "
                 f"{span[1]:.3f} s",
                 size * mass, worst.limit * mass, "N", prim=body.prim, time=span[1], span=span, expected=0.0,
                 limit_from=f"{share:g} of gravity, and how far bodies turn between two frames",
-                target=RepairTarget(kind="program", prim=body.prim, why="friction would hold it, or stop it"),
+                target=RepairTarget(kind="program", prim=body.prim, why="it would fall, or friction would hold it"),
             )
         ]  # fmt: skip
 
