@@ -8,6 +8,7 @@ import pytest
 from wsim.judge import judge
 from wsim.judge.checks.run import CheckPlanControl
 from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.language import Signals, evaluate, parse
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Objective, Step
 from wsim.scene.world import Joint
@@ -406,6 +407,10 @@ def test_bodies_that_a_fixed_joint_makes_one_float_as_one(pool):
     joined = apart.world(joints=[glue])
     assert only(judge(joined.recording, joined.plan), "ObjectiveFloats").passed
     assert not only(judge(apart.recording, apart.plan), "ObjectiveFloats").passed
+    # By the language likewise.
+    for case, floats in ((joined, True), (apart, False)):
+        said = evaluate(parse("floats(wooden_block, water)"), Signals.of_recording(case.recording))
+        assert said.satisfied[0] == floats
 
 
 @pytest.mark.parametrize(

@@ -138,7 +138,8 @@ class CheckGravity(Check):
             return [
                 self.measured(
                     f"The world's gravity is {aslant:.3g} degrees aslant", aslant, self.aslant, "deg", expected=0.0,
-                    limit_from="straight down", target=_gravity_target(expected, why),
+                    limit_from="straight down",
+                    target=_gravity_target(expected, why).model_copy(update={"direction": "change"}),
                 )
             ]  # fmt: skip
         above = strength > expected
@@ -153,7 +154,7 @@ class CheckGravity(Check):
 def _gravity_target(to: float, why: str, above: bool | None = None) -> RepairTarget:
     return RepairTarget(
         kind="physical parameter", parameter="gravity", suggested=to, vector=(0.0, 0.0, -to), unit="m/s^2", why=why,
-        direction="change" if above is None else "lower" if above else "raise",
+        direction="" if above is None else "lower" if above else "raise",
     )  # fmt: skip
 
 

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from wsim.scene.world import Fluid
 
 
+HALVINGS = 40  # of a height, to where single precision ends
+
+
 def welded(evidence: Evidence, i: int) -> list[int]:
     """A body and those that fixed joints, one after another, hold to it."""
     index = {body.prim: k for k, body in enumerate(evidence.world.bodies)}
@@ -28,6 +31,35 @@ def held(evidence: Evidence, parts: list[int]) -> bool:
     tied = any(prims & ends and not ends <= prims for ends in joints)
     tied |= any(guide.body in prims for cord in evidence.world.cords for guide in cord.path)
     return tied or any(evidence.world.bodies[k].kinematic for k in parts)
+
+
+def displaced(evidence: Evidence, i: int, fluid: Fluid) -> tuple[float, float]:
+    """What a body and those that are one with it must displace to float, and their own volume [m^3]."""
+    parts = welded(evidence, i)
+    mass = sum(evidence.world.bodies[k].mass for k in parts)
+    return mass / fluid.density, sum(evidence.solid(k).volume for k in parts)
+
+
+def still_draft(evidence: Evidence, i: int, needed: float) -> float:
+    """Depth of a body's lowest point in still fluid [m], as it and what is one with it are turned at the end.
+
+    Args:
+        evidence: What happened.
+        i: The body.
+        needed: What they displace together [m^3].
+    """
+    parts = welded(evidence, i)
+    if len(parts) == 1:
+        solid = evidence.solid(i)
+        return solid.draft(evidence.resting_pose(i)[1], min(needed, solid.volume))
+    poses = {k: evidence.resting_pose(k) for k in parts}
+    ends = np.array([[end[evidence.window].mean() for end in evidence.ends(k)] for k in parts])
+    low, high = float(ends[:, 0].min()), float(ends[:, 1].max())
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        under = sum(evidence.solid(k).volume_below(q, float(at[2]), middle) for k, (at, q) in poses.items())
+        low, high = (middle, high) if under < needed else (low, middle)
+    return (low + high) / 2 - float(evidence.ends(i)[0][evidence.window].mean())
 
 
 def unheld_lift(evidence: Evidence, i: int, fluid: Fluid) -> float | None:

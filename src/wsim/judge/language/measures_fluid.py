@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.evidence.welded import unheld_lift, welded
+from wsim.judge.evidence.welded import displaced, still_draft, unheld_lift, welded
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
 from wsim.plan.schema.formula import FillsTo, Floats, LevelIn, Sinks, Submerged, SwirlsBetween
@@ -71,19 +71,18 @@ def _surface(signals: Signals, evidence: Evidence, fluid: Fluid) -> tuple[Array,
 @measures(Floats)
 def _floats(asked: Floats, signals: Signals) -> list[Measure]:
     wet = _wet(signals, asked.object, asked.fluid, asked.within)
-    prim, solid = signals.prim(asked.object), signals.solid(asked.object)
-    assert signals.mass is not None
-    displaced = float(signals.mass[0, signals.row(asked.object)]) / wet.fluid.density
+    prim = signals.prim(asked.object)
+    i = wet.evidence.index(prim)
+    needed, volume = displaced(wet.evidence, i, wet.fluid)
     value = wet.surface - wet.low
-    if displaced >= solid.volume:
+    if needed >= volume:
         # It cannot: whatever its depth, it fails by as much as it is too heavy.
-        excess = (displaced / solid.volume - 1.0) * wet.tolerance
+        excess = (needed / volume - 1.0) * wet.tolerance
         limit = np.minimum(wet.height, value - excess)
-        heavy = f"it weighs {displaced / solid.volume:.3g} times the fluid that it displaces"
+        heavy = f"it weighs {needed / volume:.3g} times the fluid that it displaces"
         source = f"its height: what floats is no deeper; {heavy}"
         return [Measure("draft", prim, value, limit, "m", wet.tolerance, source)]
-    _, rotation = wet.evidence.resting_pose(wet.evidence.index(prim))
-    expected = solid.draft(rotation, displaced)
+    expected = still_draft(wet.evidence, i, needed)
     source = f"Archimedes for its own shape, {expected:.4g} m, and {wet.source}"
     return [
         Measure.about(

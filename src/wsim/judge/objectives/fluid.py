@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.evidence.welded import welded
+from wsim.judge.evidence.welded import displaced, still_draft, welded
 from wsim.judge.language.objective import findings
 from wsim.judge.objectives.objective import ObjectiveCheck, Objectives
 from wsim.plan.schema.formula import StaysInside, Submerged
@@ -64,7 +64,7 @@ class ObjectiveFloats(ObjectiveCheck):
             return [away]
         if a.ratio >= 1.0:
             return [self._too_heavy(evidence, a, tolerance)]
-        expected = _still_draft(evidence, a)
+        expected = still_draft(evidence, a.i, a.needed)
         prim = evidence.world.bodies[a.i].prim
         low, _ = evidence.ends(a.i)
         wrong = np.abs(a.level.height - low - expected) > tolerance
@@ -190,34 +190,17 @@ def _afloat(evidence: Evidence, name: str, ref: str) -> _Afloat:
     level = evidence.level(fluid)
     low, high = evidence.ends(i)
     here = evidence.window
-    joined = welded(evidence, i)
-    needed = sum(evidence.world.bodies[j].mass for j in joined) / fluid.density
+    needed, volume = displaced(evidence, i, fluid)
     return _Afloat(
         i,
         fluid,
         level,
         draft=level.height - float(low[here].mean()),
         height=float((high - low)[here].mean()),
-        ratio=needed / sum(evidence.solid(j).volume for j in joined),
+        ratio=needed / volume,
         needed=needed,
-        joined=joined,
+        joined=welded(evidence, i),
     )
-
-
-def _still_draft(evidence: Evidence, a: _Afloat) -> float:
-    """Depth of the body's lowest point in still water [m], as it and what is joined to it are turned at the end."""
-    _, rotation = evidence.resting_pose(a.i)
-    if len(a.joined) == 1:
-        solid = evidence.solid(a.i)
-        return solid.draft(rotation, min(a.needed, solid.volume))
-    poses = {j: evidence.resting_pose(j) for j in a.joined}
-    ends = np.array([[end[evidence.window].mean() for end in evidence.ends(j)] for j in a.joined])
-    low, high = float(ends[:, 0].min()), float(ends[:, 1].max())
-    for _ in range(40):
-        middle = (low + high) / 2
-        under = sum(evidence.solid(j).volume_below(q, float(at[2]), middle) for j, (at, q) in poses.items())
-        low, high = (middle, high) if under < a.needed else (low, middle)
-    return (low + high) / 2 - float(evidence.ends(a.i)[0][evidence.window].mean())
 
 
 OBJECTIVES: Objectives = {
