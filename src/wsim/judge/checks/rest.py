@@ -1,4 +1,4 @@
-"""Checks of what is at rest: carried by its weight, not trembling, not creeping."""
+"""Checks of what is at rest: carried by its weight, not trembling."""
 
 from __future__ import annotations
 
@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import level
-from wsim.judge.books.forces import Poses, slip
-from wsim.judge.books.touching import Touching
 from wsim.judge.checks.check import Check, Checks, worst
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
-from wsim.scene.contact import friction_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -133,85 +129,4 @@ def _flips(rate: Floats) -> Floats:
     return amplitude
 
 
-@dataclass
-class CheckCreep(Check):
-    """What stands by friction on what never moves does not creep: it slides and is slowed, or stands, or rolls."""
-
-    share: float = 0.01  # of its smallest extent a second
-    slowed: float = 0.2  # of what the least friction in the world would take in the window
-    steep: float = 0.9  # of the friction: the tangent of a slope that it slides down
-    moments: int = 9  # of the window that are looked at
-    near: float = 2e-3  # [m]: what is nearer than this touches
-
-    def evaluate(self, evidence: Evidence) -> list[Finding]:
-        """The body whose contacts all slip, and fastest, over the final window: the slower half of it counts."""
-        motion, here = evidence.motion, np.flatnonzero(evidence.window)
-        if len(here) < 3 or evidence.gravity <= 0.0 or len(motion.mass) == 0:
-            return []
-        # What it stands on may be more slippery than it is.
-        stated = [contact.friction for contact in evidence.world.contacts if contact.friction is not None]
-        mu = min([*(friction_of(each.shape) for each in evidence.placed), *stated], default=0.0)
-        asked = ~motion.jointed & ~motion.kinematic & motion.touched[here].all(axis=0)
-        if mu <= 0.0 or not asked.any():
-            return []
-        moments = here[np.unique(np.linspace(0, len(here) - 1, self.moments).astype(int))]
-        slips = np.stack([self._slips(evidence, int(frame)) for frame in moments])
-        asked &= np.isfinite(slips).all(axis=(0, 2))
-        found = []
-        for i in np.flatnonzero(asked):
-            if self._afloat(evidence, int(i)):
-                continue
-            halves = np.array_split(np.linalg.norm(slips[:, i], axis=1), 2)
-            speeds = np.array([half.mean() for half in halves])
-            way, span = slips[:, i].mean(axis=0), float(evidence.time[here[-1]] - evidence.time[here[0]])
-            # Down a slope its weight pays for the friction: as steep as that's angle, for all of it.
-            ahead = way / max(float(np.linalg.norm(way)), 1e-12)
-            rubs, pulls = mu * float(np.linalg.norm(level(motion.gravity, ahead))), float(motion.gravity @ ahead)
-            steady = abs(speeds[1] - speeds[0]) < self.slowed * (rubs - pulls) * span / 2
-            steady &= pulls <= self.steep * rubs
-            limit = self.share * evidence.solid(int(i)).smallest
-            found.append(self._finding(evidence, int(i), float(speeds.min()) if steady else 0.0, limit))
-        return worst(found)
-
-    def _slips(self, evidence: Evidence, frame: int) -> Floats:
-        """How the slowest of each body's contacts slips, (B, 3) [m/s]; not finite for what stands on no such contact.
-
-        What touches something that moves may be pushed or carried, and what leans on it may be pressed aside.
-        """
-        motion, touching = evidence.motion, Touching.of(evidence)
-        contacts = touching.at(evidence.body_q[frame], self.near)
-        poses = Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
-        u = slip(touching, contacts, poses)
-        u = u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal
-        belts = np.any(touching.surface_velocity[contacts.shapes] != 0.0, axis=(1, 2))
-        fixed = ((contacts.one < 0) | (contacts.two < 0)) & ~belts
-        body, speed = np.maximum(contacts.one, contacts.two), np.linalg.norm(u, axis=1)
-        found = np.full((len(motion.mass), 3), np.inf)
-        order = np.lexsort((speed, body))
-        rows, first = np.unique(body[order], return_index=True)
-        found[rows] = u[order][first]
-        moving = np.concatenate([contacts.one[~fixed], contacts.two[~fixed]])
-        found[moving[moving >= 0]] = np.inf
-        return found
-
-    @staticmethod
-    def _afloat(evidence: Evidence, i: int) -> bool:
-        """Whether it is in a fluid, which may carry it."""
-        last = np.array([len(evidence.motion.h) - 1])
-        return bool(evidence.world.fluids) and bool(evidence.motion.wet(i, last).any())
-
-    def _finding(self, evidence: Evidence, i: int, speed: float, limit: float) -> Finding:
-        body = evidence.world.bodies[i]
-        return self.measured(
-            f"{body.prim} creeps by {speed * 1e3:.3g} mm/s at the end, and nothing pushes or slows it",
-            speed, limit, "m/s", fine="What stands by friction does not creep", prim=body.prim,
-            time=evidence.window_start, span=(evidence.window_start, float(evidence.time[-1])), expected=0.0,
-            limit_from=f"{self.share:g} of its smallest extent a second",
-            target=RepairTarget(
-                kind="settlement", prim=body.prim, parameter="friction", direction="raise",
-                why="friction does not hold it",
-            ),
-        )  # fmt: skip
-
-
-CHECKS: Checks = (CheckRestForce, CheckJitter, CheckCreep)
+CHECKS: Checks = (CheckRestForce, CheckJitter)
