@@ -261,3 +261,36 @@ def test_a_model_that_cannot_be_reached_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"--image .*none\.png: No such file"):
         generate(PROMPT, tmp_path / "runs", Options(models=Models(), image=tmp_path / "none.png"), plan=flies())
     assert not (tmp_path / "runs").exists()
+
+
+# --- nobody but the judge
+
+
+def test_without_a_coder_the_judges_own_suggestions_are_applied(tmp_path: Path) -> None:
+    done = generate(PROMPT, tmp_path, Options(settings=SETTINGS), plan=flies())
+    kept = Kept(done.run.path)
+    assert done.verdict is not None
+    assert done.verdict.status == "accepted", done.verdict.summary
+    assert kept.rows == [("recording", "rejected", True), ("all", "accepted", True)]
+    patch = (done.run.path / "iterations" / "02" / "patch.diff").read_text()
+    assert [line for line in patch.splitlines()[2:] if line[:1] in "+-"] == [
+        "-    scene.simulation(duration=0.2, frame_rate=10.0)",
+        "+    scene.simulation(duration=0.4, frame_rate=10.0)",
+    ]
+    assert kept.facts["reasons"] == {"02": "ObjectiveMoves: raise duration from 0.2 to 0.4 s"}
+
+
+def test_without_a_coder_it_ends_rejected_where_nothing_is_left_to_try(tmp_path: Path) -> None:
+    """No suggestion makes a parameter that the program does not have."""
+    done = generate(PROMPT, tmp_path, Options(settings=NO_WORLD), plan=flies())
+    assert done.verdict is not None
+    assert done.verdict.status == "rejected"
+    assert len(Kept(done.run.path).rows) == 1
+
+
+def test_without_a_coder_it_ends_at_its_limit(tmp_path: Path) -> None:
+    options = Options(settings=SETTINGS, budget=Budget(iterations=1))
+    done = generate(PROMPT, tmp_path, options, plan=flies())
+    assert done.verdict is not None
+    assert done.verdict.status == "rejected"
+    assert len(Kept(done.run.path).rows) == 1

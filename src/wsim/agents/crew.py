@@ -10,6 +10,8 @@ from wsim.agents import coder, judge, planner, reviewer
 from wsim.agents.ask import Desk
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN
+from wsim.judge.repair.order import suggestions
+from wsim.program.mend import NotMendedError, mended
 from wsim.rules.planner import plan
 from wsim.runs.attempt import Attempt, Reached
 from wsim.tools import Workspace
@@ -126,6 +128,25 @@ class Crew:
             raise ModelError("gave up", made.why, "coder")
         self.reasons[number] = made.why
         return made.program
+
+    def mend(self, best: Attempt, undone: Sequence[Attempt], plan: Plan) -> str:
+        """The best program so far with the first of the judge's suggestions applied that makes one not tried yet.
+
+        What stands in for a coder: nothing is weighed, and what cannot be applied as it stands is left out. Empty where
+        none is left.
+        """
+        self.tried |= {tried.program: tried.number for tried in (best, *undone)}
+        number = max(self.tried.values()) + 1
+        for finding in suggestions(best.verdict):
+            assert finding.target is not None
+            try:
+                program = mended(best.program, finding.target, plan)
+            except NotMendedError:
+                continue
+            if program not in self.tried:
+                self.reasons[number] = f"{finding.check}: {finding.target.sentence}"
+                return program
+        return ""
 
     def facts(self) -> dict[str, Any]:
         """For run.json."""

@@ -74,5 +74,7 @@ def _world(making: Making) -> Verdict:
             if making.ends:
                 return making.verdict
             programs = making.repairs(tried)  # verdict → programs
+            if not programs:
+                return making.verdict
     except (ModelError, BudgetError) as error:
         return making.blocked(str(error))

@@ -46,8 +46,7 @@ class Making:
     def ends(self) -> bool:
         """Whether the best is right, or nothing more may be tried."""
         assert self.best is not None
-        alone = not self.crew.has("coder")
-        return self.best.verdict.status == "accepted" or alone or self.tried >= self.options.budget.iterations
+        return self.best.verdict.status == "accepted" or self.tried >= self.options.budget.iterations
 
     @property
     def verdict(self) -> Verdict:
@@ -82,7 +81,7 @@ class Making:
             # A world that a finer computation made right must stand a still finer one.
             settings = replace(settings, verify=True)
         iteration = Iteration(folder, self.plan, settings, self.crew.workspace.progress)
-        tried = attempt(iteration, cheap_first=self.crew.has("coder"))
+        tried = attempt(iteration, cheap_first=self.crew.has("coder") or self.best is not None)
         try:
             self._assess(tried, replace(iteration, settings=self.options.settings))
         except BudgetError as error:  # what was tried is kept, and what was found of it
@@ -125,8 +124,14 @@ class Making:
         self.run.record(iterations=[*rows, row.model_dump()], best=self.best.number)
 
     def repairs(self, last: Attempt) -> list[str]:
-        """Programs to try next: patches of the best. One; where several are tried, the best of them goes on."""
+        """Programs to try next: patches of the best. One; where several are tried, the best of them goes on.
+
+        None where no model is there to write one, and no suggestion of the judge is left that can be applied as it is.
+        """
         assert self.best is not None
+        if not self.crew.has("coder"):
+            made = self.crew.mend(self.best, self.undone, self.plan)
+            return [made] if made else []
         if last is not self.best:
             self.crew.judge(self.best, self.plan, self.undone)  # what it asked for did not help
         return [self.crew.repair(self.best, self.undone, self.plan)]

@@ -71,7 +71,7 @@ def test_loops_over_what_is_not_written_out_stay() -> None:
 
 
 def test_what_the_program_lacks_comes_from_the_plan(tmp_path) -> None:
-    statements = [s for s in ast.parse(RIGHT).body if isinstance(s, ast.FunctionDef)][0].body
+    statements = next(s for s in ast.parse(RIGHT).body if isinstance(s, ast.FunctionDef)).body
     ball = next(s for s in statements if "scene.sphere" in ast.unparse(s))
     lines = RIGHT.splitlines(keepends=True)
     without = "".join(lines[: ball.lineno - 1] + lines[ball.end_lineno :])

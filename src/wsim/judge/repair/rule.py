@@ -35,6 +35,9 @@ def longer_run(evidence: Evidence, seconds: float | None, why: str) -> RepairTar
     now = evidence.world.duration
     if seconds is None:
         seconds, why = 2.0 * now, f"{why}; twice as long is the first to try"
+    # A run ends at its last whole frame.
+    rate = evidence.world.frame_rate
+    seconds = math.ceil(seconds * rate - 1e-6) / rate
     return RepairTarget(
         kind="settlement", parameter="duration", direction="raise", current=now, suggested=seconds, unit="s", why=why
     )
