@@ -41,7 +41,10 @@ def flat_box_bounce(bench: Bench) -> tuple[float, float]:
 
 @case("J/kg")
 def elastic_bounces(bench: Bench) -> tuple[float, float]:
-    """After five elastic bounces a ball has the energy of its fall, g · 1 m."""
+    """After five elastic bounces a ball has the energy of its fall, g · 1 m, at its apex.
+
+    On its way steps of the first order read g h v / 2 more or less, 0.28 % at most, which is no gain.
+    """
 
     def build(scene: Scene) -> None:
         scene.ground()
@@ -50,7 +53,8 @@ def elastic_bounces(bench: Bench) -> tuple[float, float]:
     track = bench.run(build, 5.0)
     energy = G * (track.position("ball")[:, 2] - 0.1) + 0.5 * track.velocity("ball")[:, 2] ** 2
     bench.show("energy [J/kg]", track.time, energy, G)
-    return float(energy[-1]), G
+    fifth = track.time > 9.2 * math.sqrt(2.0 / G)  # bounces are at 1, 3, ... 9 times the time of the fall
+    return float(energy[fifth][np.abs(track.velocity("ball")[fifth, 2]).argmin()]), G
 
 
 @case("s")
