@@ -90,8 +90,16 @@ class Solid(Generic[S]):
 
     def __init__(self, shapes: Sequence[S]) -> None:
         self.shapes = [s for s in shapes if s.collides and s.kind != "plane"] or list(shapes)
-        self.surfaces = [surface_of(shape) for shape in self.shapes]
-        self.volume = sum(surface.volume for surface in self.surfaces)
+
+    @cached_property
+    def surfaces(self) -> list[Surface]:
+        """Its shapes as meshes in the body's frame."""
+        return [surface_of(shape) for shape in self.shapes]
+
+    @cached_property
+    def volume(self) -> float:
+        """[m^3]."""
+        return sum(surface.volume for surface in self.surfaces)
 
     def reach(self, q: Floats, up: Floats = UP) -> tuple[Floats, Floats]:
         """Lowest and highest along a unit vector (3,) relative to the body's origin, (T,) each [m]."""

@@ -220,7 +220,7 @@ def test_what_turns_slowly_with_a_turntable_is_carried():
     angle, zero = 0.02 * t, 0.0 * t
     round_ = 0.3 * np.stack([np.cos(angle), np.sin(angle), zero], axis=1)
     along = 0.006 * np.stack([-np.sin(angle), np.cos(angle), zero], axis=1)
-    place = np.stack([[0.0, 0.0, 0.05] + 0.0 * round_, np.array([0.0, 0.0, 0.2]) + round_], axis=1)
+    place = np.stack([np.add(0.0 * round_, (0.0, 0.0, 0.05)), np.add(round_, (0.0, 0.0, 0.2))], axis=1)
     turn = np.stack([zero, zero, np.sin(angle / 2), np.cos(angle / 2)], axis=1)
     recording = record(
         [box("disc", (1.0, 1.0, 0.1), kinematic=True), box()], place, np.stack([0.0 * along, along], axis=1), t,
