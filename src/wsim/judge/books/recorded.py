@@ -110,6 +110,12 @@ class RecordedContacts:
         return np.linalg.norm(self.track.impulse.astype(np.float64) - self.track.along, axis=1)
 
     @cached_property
+    def loose(self) -> Bools:
+        """Rows of which neither body hangs on a joint or a spring, (n,): links of a chain chatter between frames."""
+        held = np.append(self._evidence.motion.jointed, False)
+        return np.asarray(~held[self.body].any(axis=1))
+
+    @cached_property
     def lasting(self) -> Bools:
         """Rows of pairs that press in the intervals before and after, too, (n,): no blow, which has another place."""
         pair = self.track.pair.astype(np.int64)

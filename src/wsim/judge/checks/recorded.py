@@ -33,7 +33,7 @@ class CheckRecordedForces(Check):
     single: float = 0.02  # likewise, of a solver in single precision
     cone: float = 0.001  # of the normal impulse: the solver's tolerance
     edge: float = 0.02  # of the friction of a slip that lasts
-    near: float = 0.01  # of a body's smallest extent
+    near: float = 0.05  # of a body's smallest extent: as deep as what is pressed may be (`CheckPenetration`)
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """Momentum, angular momentum, friction and places, each where it is worst by its limit."""
@@ -105,7 +105,7 @@ class CheckRecordedForces(Check):
         across = slip - np.einsum("nei,ni->ne", slip, normal)[..., None] * normal[:, None]
         speed = np.linalg.norm(across, axis=2)
         cosine = np.einsum("ni,ni->n", across[:, 0], across[:, 1]) / np.maximum(speed.prod(axis=1), 1e-30)
-        lasts = contacts.lasting & (speed.min(axis=1) > STILL + contacts.rolled) & (cosine > ONE_WAY)
+        lasts = contacts.loose & contacts.lasting & (speed.min(axis=1) > STILL + contacts.rolled) & (cosine > ONE_WAY)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         if not len(rows):
             return []
