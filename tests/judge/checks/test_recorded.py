@@ -10,14 +10,14 @@ from wsim.judge.checks.recorded import CheckRecordedForces
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.recording.contacts import shapes_of
-from wsim.scene import Scene
+from wsim.scene import Part, Scene
 from wsim.sim import Simulation
 
 G, FRICTION = 9.81, 0.3
 
 
 def run(folder, **options):
-    """A box that slides and stops, two that stand on each other, and a ball that bounces."""
+    """A box that slides and stops, two that stand on each other, a ball that bounces, and a hammer that lands."""
     scene = Scene()
     scene.simulation(duration=0.5, frame_rate=60.0)
     scene.ground(friction=FRICTION)
@@ -27,6 +27,10 @@ def run(folder, **options):
     scene.box("lower", size=(0.2, 0.2, 0.2), mass=4.0, position=(0, 2, 0.1))
     scene.box("upper", size=(0.2, 0.2, 0.2), mass=1.0, position=(0.05, 2, 0.3))
     scene.sphere("ball", radius=0.1, mass=1.5, position=(0, -2, 0.25), restitution=0.6, friction=0.5)
+    wood, steel = scene.material("wood", density=700.0), scene.material("steel", density=7800.0)
+    rod = Part("cylinder", radius=0.02, height=0.3, material=wood)
+    head = Part("box", size=(0.1, 0.05, 0.05), position=(0, 0, 0.15), material=steel)
+    scene.compound("hammer", parts=[rod, head], position=(0, 4, 0.25), angular_velocity_deg=(0, 500, 0))
     Simulation(scene.save(folder / "stage.usda"), device="cpu", **options).run(folder / "r.rrd")
     return read(folder / "r.rrd")
 

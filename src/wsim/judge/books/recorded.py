@@ -36,6 +36,7 @@ class Balanced:
     force: Floats  # (T - 1, B, 3) over the mass [m/s^2]
     torque: Floats  # (T - 1, B, 3) over m R [m/s^2]
     moved: Floats  # (T - 1, B) what contacts gave, over the mass, and the rounding of velocities [m/s^2]
+    stepped: Floats  # (T - 1, B) what a first-order step leaves of a body whose mass is off its origin [m/s^2]
     judged: Bools  # (B,)
     turned: Bools  # (B,) whether its torques are known, too
 
@@ -81,7 +82,19 @@ class RecordedContacts:
         loose = ~motion.kinematic & ~motion.jointed
         pushed = recording.applied_impulse is not None or bool(recording.metadata.get("controlled"))
         known = loose & (recording.applied_turn is not None or not pushed)
-        return Balanced(force, torque, moved + rounding / motion.h[:, None], loose, known)
+        return Balanced(force, torque, moved + rounding / motion.h[:, None], self._stepped(), loose, known)
+
+    def _stepped(self) -> Floats:
+        """The solver steps the velocity of a body's origin; that of its centre of mass at l is off, as of a joint's.
+
+        By l dt (2 w w' + w^3 dt / 2) a step (`wsim.judge.books.steps`).
+        """
+        motion = self._evidence.motion
+        length = np.array([float(np.linalg.norm(body.com)) for body in self._evidence.world.bodies])
+        rate, change = np.linalg.norm(motion.w, axis=2), np.linalg.norm(np.diff(motion.w, axis=0), axis=2)
+        fastest, dt = np.maximum(rate[1:], rate[:-1]), np.minimum(motion.dt, motion.h)[:, None]
+        found: Floats = length * dt * (2.0 * fastest * change / motion.h[:, None] + 0.5 * fastest**3)
+        return found
 
     @cached_property
     def friction(self) -> Floats:
@@ -97,6 +110,12 @@ class RecordedContacts:
         return np.linalg.norm(self.track.impulse.astype(np.float64) - self.track.along, axis=1)
 
     @cached_property
+    def loose(self) -> Bools:
+        """Rows of which neither body hangs on a joint or a spring, (n,): links of a chain chatter between frames."""
+        held = np.append(self._evidence.motion.jointed, False)
+        return np.asarray(~held[self.body].any(axis=1))
+
+    @cached_property
     def lasting(self) -> Bools:
         """Rows of pairs that press in the intervals before and after, too, (n,): no blow, which has another place."""
         pair = self.track.pair.astype(np.int64)
@@ -106,7 +125,10 @@ class RecordedContacts:
 
     @cached_property
     def slip(self) -> Floats:
-        """Velocity of the second shape over the first at the place of each row, at both ends, (n, 2, 3) [m/s]."""
+        """Velocity of the second shape over the first at the place of each row, at both ends, (n, 2, 3) [m/s].
+
+        The place is that of the middle of the interval, relative to where the bodies are halfway.
+        """
         found = np.zeros((len(self.track.frame), 2, 3))
         motion, point = self._evidence.motion, self.track.point.astype(np.float64)
         for end in (0, 1):
@@ -115,7 +137,8 @@ class RecordedContacts:
                 rows = np.maximum(self.body[:, side], 0)
                 moves = (self.body[:, side] >= 0)[:, None]
                 if len(motion.mass):
-                    arm = point - motion.com[frame, rows]
+                    before = np.maximum(self.track.frame - 1, 0)
+                    arm = point - 0.5 * (motion.com[before, rows] + motion.com[self.track.frame, rows])
                     speed = motion.v[frame, rows] + np.cross(motion.w[frame, rows], arm)
                     found[:, end] += sign * np.where(moves, speed, 0.0)
                 found[:, end] += sign * self._belt(side, frame)
@@ -138,6 +161,20 @@ class RecordedContacts:
             ]
             fastest = np.maximum(fastest, np.abs(np.einsum("ni,ni->n", spin[1] - spin[0], normal)))
         found: Floats = fastest * size / np.maximum(speed, 1e-12)
+        return found
+
+    @cached_property
+    def rolled(self) -> Floats:
+        """By how much the slip of what turns may be off, as its arms turn within the interval, (n,) [m/s]."""
+        motion, found = self._evidence.motion, np.zeros(len(self.track.frame))
+        interval = np.maximum(self.track.frame - 1, 0)
+        for side in (0, 1):
+            rows = np.maximum(self.body[:, side], 0)
+            rate = np.linalg.norm(
+                np.maximum(np.abs(motion.w[interval, rows]), np.abs(motion.w[interval + 1, rows])), axis=1
+            )
+            off = rate * motion.radius[rows] * np.minimum(rate * motion.h[interval], 1.0)
+            found += np.where(self.body[:, side] >= 0, off, 0.0)
         return found
 
     def _belt(self, side: int, frame: Rows) -> Floats:

@@ -33,7 +33,7 @@ class CheckRecordedForces(Check):
     single: float = 0.02  # likewise, of a solver in single precision
     cone: float = 0.001  # of the normal impulse: the solver's tolerance
     edge: float = 0.02  # of the friction of a slip that lasts
-    near: float = 0.01  # of a body's smallest extent
+    near: float = 0.05  # of a body's smallest extent: as deep as what is pressed may be (`CheckPenetration`)
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """Momentum, angular momentum, friction and places, each where it is worst by its limit."""
@@ -52,12 +52,12 @@ class CheckRecordedForces(Check):
         books, motion = contacts.balanced(), evidence.motion
         about = evidence.recording.metadata
         single = str(about.get("device", "cpu")).startswith("cuda") or int(about.get("world_count") or 1) > 1
-        share = self.single if single else self.share
-        limits = share * (max(evidence.gravity, 1.0) + books.moved)
+        part = self.single if single else self.share
+        share = part * (max(evidence.gravity, 1.0) + books.moved)
         found = []
-        for left, judged, weight, unit in (
-            (books.force, books.judged, motion.mass, "N"),
-            (books.torque, books.turned, motion.mass * motion.radius, "N m"),
+        for left, judged, weight, limits, unit in (
+            (books.force, books.judged, motion.mass, share + books.stepped, "N"),
+            (books.torque, books.turned, motion.mass * motion.radius, share, "N m"),
         ):
             if not judged.any():
                 continue
@@ -73,7 +73,7 @@ class CheckRecordedForces(Check):
                     f"{start:.3f} to {end:.3f} s",
                     value, limit, unit, prim=prim, time=end, span=(start, end), expected=0.0,
                     fine=f"The recorded contacts give each loose body the {kind} that it gained",
-                    limit_from=f"{share:g} of gravity and of what contacts and fluid gave",
+                    limit_from=f"{part:g} of gravity and of what contacts and fluid gave",
                     target=RepairTarget(kind="program", prim=prim, why=f"a {unit} that is not recorded acts on it"),
                 )
             )  # fmt: skip
@@ -105,7 +105,7 @@ class CheckRecordedForces(Check):
         across = slip - np.einsum("nei,ni->ne", slip, normal)[..., None] * normal[:, None]
         speed = np.linalg.norm(across, axis=2)
         cosine = np.einsum("ni,ni->n", across[:, 0], across[:, 1]) / np.maximum(speed.prod(axis=1), 1e-30)
-        lasts = contacts.lasting & (speed.min(axis=1) > STILL) & (cosine > ONE_WAY)
+        lasts = contacts.loose & contacts.lasting & (speed.min(axis=1) > STILL + contacts.rolled) & (cosine > ONE_WAY)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         if not len(rows):
             return []
