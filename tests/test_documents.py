@@ -102,7 +102,7 @@ def test_the_judges_page_has_every_kind_of_repair() -> None:
     assert [kind for kind in get_args(RepairKind) if kind not in said] == []
 
 
-@pytest.mark.parametrize("marks", ["faults", "judge-speed"])
+@pytest.mark.parametrize("marks", ["faults", "judge-repairs", "judge-speed"])
 def test_the_judges_page_has_the_places_of_its_tables(marks: str) -> None:
     text = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
     assert re.search(f"^<!-- {marks}:begin -->\n(.*\n)*?<!-- {marks}:end -->$", text, re.MULTILINE)
