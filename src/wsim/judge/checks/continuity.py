@@ -76,20 +76,27 @@ class CheckContinuity(Check):
         motion, h = evidence.motion, evidence.motion.h[:, None]
         change = np.linalg.norm(np.diff(motion.v, axis=0), axis=2)
         ends = motion.dt * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
-        ends = ends + self._rounding(evidence).max(axis=0) + evidence.gravity * motion.dt**2  # it settles by a step
+        ends = ends + self._rounding(evidence).max(axis=0)
         # A contact that flips from step to step tells of one phase of it, and the body stays.
         told = 0.5 * np.linalg.norm(motion.v[1:] + motion.v[:-1], axis=2)
         hides = np.where(motion.touched[1:] | motion.touched[:-1], self.steps * evidence.gravity * motion.dt, 0.0)
         unsure = np.cumsum(h * (_bends(motion.v) + driven + np.minimum(told, hides)), axis=0)
         sums = np.cumsum(strayed, axis=0)
-        apart, limit = np.linalg.norm(sums, axis=2), unsure + ends
+        apart, limit = np.linalg.norm(self._caught(evidence, sums), axis=2), unsure + ends
         for start in np.unique(np.linspace(0, len(h), self.starts, endpoint=False).astype(int))[1:]:
-            off = np.linalg.norm(sums[start:] - sums[start - 1], axis=2)
+            off = np.linalg.norm(self._caught(evidence, sums[start:] - sums[start - 1]), axis=2)
             most = unsure[start:] - unsure[start - 1] + ends
             more = off * limit[start:] > apart[start:] * most
             apart[start:], limit[start:] = np.where(more, off, apart[start:]), np.where(more, most, limit[start:])
         source = "what its ends and its blows leave of the trapezoidal rule, and a time step of its change of velocity"
         return self._worst(evidence, apart, limit, "m", "has drifted by", source)
+
+    @staticmethod
+    def _caught(evidence: Evidence, drift: Floats) -> Floats:
+        """Drifts (T, B, 3) less one fall, g h^2 / 2 at most, that began and was caught between two frames."""
+        fallen = np.clip(-(drift @ evidence.up), 0.0, 0.5 * evidence.gravity * float(evidence.motion.h.max()) ** 2)
+        fallen = np.where(evidence.motion.kinematic, 0.0, fallen)
+        return np.asarray(drift + fallen[..., None] * evidence.up)
 
     def _rounding(self, evidence: Evidence) -> Floats:
         """What single precision leaves of places, (T, B) [m]."""
