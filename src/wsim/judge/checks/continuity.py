@@ -38,20 +38,16 @@ class CheckContinuity(Check):
             return []
         strayed = np.diff(motion.com, axis=0) - 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
         going, turning = _driven(evidence)
-        room = self._room(evidence, going)
-        found = [self._places(evidence, strayed, room), self._turns(evidence, turning)]
+        found = [self._places(evidence, strayed, going), self._turns(evidence, turning)]
         # What has jumped is not where its velocities take it, either.
-        return [*found, self._drift(evidence, strayed, going, room)] if found[0].passed else found
+        return [*found, self._drift(evidence, strayed, going)] if found[0].passed else found
 
-    def _room(self, evidence: Evidence, driven: Floats) -> Floats:
-        """How far a place may be from where the velocities at a frame's ends take it, (T - 1, B) [m]."""
+    def _places(self, evidence: Evidence, strayed: Floats, driven: Floats) -> Finding:
         motion, h = evidence.motion, evidence.motion.h[:, None]
         # Within a frame the velocity may be anything between its ends, a body may fall and be caught, one that is hit
         # may hand it on, and a drive that is faster than the frames may have come and gone.
         pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + self._handed_on(evidence) + driven)
-        return np.asarray(h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[1:])
-
-    def _places(self, evidence: Evidence, strayed: Floats, limit: Floats) -> Finding:
+        limit = h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[1:]
         source = "half the velocity's change about then, g h, and the speed of what may hit or drive it, over h"
         return self._worst(evidence, np.linalg.norm(strayed, axis=2), limit, "m", "jumps by", source)
 
@@ -70,37 +66,37 @@ class CheckContinuity(Check):
         source = "its fastest rate then, half the rate's change, and g h / r or a hit's v / r, over the frame's h"
         return self._worst(evidence, turned, limit, "rad", "turns by", source)
 
-    def _drift(self, evidence: Evidence, strayed: Floats, driven: Floats, room: Floats) -> Finding:
+    def _drift(self, evidence: Evidence, strayed: Floats, driven: Floats) -> Finding:
         """How far places come from where velocities take them, from any of some moments to any later one.
 
         Of a smooth motion the trapezoidal rule's errors h^3 v'' / 12 add up to what its ends differ by, h^2 dv/dt / 12
         (Euler and Maclaurin), and a step of first order is off by dt / 2 of the change of velocity: neither grows with
-        the run. What grows is as much as velocities bend from frame to frame, in blows, by twice the rule's error. One
-        frame in which something pushes may hide what a frame may: a fall that water ends shows in neither of its ends.
+        the run. What grows is as much as velocities bend from frame to frame, in blows, by twice the rule's error.
         """
         motion, h = evidence.motion, evidence.motion.h[:, None]
         change = np.linalg.norm(np.diff(motion.v, axis=0), axis=2)
         ends = motion.dt * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
-        ends = ends + evidence.gravity * motion.dt**2  # it settles by a step
         ends = ends + self._rounding(evidence).max(axis=0)
-        begins = motion.touched[1:] != motion.touched[:-1]
-        pushed = evidence.recording.applied_impulse
-        if pushed is not None:
-            begins = begins | np.any(pushed[1:] != 0.0, axis=2)
-        ends = ends + np.where(begins & ~motion.kinematic, room, 0.0).max(axis=0)
         # A contact that flips from step to step tells of one phase of it, and the body stays.
         told = 0.5 * np.linalg.norm(motion.v[1:] + motion.v[:-1], axis=2)
         hides = np.where(motion.touched[1:] | motion.touched[:-1], self.steps * evidence.gravity * motion.dt, 0.0)
         unsure = np.cumsum(h * (_bends(motion.v) + driven + np.minimum(told, hides)), axis=0)
         sums = np.cumsum(strayed, axis=0)
-        apart, limit = np.linalg.norm(sums, axis=2), unsure + ends
+        apart, limit = np.linalg.norm(self._caught(evidence, sums), axis=2), unsure + ends
         for start in np.unique(np.linspace(0, len(h), self.starts, endpoint=False).astype(int))[1:]:
-            off = np.linalg.norm(sums[start:] - sums[start - 1], axis=2)
+            off = np.linalg.norm(self._caught(evidence, sums[start:] - sums[start - 1]), axis=2)
             most = unsure[start:] - unsure[start - 1] + ends
             more = off * limit[start:] > apart[start:] * most
             apart[start:], limit[start:] = np.where(more, off, apart[start:]), np.where(more, most, limit[start:])
         source = "what its ends and its blows leave of the trapezoidal rule, and a time step of its change of velocity"
         return self._worst(evidence, apart, limit, "m", "has drifted by", source)
+
+    @staticmethod
+    def _caught(evidence: Evidence, drift: Floats) -> Floats:
+        """Drifts (T, B, 3) less one fall, g h^2 / 2 at most, that began and was caught between two frames."""
+        fallen = np.clip(-(drift @ evidence.up), 0.0, 0.5 * evidence.gravity * float(evidence.motion.h.max()) ** 2)
+        fallen = np.where(evidence.motion.kinematic, 0.0, fallen)
+        return np.asarray(drift + fallen[..., None] * evidence.up)
 
     def _rounding(self, evidence: Evidence) -> Floats:
         """What single precision leaves of places, (T, B) [m]."""
