@@ -76,7 +76,8 @@ class CheckContinuity(Check):
         motion, h = evidence.motion, evidence.motion.h[:, None]
         change = np.linalg.norm(np.diff(motion.v, axis=0), axis=2)
         ends = motion.dt * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
-        ends = ends + self._rounding(evidence).max(axis=0)
+        # What is set down settles by a step, also along a slope.
+        ends = ends + self._rounding(evidence).max(axis=0) + evidence.gravity * motion.dt**2
         # A contact that flips from step to step tells of one phase of it, and the body stays.
         told = 0.5 * np.linalg.norm(motion.v[1:] + motion.v[:-1], axis=2)
         hides = np.where(motion.touched[1:] | motion.touched[:-1], self.steps * evidence.gravity * motion.dt, 0.0)
