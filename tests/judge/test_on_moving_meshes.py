@@ -64,7 +64,7 @@ def test_a_box_between_the_legs_is_carried_by_pieces_alone(dropped):
 
 
 def test_a_ring_that_comes_to_rest_aslant_rolls_on_the_corners_that_collide(tmp_path):
-    """Newton's hulls have 64 corners at most: by all 288 of the ring it would lie 4 mm deep at times."""
+    """Newton's hulls have 64 corners at most: by the hull of all of the ring's it rolls on what is not there."""
     trimesh.creation.torus(0.15, 0.05, major_sections=24, minor_sections=12).export(tmp_path / "ring.obj")
 
     def build(scene):
