@@ -14,6 +14,7 @@ import rerun as rr
 from wsim.recording import columns as names
 from wsim.recording.contacts import columns_of
 from wsim.recording.shapes import ROOT_FRAME, is_nested, rgba
+from wsim.scene.cord_lines import cord_lines
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,6 +29,8 @@ CHUNK_BYTES = 4 * 1024 * 1024  # of particles or bodies that wait in memory
 CHUNK_ROWS = 256
 MAX_HEIGHT_PLOTS = 16  # more lines than this say nothing in a plot
 COLOR_STEPS = 32  # few colours compress well
+ZIGZAG, SLACK_PIECES = 2, 40  # points on a coil's turn, pieces of a slack rope: a video's many would fill the file
+FAR = 1e9  # [m]
 FOAM = (0.92, 0.97, 1.0)  # what the fastest particles tend to
 
 
@@ -171,6 +174,43 @@ class FluidBuffer:
         speed = np.sqrt(np.einsum("ij,ij->i", velocity, velocity))
         level = np.nan_to_num(speed * ((COLOR_STEPS - 1) / self._fast), nan=COLOR_STEPS - 1, posinf=COLOR_STEPS - 1)
         return self._palette[np.minimum(level, COLOR_STEPS - 1).astype(np.intp)]
+
+
+class CordBuffer:
+    """The lines that draw a world's springs and ropes, in the world's frame; nothing reads them back but the viewer."""
+
+    def __init__(self, stream: Any, world: World) -> None:
+        self._stream = stream
+        self._cords = world.cords
+        self._bodies = {body.prim: i for i, body in enumerate(world.bodies)}
+        self._times: list[int] = []
+        self._lines: dict[str, list[list[Floats]]] = {cord.prim: [] for cord in self._cords}
+
+    def add(self, ns: int, body_q: Floats) -> None:
+        """Keep the lines of one frame [ns], from the poses of its bodies, (B, 7)."""
+        if not self._cords:
+            return
+        self._times.append(ns)
+        for cord in self._cords:
+            held = {g.body: body_q[self._bodies[g.body]][None] for g in cord.path if g.body is not None}
+            # Where a body of a run that went wrong is nowhere, as NaN is, its cords have no line.
+            known = all(np.abs(pose).max() < FAR for pose in held.values())
+            lines = cord_lines(cord, held, ZIGZAG, SLACK_PIECES) if known else []
+            self._lines[cord.prim].append([line.points.astype(np.float32) for line in lines])
+        if len(self._times) >= CHUNK_ROWS:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the frames that wait."""
+        if not self._times:
+            return
+        index = names.time_column(self._times)
+        for prim, rows in self._lines.items():
+            strips = rr.LineStrips3D.columns(strips=[points for row in rows for points in row])
+            own = strips.partition([len(row) for row in rows])
+            self._stream.send_columns(names.entity_path(prim), [index], [*own], strict=True)
+            rows.clear()
+        self._times = []
 
 
 class RowBuffer:

@@ -50,7 +50,8 @@ def write_excerpt(path: str | Path, copy: str | Path, time: float | None = None,
 
 
 def _check_entity(world: World, entity: str | None) -> None:
-    known = [item.prim for group in (world.bodies, world.statics, world.fluids, world.cameras) for item in group]
+    groups = (world.bodies, world.statics, world.fluids, world.cords, world.cameras)
+    known = [item.prim for group in groups for item in group]
     if entity is not None and not any(entity == prim or entity.startswith(prim + "/") for prim in known):
         raise UserError(f"the recording has no prim {entity!r}; it has {', '.join(known)}")
 

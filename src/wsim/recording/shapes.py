@@ -1,4 +1,4 @@
-"""The part of a recording that never changes: what the viewer draws for bodies, statics and cameras."""
+"""The part of a recording that never changes: what the viewer draws for bodies, statics, cords and cameras."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ import rerun as rr
 from wsim.geometry.colour import srgb_of
 from wsim.geometry.rotations import line_of_sight, rotate
 from wsim.recording.columns import entity_path
+from wsim.scene.cord_lines import line_radii
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.scene.world import Body, Camera, Shape, Static, World
+    from wsim.scene.world import Body, Camera, Rope, Shape, Spring, Static, World
 
 PLANE_THICKNESS = 0.02  # [m]
 ROOT_FRAME = "tf#/"  # Rerun's name for the world's frame
@@ -36,8 +37,20 @@ def log_scene(stream: Any, world: World) -> None:
         # One radius for all particles and all frames; positions and colours follow in time.
         radii = rr.Points3D.from_fields(radii=[0.5 * fluid.spacing])
         stream.log(entity_path(fluid.prim), radii, static=True, strict=True)
+    for cord in world.cords:
+        log_cord(stream, cord, nested=is_nested(cord.prim, world))
     for camera in world.cameras:
         log_camera(stream, camera, camera.width, camera.height, nested=is_nested(camera.prim, world))
+
+
+def log_cord(stream: Any, cord: Spring | Rope, nested: bool = False) -> None:
+    """Log a spring's or a rope's colour and how thick its lines are, static; the lines follow in time."""
+    radii = line_radii(cord)
+    look = rr.LineStrips3D.from_fields(radii=radii, colors=[rgba(cord.color)] * len(radii))
+    stream.log(entity_path(cord.prim), look, _facts(cord), static=True, strict=True)
+    if nested:  # its lines are in the world, not in the frame of the body above it
+        frame = rr.Transform3D(translation=(0.0, 0.0, 0.0), parent_frame=ROOT_FRAME)
+        stream.log(entity_path(cord.prim), frame, static=True, strict=True)
 
 
 def log_camera(stream: Any, camera: Camera, width: int, height: int, nested: bool = False) -> None:
@@ -135,7 +148,7 @@ def _mesh_visual(shape: Shape, color: list[int]) -> Any | None:
     return rr.Mesh3D(vertex_positions=vertices, vertex_normals=np.repeat(normals, 3, axis=0), albedo_factor=color)
 
 
-def _facts(owner: Body | Static) -> Any:
+def _facts(owner: Body | Static | Spring | Rope) -> Any:
     """What the viewer's selection panel says of a prim."""
     facts: dict[str, Any] = {"prim": owner.prim}
     if owner.line is not None:

@@ -18,7 +18,7 @@ from rerun.chunk import RrdReader
 from wsim.errors import UserError
 from wsim.recording import columns as names
 from wsim.recording.blueprint import make_blueprint
-from wsim.recording.buffers import BodyBuffer, FluidBuffer, RowBuffer
+from wsim.recording.buffers import BodyBuffer, CordBuffer, FluidBuffer, RowBuffer
 from wsim.recording.causes import WIDTHS
 from wsim.recording.causes import of_bodies as causes_of_bodies
 from wsim.recording.causes import of_frame as causes_of_frame
@@ -74,6 +74,7 @@ class RecordingWriter:
         self._stream = _open_stream(self.partial_path, world.name)
         self._bodies = BodyBuffer(self._stream, world)
         self._fluids = {fluid.prim: FluidBuffer(self._stream, fluid, world) for fluid in world.fluids}
+        self._cords = CordBuffer(self._stream, world)
         self._rows = RowBuffer(self._stream)
         self._write_setup(blueprint)
 
@@ -93,6 +94,7 @@ class RecordingWriter:
         self._last_ns = ns
         self.frame_count += 1
         self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame), frame.contacts)
+        self._cords.add(ns, rows[0])
         for prim, arrays in fluids.items():
             self._fluids[prim].add(ns, *arrays)
         for name, value in frame.scalars.items():
@@ -202,6 +204,7 @@ class RecordingWriter:
     def _flush(self) -> None:
         for fluid in self._fluids.values():
             fluid.flush()
+        self._cords.flush()
         self._rows.flush()
         self._bodies.flush()
         self._flushed_at = time.monotonic()

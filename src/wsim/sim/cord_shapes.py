@@ -7,16 +7,12 @@ from typing import Any
 import newton
 import numpy as np
 
-from wsim.geometry.catenary import hanging
-from wsim.geometry.ropes import path_points
-from wsim.scene.cord_paths import moving_stops
+from wsim.scene.cord_lines import cord_lines, spring_turns
 from wsim.scene.world import Rope, Spring, World
 
 Array = np.ndarray
 ROPE_PIECES = 64
 COIL_PIECES = 12  # a turn
-WIRE = 0.14  # radius of a coil's wire, of the coil's
-END = 0.08  # of a spring's length at each end that is straight
 MARK = "drawn_"
 
 
@@ -30,15 +26,10 @@ def add_cord_shapes(builder: Any, world: World) -> None:
             )
 
 
-def _turns(spring: Spring) -> int:
-    """Turns of a drawn coil: as many as give it a pitch of about its radius, at its rest length."""
-    return int(np.clip((spring.rest_length or 1.0) / (1.2 * spring.radius), 5, 14))
-
-
 def _pieces(cord: Spring | Rope) -> int:
     if isinstance(cord, Rope):
         return ROPE_PIECES
-    return COIL_PIECES * _turns(cord) + 2 if cord.stiffness > 0.0 else 2
+    return COIL_PIECES * spring_turns(cord) + 2 if cord.stiffness > 0.0 else 2
 
 
 class CordShapes:
@@ -74,43 +65,17 @@ class CordShapes:
 
 def _drawn(cord: Spring | Rope, poses: dict[str, Array]) -> tuple[Array, Array]:
     """Ends of the capsules that draw a cord, (P, 2, 3) [m], and their radii, (P,) [m]."""
-    stops = moving_stops(cord.path, poses)
-    if isinstance(cord, Rope):
-        points = _slackened(path_points(stops), cord.length)
-        return np.stack([points[:-1], points[1:]], axis=1), np.full(len(points) - 1, cord.radius)
-    start, end = (stop.position[0] for stop in stops)
-    if cord.stiffness == 0.0:
-        # A damper: a rod that goes into a cylinder.
-        tube = np.stack([start, start + 0.55 * (end - start)])
-        return np.stack([tube, np.stack([start, end])]), np.array([0.5 * cord.radius, 0.2 * cord.radius])
-    points = _coil(start, end, cord.radius, _turns(cord))
-    return np.stack([points[:-1], points[1:]], axis=1), np.full(len(points) - 1, WIRE * cord.radius)
+    ends, radii = [], []
+    for line in cord_lines(cord, poses, COIL_PIECES, ROPE_PIECES):
+        points = _divided(line.points) if isinstance(cord, Rope) else line.points
+        ends.append(np.stack([points[:-1], points[1:]], axis=1))
+        radii.append(np.full(len(points) - 1, line.radius))
+    return np.concatenate(ends), np.concatenate(radii)
 
 
-def _coil(start: Array, end: Array, radius: float, turns: int) -> Array:
-    apart = end - start
-    length = max(float(np.linalg.norm(apart)), 1e-9)
-    along = apart / length
-    aside = np.eye(3)[int(np.argmin(np.abs(along)))]
-    u = np.cross(along, aside)
-    u /= np.linalg.norm(u)
-    v = np.cross(along, u)
-    way = np.linspace(0.0, 1.0, COIL_PIECES * turns + 1)
-    turn = 2.0 * np.pi * turns * way
-    middle = start + ((END + (1.0 - 2.0 * END) * way) * length)[:, None] * along
-    ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
-    points: Array = np.concatenate([start[None], middle + radius * ring, end[None]])
-    return points
-
-
-def _slackened(points: Array, length: float) -> Array:
-    """A rope's way drawn out to its length, in a fixed number of pieces: what is slack hangs in its last part."""
+def _divided(points: Array) -> Array:
+    """A rope's way in a fixed number of pieces."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    slack = length - float(steps.sum())
-    if slack > 1e-3 * length:
-        left = max(ROPE_PIECES + 2 - len(points), 8)
-        points = np.concatenate([points[:-2], hanging(points[-2], points[-1], float(steps[-1]) + slack, left)])
-        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     way = np.concatenate([[0.0], np.cumsum(steps)])
     if len(way) > ROPE_PIECES + 1:
         kept = np.linspace(0.0, way[-1], ROPE_PIECES + 1)
