@@ -102,6 +102,10 @@ def _rubbing(stage: Usd.Stage) -> None:
     stage.GetPrimAtPath("/World/joint0").CreateAttribute("newton:friction", Sdf.ValueTypeNames.Float).Set(-1.0)
 
 
+def _brittle(stage: Usd.Stage) -> None:
+    UsdPhysics.Joint(stage.GetPrimAtPath("/World/joint0")).CreateBreakForceAttr(5.0)
+
+
 def _breaking(stage: Usd.Stage) -> None:
     UsdPhysics.Joint(stage.GetPrimAtPath("/World/joint0")).CreateBreakForceAttr(0.0)
 
@@ -146,6 +150,11 @@ REFUSED: list[tuple[list[Joined], Callable[[Usd.Stage], None], str]] = [
         [("PrismaticJoint", "a", "b")],
         _excluded,
         "joint0: a PhysicsPrismaticJoint closes a loop; only a fixed, revolute",
+    ),
+    (
+        [("PrismaticJoint", "a", "b")],
+        _brittle,
+        "joint0: a PhysicsPrismaticJoint breaks; only a fixed, revolute or spherical joint can: let a carriage slide",
     ),
     ([("RevoluteJoint", "a", "b")], _limited, "joint0: it closes a loop, and such a joint can have no limits"),
     ([("RevoluteJoint", "a", "b")], _rubbing, "joint0.newton:friction: -1 must be finite and >= 0"),

@@ -177,6 +177,8 @@ BREAKS = {"break_force": 5.0}
         (lambda s: s.joint_revolute("j", None, "b", friction=-1.0), "friction = -1 must be >= 0 N m"),
         (lambda s: s.joint_prismatic("j", None, "b", friction=float("nan")), "friction = nan must be finite in N"),
         (lambda s: s.joint_fixed("j", None, "b", break_force=0.0), "break_force = 0 must be > 0 N"),
+        (lambda s: s.joint_prismatic("j", None, "b", **BREAKS), "a slider cannot break: let a small carriage body"),
+        (lambda s: s.joint_prismatic("j", None, "b", break_torque=1.0), "a slider cannot break: let a small carriage"),
         (lambda s: s.joint_revolute("j", None, "b", limits_deg=(-1, 1), **BREAKS), "may break can have no limits_deg"),
         (
             lambda s: s.joint_revolute("j", None, "b", friction=1.0, break_torque=1.0),

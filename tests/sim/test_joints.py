@@ -135,6 +135,27 @@ def test_joints_break_at_their_strength(simulate):
         assert strong == pytest.approx(2.0, abs=5e-5), name
 
 
+def test_what_slides_on_a_carriage_breaks_across_its_rail(simulate):
+    """A slider cannot break; what is fixed to one that bears 0.99 of its weight falls as it slides, 1.01 holds it."""
+    speed, seconds = 0.5, 0.2
+
+    def build(scene):
+        for k, share in enumerate((0.99, 1.01)):
+            at = {"position": (0, k, 2), "velocity": (speed, 0, 0)}
+            carriage = scene.box(f"carriage{k}", size=(0.1,) * 3, mass=0.2, **at)
+            load = scene.box(f"load{k}", size=(0.1,) * 3, mass=2.0, **(at | {"position": (0, k, 1.8)}))
+            scene.joint_prismatic(f"rail{k}", None, carriage, axis="X")
+            scene.joint_fixed(f"latch{k}", carriage, load, break_force=share * 2.0 * G)
+
+    run = simulate(build, seconds)
+    weak, strong = (run.q[f"load{k}"][-1] for k in (0, 1))
+    assert 0.0 < weak[2] - (1.8 - G * seconds**2 / 2) + 2e-3 < 0.025
+    assert strong[2] == pytest.approx(1.8, abs=5e-5)
+    for k in (0, 1):
+        assert run.q[f"carriage{k}"][-1] == pytest.approx((speed * seconds, k, 2), abs=1e-4)
+        assert run.q[f"load{k}"][-1, 0] == pytest.approx(speed * seconds, abs=1e-4)
+
+
 @pytest.mark.parametrize("device", ["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
 def test_each_world_breaks_by_itself(tmp_path, device):
     """Of two worlds the one whose bob is jerked down breaks, and the collected worlds say so."""

@@ -86,10 +86,13 @@ def _grown(tree: Forest, joint: UsdPhysics.Joint, holders: dict[Sdf.Path, Sdf.Pa
 
 def _constraint(joint: UsdPhysics.Joint, geared: bool) -> Iterator[str]:
     """A joint outside the trees is a constraint, which has no coordinate."""
-    does = "breaks" if may_break(joint) else "closes a loop"
+    does, instead = "closes a loop", "let another joint of the loop close it"
+    if may_break(joint):
+        does, instead = "breaks", "let a carriage slide, and a fixed joint that breaks hold the body to it"
     prim = joint.GetPrim()
     if not any(prim.IsA(kind) for kind in _CLOSING):
-        yield f"{joint.GetPath()}: a {prim.GetTypeName()} {does}; only a fixed, revolute or spherical joint can"
+        kind = prim.GetTypeName()
+        yield f"{joint.GetPath()}: a {kind} {does}; only a fixed, revolute or spherical joint can: {instead}"
     elif what := _needs(prim, geared):
         yield f"{joint.GetPath()}: it {does}, and such a joint can have no {what}; put that on another joint"
 

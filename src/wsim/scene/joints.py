@@ -110,12 +110,20 @@ class Joints(Author):
         limits: Sequence[float] | None = None,
         drive: Drive | None = None,
         friction: float = 0.0,
+        break_force: None = None,
+        break_torque: None = None,
     ) -> Handle:
         """Let a body slide along an axis, within `limits` = (low, high) [m], against `friction` [N].
 
-        For the rest see `Joints`.
+        For the rest see `Joints`. A slider cannot break: let a carriage slide, and a `joint_fixed` that breaks hold the
+        body to it.
         """
         call = Call("joint_prismatic", name)
+        if _Strength.of(call, break_force, break_torque):
+            call.fail(
+                "a slider cannot break: let a small carriage body slide, and hold the child to the carriage with a "
+                "joint_fixed that has the break_force or break_torque"
+            )
         bounds = None if limits is None else _limits(call, "limits", limits, MAX_POSITION, "m")
         motor = _checked(call, drive, MAX_POSITION)
         rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N")
