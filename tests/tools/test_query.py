@@ -128,8 +128,9 @@ def test_a_verdict_tells_what_failed_first_and_what_to_change(empty: Workspace) 
     lines = done(empty, "read_verdict").splitlines()
     assert ran.splitlines()[1:] == lines
     assert lines[0].startswith("rejected: ")
-    assert lines[1].split() == ["check", "prim", "value", "limit", "unit", "at", "[s]", "line"]
-    (row,) = (line.split() for line in lines if line.startswith("CheckPenetration  block"))
+    assert lines[1].startswith("try first: ")
+    assert lines[2].split() == ["check", "prim", "value", "limit", "unit", "at", "[s]", "line"]
+    (row,) = (line.split() for line in lines if line.split()[:2] == ["CheckPenetration", "block"])
     assert row[2:5] == ["0.06", "0.04", "m"]
     assert row[-1] == "program.py:4"
     assert any(line.startswith("  -> change position") and "0.06 m" in line for line in lines)

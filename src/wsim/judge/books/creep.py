@@ -31,6 +31,7 @@ INTERVALS = 16  # that a slip lasts for
 NEAR = 2e-3  # [m]: what is nearer touches
 EACH = 0.3  # of the mean: each frame adds as much to a slip that lasts
 TURN = 0.02  # [rad]: what turns by more against what it touches rolls
+ROUND = 0.1  # [rad]: what turns both by more, as a turntable does, turns the friction's way with it
 CREEP = 2e-5  # [m/s]: what wsim leaves of what friction holds is below 1e-6
 ENOUGH = 1e-3  # of gravity: a rest that is as good as none
 
@@ -117,7 +118,8 @@ def _drifts(evidence: Evidence, touching: Touching, contacts: Contacts, first: i
     steady = gone.min(axis=1) > EACH * length / INTERVALS
     steady &= (rate > np.maximum(CREEP, _soft(evidence, touching, contacts))) & (rate < 2.0 * STILL)
     steady &= length > INTERVALS * rounding
-    steady &= _turned(evidence, contacts, first, last) < TURN
+    relative, absolute = _turned(evidence, contacts, first, last)
+    steady &= (relative < TURN) & (absolute < ROUND)
     return np.where(steady[:, None], drift, 0.0)
 
 
@@ -147,13 +149,14 @@ def _path(evidence: Evidence, touching: Touching, contacts: Contacts, side: int,
     return found
 
 
-def _turned(evidence: Evidence, contacts: Contacts, first: int, last: int) -> Floats:
-    """By how much the bodies of each contact turn against each other in a span, (n,) [rad]."""
+def _turned(evidence: Evidence, contacts: Contacts, first: int, last: int) -> tuple[Floats, Floats]:
+    """By how much the bodies of each contact turn in a span, against each other and at most, (n,) each [rad]."""
     turns = []
     for rows in (contacts.one, contacts.two):
         q = evidence.body_q[[first, last]][:, np.maximum(rows, 0), 3:]
         turn = multiply(q[1], conjugate(q[0]))
         turns.append(np.where((rows >= 0)[:, None], turn, (0.0, 0.0, 0.0, 1.0)))
     relative = multiply(turns[1], conjugate(turns[0]))
-    found: Floats = 2.0 * np.linalg.norm(relative[:, :3], axis=1)
-    return found
+    apart: Floats = 2.0 * np.linalg.norm(relative[:, :3], axis=1)
+    most: Floats = 2.0 * np.maximum(*(np.linalg.norm(turn[:, :3], axis=1) for turn in turns))
+    return apart, most

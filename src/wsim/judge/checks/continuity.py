@@ -47,7 +47,7 @@ class CheckContinuity(Check):
         # Within a frame the velocity may be anything between its ends, a body may fall and be caught, one that is hit
         # may hand it on, and a drive that is faster than the frames may have come and gone.
         pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + self._handed_on(evidence) + driven)
-        limit = h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[1:]
+        limit = h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[1:] + self._added(evidence)
         source = "half the velocity's change about then, g h, and the speed of what may hit or drive it, over h"
         return self._worst(evidence, np.linalg.norm(strayed, axis=2), limit, "m", "jumps by", source)
 
@@ -78,6 +78,7 @@ class CheckContinuity(Check):
         ends = motion.dt * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
         # What is set down settles by a step, also along a slope.
         ends = ends + self._rounding(evidence).max(axis=0) + evidence.gravity * motion.dt**2
+        ends = ends + self._added(evidence).sum(axis=0)
         # A contact that flips from step to step tells of one phase of it, and the body stays.
         told = 0.5 * np.linalg.norm(motion.v[1:] + motion.v[:-1], axis=2)
         hides = np.where(motion.touched[1:] | motion.touched[:-1], self.steps * evidence.gravity * motion.dt, 0.0)
@@ -102,6 +103,13 @@ class CheckContinuity(Check):
     def _rounding(self, evidence: Evidence) -> Floats:
         """What single precision leaves of places, (T, B) [m]."""
         return np.asarray(self.roundings * FLOAT32 * np.abs(evidence.motion.com).max(axis=2))
+
+    @staticmethod
+    def _added(evidence: Evidence) -> Floats:
+        """What goes by hand adds each step's way to its place, and may round one way each time, (T - 1, B) [m]."""
+        motion = evidence.motion
+        count = motion.h[:, None] / max(motion.dt, 1e-9)
+        return np.where(motion.kinematic, 0.5 * count * FLOAT32 * np.abs(motion.com[1:]).max(axis=2), 0.0)
 
     @staticmethod
     def _handed_on(evidence: Evidence) -> Floats:
