@@ -201,18 +201,20 @@ class Balance:
 
         Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end.
         """
-        flat = []
+        flat: list[Floats] = []
+        later: list[Floats] = []
         for contacts, _, end in found:
-            u = slip(self._touching, contacts, ends[end])
-            flat.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
-        every, own = together([contacts for contacts, _, _ in found]), np.concatenate(flat)
+            carried = _carried(contacts, ends[end], ends[1 - end])
+            for kept, touching, poses in ((flat, contacts, ends[end]), (later, carried, ends[1 - end])):
+                u = slip(self._touching, touching, poses)
+                kept.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
+        every, own, then = together([contacts for contacts, _, _ in found]), np.concatenate(flat), np.concatenate(later)
         side = np.repeat([end for _, _, end in found], [len(contacts) for contacts, _, _ in found])
         rows = len(ends[0].v) + 1
         pair, which = np.unique((every.one + 1) * rows + every.two + 1, return_inverse=True)
-        mean, count = np.zeros((2, len(pair), 3)), np.zeros((2, len(pair)))
-        np.add.at(mean, (side, which), own)
-        np.add.at(count, (side, which), 1.0)
-        then = (mean / np.maximum(count, 1.0)[..., None])[1 - side, which]
+        touches = np.zeros((2, len(pair)), dtype=bool)
+        touches[side, which] = True
+        then = np.where(touches[1 - side, which][:, None], then, 0.0)
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
@@ -252,6 +254,13 @@ class Balance:
         motion = self._motion
         q, com, v, w = self._evidence.body_q[frames], motion.com[frames], motion.v[frames], motion.w[frames]
         return Poses(q.reshape(-1, 7), com.reshape(-1, 3), v.reshape(-1, 3), w.reshape(-1, 3))
+
+
+def _carried(contacts: Contacts, here: Poses, there: Poses) -> Contacts:
+    """Contacts at the other end of an interval, where the body goes that touches: a box that spins slips all round."""
+    rows = np.where(contacts.two >= 0, contacts.two, contacts.one)
+    way = np.where((rows >= 0)[:, None], there.com[np.maximum(rows, 0)] - here.com[np.maximum(rows, 0)], 0.0)
+    return replace(contacts, point=contacts.point + way)
 
 
 def _moved(poses: Poses, dt: Floats) -> Poses:
