@@ -95,10 +95,16 @@ class CheckContinuity(Check):
 
     @staticmethod
     def _caught(evidence: Evidence, drift: Floats) -> Floats:
-        """Drifts (T, B, 3) less one fall, g h^2 / 2 at most, that began and was caught between two frames."""
+        """Drifts (T, B, 3) less one fall, g h^2 / 2 at most, that began and was caught between two frames.
+
+        On a slope it goes aside, too, until friction has it: by no farther than it fell.
+        """
         fallen = np.clip(-(drift @ evidence.up), 0.0, 0.5 * evidence.gravity * float(evidence.motion.h.max()) ** 2)
         fallen = np.where(evidence.motion.kinematic, 0.0, fallen)
-        return np.asarray(drift + fallen[..., None] * evidence.up)
+        aside = drift + fallen[..., None] * evidence.up
+        far = np.linalg.norm(aside, axis=-1)
+        left = np.maximum(far - fallen, 0.0) / np.maximum(far, 1e-300)
+        return np.asarray(aside * left[..., None])
 
     def _rounding(self, evidence: Evidence) -> Floats:
         """What single precision leaves of places, (T, B) [m]."""
