@@ -8,7 +8,7 @@
 Into sound programs that the judge accepts one wrong number or arrangement is put, drawn at random from each of some
 thirty kinds; the plan stays as it is, or leaves open what is wrong, so that physics alone can tell. What the judge then
 rejects is mended by nobody's judgement: the first suggestion is applied to the program's text as it stands
-(`judge_mends/apply.py`), the program is run and judged again, and so up to three times. A suggestion without a value is
+(`wsim.program.mend`), the program is run and judged again, and so up to three times. A suggestion without a value is
 one that fails.
 
 The halves are of other draws; the held-out one is for the final figure. Simulations are kept under

@@ -9,8 +9,6 @@ from typing import Any
 
 from benchmarks.judge_families.drawn import Draw
 from benchmarks.judge_families.record import own, simulated, world_of
-from benchmarks.judge_mends.apply import NotAppliedError, applied
-from benchmarks.judge_mends.unroll import unrolled
 from benchmarks.judge_mends.worlds import ALL, written
 from benchmarks.judge_mends.wrong import WRONG, Mistake
 from benchmarks.judge_worlds.world import SoundWorld
@@ -18,6 +16,8 @@ from wsim.judge import judge
 from wsim.judge.repair.order import suggestions
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
+from wsim.program.mend import NotMendedError, mended
+from wsim.program.mend.unroll import unrolled
 from wsim.scene import Scene, SceneError
 
 SEEDS = {"tuning": 1, "held-out": 4}  # 2, and what was seen of 3, were looked at
@@ -127,9 +127,9 @@ def mend(outcome: Outcome, program: str, plan: Plan, told: Plan) -> None:
             break
         outcome.taken.append(f"{first.check}: {first.target.sentence}")
         try:
-            program = applied(program, first.target, plan)
+            program = mended(program, first.target, plan)
             verdict = judged(program, told)
-        except (NotAppliedError, SceneError, RuntimeError) as error:
+        except (NotMendedError, SceneError, RuntimeError) as error:
             outcome.error = str(error).splitlines()[0]
             break
         if verdict.status == "accepted":

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from benchmarks.judge_families.drawn import Draw
-from benchmarks.judge_mends.apply import _call, _keyword, _literal, _named, _put, _run
+from benchmarks.judge_mends.calls import call_of, keyword_of, literal, put, run_of
 from benchmarks.judge_worlds import in_program
 from wsim.plan.schema import Plan, PlanObject
+from wsim.program.mend.text import made_by
 
 SOLID = ("box", "sphere", "cylinder", "capsule")
 Change = Callable[[str], str]
@@ -101,8 +102,8 @@ def edited(change: Callable[[ast.FunctionDef], None]) -> Change:
 
 def _with(name: str, keyword: str, value: Callable[[Any], object]) -> Change:
     def change(build: ast.FunctionDef) -> None:
-        call = _call(build, name)
-        _put(call, keyword, value(_literal(call, keyword)))
+        call = call_of(build, name)
+        put(call, keyword, value(literal(call, keyword)))
 
     return edited(change)
 
@@ -190,8 +191,8 @@ def too_rough(plan: Plan, draw: Draw) -> Mistake | None:
 
     def change(build: ast.FunctionDef) -> None:
         for each in ast.walk(build):
-            if isinstance(each, ast.Call) and _named(each) in (item.name, "ramp"):
-                _put(each, "friction", to)
+            if isinstance(each, ast.Call) and made_by(each) in (item.name, "ramp"):
+                put(each, "friction", to)
 
     def opened(plan: Plan) -> Plan:
         return _unmade("ramp")(_unmade(item.name)(plan))
@@ -361,7 +362,7 @@ def swapped(plan: Plan, draw: Draw) -> Mistake | None:
 
 # ---- the run
 def _of_run(keyword: str, value: object) -> Change:
-    return edited(lambda build: _put(_run(build), keyword, value))
+    return edited(lambda build: put(run_of(build), keyword, value))
 
 
 @wrong
@@ -394,10 +395,10 @@ def _joint_call(plan: Plan, draw: Draw) -> tuple[str, str] | None:
 
 def _drive_changed(name: str, part: str, change: Callable[[float], float]) -> Change:
     def of(build: ast.FunctionDef) -> None:
-        drive = _keyword(_call(build, name), "drive")
+        drive = keyword_of(call_of(build, name), "drive")
         if not isinstance(drive, ast.Call):
             raise ValueError("no drive")
-        _put(drive, part, change(float(_literal(drive, part, 0.0))))  # type: ignore[arg-type]
+        put(drive, part, change(float(literal(drive, part, 0.0))))  # type: ignore[arg-type]
 
     return edited(of)
 
@@ -508,8 +509,8 @@ def camera_elsewhere(plan: Plan, draw: Draw) -> Mistake | None:
     eye, target = (round(15.0 * x, 2), round(15.0 * y, 2), 2.0), (round(20.0 * x, 2), round(20.0 * y, 2), 1.0)
 
     def change(build: ast.FunctionDef) -> None:
-        _put(_call(build, camera.name), "eye", eye)
-        _put(_call(build, camera.name), "target", target)
+        put(call_of(build, camera.name), "eye", eye)
+        put(call_of(build, camera.name), "target", target)
 
     return Mistake(f"{camera.name} stands at {eye}", program=edited(change), opened=_as_it_is)
 

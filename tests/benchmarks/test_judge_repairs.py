@@ -3,12 +3,12 @@
 import pytest
 
 from benchmarks.judge_families import record
-from benchmarks.judge_mends.apply import NotAppliedError, applied
 from benchmarks.judge_mends.trial import Outcome, mend
-from benchmarks.judge_mends.unroll import unrolled
 from benchmarks.judge_repairs import tables
 from wsim.judge.verdict import RepairTarget
 from wsim.program.compose import compose
+from wsim.program.mend import NotMendedError, mended
+from wsim.program.mend.unroll import unrolled
 from wsim.rules.planner import plan as make_plan
 
 PLAN = make_plan("A tower of three boxes stands on the ground for 0.5 seconds")
@@ -33,7 +33,7 @@ def told(**target):
     ],
 )  # fmt: skip
 def test_a_value_is_written_into_the_call_that_makes_the_prim(target, written):
-    after = applied(PROGRAM, told(**target), PLAN)
+    after = mended(PROGRAM, told(**target), PLAN)
     assert written in after
     changed = [line for line in after.splitlines() if line not in PROGRAM.splitlines()]
     assert len(changed) == 1 and written in changed[0]
@@ -50,21 +50,21 @@ def test_a_value_is_written_into_the_call_that_makes_the_prim(target, written):
         {"parameter": "break_force", "direction": "remove"},
     ],
 )
-def test_what_says_too_little_or_names_nothing_is_not_applied(target):
+def test_what_says_too_little_or_names_nothing_is_not_mended(target):
     if target["parameter"] == "velocity":  # a speed without a direction, of what stands still
         target = {**target, "parameter": "velocity", "prim": "/World/box_2"}
         program = PROGRAM.replace("scene.box('box_2'", "scene.box('box_2', velocity=(0.0, 0.0, 0.0)")
         assert program != PROGRAM
     else:
         program = PROGRAM
-    with pytest.raises(NotAppliedError):
-        applied(program, told(**target), PLAN)
+    with pytest.raises(NotMendedError):
+        mended(program, told(**target), PLAN)
 
 
 def test_an_object_is_removed_and_put_back_as_the_plan_has_it():
-    without = applied(PROGRAM, told(direction="remove"), PLAN)
+    without = mended(PROGRAM, told(direction="remove"), PLAN)
     assert "box_2" not in without.partition("scene.ground")[2] and "'box_3'" in without
-    again = applied(without, told(kind="missing object", direction="add"), PLAN)
+    again = mended(without, told(kind="missing object", direction="add"), PLAN)
     assert sorted(again.splitlines()) == sorted(PROGRAM.splitlines())
 
 
@@ -76,7 +76,7 @@ def test_a_drive_is_set_in_the_programs_units():
     target = RepairTarget(
         kind="drive", prim="/World/hub", parameter="drive.position", suggested=3.141592653589793, unit="rad"
     )
-    assert "Drive(stiffness=5.0, position=180.0)" in applied(program, target, PLAN)
+    assert "Drive(position=180.0, stiffness=5.0)" in mended(program, target, PLAN)
 
 
 def test_a_wrong_program_is_mended_by_its_first_suggestion(tmp_path, monkeypatch):
@@ -84,7 +84,7 @@ def test_a_wrong_program_is_mended_by_its_first_suggestion(tmp_path, monkeypatch
     camera = PLAN.cameras[0]
     away = RepairTarget(kind="camera", prim=f"/World/{camera.name}", parameter="target", vector=(0.0, -50.0, 20.0))
     made = Outcome("camera_away", "tuning", 0)
-    mend(made, applied(PROGRAM, away, PLAN), PLAN, PLAN)
+    mend(made, mended(PROGRAM, away, PLAN), PLAN, PLAN)
     assert (made.found, made.rounds, made.error, made.left) == ("CheckInFrame", 1, "", []), made
 
 

@@ -65,14 +65,17 @@ def _turns(loop: ast.For) -> list[dict[str, Any]] | None:
 
 def _values(node: ast.expr) -> list[Any] | None:
     """What a loop goes over, read and not run: lists of literals, and range, zip and enumerate of them."""
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KNOWN and not node.keywords:
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KNOWN:
+        given = {str(each.arg): _literal(each.value) for each in node.keywords}
+        if given.keys() - ({"start"} if node.func.id == "enumerate" else set()) or None in given.values():
+            return None
         over = [_literal(each) if node.func.id == "range" else _values(each) for each in node.args]
         if any(each is None for each in over):
             return None
         if node.func.id == "range" and not all(isinstance(each, int) and abs(each) <= MOST for each in over):
             return None
         try:
-            return list(KNOWN[node.func.id](*over))
+            return list(KNOWN[node.func.id](*over, **given))
         except (TypeError, ValueError):
             return None
     found = _literal(node)
