@@ -78,7 +78,9 @@ def generate(
     verify: Verify = False,
     params: Set = None,
 ) -> None:
-    """Plan a world from a sentence, build it, simulate it, judge it, and with a model repair it until it is right.
+    """Plan a world from a sentence, build it, simulate it, judge it, and repair it until it is right.
+
+    Repairs are the judge's own suggestions, or a model's.
 
     Exit code: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in what was given.
     """

@@ -13,8 +13,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 VERBS = {
-    "generate": "Plan a world from a sentence, build it, simulate it, judge it, and with a model repair it until it is "
-    "right.",
+    "generate": "Plan a world from a sentence, build it, simulate it, judge it, and repair it until it is right.",
     "plan": "Show the plan of a sentence: objects, places, what must happen, what was assumed, what it takes, two "
     "drawings.",
     "run": "Run a program: build its stage in the sandbox, simulate it, and judge it.",
