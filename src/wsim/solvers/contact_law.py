@@ -203,7 +203,7 @@ class ContactLawC:
         mujoco: The module.
         model: MuJoCo's model.
         flight: Steps the loose bodies.
-        surfaces: Of the geoms.
+        surfaces: Of the geoms of the one world.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
@@ -226,9 +226,10 @@ class ContactLawC:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.impulses: ContactImpulsesC | None = None  # where somebody wants them summed
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.surfaces, self.touching, self._bow = surfaces, touching, np.zeros(0)
+        self.touching, self._bow = touching, np.zeros(0)
+        self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
         self.touched = 0  # steps of the first order since the last smooth one
-        self.rolls = bool(surfaces.law[..., 2].any())
+        self.rolls = bool(self.law[..., 2].any())
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
@@ -331,8 +332,8 @@ class ContactLawC:
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
         geoms = contact.geom[chosen]
-        classes = self.surfaces.classes[geoms]
-        law = self.surfaces.law[classes[:, 0], classes[:, 1]]
+        classes = self.classes[geoms]
+        law = self.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
         contact.friction[chosen] = friction
         contact.mu[chosen] = friction[:, 0]
@@ -376,7 +377,7 @@ class ContactLawC:
             axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
             leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
             on_end = self.flat_ended[geoms] & (leans > ON_END)
-            bend = np.where(on_end, 0.0, self.surfaces.curvature[geoms]).sum(axis=1)
+            bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
             np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
         return np.maximum(
             np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction
