@@ -33,7 +33,9 @@ def loose(scene: Scene, draw: np.random.Generator) -> None:
         "roller", radius=size / 2, mass=1.0, position=(0, 4, size / 2), velocity=(speed, 0, 0), rolling=True,
         rolling_friction=draw.uniform(0.01, 0.05), **surface,
     )  # fmt: skip
-    scene.box("tumbler", size=(0.3, 0.2, size / 4), mass=1.0, position=(0, 6, 2), angular_velocity_deg=(300, 60 * speed, 500))
+    scene.box(
+        "tumbler", size=(0.3, 0.2, size / 4), mass=1.0, position=(0, 6, 2), angular_velocity_deg=(300, 60 * speed, 500)
+    )
     belt = scene.box("belt", size=(3, 1, 0.1), position=(0, 8, 0.05), static=True)
     scene.surface_velocity(belt, velocity=(speed, 0.0, 0.0))
     load = scene.box("load", size=(0.2, 0.2, 0.2), mass=2.0, position=(0, 8, 0.2))
