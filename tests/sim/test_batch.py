@@ -79,6 +79,22 @@ def test_each_world_moves_as_among_copies_of_itself(tmp_path: Path, build: Build
     assert np.abs(batch.body_q - batch.body_q[:, :1]).max(axis=(0, 1, 3)).min() > 1e-2  # and move
 
 
+def test_a_world_that_breaks_leaves_the_others_as_they_are(tmp_path: Path) -> None:
+    stages, states = _stages(tmp_path, loose, 3), []
+    for broken in (False, True):
+        simulation = Simulation(stages, "cpu")
+        if broken:
+            speeds = simulation.state.joint_qd.numpy().reshape(3, -1)
+            speeds[1] = np.nan
+            simulation.state.joint_qd.assign(speeds.ravel())
+        trajectories = collect(simulation)
+        states.append(trajectories.body_q)
+        assert [bool(problems) for problems in trajectories.problems] == [False, broken, False]
+    sound, beside = states
+    assert np.array_equal(sound[[0, 2]], beside[[0, 2]])
+    assert not np.isfinite(beside[1, -1]).all()
+
+
 def test_worlds_are_sorted_by_what_they_are_made_of(tmp_path: Path) -> None:
     worlds = [describe(stage) for stage in _stages(tmp_path, loose, 2) + _stages(tmp_path, held, 2)]
     assert alike(worlds) == [[0, 1], [2, 3]]
