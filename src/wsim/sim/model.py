@@ -29,6 +29,7 @@ from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 from wsim.solvers.surface_contacts import SurfaceParts
 
+LEAST_MOMENT = 1e-15  # [kg m^2]: MuJoCo takes nothing below
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
 
@@ -88,7 +89,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     if world_count == 1:
         add_cord_shapes(builder, one.world)
     else:
-        builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
+        builder = _builder(world)
         builder.replicate(one.builder, world_count)
     return _finalized(builder, [one], config, step, device)
 
@@ -110,14 +111,15 @@ def build_batch(stages: Sequence[Path], worlds: Sequence[World], device: Any, ti
     if worlds[0].fluids:
         raise UserError(f"{worlds[0].fluids[0].prim}: worlds with fluid are not batched; simulate them one by one")
     ones = [_import(stage, world, None) for stage, world in zip(stages, worlds, strict=True)]
-    builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=worlds[0].gravity)
+    builder = _builder(worlds[0])
     for one in ones:
         builder.add_world(one.builder)
     return _finalized(builder, ones, None, _time_step(worlds, None, time_step), device)
 
 
 def _import(stage: Path, world: World, config: Any | None) -> _One:
-    single = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
+    _weigh_spins(world)
+    single = _builder(world)
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
     SolverSPH.register_custom_attributes(single)
     ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
@@ -159,6 +161,28 @@ def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: Tim
         breakable=[one.breakable for one in ones],
         surfaces=first.surfaces,
     )
+
+
+def _builder(world: World) -> Any:
+    """A builder that takes small bodies as they are: Newton would add 1e-6 kg m^2 to moments below 1e-10.
+
+    A box of 5 mm has 1e-10 kg m^2.
+    """
+    builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
+    builder.inertia_absolute_tolerance = LEAST_MOMENT
+    builder.inertia_correction = 0.0
+    return builder
+
+
+def _weigh_spins(world: World) -> None:
+    """Refuse what is too light to turn."""
+    for body in world.bodies:
+        least = float(np.linalg.eigvalsh(np.reshape(body.inertia, (3, 3)))[0])
+        if not body.kinematic and least < LEAST_MOMENT:
+            raise UserError(
+                f"{body.prim}: its smallest moment of inertia is {least:.2g} kg m^2; make it larger or heavier, to "
+                f"{LEAST_MOMENT:.0e} kg m^2 or more: a grain of sand of half a millimetre"
+            )
 
 
 def _sph_config(world: World) -> Any | None:

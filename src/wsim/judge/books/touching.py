@@ -42,6 +42,10 @@ class Contacts:
     def __len__(self) -> int:
         return len(self.gap)
 
+    def surface(self, side: int) -> Floats:
+        """Where each touches the first body's surface or the second's (1), (n, 3) [m]: they meet with these points."""
+        return np.asarray(self.point + ((side - 0.5) * self.gap)[:, None] * self.normal)
+
     def only(self, chosen: NDArray[Any]) -> Contacts:
         """Some of them."""
         return Contacts(*(getattr(self, name)[chosen] for name in ("one", "two", "shapes", "point", "normal", "gap")))
