@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.judge.theory import (
-    G,
     RADIUS,
     STEP,
+    G,
     ask,
     ball,
     box,
