@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
+from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
@@ -91,9 +92,7 @@ class Balance:
                 between = (hit[some] | odd[strange]) & anew[some]
                 left[some], turned[some] = self._explained(some, change[strange], asked[strange], hit[some], between)
         left, turned = again(anew, left, wanted), again(anew, turned)
-        rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
-        turn = np.maximum(rate[1:], rate[:-1]) * motion.h
-        turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
+        turned *= (arms.turned(self._evidence, self.size) ** 2 / 12.0)[..., None]  # of an arm taken halfway
         turned += (wrong + self._ties.ropes.error()) / arm + step_error(self._evidence)[..., None]
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted)
 
