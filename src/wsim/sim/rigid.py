@@ -12,6 +12,7 @@ from newton import ShapeFlags
 
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.recording.contacts import Pushes
+from wsim.recording.ties import TieSums
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
 from wsim.sim.contacts import shape_numbers, surface_velocities, surfaces_of
@@ -19,6 +20,7 @@ from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
+from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_law import ContactConfig
@@ -145,20 +147,27 @@ class RigidBodies:
         self.solver.steps(state, control, dt, count)
 
     def keep_contacts(self) -> None:
-        """Sum from here on what pairs of the first world's shapes give each other."""
+        """Sum from here on what pairs of the first world's shapes give each other, and in C what joints and cords give."""
         self.solver.keep_impulses(shape_numbers(self.model, self._world))
+        if self.on_c and (self._world.joints or self._world.cords):
+            self.solver.keep_ties(*ties_of(self.solver, self._world))
 
     def take_contacts(self) -> Pushes | None:
         """The sums since the last call; None where nobody asked to keep them."""
         return self.solver.impulses.take() if self.solver.impulses else None
+
+    def take_ties(self) -> TieSums | None:
+        """The sums of joints and cords since the last call; None where nobody keeps them."""
+        return self.solver.tie_impulses.take() if self.solver.tie_impulses else None
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
         self._kinematic.reset(state)
         self.solver.reset(state, flags=0)
         self.solver.mend()
-        if self.solver.impulses:
-            self.solver.impulses.clear()
+        for sums in (self.solver.impulses, self.solver.tie_impulses):
+            if sums:
+                sums.clear()
         if self.ledger:
             self.ledger.clear()
         if not self.on_c:

@@ -39,6 +39,7 @@ from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
@@ -225,6 +226,7 @@ class ContactLawC:
     ) -> None:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.impulses: ContactImpulsesC | None = None  # where somebody wants them summed
+        self.ties: TieImpulsesC | None = None  # likewise
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.touching, self._bow = touching, np.zeros(0)
         self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
@@ -247,6 +249,8 @@ class ContactLawC:
         while self.breaking is not None and self.breaking.give_way(data):
             touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
+        if self.ties is not None:
+            self.ties.add(data, self.smooth and not touching)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
             model.opt.disableflags |= self.unilateral

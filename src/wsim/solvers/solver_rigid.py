@@ -23,6 +23,7 @@ from wsim.solvers.single_precision import soften_contacts_for_single_precision, 
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
 
 Array = np.ndarray
 ALWAYS = 2**30  # steps
@@ -69,6 +70,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.contact_config = ContactConfig()
         self._flight: Flight | None = None
         self.impulses: ContactImpulsesC | ContactImpulsesWarp | None = None
+        self.tie_impulses: TieImpulsesC | None = None
         super().__init__(
             model,
             use_mujoco_cpu=on_c,
@@ -204,6 +206,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             return
         capacity = self.mjw_data.naconmax // self.mjw_data.nworld
         self.impulses = ContactImpulsesWarp(self.mj_model, of_geoms, self.model.device, capacity)
+
+    def keep_ties(self, joints: Sequence[TiedJoint], cords: Sequence[TiedCord]) -> None:
+        """Sum what joints and cords give from here on, in C alone."""
+        if self.use_mujoco_cpu:
+            ties = TieImpulsesC(self.import_mujoco()[0], self.mj_model, joints, cords)
+            self.tie_impulses = self._law_c.ties = ties
 
     def mend(self) -> None:
         """Make all joints whole that broke."""
