@@ -96,7 +96,11 @@ class TieImpulsesC:
         kinds, types = mujoco.mjtConstraint, mujoco.mjtEq
         self._equality, self._rubs = int(kinds.mjCNSTR_EQUALITY), int(kinds.mjCNSTR_FRICTION_DOF)
         self._drives, self._taut = int(kinds.mjCNSTR_FRICTION_TENDON), int(kinds.mjCNSTR_LIMIT_TENDON)
-        self._stops, self._weld, self._gear = int(kinds.mjCNSTR_LIMIT_JOINT), int(types.mjEQ_WELD), int(types.mjEQ_JOINT)
+        self._stops, self._weld, self._gear = (
+            int(kinds.mjCNSTR_LIMIT_JOINT),
+            int(types.mjEQ_WELD),
+            int(types.mjEQ_JOINT),
+        )
         sites = [int(model.site_bodyid[k]) if kind == mujoco.mjtWrap.mjWRAP_SITE else -1
                  for kind, k in zip(model.wrap_type, model.wrap_objid, strict=True)]  # fmt: skip
         self._sites = [

@@ -33,7 +33,7 @@ PAIRS = 1_000_000  # of bodies in spans, whose distances are held at once
 
 
 def standing(copies: Sequence[Evidence]) -> list[list[Lacking]]:
-    """What is missing to all that stands, of each copy, in spans that overlap by a half; of a longer stand in the first.
+    """What is missing to all that stands, of each copy, in spans that overlap by a half; a longer stand in the first.
 
     Args:
         copies: W of one world, T frames of B bodies each.
