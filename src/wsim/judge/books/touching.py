@@ -51,7 +51,8 @@ class Contacts:
         return Contacts(*(getattr(self, name)[chosen] for name in ("one", "two", "shapes", "point", "normal", "gap")))
 
 
-NONE = Contacts(*np.zeros((2, 0), dtype=np.intp), np.zeros((0, 2), dtype=np.intp), *np.zeros((2, 0, 3)), np.zeros(0))
+_ROWS, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+NONE = Contacts(_ROWS, _ROWS, _ROWS.reshape(0, 2), _POINTS, _POINTS, np.zeros(0))
 
 
 def together(parts: list[Contacts]) -> Contacts:
