@@ -86,6 +86,8 @@ def _pour(reader: Reader, action: Action) -> None:
             height = place.length
         elif place.preposition == "up to":
             level = place.length
+        elif place.preposition == "time":
+            reader.cast.duration = place.value
         elif place.preposition in ("into", "in", "inside", "onto") and place.phrase is not None:
             into = True
             if place.phrase.kind == "pronoun":
