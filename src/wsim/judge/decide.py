@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING
 
+from wsim.judge.books.copies import work_out
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveCheck
@@ -11,6 +13,8 @@ from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from wsim.plan.schema import Plan
     from wsim.recording.recording import Recording
 
@@ -26,18 +30,32 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
         Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge, or something
         acts in the world that the judge does not know.
     """
-    evidence = Evidence(recording, plan)
-    if len(evidence.time) == 0:
-        finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
-        aim([finding])
-        return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
-    if evidence.world.foreign:
-        return _cannot_judge(evidence)
-    findings = [finding for check in run_checks() for finding in check.run(evidence)]
-    broken = next((f for f in findings if f.check == "CheckFinite" and not f.passed), None)
+    return judge_copies([Evidence(recording, plan)])[0]
+
+
+def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
+    """Judge several copies of one world, over the same times and by the same plan, each as by itself.
+
+    They may differ in how they move, in their masses and inertias, and in what went wrong.
+    """
+    first = copies[0]
+    if len(first.time) == 0:
+        return [_nothing() for _ in copies]
+    if first.world.foreign:
+        return [_cannot_judge(evidence) for evidence in copies]
+    runs = [[finding for check in run_checks() for finding in check.run(evidence)] for evidence in copies]
+    broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
+    # What cannot be worked out of all is left to each by itself, whose check tells of it.
+    with contextlib.suppress(Exception):
+        work_out([evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None])
+    return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
+
+
+def _conclusion(evidence: Evidence, findings: list[Finding], broken: Finding | None) -> Verdict:
+    """The verdict on what moved, unless the numbers are broken."""
     if broken is None:
         findings += [finding for check in physics_checks() for finding in check.run(evidence)]
-    for objective in plan.objectives if plan is not None else []:
+    for objective in evidence.plan.objectives if evidence.plan is not None else []:
         check = ObjectiveCheck(objective)
         if broken is None:
             findings += check.run(evidence)
@@ -48,6 +66,12 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
                 check.failed(message, objective=check.sentence, prim=prim, time=broken.time, line=evidence.line(prim))
             )
     return conclude(findings, evidence)
+
+
+def _nothing() -> Verdict:
+    finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
+    aim([finding])
+    return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
 
 
 def _cannot_judge(evidence: Evidence) -> Verdict:
