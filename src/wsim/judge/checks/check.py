@@ -22,6 +22,10 @@ class Check:
         """The answers; empty when the question does not arise in this world."""
         raise NotImplementedError
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget | None:
+        """What to change where a finding failed that does not say so itself; None where no rule is known."""
+        return None
+
     @property
     def name(self) -> str:
         """The name that findings carry."""

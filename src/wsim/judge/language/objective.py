@@ -9,8 +9,9 @@ import numpy as np
 
 from wsim.judge.checks.check import Check
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.evaluate import evaluate
+from wsim.judge.language.evaluate import Outcome, evaluate
 from wsim.judge.language.kinds import formula_of
+from wsim.judge.language.mending import target_of, uncovered
 from wsim.judge.language.sentence import sentence
 from wsim.judge.language.signals import Signals
 from wsim.plan.schema.formula import And, Finally, Formula, Mean, Predicate
@@ -57,7 +58,9 @@ class ObjectiveCheck(Check):
         try:
             found = self.evaluate(evidence)
         except MissingError as error:
-            found = [self.failed(f"{prim}: {error.args[0]}")]
+            said = self.objective.formula
+            longer = uncovered(said, evidence) if said is not None else None
+            found = [self.failed(f"{prim}: {error.args[0]}", target=longer)]
         except Exception as error:  # noqa: BLE001 - as for every check
             found = [self.failed(f"{prim}: {self.name} could not be evaluated: {type(error).__name__}: {error}")]
         for finding in found:
@@ -75,7 +78,7 @@ def name_of(kind: str) -> str:
 def findings(check: Check, formula: Formula, evidence: Evidence) -> list[Finding]:
     """One finding for each conjunct of a formula on one recording; raises as `evaluate` does."""
     signals = Signals.of(evidence)
-    return [_finding(check, part, signals, evidence) for part in conjuncts(formula)]
+    return [_told(check, part, signals, evidence) for part in conjuncts(formula)]
 
 
 def conjuncts(formula: Formula) -> tuple[Formula, ...]:
@@ -83,8 +86,20 @@ def conjuncts(formula: Formula) -> tuple[Formula, ...]:
     return formula.of if isinstance(formula, And) else (formula,)
 
 
-def _finding(check: Check, part: Formula, signals: Signals, evidence: Evidence) -> Finding:
+def _told(check: Check, part: Formula, signals: Signals, evidence: Evidence) -> Finding:
+    """The finding about part of a formula, with what to change where it fails."""
     outcome = evaluate(part, signals)
+    decides = int(outcome.measure[0])
+    finding = _finding(check, part, outcome, signals, evidence)
+    if not finding.passed:
+        try:
+            finding.target = target_of(part, outcome.predicates[decides], outcome.measures[decides], finding, evidence)
+        except Exception:  # noqa: BLE001 - evidence too broken for the objective may be so for its rule: nothing is known
+            finding.target = None
+    return finding
+
+
+def _finding(check: Check, part: Formula, outcome: Outcome, signals: Signals, evidence: Evidence) -> Finding:
     measure = outcome.measures[int(outcome.measure[0])]
     frame = int(np.argmin(np.abs(signals.time - outcome.moment[0])))
     moment, said = float(outcome.moment[0]), sentence(part)
@@ -110,8 +125,8 @@ def _finding(check: Check, part: Formula, signals: Signals, evidence: Evidence) 
         when += f", and so since {span[0]:.3f} s"
     unit = "" if measure.unit == "1" else f" {measure.unit}"
     message = (
-        f"{said} {'holds' if satisfied else 'does not hold'}: the {measure.what} of {measure.prim} is {value:.4g}{unit} "
-        f"{when}, where {limit:.4g}{unit} is the {'most' if at_most else 'least'}"
+        f"{said} {'holds' if satisfied else 'does not hold'}: the {measure.what} of {measure.prim} is "
+        f"{value:.4g}{unit} {when}, where {limit:.4g}{unit} is the {'most' if at_most else 'least'}"
     )
     return check.measured(
         message if satisfied or not measure.note else f"{message}; {measure.note}", value, limit, measure.unit,
