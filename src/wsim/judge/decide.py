@@ -46,9 +46,12 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         return [_cannot_judge(evidence) for evidence in copies]
     runs = [[finding for check in run_checks() for finding in check.run(evidence)] for evidence in copies]
     broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
-    # What cannot be worked out of all is left to each by itself, whose check tells of it.
-    with contextlib.suppress(Exception):
-        work_out([evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None])
+    sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
+    if len(sound) > 1:
+        Evidence.join(sound)
+        # What cannot be worked out of all is left to each by itself, whose check tells of it.
+        with contextlib.suppress(Exception):
+            work_out(sound)
     return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
 
 

@@ -47,7 +47,8 @@ class Contacts:
         return Contacts(*(getattr(self, name)[chosen] for name in ("one", "two", "shapes", "point", "normal", "gap")))
 
 
-NONE = Contacts(*np.zeros((2, 0), dtype=np.intp), np.zeros((0, 2), dtype=np.intp), *np.zeros((2, 0, 3)), np.zeros(0))
+NO_ROWS, NO_POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+NONE = Contacts(NO_ROWS, NO_ROWS, NO_ROWS.reshape(0, 2), NO_POINTS, NO_POINTS, np.zeros(0))
 
 
 def together(parts: list[Contacts]) -> Contacts:
@@ -139,11 +140,11 @@ class Touching:
             gaps.append(np.array(found.dist).reshape(-1))
             if self._meshes:
                 others.append(together(self._on_meshes(poses[k], float(far))))
-        geom = np.concatenate([np.zeros((0, 2), dtype=np.intp), *geoms])
+        geom = np.concatenate([NONE.shapes, *geoms])
         shapes = self._shape_of_geom[geom]
         contacts = Contacts(
             self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes,
-            np.concatenate([np.zeros((0, 3)), *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
+            np.concatenate([NO_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
             np.concatenate([np.zeros(0), *gaps]) - self._margin[geom].sum(axis=1),
         )  # fmt: skip
         by = np.repeat(rows, [len(gap) for gap in gaps])

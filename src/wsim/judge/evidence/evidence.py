@@ -46,7 +46,6 @@ class Evidence(Recorded):
         self._levels: dict[str, Level] = {}
         self._joints: dict[str, JointTrack | None] = {}
         self.answers: dict[str, list[Finding]] = {}  # of the plan's objectives, each put to the evidence once
-        self.kept: dict[type, object] = {}  # what several checks work out alike, by its class
 
     # ---- bodies
     @cached_property
