@@ -48,11 +48,21 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
     broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
     if len(sound) > 1:
-        Evidence.join(sound)
-        # What cannot be worked out of all is left to each by itself, whose check tells of it.
-        with contextlib.suppress(Exception):
-            work_out(sound)
+        _work_out(sound)
     return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
+
+
+def _work_out(copies: Sequence[Evidence]) -> None:
+    """At once what the checks ask of all copies. What cannot be is left to each by itself, whose check tells of it."""
+    joined = None
+    with contextlib.suppress(Exception):
+        joined = Evidence.join(copies)
+    with contextlib.suppress(Exception):
+        work_out(copies)
+    if joined is not None:
+        for check in physics_checks():
+            with contextlib.suppress(Exception):
+                check.prepare(joined, copies)
 
 
 def _conclusion(evidence: Evidence, findings: list[Finding], broken: Finding | None) -> Verdict:

@@ -201,7 +201,7 @@ class Recorded:
         return np.stack(found, axis=1) if found else np.zeros((len(self.time), 0, 3))
 
     @staticmethod
-    def join(copies: Sequence[Recorded]) -> None:
+    def share_geometry(copies: Sequence[Recorded]) -> None:
         """Let copies of a world, of T frames each, work out at once what is of each frame by itself: all geometry."""
         recording, count = copies[0].recording, len(copies[0].time)
         body_q = np.concatenate([copy.body_q for copy in copies])
