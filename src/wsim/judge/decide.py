@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from wsim.judge.books.copies import work_out
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives.registry import OBJECTIVES
+from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 
@@ -70,7 +69,7 @@ def _conclusion(evidence: Evidence, findings: list[Finding], broken: Finding | N
     if broken is None:
         findings += [finding for check in physics_checks() for finding in check.run(evidence)]
     for objective in evidence.plan.objectives if evidence.plan is not None else []:
-        check = (OBJECTIVES[objective.kind] if objective.formula is None else ObjectiveFormula)(objective)
+        check = ObjectiveCheck(objective)
         if broken is None:
             findings += check.run(evidence)
         else:

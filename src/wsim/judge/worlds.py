@@ -116,7 +116,9 @@ def _rows(chunk: range) -> list[Row]:
 
 
 def _judged(worlds: Trajectories, plan: Plan | None, chunk: range) -> list[Row]:
-    return [_row(verdict) for verdict in judge_copies([Evidence(worlds.recording(k), plan) for k in chunk])]
+    copies = [Evidence(worlds.recording(k), plan) for k in chunk]
+    together = [[each] for each in copies] if worlds.worlds else [copies]  # each of its own shapes, or all of the same
+    return [_row(verdict) for some in together for verdict in judge_copies(some)]
 
 
 def _row(verdict: Verdict) -> Row:

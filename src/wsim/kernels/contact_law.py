@@ -117,9 +117,9 @@ def strike(
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
     bow: wp.array(dtype=float),
-    geom_class: wp.array(dtype=int),
+    geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec3),
+    law: wp.array3d(dtype=wp.vec3),
     threshold: float,
     # Data out:
     struck: wp.array2d(dtype=int),
@@ -132,7 +132,8 @@ def strike(
     if row < 0:
         return
     world, geom = contact_world[k], contact_geom[k]
-    restitution = law[geom_class[geom[0]], geom_class[geom[1]]][1]
+    own = world % law.shape[0]
+    restitution = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
     if meets(contact_dist[k], velocity[world, row] + bow[k], restitution, h, threshold * h):
         for side in range(2):
@@ -153,11 +154,11 @@ def aim(
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
     bow: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
-    geom_class: wp.array(dtype=int),
+    geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec3),
+    law: wp.array3d(dtype=wp.vec3),
     geom_kind: wp.array(dtype=int),
-    curvature: wp.array(dtype=float),
+    curvature: wp.array2d(dtype=float),
     geom_turn: wp.array2d(dtype=wp.mat33),
     contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
@@ -190,7 +191,8 @@ def aim(
     if row < 0:
         return
     world, geom = contact_world[k], contact_geom[k]
-    pair = law[geom_class[geom[0]], geom_class[geom[1]]]
+    own = world % law.shape[0]
+    pair = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]]
     h = timestep[world % timestep.shape[0]]
     distance, speed = contact_dist[k], velocity[world, row] + bow[k]
     goal = settling(distance, h, settle_time, settle_speed)
@@ -210,7 +212,8 @@ def aim(
     bend = float(0.0)
     if pair[2] > 0.0:
         for side in range(2):
-            bend += bent(geom_turn[world, geom[side]], contact_frame[k], curvature[geom[side]], geom_kind[geom[side]])
+            round = curvature[own, geom[side]]
+            bend += bent(geom_turn[world, geom[side]], contact_frame[k], round, geom_kind[geom[side]])
     friction = coefficients(pair, bend, smallest)
     contact_friction[k] = friction
     for j in range(2, contact_dim[k] - 1):

@@ -134,8 +134,8 @@ def keep(
 def tumble(
     # Data in:
     freedom: wp.array(dtype=int),  # of each loose body
-    principal: wp.array(dtype=wp.quatd),
-    moments: wp.array(dtype=wp.vec3d),
+    principal: wp.array2d(dtype=wp.quatd),  # in all worlds alike, or in each
+    moments: wp.array2d(dtype=wp.vec3d),
     h: wp.float64,
     true_qd: wp.array2d(dtype=wp.float64),
     # Data out:
@@ -147,12 +147,12 @@ def tumble(
     Both spins are along the body's axes as they are at the start: that is where contacts see them.
     """
     world, k = wp.tid()
-    first = freedom[k] + 3
-    spin, axes = three(true_qd, world, first), principal[k]
-    turn = free_turn(axes, moments[k], spin, h)
-    gain = (wp.quat_rotate(turn, spin_after(axes, moments[k], spin, turn)) - spin) / h
+    first, own = freedom[k] + 3, world % moments.shape[0]
+    spin, axes, inertia = three(true_qd, world, first), principal[own, k], moments[own, k]
+    turn = free_turn(axes, inertia, spin, h)
+    gain = (wp.quat_rotate(turn, spin_after(axes, inertia, spin, turn)) - spin) / h
     change[world, k] = gain
-    torque = in_axes(axes, moments[k], gain) + wp.cross(spin, in_axes(axes, moments[k], spin))
+    torque = in_axes(axes, inertia, gain) + wp.cross(spin, in_axes(axes, inertia, spin))
     for i in range(3):
         bias[world, first + i] = bias[world, first + i] - bias.dtype(torque[i])
 
@@ -162,9 +162,9 @@ def fly(
     # Data in:
     place: wp.array(dtype=int),  # of each loose body, in qpos
     freedom: wp.array(dtype=int),
-    center: wp.array(dtype=wp.vec3d),  # of mass, in its axes
-    principal: wp.array(dtype=wp.quatd),
-    moments: wp.array(dtype=wp.vec3d),
+    center: wp.array2d(dtype=wp.vec3d),  # of mass, in its axes
+    principal: wp.array2d(dtype=wp.quatd),  # in all worlds alike, or in each
+    moments: wp.array2d(dtype=wp.vec3d),
     h: wp.float64,
     change: wp.array2d(dtype=wp.vec3d),
     qacc: wp.array2d(dtype=Any),
@@ -180,7 +180,8 @@ def fly(
     Where nothing holds a body its centre of mass goes straight, else its origin, whose velocity contacts have seen.
     """
     world, k = wp.tid()
-    p, f, c = place[k], freedom[k], center[k]
+    own = world % moments.shape[0]
+    p, f, c, axes, inertia = place[k], freedom[k], center[own, k], principal[own, k], moments[own, k]
     v, w, x = three(true_qd, world, f), three(true_qd, world, f + 3), three(true_q, world, p)
     q = wp.normalize(wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3]))
     push, twist = wp.vec3d(), wp.vec3d()
@@ -190,8 +191,8 @@ def fly(
         twist[i] = wp.float64(qacc[world, f + 3 + i])
         free = free and held[world, f + i] == held.dtype(0.0) and held[world, f + 3 + i] == held.dtype(0.0)
     kicked = w + h * (twist - change[world, k])
-    turn = free_turn(principal[k], moments[k], kicked, h)
-    after = spin_after(principal[k], moments[k], kicked, turn)
+    turn = free_turn(axes, inertia, kicked, h)
+    after = spin_after(axes, inertia, kicked, turn)
     end = wp.normalize(q * turn)
     if free:
         pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))

@@ -18,7 +18,7 @@ from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
 from wsim.recording import columns as names
-from wsim.recording.causes import read_bodies, read_frames
+from wsim.recording.causes import read_bodies, read_frames, read_ties
 from wsim.recording.contacts import read_contacts
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
@@ -66,6 +66,7 @@ def read(path: str | Path) -> Recording:
         control_impulse=control,
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
         contacts=read_contacts(table, frame_ns),
+        ties=read_ties(table, world, frame_ns),
     )
 
 

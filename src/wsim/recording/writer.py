@@ -19,7 +19,7 @@ from wsim.errors import UserError
 from wsim.recording import columns as names
 from wsim.recording.blueprint import make_blueprint
 from wsim.recording.buffers import BodyBuffer, CordBuffer, FluidBuffer, RowBuffer
-from wsim.recording.causes import WIDTHS
+from wsim.recording.causes import WIDTHS, check_ties
 from wsim.recording.causes import of_bodies as causes_of_bodies
 from wsim.recording.causes import of_frame as causes_of_frame
 from wsim.recording.contacts import WIDTH as CONTACT_WIDTH
@@ -256,6 +256,7 @@ class RecordingWriter:
         if self.frame_count and known != self._causes:
             raise ValueError(f"frame: {sorted(known ^ self._causes)} come in all frames or in none")
         self._causes = known
+        check_ties(frame, self.world)
         for name, array in arrays.items():
             if array.shape != (expected := (len(self.world.bodies), WIDTHS[name])):
                 raise ValueError(f"frame: {name} has shape {array.shape}, expected {expected}")

@@ -16,8 +16,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, level, rotate, tilt
 from wsim.judge.evidence.contact import distance, overlaps
-from wsim.judge.objectives.motion import downhill
-from wsim.judge.objectives.objective import support_of
+from wsim.judge.evidence.support import downhill, support_of
 from wsim.judge.repair.asked import decider
 
 if TYPE_CHECKING:
@@ -181,7 +180,7 @@ def _ways(evidence: Evidence, i: int, ref: str | None) -> Iterator[Signal]:
     """How far from where it started."""
     moved = evidence.body_q[:, i, :3] - evidence.body_q[0, i, :3]
     if ref and _slopes(evidence, ref, i):
-        yield Signal("Way down the slope", "m", evidence.time, moved @ downhill(evidence, ref.rsplit("/", 1)[-1], i))
+        yield Signal("Way down the slope", "m", evidence.time, moved @ downhill(evidence, ref, i))
     yield Signal("Way from the start", "m", evidence.time, np.linalg.norm(level(moved, evidence.up), axis=1))
     for title, axis, sign in (("front", 0, 1), ("back", 0, -1), ("left", 1, 1), ("right", 1, -1)):
         yield Signal(f"Way to the {title}", "m", evidence.time, sign * moved[:, axis])
@@ -192,7 +191,7 @@ def _ways(evidence: Evidence, i: int, ref: str | None) -> Iterator[Signal]:
 
 def _slopes(evidence: Evidence, ref: str, i: int) -> bool:
     try:
-        downhill(evidence, ref.rsplit("/", 1)[-1], i)
+        downhill(evidence, ref, i)
     except LookupError:
         return False
     return True

@@ -39,6 +39,7 @@ from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
@@ -203,7 +204,7 @@ class ContactLawC:
         mujoco: The module.
         model: MuJoCo's model.
         flight: Steps the loose bodies.
-        surfaces: Of the geoms.
+        surfaces: Of the geoms of the one world.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
@@ -225,10 +226,12 @@ class ContactLawC:
     ) -> None:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.impulses: ContactImpulsesC | None = None  # where somebody wants them summed
+        self.ties: TieImpulsesC | None = None  # likewise
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.surfaces, self.touching, self._bow = surfaces, touching, np.zeros(0)
+        self.touching, self._bow = touching, np.zeros(0)
+        self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
         self.touched = 0  # steps of the first order since the last smooth one
-        self.rolls = bool(surfaces.law[..., 2].any())
+        self.rolls = bool(self.law[..., 2].any())
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
@@ -246,6 +249,8 @@ class ContactLawC:
         while self.breaking is not None and self.breaking.give_way(data):
             touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
+        if self.ties is not None:
+            self.ties.add(data, self.smooth and not touching)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
             model.opt.disableflags |= self.unilateral
@@ -331,8 +336,8 @@ class ContactLawC:
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
         geoms = contact.geom[chosen]
-        classes = self.surfaces.classes[geoms]
-        law = self.surfaces.law[classes[:, 0], classes[:, 1]]
+        classes = self.classes[geoms]
+        law = self.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
         contact.friction[chosen] = friction
         contact.mu[chosen] = friction[:, 0]
@@ -376,7 +381,7 @@ class ContactLawC:
             axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
             leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
             on_end = self.flat_ended[geoms] & (leans > ON_END)
-            bend = np.where(on_end, 0.0, self.surfaces.curvature[geoms]).sum(axis=1)
+            bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
             np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
         return np.maximum(
             np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction

@@ -9,6 +9,7 @@ what is true between two steps is kept beside it in double, for as long as nobod
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import newton
@@ -27,9 +28,10 @@ class Flight:
         mujoco: The module of MuJoCo in C.
         solver: Newton's MuJoCo solver.
         data: MuJoCo's data that it steps, in C or in Warp.
+        hosts: MuJoCo's model of all worlds alike, or of each in turn (`wsim.solvers.host_models`).
     """
 
-    def __init__(self, mujoco: Any, solver: Any, data: Any) -> None:
+    def __init__(self, mujoco: Any, solver: Any, data: Any, hosts: Iterable[Any]) -> None:
         model = solver.model
         self.model, self._qpos, self._qvel = model, _rows(data.qpos), _rows(data.qvel)
         self._qacc, self._bias, self._held = _rows(data.qacc), _rows(data.qfrc_bias), _rows(data.qfrc_constraint)
@@ -38,7 +40,8 @@ class Flight:
         self.joints = len(place)
         ours = ~kinematic[model.joint_child.numpy()[: self.joints]] & (place >= 0)
         loose = _loose(mujoco, solver.mj_model, place[ours])
-        center, principal, moments = _inertia(mujoco, solver.mj_model, loose)
+        of_worlds = [_inertia(mujoco, host, loose) for host in hosts]
+        center, principal, moments = (np.stack(each) for each in zip(*of_worlds, strict=True))
         jnt = solver.mj_model.body_jntadr[loose]
         shape = self._qpos.shape[0], len(loose)
         with wp.ScopedDevice(model.device):

@@ -7,7 +7,8 @@ import pytest
 
 from wsim.judge import judge
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.objectives.registry import OBJECTIVES
+from wsim.judge.language.kinds import KINDS
+from wsim.judge.language.objective import name_of
 from wsim.judge.repair.aim import STAGES, aim, rules
 from wsim.judge.repair.language import RULES
 from wsim.judge.repair.rule import tried
@@ -43,7 +44,7 @@ def water(pool):
 
 
 def test_every_objective_and_predicate_has_a_rule():
-    classes = {kind.__name__ for kind in OBJECTIVES.values()}
+    classes = {name_of(kind) for kind in KINDS}
     assert classes <= set(rules())
     assert set(VOCABULARY) - {"ordered"} == set(RULES)
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
+from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
@@ -79,8 +80,8 @@ class Balance:
         self._unit = max(float(np.linalg.norm(motions[0].gravity)), 1.0)  # [m/s^2]
         self._kinematic, self._mechanism = motions[0].kinematic, motions[0].unit  # (B,), of all copies
         self._mass = np.stack([motion.mass for motion in motions])  # (W, B)
-        arms = np.stack([ties.arms for ties in self._ties])
-        self._sizes = np.maximum(np.maximum(motions[0].radius, arms), 1e-4)  # (W, B)
+        held = np.stack([ties.arms for ties in self._ties])
+        self._sizes = np.maximum(np.maximum(motions[0].radius, held), 1e-4)  # (W, B)
         # Frames, (W T, B, ...), and intervals, (N, ...)
         self._q = np.concatenate([evidence.body_q for evidence in copies])
         self._com, self._v, self._w = (
@@ -122,9 +123,8 @@ class Balance:
                 between = (hit[some] | odd[strange]) & anew[some]
                 left[some], turned[some] = self._explained(some, change[strange], asked[strange], hit[some], between)
         left, turned = again(anew, left, wanted), again(anew, turned)
-        rate = np.linalg.norm(self._w, axis=2).max(axis=1, initial=0.0)
-        turn = np.maximum(rate[self._first + 1], rate[self._first]) * self._h
-        turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
+        angles = [arms.turned(evidence, size) for evidence, size in zip(self._copies, self._sizes, strict=True)]
+        turned *= (np.concatenate(angles) ** 2 / 12.0)[..., None]  # of an arm taken halfway
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]

@@ -72,12 +72,13 @@ class Laws:
     def _spring(self, spring: Spring) -> Law:
         track = track_of_spring(self._evidence, spring)
         rows = [self._row.get(guide.body or "", -1) for guide in spring.path]
-        arms = [self._arm(row, self._end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
+        arms = [self.arm(row, self.end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
         force = -(track.pull[:, None] * track.along)
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
         return self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
 
-    def _end(self, guide: Guide) -> Floats:
+    def end(self, guide: Guide) -> Floats:
+        """Where a point of a spring's way is, (T, 3) [m]."""
         frames = len(self._evidence.time)
         if guide.body is None:
             return np.tile(np.array(guide.position, dtype=np.float64), (frames, 1))
@@ -85,7 +86,8 @@ class Laws:
         place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(guide.position)[None])
         return place
 
-    def _arm(self, row: int, place: Floats) -> Floats:
+    def arm(self, row: int, place: Floats) -> Floats:
+        """From a body's centre of mass, (T, 3) [m]; zeros of the world."""
         return np.zeros_like(place) if row < 0 else place - self._motion.com[:, row]
 
     def _looseness(self, row: int, arm: Floats, along: Floats) -> Floats:
@@ -112,8 +114,8 @@ class Laws:
             return None
         rows = [self._row.get(joint.parent or "", -1), self._row[joint.child]]
         place = self._end_of(joint)
-        arms = [self._arm(row, place) for row in rows]
-        axis = self._axis(joint)
+        arms = [self.arm(row, place) for row in rows]
+        axis = self.axis(joint)
         rate, loose = self._rate(joint, rows, arms, axis), np.zeros(len(place))
         for row, arm in zip(rows, arms, strict=True):
             if row >= 0 and not self._motion.kinematic[row]:
@@ -145,12 +147,17 @@ class Laws:
             known = known & (rate[1:] * rate[:-1] > 0.0) & (np.minimum(np.abs(rate[1:]), np.abs(rate[:-1])) > slow)
         return Law(law.wrench, law.back, law.one, law.two, law.error, known)
 
+    def speed(self, joint: Joint) -> Floats:
+        """A hinge's or a slider's own speed at each frame, (T,) [rad/s or m/s]."""
+        rows, place = [self._row.get(joint.parent or "", -1), self._row[joint.child]], self._end_of(joint)
+        return self._rate(joint, rows, [self.arm(row, place) for row in rows], self.axis(joint))
+
     def _end_of(self, joint: Joint) -> Floats:
         q = self._evidence.body_q[:, self._row[joint.child]]
         place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(joint.child_anchor)[None])
         return place
 
-    def _axis(self, joint: Joint) -> Floats:
+    def axis(self, joint: Joint) -> Floats:
         """The joint's axis in the world, by its child, (T, 3)."""
         own = rotate(np.array(joint.child_turn), np.eye(3)[AXES[joint.axis]])
         found: Floats = rotate(self._evidence.body_q[:, self._row[joint.child], 3:], np.asarray(own)[None])

@@ -33,7 +33,11 @@ PAIRS = 1_000_000  # of bodies in spans, whose distances are held at once
 
 
 def standing(copies: Sequence[Evidence]) -> list[list[Lacking]]:
-    """What is missing to all that stands in each copy; of what stands for many spans, that overlap, in the first."""
+    """What is missing to all that stands, of each copy, in spans that overlap by a half; a longer stand in the first.
+
+    Args:
+        copies: W of one world, T frames of B bodies each.
+    """
     motion = copies[0].motion
     firsts = np.arange(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2)
     found: list[list[Lacking]] = [[] for _ in copies]
@@ -80,9 +84,9 @@ def _left(copies: Sequence[Evidence], copy: Rows, first: Rows, stands: Bools) ->
     evidence, touching, middle = copies[0], Touching.of(copies[0]), first + INTERVALS // 2
     motions, bodies = [one.motion for one in copies], stands.shape[1]
     size = np.stack([Books.of(one).size for one in copies])[copy]
-    own = [(copies[n].body_q, motions[n].com, motions[n].v, motions[n].w) for n in copy]
-    at = [[array[k] for array in arrays] for arrays, k in zip(own, middle, strict=True)]
-    poses = Poses(*(np.concatenate(arrays) for arrays in zip(*at, strict=True)))
+    arrays = [[one.body_q for one in copies]]
+    arrays += [[getattr(motion, name) for motion in motions] for name in ("com", "v", "w")]
+    poses = Poses(*(np.concatenate([array[n][k] for n, k in zip(copy, middle, strict=True)]) for array in arrays))
     contacts = touching.of_many(poses.q.reshape(len(copy), -1, 7), np.full(len(copy), NEAR), np.arange(len(copy)))
     meshes = np.array([shape.kind == "mesh" for _, _, shape in touching.shapes], dtype=bool)
     rows = np.stack([contacts.one, contacts.two])

@@ -42,13 +42,17 @@ class Contacts:
     def __len__(self) -> int:
         return len(self.gap)
 
+    def surface(self, side: int) -> Floats:
+        """Where each touches the first body's surface or the second's (1), (n, 3) [m]: they meet with these points."""
+        return np.asarray(self.point + ((side - 0.5) * self.gap)[:, None] * self.normal)
+
     def only(self, chosen: NDArray[Any]) -> Contacts:
         """Some of them."""
         return Contacts(*(getattr(self, name)[chosen] for name in ("one", "two", "shapes", "point", "normal", "gap")))
 
 
-NO_ROWS, NO_POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
-NONE = Contacts(NO_ROWS, NO_ROWS, NO_ROWS.reshape(0, 2), NO_POINTS, NO_POINTS, np.zeros(0))
+_ROWS, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+NONE = Contacts(_ROWS, _ROWS, _ROWS.reshape(0, 2), _POINTS, _POINTS, np.zeros(0))
 
 
 def together(parts: list[Contacts]) -> Contacts:
@@ -144,7 +148,7 @@ class Touching:
         shapes = self._shape_of_geom[geom]
         contacts = Contacts(
             self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes,
-            np.concatenate([NO_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
+            np.concatenate([_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
             np.concatenate([np.zeros(0), *gaps]) - self._margin[geom].sum(axis=1),
         )  # fmt: skip
         by = np.repeat(rows, [len(gap) for gap in gaps])

@@ -28,6 +28,7 @@ from wsim.judge.checks import (
     plan_joints,
     plan_motion,
     recorded,
+    recorded_ties,
     rest,
     run,
     settled,
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, impacts, energy, contact, rest, joint, cord, mass, plan,
+    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, energy, contact, rest, joint, cord, mass, plan,
     plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
 )  # fmt: skip
 

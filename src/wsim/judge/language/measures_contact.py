@@ -13,12 +13,10 @@ from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
-from wsim.judge.objectives.objective import support_of
-from wsim.plan.schema.formula import (
+from wsim.plan.schema.formula_contact import (
     CollidesWith,
     NeverTouches,
     Pushes,
-    RestsOn,
     RollsWithoutSlip,
     Settles,
     StopsBefore,
@@ -62,30 +60,6 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
             f"gap to {signals.prim(asked.ref)}", signals.prim(asked.object), value, asked.clearance, "m",
             asked.clearance or size, source, at_most=False,
         )
-    ]  # fmt: skip
-
-
-@measures(RestsOn)
-def _rests_on(asked: RestsOn, signals: Signals) -> list[Measure]:
-    prim, other = signals.prim(asked.object), signals.prim(asked.ref)
-    frames = signals.frames(asked.object, asked.ref)
-    i = frames.index(prim)
-    support, solid = support_of(frames, i, other), frames.solid(i)
-    low, high = frames.ends(i)
-    height = float(high[0] - low[0])
-    # Where it is not over the other it cannot rest on it, however near its height.
-    over = support.over & np.isfinite(support.top)
-    value = signals.fold(np.where(over, np.abs(low - np.where(over, support.top, 0.0)), max(solid.smallest, height)))
-    limit = asked.within or STILL * height
-    source = "the objective's" if asked.within else f"{STILL:g} of its height, {height:.3g} m"
-    speed = np.linalg.norm(signals.velocity(asked.object) - signals.velocity(asked.ref), axis=-1)
-    rest = STILL * signals.speed_scale(solid.smallest)
-    return [
-        Measure(f"gap to the top of {other}", prim, value, limit, "m", limit, source, expected=0.0),
-        Measure(
-            f"speed against {other}", prim, speed, rest, "m/s", rest,
-            f"{STILL:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {STILL:.0%} of L", expected=0.0,
-        ),
     ]  # fmt: skip
 
 

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.welded import displaced, still_draft, unheld_lift, welded
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
-from wsim.plan.schema.formula import FillsTo, Floats, LevelIn, Sinks, Submerged, SwirlsBetween
+from wsim.plan.schema.formula_fluid import Fills, FillsTo, Floats, LevelIn, Sinks, Submerged, SwirlsBetween
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
     from wsim.scene.world import Fluid
 
@@ -74,21 +74,53 @@ def _floats(asked: Floats, signals: Signals) -> list[Measure]:
     prim = signals.prim(asked.object)
     i = wet.evidence.index(prim)
     needed, volume = displaced(wet.evidence, i, wet.fluid)
-    value = wet.surface - wet.low
+    value, beside = wet.surface - wet.low, _beside(signals, asked.object, wet)
     if needed >= volume:
-        # It cannot: whatever its depth, it fails by as much as it is too heavy.
-        excess = (needed / volume - 1.0) * wet.tolerance
-        limit = np.minimum(wet.height, value - excess)
-        heavy = f"it weighs {needed / volume:.3g} times the fluid that it displaces"
-        source = f"its height: what floats is no deeper; {heavy}"
-        return [Measure("draft", prim, value, limit, "m", wet.tolerance, source)]
+        return [*_too_heavy(asked, wet, value, needed / volume), *beside]
     expected = still_draft(wet.evidence, i, needed)
     source = f"Archimedes for its own shape, {expected:.4g} m, and {wet.source}"
     return [
-        Measure.about(
-            value, expected, wet.tolerance, what="draft", prim=prim, unit="m", limit_from=source
-        )
+        Measure.about(value, expected, wet.tolerance, what="draft", prim=prim, unit="m", limit_from=source),
+        *beside,
+    ]
+
+
+def _too_heavy(asked: Floats, wet: _Wet, draft: Array, ratio: float) -> list[Measure]:
+    """What is denser than the fluid lies on its floor, as deep as that is; and if it were not, it is too heavy."""
+    evidence, fluid = wet.evidence, wet.fluid
+    i = evidence.index(evidence.prim(asked.object))
+    body, depth = evidence.world.bodies[i], evidence.level(fluid).height - wet.floor
+    note = f"with {ratio * fluid.density:.4g} kg/m^3 Archimedes has it on the floor, {depth:.4g} m deep"
+    planned = evidence.planned(body.prim)
+    if planned is not None and planned.material is not None and len(welded(evidence, i)) == 1:
+        share = planned.material.density / fluid.density
+        solid = evidence.solid(i)
+        if share < 1.0:
+            would = solid.draft(evidence.resting_pose(i)[1], solid.volume * share)
+            note += f"; the plan's {planned.material.name} would float {would:.4g} m deep"
+    return [
+        Measure(
+            "draft", body.prim, draft, wet.height, "m", wet.tolerance, "its height: what floats is no deeper",
+            expected=depth, note=note,
+        ),
+        Measure(
+            f"mean density, over that of {fluid.prim},", body.prim, np.full_like(draft, ratio), 1.0, "1", 1.0,
+            "Archimedes: what floats is lighter", note=note,
+        ),
     ]  # fmt: skip
+
+
+def _beside(signals: Signals, name: str, wet: _Wet) -> list[Measure]:
+    """Of a body that is out of the fluid's container at some time, how far its centre is beyond the walls."""
+    container = wet.evidence.container_of(wet.fluid)
+    if container is None:
+        return []
+    p = np.abs(Evidence.local(container, signals.centre(name))[..., :2])
+    beyond = (p - np.array(container.inner_size[:2]) / 2).max(axis=-1)
+    if not np.any(beyond > 0.0):
+        return []
+    what, source = f"way beyond the walls of {container.prim}", "what floats in a container is over it"
+    return [Measure(what, signals.prim(name), beyond, 0.0, "m", wet.tolerance, source, expected=0.0)]
 
 
 @measures(Sinks)
@@ -136,6 +168,15 @@ def _fills_to(asked: FillsTo, signals: Signals) -> list[Measure]:
             limit_from=source,
         )
     ]  # fmt: skip
+
+
+@measures(Fills)
+def _fills(asked: Fills, signals: Signals) -> list[Measure]:
+    evidence, fluid = signals.fluid(asked.fluid)
+    container, track = signals.container(asked.ref), evidence.track(fluid)
+    value = evidence.containment(container, fluid).inside()[latest(track.time, signals.time)][None]
+    what, source = f"part in {container.prim}", "the rest may splash out"
+    return [Measure(what, fluid.prim, value, asked.share, "1", 1.0, source, at_most=False, expected=1.0)]
 
 
 @measures(LevelIn)

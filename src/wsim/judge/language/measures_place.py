@@ -14,7 +14,7 @@ from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import about, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
-from wsim.plan.schema.formula import (
+from wsim.plan.schema.formula_place import (
     ContainedIn,
     Crosses,
     FollowsPath,

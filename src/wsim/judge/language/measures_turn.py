@@ -10,15 +10,8 @@ from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.language.contacts import about, gap, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import room_in
-from wsim.plan.schema.formula import (
-    BouncesTo,
-    Counts,
-    GoneBetween,
-    OwnSpinBetween,
-    SpinBetween,
-    TiltBetween,
-    TurnedBetween,
-)
+from wsim.plan.schema.formula_contact import BouncesTo
+from wsim.plan.schema.formula_place import Counts, GoneBetween, OwnSpinBetween, SpinBetween, TiltBetween, TurnedBetween
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,9 +9,10 @@ import numpy as np
 
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.pendulum import Pendulum, period_of, pivot_of
+from wsim.judge.evidence.welded import welded
 from wsim.judge.language.measure import Measure, measures
 from wsim.judge.language.measures_place import latest
-from wsim.plan.schema.formula import ClimbsTo, Conserves, DiesDown, Swings
+from wsim.plan.schema.formula_motion import ClimbsTo, Conserves, DiesDown, Swings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -58,18 +59,27 @@ def _swings(asked: Swings, signals: Signals) -> list[Measure]:
 
 
 def _pendulum(signals: Signals, name: str) -> Pendulum:
-    """The body as a pendulum about the point that its own velocities turn about."""
+    """The body, with what fixed joints hold to it, as a pendulum about the point that its own velocities turn about."""
     i = signals.row(name)
-    centre, twist = signals.centre_of_mass(i), signals.qd(name)
-    pivot, axis = pivot_of(centre, twist[..., :3], twist[..., 3:])
-    arm = centre - pivot[:, None]
-    arm = arm - np.einsum("wti,wi->wt", arm, axis)[..., None] * axis[:, None]
+    twist = signals.qd(name)
+    pivot, axis = pivot_of(signals.centre_of_mass(i), twist[..., :3], twist[..., 3:])
+    parts = welded(signals.frames(*(body.prim for body in signals.world.bodies)), i)
+    assert signals.mass is not None
+    masses = signals.mass[:, parts]
+    centres = np.stack([signals.centre_of_mass(k) for k in parts], axis=1)  # (W, parts, T, 3)
+    mass = masses.sum(axis=1)
+    arms = _across(centres - pivot[:, None, None], axis)
+    arm = np.einsum("wb,wbti->wti", masses, arms) / mass[:, None, None]
     down = -signals.up
     angle = np.arctan2(np.einsum("wti,wi->wt", np.cross(np.broadcast_to(down, arm.shape), arm), axis), arm @ down)
-    assert signals.mass is not None
-    mass = signals.mass[:, i]
-    length = np.linalg.norm(arm, axis=-1).mean(axis=1)
-    return Pendulum(angle, mass, length, signals.inertia_about(i, axis[:, None])[:, 0] + mass * length**2)
+    own = sum(signals.inertia_about(k, axis[:, None])[:, 0] for k in parts)
+    inertia = own + (masses * np.mean(np.sum(arms**2, axis=-1), axis=-1)).sum(axis=1)
+    return Pendulum(angle, mass, np.linalg.norm(arm, axis=-1).mean(axis=1), inertia)
+
+
+def _across(ways: Floats, axis: Floats) -> Floats:
+    """Ways (W, B, T, 3) without what goes along axes (W, 3)."""
+    return np.asarray(ways - np.einsum("wbti,wi->wbt", ways, axis)[..., None] * axis[:, None, None])
 
 
 def _half_swings(time: Floats, angle: Floats) -> tuple[Floats, Floats]:

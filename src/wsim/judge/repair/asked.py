@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.language.measure import MEASURERS
-from wsim.judge.language.objective import ObjectiveFormula
+from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.language.signals import Signals
-from wsim.judge.objectives.objective import ObjectiveCheck
 from wsim.plan.schema.formula import Ordered, Predicate
 
 if TYPE_CHECKING:
@@ -29,9 +28,7 @@ def objective_of(finding: Finding, evidence: Evidence) -> Objective | None:
 
 def sentence_of(item: Objective) -> str:
     """An objective in words, as its findings carry it."""
-    if item.formula is None:
-        return ObjectiveCheck(item).sentence
-    return ObjectiveFormula(item).sentence
+    return ObjectiveCheck(item).sentence
 
 
 def decider(finding: Finding, evidence: Evidence) -> tuple[Predicate, Measure] | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsim.geometry.rotations import level
 from wsim.judge.evidence.contact import distance
-from wsim.judge.objectives.objective import support_of
+from wsim.judge.evidence.support import support_of
 from wsim.judge.repair.asked import decider, objective_of, ref_of
 from wsim.judge.repair.drive import by_drive, drive_of, to_point
 from wsim.judge.repair.objectives import (

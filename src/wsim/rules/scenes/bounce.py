@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations_with_replacement
 
 from wsim.plan.schema import Contact, Objective, Plan, PlanObject
-from wsim.plan.schema.formula import CollidesWith
+from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.places import SURFACES
 from wsim.rules.scenes.part import Part, fall_time

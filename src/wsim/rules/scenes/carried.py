@@ -7,7 +7,7 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose, Vec3
-from wsim.plan.schema.formula import Reaches
+from wsim.plan.schema.formula_place import Reaches
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
 from wsim.rules.scenes.part import Part, fall_time, pair_friction, tall, tidy
