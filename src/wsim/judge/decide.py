@@ -59,7 +59,8 @@ def _work_out(copies: Sequence[Evidence]) -> None:
     with contextlib.suppress(Exception):
         work_out(copies)
     if joined is not None:
-        for check in physics_checks():
+        asked = copies[0].plan.objectives if copies[0].plan is not None else []
+        for check in (*physics_checks(), *map(ObjectiveCheck, asked)):
             with contextlib.suppress(Exception):
                 check.prepare(joined, copies)
 

@@ -48,7 +48,7 @@ class Motion:
         self.v: Floats = recorded.body_qd[..., :3]
         self.w: Floats = recorded.body_qd[..., 3:]
         self.h: Floats = np.maximum(np.diff(recorded.time), 1e-9)  # length of each interval (T - 1,) [s]
-        self._contact_force = recorded.recording.contact_force
+        self.contact_force = np.asarray(recorded.recording.contact_force)
 
     @classmethod
     def join(cls, copies: Sequence[Motion]) -> Motion:
@@ -57,8 +57,8 @@ class Motion:
         joined.mass, joined.inertia = (
             np.stack([getattr(each, name) for each in copies])[:, None] for name in ("mass", "inertia")
         )
-        joined.q, joined.v, joined.w, joined._contact_force = (
-            np.stack([getattr(each, name) for each in copies]) for name in ("q", "v", "w", "_contact_force")
+        joined.q, joined.v, joined.w, joined.contact_force = (
+            np.stack([getattr(each, name) for each in copies]) for name in ("q", "v", "w", "contact_force")
         )
         return joined
 
@@ -127,7 +127,7 @@ class Motion:
     @cached_property
     def touched(self) -> Bools:
         """Whether the solver had a contact of the body, (T, B)."""
-        return np.asarray(np.any(self._contact_force != 0.0, axis=-1))
+        return np.asarray(np.any(self.contact_force != 0.0, axis=-1))
 
     # ---- angular momentum and energy
     @cached_property
