@@ -156,7 +156,7 @@ class RecordedTies:
         rows = [row for row in self.pairs[k] if row >= 0]
         angle = self._turning[:, rows].max(axis=1) * motion.h
         size = np.linalg.norm(self.track.joints[1:, k, :12].astype(np.float64), axis=1)
-        change = np.abs(np.gradient(size)) / np.maximum(size, 1e-30) if len(size) > 1 else np.ones_like(size)
+        change = _jump(size) / np.maximum(size, 1e-30)
         found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0), 2.0)
         return found
 
@@ -228,7 +228,7 @@ class RecordedTies:
         scale = np.repeat([1.0, 1.0 / arm], 3)
         off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
         turned = np.linalg.norm((last - first) * scale, axis=1)
-        change = np.abs(np.gradient(tension)) if len(tension) > 1 else np.abs(tension)
+        change = _jump(tension)
         late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
         may = (0.5 * np.minimum(change, np.abs(tension)) + (late + turned / 12.0) * np.abs(tension)) * turned
         return off, may, np.abs(tension)
@@ -267,3 +267,12 @@ class RecordedTies:
     def effective(self, joint: Joint) -> bool:
         """Whether nothing but what is recorded acts along a joint's own motion."""
         return joint.armature == 0.0 and joint.kind != "compound"
+
+
+def _jump(values: Floats) -> Floats:
+    """By how much each of some numbers in a row differs from one beside it, at most, (n,)."""
+    if len(values) < 2:
+        return np.abs(values)
+    step = np.abs(np.diff(values))
+    found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
+    return found

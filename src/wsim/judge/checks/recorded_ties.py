@@ -55,7 +55,7 @@ class CheckRecordedTies(Check):
 
     exact: float = 1e-3  # of what is passed on: the solver's tolerance, and single precision
     place: float = 0.01  # of an impulse's moment, beside how far its arm turns
-    law: float = 0.02  # of what a law gives
+    law: float = 0.01  # of what a law gives
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each kind of question, of the joint or the cord that is farthest off by its limit."""
