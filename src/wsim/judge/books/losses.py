@@ -1,4 +1,4 @@
-"""Where energy goes: what friction, blows, joints, stops, dampers and ropes that come taut may take, by what is recorded.
+"""Where energy goes: what friction, blows, stops, dampers and ropes that come taut may take, by what is recorded.
 
 A loss has something that takes it. Of each recorded impulse the most that it may take is known from its law: friction
 takes its impulse times the slip, a blow with restitution e the share (1 - e) / 2 of its impulse times the approach
@@ -101,8 +101,10 @@ class Losses:
                     work, doubt, lost = self._of_joint(k)
                     driven, unsure, most = driven + work, unsure + doubt, most + lost
             most += self._jerked(ours)
-        sums = [np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, unsure + off, driven)]
-        return Taken(*sums, self._held(ours))
+        damped, most, unsure, driven = (
+            np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, unsure + off, driven)
+        )
+        return Taken(damped, most, unsure, driven, self._held(ours))
 
     # ---- contacts
     def _by_contacts(self, rows: Rows) -> Floats:
@@ -125,7 +127,9 @@ class Losses:
         slip = np.where(many, np.maximum(slip, fastest), slip + np.where(hit, fall, 0.0))
         bounce, rolling = self._laws
         blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
-        blow += np.where(bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0)  # a slower one does not bounce
+        blow += np.where(
+            bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0
+        )  # a slower one does not bounce
         return np.asarray(blow + contacts.rubbed * slip + self._turned(pressed, normal, frame, rolling))
 
     @cached_property
@@ -185,7 +189,7 @@ class Losses:
         """A joint's drive's work, how unsure it is, and what its friction and stops may take, (T - 1,) each [J]."""
         assert self._ties is not None
         joint, track = self._ties.joints[k], self._ties.track
-        rate, h = self._ties.laws.speed(joint), self._motion.h
+        rate = self._ties.laws.speed(joint)
         friction, stop = (np.asarray(each[1:, k], dtype=np.float64) for each in (track.friction, track.stop))
         change, fastest = np.abs(np.diff(rate)), np.maximum(np.abs(rate[1:]), np.abs(rate[:-1]))
         work, doubt = self._driven(k, rate)
@@ -199,8 +203,8 @@ class Losses:
         at_most = joint.drive is not None and joint.drive.max_effort is not None
         if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
             stretch = joint.drive.position - held.position
-            rubs, doubt = self._integrated(rate * (rate - joint.drive.velocity))
-            return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - joint.drive.damping * rubs, joint.drive.damping * doubt
+            rubs, doubt = joint.drive.damping * np.array(self._integrated(rate * (rate - joint.drive.velocity)))
+            return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
         drive = np.asarray(self._ties.track.drive[1:, k], dtype=np.float64)
         mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
         force = np.gradient(drive / h) if len(drive) > 1 else np.zeros(len(drive))
@@ -211,9 +215,9 @@ class Losses:
     def ahead(self, rows: Rows) -> tuple[Floats, Floats]:
         """What steps of the first order show too little of the energy that they keep, and how unsure it is, (T,) [J].
 
-        v += a dt, z += v dt keeps E + m v . g dt / 2, and takes places by dv dt / 2 along their way farther than the mean
-        of both ends' velocities less h^2 / 12 of the change of accelerations, where velocities change by dv; steps of
-        higher orders do not. Poses tell of a few intervals together which it was.
+        v += a dt, z += v dt keeps E + m v . g dt / 2, and takes places along their way by dv dt / 2 farther than
+        the mean of both ends' velocities, less h^2 / 12 of the change of accelerations, where velocities change by dv;
+        steps of higher orders do not. Poses tell of a few intervals together which it was.
         """
         motion = self._motion
         v, h = motion.v[:, rows], motion.h[:, None, None]
@@ -270,10 +274,12 @@ class Losses:
         By Euler and Maclaurin, with slopes by differences; where those jump they are no slopes.
         """
         h = self._motion.h
-        slope = np.gradient(power, self._evidence.time, edge_order=min(2, len(power) - 1))
+        slope = np.gradient(power, self._evidence.time, edge_order=2 if len(power) > 2 else 1)
         bend = h**2 / 12.0 * np.diff(slope)
         jump = np.abs(np.diff(bend, prepend=0.0, append=0.0))
-        return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(np.maximum(jump[1:], jump[:-1]), np.abs(bend))
+        return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(
+            np.maximum(jump[1:], jump[:-1]), np.abs(bend)
+        )
 
     def _jerked(self, ours: set[int]) -> Floats:
         """What ropes that come taut may take, (T - 1,) [J]."""

@@ -1,8 +1,7 @@
 """What a recording says that joints, springs and ropes gave: to whom, and how it should have been by frames and laws.
 
-Between two frames a reaction's arm and axis turn by the angle t that its bodies turn. An impulse taken at the arm of the
-middle is off by t^2 / 24 of it where both change evenly, and by t / 2 dJ where it changes by dJ meanwhile and all at
-one end: where a stop or a blow comes in, up to t / 2 of it.
+Between two frames a reaction's arm and axis turn by the angle t that its bodies turn. An impulse taken at the arm of
+the middle is off by t^2 / 12 of it where both change evenly; where it all comes at one end, as in a blow, by t / 2.
 """
 
 from __future__ import annotations
@@ -217,9 +216,9 @@ class RecordedTies:
 
     # ---- cords
     def cord(self, k: int) -> tuple[Floats, Floats, Floats]:
-        """Of end k of a cord: by how much its wrench is not its tension's along its way, may be, and its size, (T - 1,).
+        """Of end k of a cord: by how much its wrench is not its tension's along its way, and may be; and its size.
 
-        [N s], torques by the arm.
+        (T - 1,) each [N s], torques by the arm.
         """
         evidence, (cord, row) = self._evidence, self.ends[k]
         given, tension = self.track.cords[1:, k, :6].astype(np.float64), self.track.tension[1:, k].astype(np.float64)

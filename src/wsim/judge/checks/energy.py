@@ -23,13 +23,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+
 @dataclass
 class CheckEnergy(Check):
     """Nothing gains energy from nowhere: kinetic, potential and springs' energy, less work done on it, only fall.
 
-    By mechanism, over the time in which it meets no other, and for all bodies together. Where contacts, joints and cords
-    are recorded, what is lost must be what friction, blows, stops and dampers may take by their laws; elsewhere that is
-    not known, and of what is lost nothing is asked here.
+    By mechanism, over the time in which it meets no other, and for all bodies together. Where contacts, joints and
+    cords are recorded, what is lost must be what friction, blows, stops and dampers may take by their laws; elsewhere
+    that is not known, and of what is lost nothing is asked here.
     """
 
     share: float = 0.01  # of the energy that changes hands
@@ -106,7 +107,7 @@ class CheckEnergy(Check):
             fine="What bodies lose is what friction, blows, stops, drives and dampers may take",
             limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, what one time step cannot resolve, and "
             f"a lift by {self.settling:g} of the size of what may touch something",
-            target=RepairTarget(kind="program", prim=body.prim, why="something takes or gives energy that is not there"),
+            target=RepairTarget(kind="program", prim=body.prim, why="something takes or gives energy unseen"),
         )  # fmt: skip
 
     @staticmethod

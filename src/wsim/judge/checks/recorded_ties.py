@@ -75,11 +75,11 @@ class CheckRecordedTies(Check):
         start, end = float(evidence.time[k]), float(evidence.time[k + 1])
         value, limit = float(asked.off[k]) / h, float(asked.limit[k]) / h
         return self.measured(
-            f"{asked.prim} {asked.what}, {value:.3g} {asked.unit}, from {start:.3f} to {end:.3f} s",
+            f"{asked.prim} {asked.what}, by {value:.3g} {asked.unit}, from {start:.3f} to {end:.3f} s",
             value, limit, asked.unit, prim=asked.body, line=evidence.line(asked.prim), time=end, span=(start, end),
             expected=0.0, fine=SAYS[asked.kind],
-            limit_from=f"{self.exact:g} of what it passes on, {self.law:g} of what a law gives, and what frames tell of "
-            "an arm that turns and a force that changes",
+            limit_from=f"{self.exact:g} of what it passes on, {self.law:g} of what a law gives, and what frames do not "
+            "tell of an arm that turns and a force that changes",
             target=RepairTarget(kind="joint", prim=asked.prim, why="it gives what the stated one does not"),
         )  # fmt: skip
 
@@ -109,14 +109,18 @@ class CheckRecordedTies(Check):
             return
         off, efforts = ties.along(k)
         passed = self.exact * (least + efforts + (size if turns else 0.0))
-        yield Asked("passes", joint.prim, joint.child, "passes on what nothing along its motion gives", off, passed, unit)
+        yield Asked(
+            "passes", joint.prim, joint.child, "passes on what nothing along its motion gives", off, passed, unit
+        )
         if not moves:
             return
         yield from self._driven(ties, k, joint, least, unit, controlled)
         yield from self._rubbed(ties, k, joint, least, unit, h)
         stop, away = ties.track.stop[1:, k].astype(np.float64), ties.pushed_off(k, NEAR_STOP)
         wrong = np.where(away == 3.0, np.abs(stop), np.where(away == 1.0, stop, np.where(away == 2.0, -stop, 0.0)))
-        yield Asked("stop", joint.prim, joint.child, "is pushed by a stop that is not there", wrong, self.exact * least, unit)
+        yield Asked(
+            "stop", joint.prim, joint.child, "is pushed by a stop that is not there", wrong, self.exact * least, unit
+        )
 
     def _driven(
         self, ties: RecordedTies, k: int, joint: Joint, least: Floats, unit: str, controlled: bool
@@ -136,11 +140,11 @@ class CheckRecordedTies(Check):
             off = np.where(stated.known, np.abs(given - stated.mean * h), 0.0)
             most = float(np.abs(stated.mean).max(initial=0.0))
             limit = self.exact * (least + most * h) + (self.law * np.abs(stated.mean) + stated.unsure) * h
-            yield Asked("drive", joint.prim, joint.child, "is driven otherwise than by its drive's law", off, limit, unit)
+            yield Asked(
+                "drive", joint.prim, joint.child, "is driven otherwise than by its drive's law", off, limit, unit
+            )
 
-    def _rubbed(
-        self, ties: RecordedTies, k: int, joint: Joint, least: Floats, unit: str, h: Floats
-    ) -> Iterator[Asked]:
+    def _rubbed(self, ties: RecordedTies, k: int, joint: Joint, least: Floats, unit: str, h: Floats) -> Iterator[Asked]:
         given, limit = ties.track.friction[1:, k].astype(np.float64), self.exact * (least + joint.friction * h)
         off, what = np.abs(given) - joint.friction * h, "rubs more than its dry friction is"
         if joint.friction > 0.0:
@@ -156,7 +160,15 @@ class CheckRecordedTies(Check):
         tension = ties.track.tension[1:, k].astype(np.float64)
         if not evidence.motion.kinematic[ties.ends[k][1]]:
             off, may, size = ties.cord(k)
-            yield Asked("way", each.prim, body, "pulls beside its way", off, may + self.place * (size + self.exact * weight), "N")
+            yield Asked(
+                "way",
+                each.prim,
+                body,
+                "pulls beside its way",
+                off,
+                may + self.place * (size + self.exact * weight),
+                "N",
+            )
         if cord < len(springs):
             stated = ties.spring(cord)
             off = np.where(stated.known, np.abs(tension - stated.mean * ties.intervals), 0.0)
