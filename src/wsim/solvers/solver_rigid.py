@@ -319,6 +319,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self.impulses.add(data, self._dt)
         self._implicit(model, data)
         if self._flight:
+            self._flight.ease_warp(model, data, self._jacobian(model, data.efc), self.contact_config.steady)
             self._flight.fly(self._dt)
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
@@ -361,8 +362,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, *self._jacobian(model, efc), config.threshold, config.settle_time,
-                config.settle_speed, config.smallest_friction,
+                data.qacc_smooth, self._touched_for, self._flight.row, self._flight.exact, *self._jacobian(model, efc),
+                config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
         )  # fmt: skip

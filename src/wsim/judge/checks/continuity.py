@@ -70,12 +70,12 @@ class CheckContinuity(Check):
         """How far places come from where velocities take them, from any of some moments to any later one.
 
         Of a smooth motion the trapezoidal rule's errors h^3 v'' / 12 add up to what its ends differ by, h^2 dv/dt / 12
-        (Euler and Maclaurin), and a step of first order is off by dt / 2 of the change of velocity: neither grows with
+        (Euler and Maclaurin), and steps of first order are off by dt / 2 of the change of velocity: neither grows with
         the run. What grows is as much as velocities bend from frame to frame, in blows, by twice the rule's error.
         """
         motion, h = evidence.motion, evidence.motion.h[:, None]
         change = np.linalg.norm(np.diff(motion.v, axis=0), axis=2)
-        ends = motion.dt * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
+        ends = motion.late * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
         # What is set down settles by a step, also along a slope.
         ends = ends + self._rounding(evidence).max(axis=0) + evidence.gravity * motion.dt**2
         ends = ends + self._added(evidence).sum(axis=0)
@@ -90,7 +90,7 @@ class CheckContinuity(Check):
             most = unsure[start:] - unsure[start - 1] + ends
             more = off * limit[start:] > apart[start:] * most
             apart[start:], limit[start:] = np.where(more, off, apart[start:]), np.where(more, most, limit[start:])
-        source = "what its ends and its blows leave of the trapezoidal rule, and a time step of its change of velocity"
+        source = "what its ends and its blows leave of the trapezoidal rule, and of steps of first order a step of its change"
         return self._worst(evidence, apart, limit, "m", "has drifted by", source)
 
     @staticmethod
