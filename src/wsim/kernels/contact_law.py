@@ -342,6 +342,9 @@ def stop(
     position: wp.array2d(dtype=float),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    which: wp.array2d(dtype=int),  # stop or tendon
+    length: wp.array2d(dtype=float),  # of tendons
+    ahead: wp.array2d(dtype=float),  # the same where a step at the present speeds would take them
     settle_time: float,
     settle_speed: float,
     # Data out:
@@ -356,4 +359,7 @@ def stop(
     goal = float(0.0)
     if what != RUBBING:
         goal = settling(position[world, row], h, settle_time, settle_speed)
+    if what == TAUT:
+        k = which[world, row]
+        goal += (ahead[world, k] - length[world, k]) / h + velocity[world, row]
     aref[world, row] = (goal - velocity[world, row]) / h

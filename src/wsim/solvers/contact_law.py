@@ -37,6 +37,7 @@ from wsim.solvers.breaking import BreakingC
 from wsim.solvers.contact_impulses import ContactImpulsesC
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
+from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import extrapolated
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
@@ -208,6 +209,7 @@ class ContactLawC:
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
+        self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -291,6 +293,10 @@ class ContactLawC:
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)
+            taut = kinds[stops] == self.stops[1]
+            if self.ropes is not None and taut.any():
+                rows = stops[taut]
+                goal[taut] += self.ropes.growth(data, data.efc_id[rows], data.efc_vel[rows], h) / h
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
         rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h

@@ -18,6 +18,7 @@ from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
+from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
@@ -112,6 +113,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 self._drives = DrivesWarp(self.mj_model, driven, self.mjw_data.nworld) if driven else None
         else:  # Runge and Kutta's stages take drives as MuJoCo does
             self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
+        self._ropes: Any = None
+        if not on_c and self.mj_model.tendon_limited.any():
+            with wp.ScopedDevice(model.device):
+                self._ropes = RopesWarp(self._mujoco_warp, self.mjw_data)
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
             self._touched_for.zero_()
@@ -297,6 +302,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         warp = self._mujoco_warp
         if self._smooth_steps:
             self._smooth_steps.before(model, data)
+        if self._ropes:
+            self._ropes.look_ahead(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         if self._flight:
@@ -370,9 +377,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         wp.launch(
             stop,
             dim=(data.nworld, data.njmax),
-            inputs=[data.nefc, efc.type, efc.pos, efc.vel, h, config.settle_time, config.settle_speed],
+            inputs=[
+                data.nefc, efc.type, efc.pos, efc.vel, h, efc.id, data.ten_length,
+                self._ropes.length if self._ropes else data.ten_length, config.settle_time, config.settle_speed,
+            ],
             outputs=[efc.aref],
-        )
+        )  # fmt: skip
 
     def _aim_again(self, model: Any, data: Any) -> None:
         efc, contact = data.efc, data.contact
