@@ -77,7 +77,8 @@ def _time(finding: Finding) -> float:
 
 
 def _courses(path: Path, plan: Plan | None, findings: Sequence[Finding]) -> list[Course]:
-    evidence, courses = Evidence(read(path), plan), []
+    evidence = Evidence(read(path), plan)
+    courses: list[Course] = []
     for finding in findings:
         signal = find_signal(evidence, finding) if finding.value is not None else None
         if signal is not None and signal.how and len(courses) < COURSES:
