@@ -26,6 +26,11 @@ def cross(a: Floats, b: Floats) -> Floats:
     return found
 
 
+def lengths(v: Floats) -> Floats:
+    """Of vectors (..., n); for short ones several times as fast as NumPy's norm."""
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", v, v)))
+
+
 def conjugate(q: Floats) -> Floats:
     """The inverse of unit quaternions (..., 4)."""
     return q * np.array([-1.0, -1.0, -1.0, 1.0])

@@ -45,10 +45,24 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         return [_cannot_judge(evidence) for evidence in copies]
     runs = [[finding for check in run_checks() for finding in check.run(evidence)] for evidence in copies]
     broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
-    # What cannot be worked out of all is left to each by itself, whose check tells of it.
-    with contextlib.suppress(Exception):
-        work_out([evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None])
+    sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
+    if len(sound) > 1:
+        _work_out(sound)
     return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
+
+
+def _work_out(copies: Sequence[Evidence]) -> None:
+    """At once what the checks ask of all copies. What cannot be is left to each by itself, whose check tells of it."""
+    joined = None
+    with contextlib.suppress(Exception):
+        joined = Evidence.join(copies)
+    with contextlib.suppress(Exception):
+        work_out(copies)
+    if joined is not None:
+        asked = copies[0].plan.objectives if copies[0].plan is not None else []
+        for check in (*physics_checks(), *map(ObjectiveCheck, asked)):
+            with contextlib.suppress(Exception):
+                check.prepare(joined, copies)
 
 
 def _conclusion(evidence: Evidence, findings: list[Finding], broken: Finding | None) -> Verdict:

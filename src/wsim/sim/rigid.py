@@ -147,7 +147,7 @@ class RigidBodies:
         self.solver.steps(state, control, dt, count)
 
     def keep_contacts(self) -> None:
-        """Sum from here on what pairs of the first world's shapes give each other, and in C what joints and cords give."""
+        """Sum from here on what the first world's pairs of shapes give each other; in C its joints and cords, too."""
         self.solver.keep_impulses(shape_numbers(self.model, self._world))
         if self.on_c and (self._world.joints or self._world.cords):
             self.solver.keep_ties(*ties_of(self.solver, self._world))

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -96,11 +97,8 @@ class TieImpulsesC:
         kinds, types = mujoco.mjtConstraint, mujoco.mjtEq
         self._equality, self._rubs = int(kinds.mjCNSTR_EQUALITY), int(kinds.mjCNSTR_FRICTION_DOF)
         self._drives, self._taut = int(kinds.mjCNSTR_FRICTION_TENDON), int(kinds.mjCNSTR_LIMIT_TENDON)
-        self._stops, self._weld, self._gear = (
-            int(kinds.mjCNSTR_LIMIT_JOINT),
-            int(types.mjEQ_WELD),
-            int(types.mjEQ_JOINT),
-        )
+        self._stops = int(kinds.mjCNSTR_LIMIT_JOINT)
+        self._weld, self._gear = int(types.mjEQ_WELD), int(types.mjEQ_JOINT)
         sites = [int(model.site_bodyid[k]) if kind == mujoco.mjtWrap.mjWRAP_SITE else -1
                  for kind, k in zip(model.wrap_type, model.wrap_objid, strict=True)]  # fmt: skip
         self._sites = [
@@ -201,7 +199,7 @@ class TieImpulsesC:
             at = points[steps[:, None], first[steps, None] + np.arange(len(way))]
             along = np.diff(at, axis=1)
             along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-12)
-            for k, (one, two) in enumerate(zip(bodies[:-1], bodies[1:], strict=True)):
+            for k, (one, two) in enumerate(pairwise(bodies)):
                 if one == two:
                     continue
                 for body, place, pull in ((one, at[:, k], along[:, k]), (two, at[:, k + 1], -along[:, k])):

@@ -130,8 +130,8 @@ class Balance:
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
         found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted
         count = len(self._copies)
-        parts = zip(*(np.split(array, count) for array in found), strict=True)
-        return [Books(*part, size) for part, size in zip(parts, self._sizes, strict=True)]
+        parts = zip(*(np.split(array, count) for array in found), self._sizes, strict=True)
+        return [Books(*part) for part in parts]
 
     def _scale(self, ks: Rows) -> Floats:
         """What a force and a torque on each body count for in some intervals, (K, B, 6)."""

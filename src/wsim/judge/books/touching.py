@@ -144,11 +144,11 @@ class Touching:
             gaps.append(np.array(found.dist).reshape(-1))
             if self._meshes:
                 others.append(together(self._on_meshes(poses[k], float(far))))
-        geom = np.concatenate([np.zeros((0, 2), dtype=np.intp), *geoms])
+        geom = np.concatenate([NONE.shapes, *geoms])
         shapes = self._shape_of_geom[geom]
         contacts = Contacts(
             self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes,
-            np.concatenate([np.zeros((0, 3)), *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
+            np.concatenate([_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
             np.concatenate([np.zeros(0), *gaps]) - self._margin[geom].sum(axis=1),
         )  # fmt: skip
         by = np.repeat(rows, [len(gap) for gap in gaps])

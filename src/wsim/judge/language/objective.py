@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -17,9 +17,13 @@ from wsim.judge.language.signals import Signals
 from wsim.plan.schema.formula import And, Finally, Formula, Mean, Predicate
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.measure import Measure
-    from wsim.judge.verdict import Finding
+    from wsim.judge.verdict import Finding, RepairTarget
     from wsim.plan.schema import Objective
 
 
@@ -44,14 +48,33 @@ class ObjectiveCheck(Check):
 
     def run(self, evidence: Evidence) -> list[Finding]:
         """The findings, each with the objective's sentence and its object's prim and line."""
-        key = self.objective.model_dump_json()
+        key = self._key[1]
         if key not in evidence.answers:
             evidence.answers[key] = self._answers(evidence)
         return evidence.answers[key]
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each conjunct: the measure that decides it, in its own unit."""
+        asked = evidence.kept.get(self._key)
+        if isinstance(asked, Asked):
+            return asked.findings(self, evidence)
         return findings(self, formula_of(self.objective, evidence), evidence)
+
+    def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
+        """What it comes to in all copies at once, where one formula says it of all; MissingError."""
+        formulas = [formula_of(self.objective, evidence) for evidence in copies]
+        if any(formula != formulas[0] for formula in formulas):
+            return
+        if Signals not in joined.kept:
+            joined.kept[Signals] = Signals.of_copies(joined)
+        signals = cast("Signals", joined.kept[Signals])
+        outcomes = [(part, evaluate(part, signals)) for part in conjuncts(formulas[0])]
+        for n, evidence in enumerate(copies):
+            evidence.kept[self._key] = Asked(signals, outcomes, n)
+
+    @property
+    def _key(self) -> tuple[type, str]:
+        return ObjectiveCheck, self.objective.model_dump_json()
 
     def _answers(self, evidence: Evidence) -> list[Finding]:
         prim = evidence.prim(self.objective.object)
@@ -75,10 +98,93 @@ def name_of(kind: str) -> str:
     return "Objective" + "".join(word.capitalize() for word in kind.split("_"))
 
 
+@dataclass(frozen=True)
+class Asked:
+    """What the conjuncts of a formula come to in a world of some."""
+
+    signals: Signals
+    outcomes: list[tuple[Formula, Outcome]]
+    world: int = 0
+
+    def findings(self, check: Check, evidence: Evidence) -> list[Finding]:
+        """One for each, with what to change where it fails."""
+        found = [self._finding(check, part, outcome, evidence) for part, outcome in self.outcomes]
+        for finding, (part, _) in zip(found, self.outcomes, strict=True):
+            if not finding.passed:
+                finding.target = _target(part, finding, evidence)
+        return found
+
+    def _finding(self, check: Check, part: Formula, outcome: Outcome, evidence: Evidence) -> Finding:
+        signals, n = self.signals, self.world
+        measure = outcome.measures[int(outcome.measure[n])]
+        frame = int(np.argmin(np.abs(signals.time - outcome.moment[n])))
+        moment, said = float(outcome.moment[n]), sentence(part)
+        details: dict[str, Any] = {"prim": measure.prim, "line": evidence.line(measure.prim), "time": moment}
+        if measure.expected is not None:
+            expected = float(self._here(measure.expected)[frame])
+            details["expected"] = expected if np.isfinite(expected) else None
+        if not np.isfinite(outcome.robustness[n]):
+            return check.failed(
+                f"{said} cannot hold: the {measure.what} of {measure.prim} is not known at {moment:.3f} s",
+                unit=measure.unit, limit_from=measure.limit_from, **details,
+            )  # fmt: skip
+        value, limit = (float(self._here(of)[frame]) for of in (measure.value, measure.limit))
+        at_most = bool(self._here(measure.at_most)[frame])
+        # Under a `not` the limit is kept from the other side.
+        own = limit - value if at_most else value - limit
+        at_most ^= bool(own * outcome.margin[n] < 0.0)
+        satisfied, span = bool(outcome.satisfied[n]), self._span(measure, frame)
+        when = f"from {moment:.3f} s on" if measure.single is not None else f"at {moment:.3f} s"
+        if not satisfied and _at_the_end(part):
+            details["time"] = span[0]  # what fails at the end is to be looked at where it came to be so
+            when += f", and so since {span[0]:.3f} s"
+        unit = "" if measure.unit == "1" else f" {measure.unit}"
+        message = (
+            f"{said} {'holds' if satisfied else 'does not hold'}: the {measure.what} of {measure.prim} is "
+            f"{value:.4g}{unit} {when}, where {limit:.4g}{unit} is the {'most' if at_most else 'least'}"
+        )
+        return check.measured(
+            message if satisfied or not measure.note else f"{message}; {measure.note}", value, limit, measure.unit,
+            at_most=at_most, span=span, limit_from=measure.limit_from, **details,
+        )  # fmt: skip
+
+    def _here(self, of: Any) -> NDArray[Any]:
+        """Of this world, (T,)."""
+        return np.asarray(np.broadcast_to(of, (self.signals.count, len(self.signals.time)))[self.world])
+
+    def _span(self, measure: Measure, frame: int) -> tuple[float, float]:
+        """From when to when the measure that decides is on the side of its limit where it is at that moment [s].
+
+        Of a mean it is the last stretch of what it is of, from where that came to the mean's side; or all of the mean's
+        time, where that ends on the other.
+        """
+        time, margin = self.signals.time, self._here(measure.margin)
+        side = margin[frame] >= 0.0
+        if measure.single is not None:
+            margin = self._here(measure.single.margin)
+            if (margin[-1] >= 0.0) != side:
+                return float(time[frame]), float(time[-1])
+            frame = len(margin) - 1
+        other = np.flatnonzero((margin >= 0.0) != side)
+        first = other[other < frame].max(initial=-1) + 1
+        last = other[other > frame].min(initial=len(margin)) - 1
+        return float(time[first]), float(time[last])
+
+
 def findings(check: Check, formula: Formula, evidence: Evidence) -> list[Finding]:
     """One finding for each conjunct of a formula on one recording; raises as `evaluate` does."""
     signals = Signals.of(evidence)
-    return [_told(check, part, signals, evidence) for part in conjuncts(formula)]
+    return Asked(signals, [(part, evaluate(part, signals)) for part in conjuncts(formula)]).findings(check, evidence)
+
+
+def _target(part: Formula, finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """What to change for a part that fails in one world."""
+    try:
+        outcome = evaluate(part, Signals.of(evidence))
+        decides = int(outcome.measure[0])
+        return target_of(part, outcome.predicates[decides], outcome.measures[decides], finding, evidence)
+    except Exception:  # noqa: BLE001 - evidence too broken for the objective may be so for its rule: nothing is known
+        return None
 
 
 def conjuncts(formula: Formula) -> tuple[Formula, ...]:
@@ -86,74 +192,6 @@ def conjuncts(formula: Formula) -> tuple[Formula, ...]:
     return formula.of if isinstance(formula, And) else (formula,)
 
 
-def _told(check: Check, part: Formula, signals: Signals, evidence: Evidence) -> Finding:
-    """The finding about part of a formula, with what to change where it fails."""
-    outcome = evaluate(part, signals)
-    decides = int(outcome.measure[0])
-    finding = _finding(check, part, outcome, signals, evidence)
-    if not finding.passed:
-        try:
-            finding.target = target_of(part, outcome.predicates[decides], outcome.measures[decides], finding, evidence)
-        except Exception:  # noqa: BLE001 - evidence too broken for the objective may be so for its rule: nothing is known
-            finding.target = None
-    return finding
-
-
-def _finding(check: Check, part: Formula, outcome: Outcome, signals: Signals, evidence: Evidence) -> Finding:
-    measure = outcome.measures[int(outcome.measure[0])]
-    frame = int(np.argmin(np.abs(signals.time - outcome.moment[0])))
-    moment, said = float(outcome.moment[0]), sentence(part)
-    shape = (1, len(signals.time))
-    details: dict[str, Any] = {"prim": measure.prim, "line": evidence.line(measure.prim), "time": moment}
-    if measure.expected is not None:
-        expected = float(np.broadcast_to(measure.expected, shape)[0, frame])
-        details["expected"] = expected if np.isfinite(expected) else None
-    if not np.isfinite(outcome.robustness[0]):
-        return check.failed(
-            f"{said} cannot hold: the {measure.what} of {measure.prim} is not known at {moment:.3f} s",
-            unit=measure.unit, limit_from=measure.limit_from, **details,
-        )  # fmt: skip
-    value, limit = (float(np.broadcast_to(of, shape)[0, frame]) for of in (measure.value, measure.limit))
-    at_most = bool(np.broadcast_to(measure.at_most, shape)[0, frame])
-    # Under a `not` the limit is kept from the other side.
-    own = limit - value if at_most else value - limit
-    at_most ^= bool(own * outcome.margin[0] < 0.0)
-    satisfied, span = bool(outcome.satisfied[0]), _span(signals, measure, frame)
-    when = f"from {moment:.3f} s on" if measure.single is not None else f"at {moment:.3f} s"
-    if not satisfied and _at_the_end(part):
-        details["time"] = span[0]  # what fails at the end is to be looked at where it came to be so
-        when += f", and so since {span[0]:.3f} s"
-    unit = "" if measure.unit == "1" else f" {measure.unit}"
-    message = (
-        f"{said} {'holds' if satisfied else 'does not hold'}: the {measure.what} of {measure.prim} is "
-        f"{value:.4g}{unit} {when}, where {limit:.4g}{unit} is the {'most' if at_most else 'least'}"
-    )
-    return check.measured(
-        message if satisfied or not measure.note else f"{message}; {measure.note}", value, limit, measure.unit,
-        at_most=at_most, span=span, limit_from=measure.limit_from, **details,
-    )  # fmt: skip
-
-
 def _at_the_end(part: Formula) -> bool:
     """Whether a formula is about the end of the recording."""
     return isinstance(part, Finally | Mean) or (isinstance(part, Predicate) and part.alone == "finally")
-
-
-def _span(signals: Signals, measure: Measure, frame: int) -> tuple[float, float]:
-    """From when to when the measure that decides is on the side of its limit where it is at that moment [s].
-
-    Of a mean it is the last stretch of what it is of, from where that came to the mean's side; or all of the mean's
-    time, where that ends on the other.
-    """
-    shape = (1, len(signals.time))
-    margin = np.broadcast_to(measure.margin, shape)[0]
-    side = margin[frame] >= 0.0
-    if measure.single is not None:
-        margin = np.broadcast_to(measure.single.margin, shape)[0]
-        if (margin[-1] >= 0.0) != side:
-            return float(signals.time[frame]), float(signals.time[-1])
-        frame = len(margin) - 1
-    other = np.flatnonzero((margin >= 0.0) != side)
-    first = other[other < frame].max(initial=-1) + 1
-    last = other[other > frame].min(initial=len(margin)) - 1
-    return float(signals.time[first]), float(signals.time[last])

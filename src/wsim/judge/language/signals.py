@@ -74,6 +74,13 @@ class Signals:
         )  # fmt: skip
 
     @classmethod
+    def of_copies(cls, joined: Evidence) -> Signals:
+        """Many worlds, whose evidence was joined (`Evidence.join`)."""
+        motion = joined.motion
+        turning = np.concatenate([motion.v, motion.w], axis=-1)
+        return cls(joined.world, joined.time, motion.q, turning, motion.contact_force, mass=motion.mass[:, 0])
+
+    @classmethod
     def of_recording(cls, recording: Recording, plan: Plan | None = None) -> Signals:
         """One recorded world."""
         return cls.of(Evidence(recording, plan))
