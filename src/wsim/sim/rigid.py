@@ -67,10 +67,10 @@ class RigidBodies:
 
     Args:
         model: The Newton model.
-        world: What the stage states of its surfaces and drives.
+        worlds: What the stage of all worlds alike, or that of each, states.
         dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
-        breakable: The joints that may break.
+        breakable: The joints that may break, of all worlds alike or of each.
         surfaces: What collides by its triangles.
 
     Attributes:
@@ -80,20 +80,21 @@ class RigidBodies:
     def __init__(
         self,
         model: Any,
-        world: World,
+        worlds: Sequence[World],
         dt: float,
         controlled: bool = False,
-        breakable: Sequence[Breakable] = (),
+        breakable: Sequence[Sequence[Breakable]] = ((),),
         surfaces: SurfaceParts | None = None,
     ) -> None:
-        self.model, self.breakable, self._world = model, breakable, world
+        world = worlds[0]
+        self.model, self.breakable, self._world = model, breakable[0], world
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
         swings = bool(world.joints or world.springs)
-        smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
+        smooth = swings and model.particle_count == 0 and not any(is_overdamped(each, dt) for each in worlds)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
         self._touching = touching
@@ -103,9 +104,9 @@ class RigidBodies:
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + drive_count(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
-        found = surfaces_of(model, world)
+        found = surfaces_of(model, worlds)
         self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, **sizes)
-        self.solver.move_surfaces(surface_velocities(model, world))
+        self.solver.move_surfaces(surface_velocities(model, worlds))
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}

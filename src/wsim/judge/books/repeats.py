@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -26,27 +28,31 @@ LONGER = 1.5  # times as long is another interval
 CHUNK = 64  # frames whose distances between all bodies are held at once
 
 
-def fresh(evidence: Evidence, wanted: Floats, hit: Bools, size: Floats, unit: float) -> Bools:
-    """Where a body, or what it may touch or hangs on, differs from the last interval of its kind, (T - 1, B).
+def fresh(copies: Sequence[Evidence], wanted: Floats, hit: Bools, size: Floats, unit: float) -> Bools:
+    """Where a body, or what it may touch or hangs on, differs from the last interval of its kind, (N, B).
 
     Args:
-        evidence: T frames of B bodies.
-        wanted: Changes to be explained, (T - 1, B, 6) [m/s^2].
-        hit: Whether something hit a body, (T - 1, B).
-        size: (B,) [m].
+        copies: W of them, T frames of B bodies each; their N = W (T - 1) intervals are one after another.
+        wanted: Changes to be explained, (N, B, 6) [m/s^2].
+        hit: Whether something hit a body, (N, B).
+        size: (W, B) [m].
         unit: A strength of gravity [m/s^2].
     """
-    changed = _changed(_seen(evidence, size, unit), np.concatenate([wanted / (CHANGE * unit), hit[..., None]], axis=2))
-    motion = evidence.motion
+    motion, world, count = copies[0].motion, copies[0].world, len(copies)
+    seen = np.stack([_seen(evidence, each, unit) for evidence, each in zip(copies, size, strict=True)], axis=1)
+    kinds = np.concatenate([wanted / (CHANGE * unit), hit[..., None]], axis=2)
+    kinds = kinds.reshape(count, len(motion.h), *kinds.shape[1:]).swapaxes(0, 1)
+    changed = _changed(seen, kinds)  # (T - 1, W, B); the first of each copy is
     longer = np.abs(np.diff(np.log(motion.h), prepend=np.log(motion.h[:1]))) > np.log(LONGER)
-    changed |= longer[:, None]
-    breaks = {end for joint in evidence.world.joints if joint.may_break for end in (joint.parent, joint.child)}
-    changed[:, [body.prim in breaks for body in evidence.world.bodies]] = True
-    some = np.flatnonzero(changed.any(axis=1) & ~changed.all(axis=1))
-    for start in range(0, len(some), CHUNK):
-        ks = some[start : start + CHUNK]
-        changed[ks] = _spread(changed[ks], _near(evidence, ks))
-    return changed
+    changed |= longer[:, None, None]
+    breaks = {end for joint in world.joints if joint.may_break for end in (joint.parent, joint.child)}
+    changed[..., [body.prim in breaks for body in world.bodies]] = True
+    for n, evidence in enumerate(copies):
+        some = np.flatnonzero(changed[:, n].any(axis=1) & ~changed[:, n].all(axis=1))
+        for start in range(0, len(some), CHUNK):
+            ks = some[start : start + CHUNK]
+            changed[ks, n] = _spread(changed[ks, n], _near(evidence, ks))
+    return np.ascontiguousarray(changed.swapaxes(0, 1)).reshape(-1, changed.shape[2])
 
 
 def again(fresh: Bools, found: Floats, wanted: Floats | None = None) -> Floats:
@@ -66,19 +72,19 @@ def _seen(evidence: Evidence, size: Floats, unit: float) -> Floats:
 
 
 def _changed(frames: Floats, intervals: Floats) -> Bools:
-    """Whether anything of a body in an interval is more than one off what it was when it last was."""
-    found = np.ones(intervals.shape[:2], dtype=bool)
+    """Whether anything of a body in an interval is more than one off what it was when it last was, (T - 1, W, B)."""
+    found = np.ones(intervals.shape[:3], dtype=bool)
     if not len(found):
         return found
-    steps = np.any(frames[1:] != frames[:-1], axis=(1, 2))
-    steps[1:] |= steps[:-1] | np.any(intervals[1:] != intervals[:-1], axis=(1, 2))
-    last = np.concatenate([frames[0], frames[1], intervals[0]], axis=1)
+    steps = np.any(frames[1:] != frames[:-1], axis=(1, 2, 3))
+    steps[1:] |= steps[:-1] | np.any(intervals[1:] != intervals[:-1], axis=(1, 2, 3))
+    last = np.concatenate([frames[0], frames[1], intervals[0]], axis=2)
     for k in range(1, len(found)):
         if not steps[k]:  # to the bit
             found[k] = False
             continue
-        now = np.concatenate([frames[k], frames[k + 1], intervals[k]], axis=1)
-        found[k] = np.any(np.abs(now - last) > 1.0, axis=1)
+        now = np.concatenate([frames[k], frames[k + 1], intervals[k]], axis=2)
+        found[k] = np.any(np.abs(now - last) > 1.0, axis=2)
         last[found[k]] = now[found[k]]
     return found
 
