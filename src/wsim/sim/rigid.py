@@ -12,7 +12,7 @@ from newton import ShapeFlags
 
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.recording.contacts import Pushes
-from wsim.recording.ties import TieSums
+from wsim.recording.ties import Ties
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
 from wsim.sim.contacts import shape_numbers, surface_velocities, surfaces_of
@@ -156,7 +156,7 @@ class RigidBodies:
         """The sums since the last call; None where nobody asked to keep them."""
         return self.solver.impulses.take() if self.solver.impulses else None
 
-    def take_ties(self) -> TieSums | None:
+    def take_ties(self) -> Ties | None:
         """The sums of joints and cords since the last call; None where nobody keeps them."""
         return self.solver.tie_impulses.take() if self.solver.tie_impulses else None
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import rotate
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
 from wsim.judge.evidence.carriers import carriers
@@ -130,7 +131,10 @@ class Losses:
         blow += np.where(
             bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0
         )  # a slower one does not bounce
-        return np.asarray(blow + contacts.rubbed * slip + self._turned(pressed, normal, frame, rolling))
+        # What rocks from edge to edge meets at one what it leaves at another, and each slips by itself.
+        rocks, turned = self._turned(pressed, normal, frame, rolling)
+        blow += 0.5 * (1.0 - bounce) * pressed * rocks
+        return np.asarray(blow + contacts.rubbed * (slip + rocks) + turned)
 
     @cached_property
     def _steady(self) -> Floats:
@@ -168,21 +172,40 @@ class Losses:
         found = values[which.ravel()]
         return found[:, 0], found[:, 1]
 
-    def _turned(self, pressed: Floats, normal: Floats, frame: Rows, rolling: Floats) -> Floats:
-        """What rolling resistance takes, and spinning, of surfaces that touch in more than a point, (n,) [J]."""
+    def _turned(self, pressed: Floats, normal: Floats, frame: Rows, rolling: Floats) -> tuple[Floats, Floats]:
+        """How fast surfaces rock on each other that are no balls, and what rolling and spinning take, (n,) [m/s], [J].
+
+        What is round about an axis rolls about it, and does not rock.
+        """
         motion, contacts = self._motion, self._contacts
-        rate = np.zeros((len(pressed), 2, 3))
+        rate, rocking = np.zeros((len(pressed), 2, 3)), np.zeros((len(pressed), 2, 3))
         for end in (0, 1):
             for side, sign in ((0, -1.0), (1, 1.0)):
                 own = contacts.body[:, side]
                 spin = motion.w[frame - 1 + end, np.maximum(own, 0)]
-                rate[:, end] += sign * np.where((own >= 0)[:, None], spin, 0.0)
+                spin = sign * np.where((own >= 0)[:, None], spin, 0.0)
+                axis = self._round_about(side, frame - 1 + end)
+                rate[:, end] += spin
+                rocking[:, end] += spin - np.einsum("ni,ni->n", spin, axis)[:, None] * axis
         fastest = np.linalg.norm(rate, axis=2).max(axis=1)
         about = np.abs(np.einsum("nei,ni->ne", rate, normal)).max(axis=1)
         size = np.append(motion.radius, np.inf)[contacts.body].min(axis=1)
         round_ = np.array([shape.kind == "sphere" for shape in contacts.shapes])[contacts.track.pair].any(axis=1)
         patch = contacts.friction * np.where(round_, 0.0, about) * size
-        return np.asarray(pressed * (patch + (1.0 + np.pi) * rolling * size * fastest))
+        rocking -= np.einsum("nei,ni->ne", rocking, normal)[..., None] * normal[:, None]
+        rocks = np.where(round_, 0.0, np.linalg.norm(rocking, axis=2).max(axis=1) * size)
+        return rocks, pressed * (patch + (1.0 + np.pi) * rolling * size * fastest)
+
+    def _round_about(self, side: int, frame: Rows) -> Floats:
+        """The axis about which the first or second shape of each contact is round, (n, 3); zeros where there is none."""
+        contacts, found = self._contacts, np.zeros((len(frame), 3))
+        placed = {(shape.body, shape.shape.prim): shape for shape in self._evidence.placed}
+        for k in np.unique(contacts.track.pair[:, side]):
+            rows = np.flatnonzero(contacts.track.pair[:, side] == k)
+            shape = placed.get((int(contacts.body[rows[0], side]), contacts.shapes[k].prim))
+            if shape is not None and shape.shape.kind in ("cylinder", "capsule"):
+                found[rows] = rotate(shape.rotation[frame[rows]], np.array([[0.0, 0.0, 1.0]]))
+        return found
 
     # ---- ties
     def _of_joint(self, k: int) -> tuple[Floats, Floats, Floats]:
