@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import STILL, Poses, pushes
@@ -50,15 +50,17 @@ class Lacking:
 def creeps(evidence: Evidence) -> list[Lacking]:
     """All of a recording, in spans that overlap by a half."""
     motion, books = evidence.motion, Books.of(evidence)
-    found = []
-    free = ~motion.jointed & ~motion.kinematic
-    for first in range(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2):
-        last = first + INTERVALS
-        moved = np.linalg.norm(motion.com[last] - motion.com[first], axis=1)
-        calm = free & ~books.hit[first:last].any(axis=0)
-        if np.any(moved[calm] > CREEP * (evidence.time[last] - evidence.time[first])):
-            found += _of_span(evidence, books, calm, first, last)
-    return found
+    firsts = np.arange(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2)
+    moved = lengths(motion.com[firsts + INTERVALS] - motion.com[firsts])
+    hit = books.hit[firsts[:, None] + np.arange(INTERVALS)].any(axis=1)
+    calm = ~motion.jointed & ~motion.kinematic & ~hit
+    least = CREEP * (evidence.time[firsts + INTERVALS] - evidence.time[firsts])
+    spans = np.flatnonzero(np.any(calm & (moved > least[:, None]), axis=1))
+    return [
+        lacking
+        for span in spans
+        for lacking in _of_span(evidence, books, calm[span], int(firsts[span]), int(firsts[span]) + INTERVALS)
+    ]
 
 
 def _of_span(evidence: Evidence, books: Books, calm: NDArray[np.bool_], first: int, last: int) -> list[Lacking]:

@@ -25,7 +25,7 @@ PLACE = 1e-5  # of a body's size, and [rad]: an arm that is off by less
 SPEED = 1e-3  # of what gravity gives in an interval
 CHANGE = 1e-4  # of gravity
 LONGER = 1.5  # times as long is another interval
-CHUNK = 64  # frames whose distances between all bodies are held at once
+CHUNK = 64  # intervals whose distances between all bodies are held at once
 
 
 def fresh(copies: Sequence[Evidence], wanted: Floats, hit: Bools, size: Floats, unit: float) -> Bools:
@@ -47,11 +47,14 @@ def fresh(copies: Sequence[Evidence], wanted: Floats, hit: Bools, size: Floats, 
     changed |= longer[:, None, None]
     breaks = {end for joint in world.joints if joint.may_break for end in (joint.parent, joint.child)}
     changed[..., [body.prim in breaks for body in world.bodies]] = True
-    for n, evidence in enumerate(copies):
-        some = np.flatnonzero(changed[:, n].any(axis=1) & ~changed[:, n].all(axis=1))
-        for start in range(0, len(some), CHUNK):
-            ks = some[start : start + CHUNK]
-            changed[ks, n] = _spread(changed[ks, n], _near(evidence, ks))
+    ks, ns = np.nonzero(changed.any(axis=2) & ~changed.all(axis=2))
+    com, ranges = np.stack([evidence.motion.com for evidence in copies]), np.stack([_ranges(each) for each in copies])
+    for start in range(0, len(ks), CHUNK):
+        k, n = ks[start : start + CHUNK], ns[start : start + CHUNK]
+        near = motion.unit[:, None] == motion.unit
+        for frames in (np.maximum(k - 1, 0), k, k + 1):
+            near = near | _near(com[n, frames], ranges[n, frames])
+        changed[k, n] = _spread(changed[k, n], near)
     return np.ascontiguousarray(changed.swapaxes(0, 1)).reshape(-1, changed.shape[2])
 
 
@@ -89,21 +92,21 @@ def _changed(frames: Floats, intervals: Floats) -> Bools:
     return found
 
 
-def _near(evidence: Evidence, ks: Rows) -> Bools:
-    """Whether two bodies may touch, or hang together, in an interval or at the frame before it, (K, B, B)."""
+def _ranges(evidence: Evidence) -> Floats:
+    """How far about its centre of mass each body may be in the intervals about a frame, (T, B) [m]."""
     motion = evidence.motion
     reach = np.concatenate([motion.reach, motion.reach[-1:]])
     margins = [max((shape.margin for shape in body.shapes), default=0.0) for body in evidence.world.bodies]
-    range_ = motion.radius + np.array(margins) + 2.0 * np.maximum(reach, np.roll(reach, 1, axis=0))
-    near = np.tile(motion.unit[:, None] == motion.unit[None, :], (len(ks), 1, 1))
-    for frames in (np.maximum(ks - 1, 0), ks, ks + 1):
-        c = motion.com[frames].astype(np.float32)
-        c = c - c.mean(axis=1, keepdims=True)
-        square = np.einsum("kbi,kbi->kb", c, c)
-        apart2 = square[:, :, None] + square[:, None, :] - 2.0 * c @ c.transpose(0, 2, 1)
-        bound = (range_[frames][:, :, None] + range_[frames][:, None, :]).astype(np.float32) * 1.001 + 0.004
-        near |= apart2 < bound * bound
-    return near
+    return np.asarray(motion.radius + np.array(margins) + 2.0 * np.maximum(reach, np.roll(reach, 1, axis=0)))
+
+
+def _near(com: Floats, ranges: Floats) -> Bools:
+    """Whether two bodies may touch, (K, B, B), at their centres of mass (K, B, 3) with their ranges (K, B) [m]."""
+    c = (com - com.mean(axis=1, keepdims=True)).astype(np.float32)
+    square = np.einsum("kbi,kbi->kb", c, c)
+    apart2 = square[:, :, None] + square[:, None, :] - 2.0 * c @ c.transpose(0, 2, 1)
+    bound = (ranges[:, :, None] + ranges[:, None, :]).astype(np.float32) * 1.001 + 0.004
+    return np.asarray(apart2 < bound * bound)
 
 
 def _spread(some: Bools, near: Bools) -> Bools:

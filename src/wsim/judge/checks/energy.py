@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.judge.books.losses import Losses
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
@@ -73,8 +74,10 @@ class CheckEnergy(Check):
         chattered, held = self._chattered(evidence), np.where(np.isfinite(stored), stored, 0.0)
         found: list[tuple[float, Finding]] = []
         for rows in losses.groups:
-            taken, (limit, scale) = losses.of_group(rows), self._limit(evidence, rows)
-            limit += self.share * (max(scale, taken.held) - scale) - self._late(evidence, rows) + losses.give(rows)
+            taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
+            limit, scale = (float(each[0]) for each in self._limit(evidence, of))
+            limit += self.share * (max(scale, taken.held) - scale) - float((self._late(evidence) @ of)[0])
+            limit += losses.give(rows)
             limits = limit, max(scale, taken.held)
             ahead, stray = losses.ahead(rows)
             known = energy[:, rows].sum(axis=1) + ahead - taken.driven + taken.damped
@@ -140,9 +143,9 @@ class CheckEnergy(Check):
         work is known no better than its force times that.
         """
         motion = evidence.motion
-        force = np.linalg.norm(np.asarray(evidence.recording.contact_force, dtype=np.float64), axis=2)
+        force = lengths(np.asarray(evidence.recording.contact_force, dtype=np.float64))
         told = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
-        hidden = np.linalg.norm(np.diff(motion.com, axis=0) - told, axis=2)
+        hidden = lengths(np.diff(motion.com, axis=0) - told)
         work = np.minimum(force[1:], force[:-1]) * hidden
         chattered: Floats = np.concatenate([np.zeros((1, work.shape[1])), np.cumsum(work, axis=0)])
         return chattered
@@ -156,7 +159,7 @@ class CheckEnergy(Check):
         deepest = recording.scalars.get("contact/penetration")
         size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
-        force = np.linalg.norm(np.asarray(recording.contact_force, dtype=np.float64), axis=2)
+        force = lengths(np.asarray(recording.contact_force, dtype=np.float64))
         stored = force * (give + motion.speed * motion.dt)
         if evidence.world.give.time > 0.0:
             stored = stored + self._pressed_in(evidence)
@@ -184,21 +187,20 @@ class CheckEnergy(Check):
     def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
         motion = evidence.motion
-        worst: Finding | None = None
-        for unit in np.unique(motion.unit[~motion.kinematic]):
-            rows = np.flatnonzero(motion.unit == unit)
-            meets = np.asarray(motion.meets[:, rows].any(axis=1))
-            gained = np.where(meets, 0.0, np.diff(energy[:, rows].sum(axis=1)))
-            # What a contact took up while it met another, it may give back after.
-            parts = np.flatnonzero(meets[:-1] & ~meets[1:]) + 1
-            owed = stored[np.ix_(parts, rows)].sum(axis=1)
-            gained[parts] -= np.where(np.isfinite(owed), owed, 0.0)
-            finding = self._finding(evidence, rows, np.concatenate([[0.0], np.cumsum(gained)]), stored)
-            if worst is None or (finding.value or 0.0) / (finding.limit or 1.0) > (worst.value or 0.0) / (
-                worst.limit or 1.0
-            ):
-                worst = finding
-        return [worst] if worst is not None else []
+        units = np.unique(motion.unit[~motion.kinematic])
+        if not len(units):
+            return []
+        of = motion.unit[:, None] == units  # (B, mechanisms)
+        meets = (motion.meets @ of.astype(np.float32)) > 0.0
+        gained = np.where(meets, 0.0, np.diff(energy @ of, axis=0))
+        # What a contact took up while it met another, it may give back after.
+        held = _summed(stored, of)
+        gained[1:] -= np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
+        balance = np.concatenate([np.zeros((1, len(units))), np.cumsum(gained, axis=0)])
+        gain = np.max(balance - np.minimum.accumulate(balance + held, axis=0), axis=0)
+        limit, _ = self._limit(evidence, of)
+        worst = int(np.argmax(np.maximum(gain, 0.0) / np.where(limit > 0.0, limit, 1.0)))
+        return [self._finding(evidence, np.flatnonzero(of[:, worst]), balance[:, worst], stored)]
 
     def _finding(self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, stored: Floats) -> Finding:
         motion = evidence.motion
@@ -206,7 +208,7 @@ class CheckEnergy(Check):
         gain = np.maximum(balance - np.minimum.accumulate(had), 0.0)
         end = int(np.argmax(gain))
         start = int(np.argmin(had[: end + 1]))
-        limit, scale = self._limit(evidence, rows)
+        limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(motion.mass))))
         wrong = gain[end] > limit
         alone = len(np.unique(motion.unit[rows])) == 1
         body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[end, rows]))]]
@@ -232,24 +234,36 @@ class CheckEnergy(Check):
             ),
         )  # fmt: skip
 
-    def _limit(self, evidence: Evidence, rows: NDArray[np.intp]) -> tuple[float, float]:
-        """The gain that is no finding yet, and the energy that changes hands [J]."""
-        motion, g = evidence.motion, evidence.gravity
-        parts = [energy[:, rows].sum(axis=1) for energy in (motion.kinetic, motion.potential, motion.elastic)]
-        scale = float(max(parts[0].max(), np.ptp(parts[1]), np.ptp(parts[2])))
-        size = np.array([evidence.solid(int(i)).smallest for i in rows])
-        height = (np.abs(motion.com[:, rows]) @ np.abs(evidence.up)).max(axis=0)
+    def _limit(self, evidence: Evidence, of: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """The gain that is no finding yet, and the energy that changes hands, of groups of bodies (B, n), (n,) [J]."""
+        motion, weight = evidence.motion, evidence.motion.mass * evidence.gravity
+        kinetic, potential, elastic = (each @ of for each in (motion.kinetic, motion.potential, motion.elastic))
+        scale = np.max([kinetic.max(axis=0), np.ptp(potential, axis=0), np.ptp(elastic, axis=0)], axis=0)
+        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        height = (np.abs(motion.com) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
-        settles = self.settling * size * (motion.touched[:, rows].any(axis=0) | ~motion.jointed[rows])
-        lift = float((motion.mass[rows] * g * (settles + 4.0 * FLOAT32 * height)).sum())
-        return self.share * scale + lift + self._late(evidence, rows), scale
+        settles = self.settling * size * (motion.touched.any(axis=0) | ~motion.jointed)
+        lift = weight * (settles + 4.0 * FLOAT32 * height)
+        return self.share * scale + (lift + self._late(evidence)) @ of, scale
 
     @staticmethod
-    def _late(evidence: Evidence, rows: NDArray[np.intp]) -> float:
-        """A first-order step leaves positions behind velocities by up to half a step's fall [J]."""
+    def _late(evidence: Evidence) -> Floats:
+        """A first-order step leaves positions behind velocities by up to half a step's fall, (B,) [J]."""
         motion = evidence.motion
-        fastest = motion.speed[:, rows].max(axis=0)
-        return float((motion.mass[rows] * evidence.gravity * fastest).sum() * 0.5 * min(motion.dt, 0.005))
+        late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * 0.5 * min(motion.dt, 0.005)
+        return late
+
+
+def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:
+    """These of so many bodies, as a group, (count, 1)."""
+    return np.asarray(np.isin(np.arange(count), rows)[:, None])
+
+
+def _summed(energy: Floats, of: NDArray[np.bool_]) -> Floats:
+    """Energies (T, B) of groups of bodies (B, n), (T, n), of which some may be infinite."""
+    known = np.isfinite(energy)
+    found: Floats = np.where((~known).astype(np.float32) @ of > 0.0, np.inf, np.where(known, energy, 0.0) @ of)
+    return found
 
 
 CHECKS: Checks = (CheckEnergy,)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.judge.books.balance import Books, rounding, unseen
 from wsim.judge.books.copies import lasting, told
 from wsim.judge.checks.check import Check, Checks, listed
@@ -90,7 +91,7 @@ class CheckForces(Check):
             if n > len(left) or worst[0] > 1.0:
                 break
             means, limits = _mean(left, n), pull * _mean(np.maximum(share, least), n) + _mean(slack, n)
-            ratio = np.linalg.norm(means, axis=2) / limits
+            ratio = lengths(means) / limits
             k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))
             worst = max(worst, (float(ratio[k, i]), n, k, i, means[k, i], float(limits[k, i])), key=_ratio)
         _, n, k, i, mean, limit = worst

@@ -119,6 +119,8 @@ def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: 
 class CheckGravity(Check):
     """The world's gravity is the Earth's and straight down, unless the prompt is about another place."""
 
+    of_world = True
+
     aslant: float = 0.5  # [deg]
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:

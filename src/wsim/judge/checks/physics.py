@@ -211,7 +211,7 @@ class CheckPenetration(Check):
         """By how much a depth (T,) is more than `give`, which soft contacts yield."""
         give = np.broadcast_to(np.asarray(give, dtype=np.float64), depth.shape)
         depth = depth - give
-        step = float(np.median(np.diff(evidence.time))) if len(evidence.time) > 1 else 1.0
+        step = evidence.motion.dt_frames
         frames = min(len(depth), max(1, math.ceil(self.seconds / step)) + 1)
         held = np.lib.stride_tricks.sliding_window_view(depth, frames).min(axis=1)
         lasting, brief = float(held.max()), float(depth.max())

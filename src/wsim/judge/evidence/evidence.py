@@ -47,6 +47,7 @@ class Evidence(Recorded):
         super().__init__(recording, plan)
         self._levels: dict[str, Level] = {}
         self._joints: dict[str, JointTrack | None] = {}
+        self.of_world: dict[type, list[Finding]] = {}  # what checks say of the world and the plan alone
         self.answers: dict[str, list[Finding]] = {}  # of the plan's objectives, each put to the evidence once
 
     @staticmethod
@@ -61,6 +62,9 @@ class Evidence(Recorded):
             is recorded.
         """
         Recorded.share_geometry(copies)
+        for copy in copies:
+            if copy.world is copies[0].world:
+                copy.of_world = copies[0].of_world
         if any(copy.recording.applied_impulse is not None for copy in copies):
             return None
         joined = Evidence(copies[0].recording, copies[0].plan)

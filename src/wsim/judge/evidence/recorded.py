@@ -147,12 +147,13 @@ class Recorded:
 
     def line(self, prim: str | None) -> str | None:
         """The program's line that made a prim."""
-        lines = {item.prim: item.line for item in self.world.fluids}
-        lines |= {item.prim: item.line for item in self.world.joints}
-        lines |= {item.prim: item.line for item in self.world.cords}
-        lines |= {item.prim: item.line for item in self.world.statics}
-        lines |= {item.prim: item.line for item in self.world.bodies}
-        return lines.get(prim) if prim is not None else None
+        return self._lines.get(prim) if prim is not None else None
+
+    @cached_property
+    def _lines(self) -> dict[str, str | None]:
+        world = self.world
+        made = [*world.fluids, *world.joints, *world.cords, *world.statics, *world.bodies]
+        return {item.prim: item.line for item in made}
 
     @staticmethod
     def _listed(prims: list[str]) -> str:

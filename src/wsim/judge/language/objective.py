@@ -68,7 +68,7 @@ class ObjectiveCheck(Check):
         if Signals not in joined.kept:
             joined.kept[Signals] = Signals.of_copies(joined)
         signals = cast("Signals", joined.kept[Signals])
-        outcomes = [(part, evaluate(part, signals)) for part in conjuncts(formulas[0])]
+        outcomes = _outcomes(formulas[0], signals)
         for n, evidence in enumerate(copies):
             evidence.kept[self._key] = Asked(signals, outcomes, n)
 
@@ -103,22 +103,22 @@ class Asked:
     """What the conjuncts of a formula come to in a world of some."""
 
     signals: Signals
-    outcomes: list[tuple[Formula, Outcome]]
+    outcomes: list[tuple[Formula, str, Outcome]]  # each with its sentence
     world: int = 0
 
     def findings(self, check: Check, evidence: Evidence) -> list[Finding]:
         """One for each, with what to change where it fails."""
-        found = [self._finding(check, part, outcome, evidence) for part, outcome in self.outcomes]
-        for finding, (part, _) in zip(found, self.outcomes, strict=True):
+        found = [self._finding(check, *each, evidence) for each in self.outcomes]
+        for finding, (part, *_) in zip(found, self.outcomes, strict=True):
             if not finding.passed:
                 finding.target = _target(part, finding, evidence)
         return found
 
-    def _finding(self, check: Check, part: Formula, outcome: Outcome, evidence: Evidence) -> Finding:
+    def _finding(self, check: Check, part: Formula, said: str, outcome: Outcome, evidence: Evidence) -> Finding:
         signals, n = self.signals, self.world
         measure = outcome.measures[int(outcome.measure[n])]
         frame = int(np.argmin(np.abs(signals.time - outcome.moment[n])))
-        moment, said = float(outcome.moment[n]), sentence(part)
+        moment = float(outcome.moment[n])
         details: dict[str, Any] = {"prim": measure.prim, "line": evidence.line(measure.prim), "time": moment}
         if measure.expected is not None:
             expected = float(self._here(measure.expected)[frame])
@@ -150,7 +150,8 @@ class Asked:
 
     def _here(self, of: Any) -> NDArray[Any]:
         """Of this world, (T,)."""
-        return np.asarray(np.broadcast_to(of, (self.signals.count, len(self.signals.time)))[self.world])
+        every, shape = np.asarray(of), (self.signals.count, len(self.signals.time))
+        return np.asarray((every if every.shape == shape else np.broadcast_to(every, shape))[self.world])
 
     def _span(self, measure: Measure, frame: int) -> tuple[float, float]:
         """From when to when the measure that decides is on the side of its limit where it is at that moment [s].
@@ -174,7 +175,11 @@ class Asked:
 def findings(check: Check, formula: Formula, evidence: Evidence) -> list[Finding]:
     """One finding for each conjunct of a formula on one recording; raises as `evaluate` does."""
     signals = Signals.of(evidence)
-    return Asked(signals, [(part, evaluate(part, signals)) for part in conjuncts(formula)]).findings(check, evidence)
+    return Asked(signals, _outcomes(formula, signals)).findings(check, evidence)
+
+
+def _outcomes(formula: Formula, signals: Signals) -> list[tuple[Formula, str, Outcome]]:
+    return [(part, sentence(part), evaluate(part, signals)) for part in conjuncts(formula)]
 
 
 def _target(part: Formula, finding: Finding, evidence: Evidence) -> RepairTarget | None:
