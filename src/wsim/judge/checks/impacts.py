@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from wsim.judge.books.impacts import blows
 from wsim.judge.checks.check import Check, Checks
@@ -100,8 +100,7 @@ def _told(evidence: Evidence) -> list[Blow]:
         return []
     if CheckRestitution not in evidence.kept:
         evidence.kept[CheckRestitution] = blows(evidence)
-    kept: list[Blow] = evidence.kept[CheckRestitution]
-    return kept
+    return cast("list[Blow]", evidence.kept[CheckRestitution])
 
 
 CHECKS: Checks = (CheckRestitution, CheckBlowFriction)

@@ -29,6 +29,7 @@ from wsim.judge.checks import (
     plan_motion,
     recorded,
     rest,
+    rolling,
     run,
     settled,
     water,
@@ -39,8 +40,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, impacts, energy, contact, rest, joint, cord, mass, plan,
-    plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
+    physics, settled, continuity, motion, forces, recorded, impacts, rolling, energy, contact, rest, joint, cord, mass,
+    plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
 )  # fmt: skip
 
 

@@ -28,8 +28,8 @@ STAGES = {
 
 # Of what starts inside something else the solver makes a push that no law explains.
 PUSHED_APART = (
-    "CheckRestitution", "CheckBlowFriction", "CheckEnergy", "CheckForces", "CheckRecordedForces", "CheckContinuity", "CheckSupport",
-    "CheckJitter", "CheckFreeFlight", "CheckFreeTurning",
+    "CheckRestitution", "CheckBlowFriction", "CheckEnergy", "CheckForces", "CheckRecordedForces", "CheckContinuity",
+    "CheckSupport", "CheckJitter", "CheckFreeFlight", "CheckFreeTurning",
 )  # fmt: skip
 DEEP = 0.02  # of the smallest extent: what starts no deeper is hardly pushed
 
