@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.checks import (
     camera,
+    catches,
     contact,
     continuity,
     cord,
@@ -40,8 +41,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, impacts, rolling, energy, contact, rest, joint, cord, mass,
-    plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
+    physics, settled, continuity, motion, forces, recorded, impacts, rolling, catches, energy, contact, rest, joint,
+    cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water,
+    camera,
 )  # fmt: skip
 
 
