@@ -17,6 +17,7 @@ import numpy as np
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
+from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.steps import step_error
@@ -75,7 +76,7 @@ class Balance:
         torque = motion.torque / arm
         turning = np.linalg.norm(torque, axis=2)
         blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
-        judged = np.tile(~motion.kinematic, (len(motion.h), 1))
+        judged = followed(self._evidence) & ~motion.kinematic
         given, wrong = self._ties.laws.given()
         scale, arm = self._scale(), np.stack([motion.mass, motion.mass * self.size], axis=1)
         wanted = np.where(judged[..., None], np.concatenate([force, torque], axis=2) - given * scale, 0.0)
@@ -94,6 +95,7 @@ class Balance:
         left, turned = again(anew, left, wanted), again(anew, turned)
         turned *= (arms.turned(self._evidence, self.size) ** 2 / 12.0)[..., None]  # of an arm taken halfway
         turned += (wrong + self._ties.ropes.error()) / arm + step_error(self._evidence)[..., None]
+        turned += unknown(self._evidence, wanted)
         return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted)
 
     @cached_property

@@ -39,7 +39,7 @@ class CheckForces(Check):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The force and the torque that nothing in the world gives, where they are largest by their limits."""
         motion, recording = evidence.motion, evidence.recording
-        if not len(motion.h) or not len(motion.mass) or recording.metadata.get("velocities") == "differences":
+        if not len(motion.h) or not len(motion.mass):
             return []
         if recording.applied_impulse is None and (evidence.world.fluids or recording.metadata.get("controlled")):
             return []
