@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.judge.theory import EDGE, G, RADIUS, ask, bouncing, sliding, swinging, thrown
+from tests.judge.theory import EDGE, RADIUS, G, ask, bouncing, sliding, swinging, thrown
 from wsim.importers.trajectory import from_arrays
 from wsim.judge.checks.forces import CheckForces
 

@@ -52,7 +52,7 @@ class Problems:
         by_label = members[np.argsort(label[members], kind="stable")]
         starts, ends = (np.searchsorted(label[by_label], groups, side) for side in ("left", "right"))
         bodies = [by_label[start:end] for start, end in zip(starts, ends, strict=True)]
-        return cls(bodies, np.split(by_owner, first[1:]))
+        return cls(bodies, np.split(by_owner, first[1:])[: len(groups)])
 
 
 def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float) -> tuple[Floats, Floats]:

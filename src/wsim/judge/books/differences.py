@@ -40,7 +40,8 @@ def followed(evidence: Evidence) -> Bools:
         rate = np.linalg.norm(motion.w, axis=2).max(axis=0, initial=0.0)
         rolled = motion.speed.max(axis=0, initial=0.0) / np.maximum(motion.radius, 1e-9)
         round_ = [any(shape.kind in ROUND for shape in body.shapes) for body in evidence.world.bodies]
-        found &= np.maximum(rate, np.where(round_, rolled, 0.0)) * motion.dt_frames < FOLLOWED
+        told = np.maximum(rate, np.where(round_, rolled, 0.0)) * motion.dt_frames < FOLLOWED
+        found &= np.array([told[motion.unit == unit].all() for unit in motion.unit], dtype=bool)
     return found
 
 
@@ -55,8 +56,13 @@ def unknown(evidence: Evidence, changes: Floats) -> Floats:
         low, high = max(0, -shift), min(len(found), len(jumps) - shift)
         found[low:high] = np.maximum(found[low:high], jumps[low + shift : high + shift])
     motion = evidence.motion
+    found[:] = found.max(axis=2, keepdims=True)  # what is missing at an arm turns, too
     for unit in np.unique(motion.unit[motion.jointed]):  # what hangs together passes it on
-        rows = np.flatnonzero(motion.unit == unit)
-        total = np.einsum("tbp,b->tp", found[:, rows], motion.mass[rows])
-        found[:, rows] = total[:, None] / motion.mass[rows][:, None]
-    return found
+        found = _shared(found, motion.mass, np.tile(motion.unit == unit, (len(found), 1)))
+    return _shared(found, motion.mass, motion.meets)  # and so does what may touch
+
+
+def _shared(unknown: Floats, mass: Floats, group: Bools) -> Floats:
+    """What any body of a group (T - 1, B) may lack if all that is unknown of the group ends in it."""
+    total = np.einsum("tbp,tb->tp", unknown, np.where(group, mass, 0.0))
+    return np.where(group[..., None], total[:, None] / mass[:, None], unknown)
