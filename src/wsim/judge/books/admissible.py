@@ -55,7 +55,7 @@ class Problems:
         by_label = members[np.argsort(label[members], kind="stable")]
         starts, ends = (np.searchsorted(label[by_label], groups, side) for side in ("left", "right"))
         bodies = [by_label[start:end] for start, end in zip(starts, ends, strict=True)]
-        return cls(bodies, np.split(by_owner, first[1:]))
+        return cls(bodies, np.split(by_owner, first[1:])[: len(groups)])
 
 
 def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float) -> tuple[Floats, Floats]:
@@ -77,8 +77,9 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
             rest[bodies] -= (sparse @ pushing(sparse, rest[bodies].ravel(), enough)).reshape(-1, 6)
             continue
         matrix = _matrices(columns, bodies[None], [chosen], scale)[0]
-        ties = columns.both[chosen][~columns.goes_on[chosen]]
-        strength = least(matrix, rest[bodies].ravel(), ties)
+        new = ~columns.goes_on[chosen]
+        ties = columns.both[chosen][new]
+        strength = least(matrix, rest[bodies].ravel(), ties, columns.most[chosen][new])
         rest[bodies] -= (matrix @ strength).reshape(-1, 6)
         if ties.any():
             each = (np.abs(matrix[:, ties]) @ np.abs(strength[ties])).reshape(-1, 6) / scale[bodies]
@@ -87,8 +88,18 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
     return rest, passed
 
 
-def least(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
-    """Strengths (c,) that leave least of what is wanted (r,); those that do not act both ways are not negative."""
+def least(matrix: Floats, wanted: Floats, both: Bools, most: Floats) -> Floats:
+    """Strengths (c,) that leave least of what is wanted (r,): not negative but of `both`, and no more than `most`."""
+    strength, full = _unbounded(matrix, wanted, both), np.zeros(len(both), dtype=bool)
+    while np.any(over := ~full & (np.abs(strength) > most)):  # what is at its most stays there, and others do the rest
+        full |= over
+        held = np.where(full, np.clip(strength, -most, most), 0.0)
+        strength = held.copy()
+        strength[~full] = _unbounded(matrix[:, ~full], wanted - matrix @ held, both[~full])
+    return strength
+
+
+def _unbounded(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
     length = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
     matrix = matrix / length
     free, pushing = matrix[:, both], matrix[:, ~both]

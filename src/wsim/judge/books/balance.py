@@ -19,6 +19,7 @@ import numpy as np
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
+from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.steps import step_error
@@ -105,7 +106,7 @@ class Balance:
         arm = mass * self._sizes[self._copy]
         torque = np.concatenate([evidence.motion.torque for evidence in self._copies]) / arm[..., None]
         blow = (np.linalg.norm(force, axis=2) + np.linalg.norm(torque, axis=2)) * h
-        judged = np.tile(~self._kinematic, (len(h), 1))
+        judged = np.concatenate([followed(evidence) for evidence in self._copies]) & ~self._kinematic
         laws = [ties.laws.given() for ties in self._ties]
         given, wrong = (np.concatenate([law[n] for law in laws]) for n in range(2))
         both = np.concatenate([force, torque], axis=2) - given * self._scale(np.arange(len(h)))
@@ -128,6 +129,8 @@ class Balance:
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
+        whole = np.split(wanted, len(self._copies))
+        turned += np.concatenate([unknown(*each) for each in zip(self._copies, whole, strict=True)])
         found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted
         count = len(self._copies)
         parts = zip(*(np.split(array, count) for array in found), self._sizes, strict=True)

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 def told(evidence: Evidence) -> bool:
-    """Whether a recording has what the books are about: bodies, their own velocities, what fluid and control gave."""
+    """Whether a recording has what the books are about: bodies, and what fluid and control gave."""
     recording, world = evidence.recording, evidence.world
-    if len(evidence.time) < 2 or not world.bodies or recording.metadata.get("velocities") == "differences":
+    if len(evidence.time) < 2 or not world.bodies:
         return False
     return recording.applied_impulse is not None or not (world.fluids or recording.metadata.get("controlled"))
 

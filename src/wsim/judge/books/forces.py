@@ -44,11 +44,17 @@ class Columns:
     on_two: Floats
     both: NDArray[np.bool_]  # (c,) whether it may act both ways, or only as it is
     more: NDArray[np.bool_] | None = None  # (c,) whether it is the one before it, on more bodies; None: none is
+    cap: Floats | None = None  # (c,) the most that its strength may be, either way; None: any
 
     @property
     def goes_on(self) -> NDArray[np.bool_]:
         """Whether each is one with the column before it, whose strength it has, (c,)."""
         return np.zeros(len(self.one), dtype=bool) if self.more is None else self.more
+
+    @property
+    def most(self) -> Floats:
+        """The greatest strength of each, (c,)."""
+        return np.full(len(self.one), np.inf) if self.cap is None else self.cap
 
     def shifted(self, by: int) -> Columns:
         """The same on bodies whose rows are higher."""
@@ -59,7 +65,7 @@ class Columns:
     def of(parts: list[Columns]) -> Columns:
         """All of several."""
         return Columns(*(np.concatenate([getattr(part, name) for part in parts])
-                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on")))  # fmt: skip
+                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on", "most")))  # fmt: skip
 
 
 def slip(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:
@@ -127,11 +133,11 @@ def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torqu
     return Columns(*rows, on_one, on_two, np.ones(count, dtype=bool))
 
 
-def shared(rows: NDArray[np.intp], on: Floats) -> Columns:
-    """One impulse on several bodies at once, (n, 6), which only acts as it is."""
+def shared(rows: NDArray[np.intp], on: Floats, *, both: bool = False) -> Columns:
+    """One impulse on several bodies at once, (n, 6), which acts only as it is, or both ways."""
     count = len(rows)
     before = np.concatenate([[-1], rows[:-1]]).astype(np.intp)
-    return Columns(before, rows, np.zeros((count, 6)), on, np.zeros(count, dtype=bool), np.arange(count) > 0)
+    return Columns(before, rows, np.zeros((count, 6)), on, np.full(count, both), np.arange(count) > 0)
 
 
 def turns(rows: NDArray[np.intp]) -> Columns:

@@ -31,12 +31,25 @@ if TYPE_CHECKING:
 SLIGHT = 0.003  # of a body's speed: what changes by less is no blow
 SHOWS = 0.1  # of an approach: where it is less sure than that the frames say nothing of the parting
 ACROSS = 0.2  # cosine between the normals of two contacts that do not share a blow
-FINE = 0.05  # of the time between frames: the longest step at which frames show when a blow was
-SLOW = 0.3  # [m/s]: of wsim's own blows of what is no ball 3 of 73 were off by up to 0.1 of it, all slower; why is open
+FINE = 0.1  # of the time between frames: about a step, where nobody says how long one is
 STAYS = 0.05  # of the approach: what was to bounce and parts by less may have done so more than once
 WITHIN = 0.2  # of a step: courses that pass each other by no more of the jump meet
 SURE = 0.02  # of a step: points that come to touch within it do so together,
 APART = 3.0  # and those that do after so many do not
+
+
+@dataclass(frozen=True)
+class Rub:
+    """What friction did in a blow, over the mass that the point feels across it: speeds [m/s].
+
+    Coulomb's law asks of the impulses what it asks of forces (Routh 1860): friction takes the slip away, or it is the
+    friction's coefficient times the push, and no more, as long as the surfaces slip.
+    """
+
+    impulse: float  # of friction; of balls, whose slip keeps its way, what of it is against the slip that is left
+    most: float  # the coefficient times the push
+    before: float  # the slip as they met
+    after: float  # and as they parted
 
 
 @dataclass(frozen=True)
@@ -51,6 +64,7 @@ class Blow:
     parting: float  # [m/s]
     restitution: float  # by the pair's law
     unsure: float  # of either speed [m/s]: what a step changes, and how far the normal turned
+    rub: Rub | None = None  # where it was one point of both, and neither touched anything else
 
 
 def blows(evidence: Evidence) -> list[Blow]:
@@ -85,7 +99,13 @@ def _jumps(evidence: Evidence) -> Bools:
     around = np.concatenate([fall[:1], gained, fall[:1]])
     jump = np.min([lengths(gained - other) for other in (around[:-2], around[2:], fall)], axis=0)
     fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
-    return np.asarray(jump > 2.0 * evidence.gravity * min(motion.dt, FINE * motion.dt_frames) + SLIGHT * fastest)
+    return np.asarray(jump > 2.0 * evidence.gravity * step_of(evidence) + SLIGHT * fastest)
+
+
+def step_of(evidence: Evidence) -> float:
+    """The simulator's time step [s]."""
+    known = evidence.recording.metadata.get("time_step") or evidence.world.time_step
+    return float(known or FINE * evidence.motion.dt_frames)
 
 
 class _Courses:
@@ -93,7 +113,7 @@ class _Courses:
 
     def __init__(self, evidence: Evidence, changed: Bools) -> None:
         self.evidence, self.changed, motion = evidence, changed, evidence.motion
-        self.dt = float(min(motion.dt, FINE * motion.dt_frames))
+        self.dt = step_of(evidence)
         falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
         # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
         own = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0)], axis=2) / motion.h[:, None, None]
@@ -198,6 +218,7 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     shapes = [touching.shapes[s][2] for s in contacts.shapes[touches[0]]]
     law = pair_law(evidence.world, *shapes)
     parting = -_closing(touching, contacts, after)[touches]
+    parting[closing[touches] < SHOWS * approach] = np.inf  # they were not in it
     n = int(np.argmin(parting - law.restitution * closing[touches]))
     met, speed = contacts.only(touches[n : n + 1]), float(closing[touches[n]])
     # As bodies fall and turn, and their surfaces do, points that touch a step earlier meet at another speed.
@@ -205,7 +226,6 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
-    returns |= speed < SLOW and not _balls(evidence, pair)
     # A step takes a blow where it finds the body, above the surface or below: what comes back is slower there, or faster.
     back = law.restitution * speed
     there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * lowest, 0.0)))
@@ -213,7 +233,30 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
-    return Blow(k, *pair, (prims[0], prims[1]), speed, float(parting[n]), law.restitution, unsure)
+    parts = float(parting[n])
+    rub = _rub(courses, touching, met, (before, after), speed + parts, law.friction, pair)
+    alone = len(touches) == 1 and not _others(contacts, pair).any()
+    return Blow(k, *pair, (prims[0], prims[1]), speed, parts, law.restitution, unsure, rub if alone else None)
+
+
+def _rub(
+    courses: _Courses, touching: Touching, met: Contacts, poses: tuple[Poses, Poses], bounce: float, friction: float,
+    pair: tuple[int, int],
+) -> Rub:  # fmt: skip
+    """Of one contact of a pair, whose points part by `bounce` [m/s] faster than they met, by the poses around it."""
+    motion, normal = courses.evidence.motion, met.normal[0]
+    row, sign = (pair[1], 1.0) if pair[1] >= 0 and not motion.kinematic[pair[1]] else (pair[0], -1.0)
+    change = sign * (poses[1].v[row] - poses[0].v[row])  # of the push, and of friction, over the body's mass
+    push = float(change @ normal)
+    slips = [slip(touching, met, each)[0] for each in poses]
+    slips = [each - (each @ normal) * normal for each in slips]
+    after = float(np.linalg.norm(slips[1]))
+    scale = bounce / max(push, 1e-12)  # to the mass that the point feels
+    across = scale * (change - push * normal)
+    before, impulse = float(np.linalg.norm(slips[0])), float(np.linalg.norm(across))
+    if after > STAYS * before and _balls(courses.evidence, pair):
+        impulse = -float(across @ slips[1]) / after
+    return Rub(impulse, friction * bounce, before, after)
 
 
 def _changing(
@@ -234,13 +277,18 @@ def _balls(evidence: Evidence, pair: tuple[int, int]) -> bool:
     return all(len(shapes) == 1 and shapes[0].kind == "sphere" for shapes in solid)
 
 
-def _alone(contacts: Contacts, closing: Floats, touches: Rows, pair: tuple[int, int]) -> bool:
-    """Whether neither body has another contact that pushes along the same way, or is hit there, too."""
+def _others(contacts: Contacts, pair: tuple[int, int]) -> Bools:
+    """Contacts that either body of a pair has with anything else."""
     shared = np.zeros(len(contacts), dtype=bool)
     for row in pair:
         if row >= 0:
             shared |= (contacts.one == row) | (contacts.two == row)
-    shared &= ~((contacts.one == pair[0]) & (contacts.two == pair[1]))
+    return shared & ~((contacts.one == pair[0]) & (contacts.two == pair[1]))
+
+
+def _alone(contacts: Contacts, closing: Floats, touches: Rows, pair: tuple[int, int]) -> bool:
+    """Whether neither body has another contact that pushes along the same way, or is hit there, too."""
+    shared = _others(contacts, pair)
     along = np.abs(contacts.normal @ contacts.normal[touches].T).max(axis=1, initial=0.0)
     return not np.any(shared & ((along > ACROSS) | (closing > SHOWS * closing[touches].max())))
 

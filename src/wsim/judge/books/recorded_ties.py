@@ -163,10 +163,11 @@ class RecordedTies:
         """What joint k's drive gives by its law; None where it has none, or somebody sets it while the world runs."""
         joint = self.joints[k]
         drive = joint.drive
-        if drive is None or joint.kind not in OWN or joint.prim not in self.laws.joints:
+        laws = self.laws.joints.get(joint.prim, [])
+        if drive is None or joint.kind not in OWN or not laws:
             return None
-        law, at = self.laws.joints[joint.prim], self._evidence.joint(joint)
-        rate = self.laws.speed(joint)
+        law, at = laws[0], self._evidence.joint(joint)  # the drive's, before the friction's
+        rate = self.laws.rate(joint)
         if at is None or not drive.told or self._evidence.recording.metadata.get("controlled"):
             return None
         pull = drive.stiffness * (drive.position - at.position) + drive.damping * (drive.velocity - rate)
@@ -198,8 +199,8 @@ class RecordedTies:
 
     def rubs(self, k: int) -> tuple[Floats, Bools]:
         """Joint k's direction of motion, (T - 1,), and where it keeps it all the interval."""
-        rate, joint, h = self.laws.speed(self.joints[k]), self.joints[k], self._evidence.motion.h
-        law = self.laws.joints[joint.prim]
+        rate, joint, h = self.laws.rate(self.joints[k]), self.joints[k], self._evidence.motion.h
+        law = self.laws.joints[joint.prim][-1]  # the friction's
         return np.sign(rate[1:]), law.known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0)
 
     def pushed_off(self, k: int, near: float) -> Floats:
@@ -208,7 +209,7 @@ class RecordedTies:
         if track is None:
             return np.zeros(len(self._evidence.motion.h))
         at, h = track.position, self._evidence.motion.h
-        reach = near + np.abs(self.laws.speed(joint))[:-1] * h + 2.0 * np.abs(np.diff(at))
+        reach = near + np.abs(self.laws.rate(joint))[:-1] * h + 2.0 * np.abs(np.diff(at))
         low = np.inf if joint.low is None else np.minimum(at[1:], at[:-1]) - joint.low
         high = np.inf if joint.high is None else joint.high - np.maximum(at[1:], at[:-1])
         found: Floats = 1.0 * (low > reach) + 2.0 * (high > reach)

@@ -207,9 +207,10 @@ def _driven(evidence: Evidence) -> tuple[Floats, Floats]:
     laws = Laws(evidence).joints
     for joint in world.joints:
         track = None if joint.drive is None else evidence.joint(joint)
-        if track is None or joint.prim not in laws:
+        if track is None or not laws[joint.prim]:
             continue
-        rate = np.where(laws[joint.prim].known, 0.0, np.abs(np.diff(track.position)) / motion.h)
+        known = np.all([law.known for law in laws[joint.prim]], axis=0)
+        rate = np.where(known, 0.0, np.abs(np.diff(track.position)) / motion.h)
         rate = np.where(_towards(evidence, joint, track.position), rate, 0.0)
         child = evidence.index(joint.child)
         rows = np.flatnonzero(motion.unit == motion.unit[child])

@@ -95,6 +95,7 @@ class CheckForces(Check):
             k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))
             worst = max(worst, (float(ratio[k, i]), n, k, i, means[k, i], float(limits[k, i])), key=_ratio)
         _, n, k, i, mean, limit = worst
+        share = max(SHARES[n], float(least[k, 0]))
         prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + n])
         size = float(np.linalg.norm(mean))
         way = listed(tuple((mean / max(size, 1e-300)).round(2)))
@@ -106,8 +107,8 @@ class CheckForces(Check):
             f"from {start:.3f} to {end:.3f} s",
             value, most, unit, prim=prim, time=end, span=(start, end), expected=0.0,
             fine=f"Every {kind} on every body has something in the world that gives it",
-            limit_from=f"{max(SHARES[n], float(least[k, 0])):g} of gravity as a mean of {n} intervals, {self.blow:g} "
-            "of the change of velocity in a blow, and how far bodies turn between two frames",
+            limit_from=f"{share:g} of gravity as a mean of {n} intervals, {self.blow:g} of the change of velocity in a "
+            "blow, and how far bodies turn between two frames",
             target=RepairTarget(kind="program", prim=prim, why=f"a {kind} acts on it that the world does not have"),
         )  # fmt: skip
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.checks import (
     camera,
+    catches,
     contact,
     continuity,
     cord,
@@ -31,6 +32,7 @@ from wsim.judge.checks import (
     recorded,
     recorded_ties,
     rest,
+    rolling,
     run,
     settled,
     water,
@@ -41,8 +43,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, energy, contact, rest, joint, cord,
-    mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift, fluid_height, water,
+    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy, contact,
+    rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift,
+    fluid_height, water,
     camera,
 )  # fmt: skip
 

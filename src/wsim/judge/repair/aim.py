@@ -27,7 +27,8 @@ STAGES = {
 
 # Of what starts inside something else the solver makes a push that no law explains.
 PUSHED_APART = (
-    "CheckRestitution", "CheckEnergy", "CheckForces", "CheckRecordedForces", "CheckRecordedTies", "CheckContinuity",
+    "CheckRestitution", "CheckBlowFriction", "CheckEnergy", "CheckForces", "CheckRecordedForces", "CheckRecordedTies",
+    "CheckContinuity",
     "CheckSupport", "CheckJitter", "CheckFreeFlight", "CheckFreeTurning",
 )  # fmt: skip
 DEEP = 0.02  # of the smallest extent: what starts no deeper is hardly pushed
