@@ -212,7 +212,7 @@ class Losses:
         """A joint's drive's work, how unsure it is, and what its friction and stops may take, (T - 1,) each [J]."""
         assert self._ties is not None
         joint, track = self._ties.joints[k], self._ties.track
-        rate = self._ties.laws.speed(joint)
+        rate = self._ties.laws.rate(joint)
         friction, stop = (np.asarray(each[1:, k], dtype=np.float64) for each in (track.friction, track.stop))
         change, fastest = np.abs(np.diff(rate)), np.maximum(np.abs(rate[1:]), np.abs(rate[:-1]))
         work, doubt = self._driven(k, rate)
