@@ -197,7 +197,7 @@ class Losses:
         return rocks, pressed * (patch + (1.0 + np.pi) * rolling * size * fastest)
 
     def _round_about(self, side: int, frame: Rows) -> Floats:
-        """The axis about which the first or second shape of each contact is round, (n, 3); zeros where there is none."""
+        """The axis about which each contact's first or second shape is round, (n, 3); zeros where there is none."""
         contacts, found = self._contacts, np.zeros((len(frame), 3))
         placed = {(shape.body, shape.shape.prim): shape for shape in self._evidence.placed}
         for k in np.unique(contacts.track.pair[:, side]):
