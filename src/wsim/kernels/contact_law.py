@@ -96,6 +96,14 @@ def waiting(goal: float, distance: float, speed: float, touched: bool, threshold
 
 
 @wp.func
+def went_exactly(exact: wp.array2d(dtype=int), world: int, loose: int) -> bool:
+    """Whether a body of a row among the loose ones did in the step before; -1 goes as stated."""
+    if loose >= 0:
+        return exact[world, loose] != 0
+    return loose == -1
+
+
+@wp.func
 def coefficients(pair: wp.vec3, bend: float, smallest: float) -> vec5:
     """Of the rows of friction: two of sliding, one of spinning [m], two of rolling [m]; `bend` is 1/R1 + 1/R2 [1/m]."""
     roll = float(0.0)
@@ -164,6 +172,8 @@ def aim(
     struck: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
     touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
+    loose: wp.array(dtype=int),  # which of the loose bodies a body is; -1 goes as stated
+    exact: wp.array2d(dtype=int),  # whether a loose body went exactly in the step before
     sparse: bool,
     nv: int,
     jacobian: wp.array3d(dtype=float),
@@ -202,6 +212,8 @@ def aim(
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
             smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
+            one, two = loose[geom_body[geom[0]]], loose[geom_body[geom[1]]]
+            smooth = smooth or (went_exactly(exact, world, one) and went_exactly(exact, world, two))
             goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         else:
@@ -333,6 +345,9 @@ def stop(
     position: wp.array2d(dtype=float),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    which: wp.array2d(dtype=int),  # stop or tendon
+    length: wp.array2d(dtype=float),  # of tendons
+    ahead: wp.array2d(dtype=float),  # the same where a step at the present speeds would take them
     settle_time: float,
     settle_speed: float,
     # Data out:
@@ -347,4 +362,7 @@ def stop(
     goal = float(0.0)
     if what != RUBBING:
         goal = settling(position[world, row], h, settle_time, settle_speed)
+    if what == TAUT:
+        k = which[world, row]
+        goal += (ahead[world, k] - length[world, k]) / h + velocity[world, row]
     aref[world, row] = (goal - velocity[world, row]) / h

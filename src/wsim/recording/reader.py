@@ -18,11 +18,12 @@ from rerun.chunk import RrdReader
 
 from wsim.errors import UserError
 from wsim.recording import columns as names
-from wsim.recording.causes import read_bodies, read_frames, read_ties
+from wsim.recording.causes import read_bodies, read_frames
 from wsim.recording.contacts import read_contacts
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
 from wsim.recording.table import Clock, Table
+from wsim.recording.ties import read_ties
 from wsim.scene.world import World
 
 if TYPE_CHECKING:

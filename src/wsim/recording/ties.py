@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+
+from wsim.recording import columns as names
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.recording.table import Table
     from wsim.scene.world import World
 
     Floats = NDArray[np.float32]
 
 JOINT_WIDTH = 17  # of a row of `TieSums.joints`
 CORD_WIDTH = 7  # of a row of `TieSums.cords`
+NAMES = (names.JOINT_SUMS, names.CORD_SUMS)
+
+
+class Ties(Protocol):
+    """The sums of a frame (`TieSums`), which may be made when they are asked for."""
+
+    @property
+    def joints(self) -> Floats:
+        """(J, JOINT_WIDTH)."""
+
+    @property
+    def cords(self) -> Floats:
+        """(K, CORD_WIDTH)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +102,33 @@ class TieTrack:
     def tension(self) -> Floats:
         """Of the cord at each end, (T, K) [N s]."""
         return self.cords[..., 6]
+
+
+def columns_of_ties(ties: list[Ties], world: World) -> list[object]:
+    """Some frames' sums as columns, a row a frame.
+
+    Raises:
+        ValueError: They are not of the world's joints and cords.
+    """
+    counts = len(world.joints) * JOINT_WIDTH, len(cord_ends(world)) * CORD_WIDTH
+    rows = (np.stack([each.joints for each in ties]), np.stack([each.cords for each in ties]))
+    flat = [np.asarray(part, dtype=np.float32).reshape(len(ties), -1) for part in rows]
+    if (widths := tuple(part.shape[1] for part in flat)) != counts:
+        raise ValueError(f"frame: ties have {widths} numbers, the world's joints and cords {counts}")
+    return [names.column(name, part) for name, part in zip(NAMES, flat, strict=True) if part.shape[1]]
+
+
+def read_ties(table: Table, world: World, frame_ns: NDArray[np.int64]) -> TieTrack | None:
+    """What joints and cords gave, where it was recorded: recordings of before have none, and of them none is asked."""
+    counts = (len(world.joints), JOINT_WIDTH), (len(cord_ends(world)), CORD_WIDTH)
+    found = [np.zeros((len(frame_ns), *count), np.float32) for count in counts]
+    for k, (name, count) in enumerate(zip(NAMES, counts, strict=True)):
+        ns, values = table.get(names.FRAME_ENTITY, name, count, np.float32)
+        if count[0] and not len(ns):
+            return None
+        if count[0]:
+            found[k] = values[np.searchsorted(ns, frame_ns)]
+    return TieTrack(*found) if any(count[0] for count in counts) else None
 
 
 def cord_ends(world: World) -> list[tuple[int, int]]:

@@ -1,8 +1,8 @@
 """Which recorded quantity a finding judged: the one from which its value comes.
 
 A finding carries a number, not the signal behind it. Quantities of its prim in its unit are worked out as the judge
-does, and the first that has the finding's value (at a frame, as the mean over the final window, or as the rms of the
-last half second) is the judged one. Where none has it, the first shows what went on, and no limit is drawn in it.
+does, and the first that has the finding's value (at a frame, as the mean over the final window, or as the mean or rms
+of the last half second) is the judged one. Where none has it, the first shows what went on, and no limit is drawn.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, level, rotate, tilt
 from wsim.judge.evidence.contact import distance, overlaps
 from wsim.judge.evidence.support import downhill, support_of
-from wsim.judge.repair.asked import decider
+from wsim.report.asked import decider
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Values = NDArray[np.float64]
 
 EXACT = 1e-6  # share by which a value may differ from the signal's, which is worked out in another order
-LAST = 0.5  # [s] of the rms of what is to be at rest
+LAST = 0.5  # [s] at the end, of what is to be at rest
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,7 @@ def _match(signal: Signal, finding: Finding, evidence: Evidence) -> Signal | Non
     # What stands still has the mean's value at every frame too: the means come first.
     stretches = (
         (evidence.window_start, "the mean", lambda part: float(np.mean(part))),
+        (float(evidence.time[-1]) - LAST, "the mean", lambda part: float(np.mean(part))),
         (float(evidence.time[-1]) - LAST, "the rms", lambda part: math.sqrt(float(np.mean(part**2)))),
     )
     for start, word, statistic in stretches if signal.averaged else ():
@@ -136,7 +137,7 @@ def _of_formula(evidence: Evidence, finding: Finding) -> Iterator[Signal]:
     """The measure that decides a formula."""
     found = decider(finding, evidence)
     if found is not None:
-        measure = found[1]
+        measure = found[1].single or found[1]
         value = np.broadcast_to(measure.value, (1, len(evidence.time)))[0]
         title = measure.what[:1].upper() + measure.what[1:]
         yield Signal(title.replace("/World/", ""), measure.unit, evidence.time, np.asarray(value, np.float64))

@@ -12,7 +12,7 @@ from newton import ShapeFlags
 
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.recording.contacts import Pushes
-from wsim.recording.ties import TieSums
+from wsim.recording.ties import Ties
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
 from wsim.sim.contacts import shape_numbers, surface_velocities, surfaces_of
@@ -147,7 +147,7 @@ class RigidBodies:
         self.solver.steps(state, control, dt, count)
 
     def keep_contacts(self) -> None:
-        """Sum from here on what pairs of the first world's shapes give each other, and in C what joints and cords give."""
+        """Sum from here on what the first world's pairs of shapes give each other; in C its joints and cords, too."""
         self.solver.keep_impulses(shape_numbers(self.model, self._world))
         if self.on_c and (self._world.joints or self._world.cords):
             self.solver.keep_ties(*ties_of(self.solver, self._world))
@@ -156,7 +156,7 @@ class RigidBodies:
         """The sums since the last call; None where nobody asked to keep them."""
         return self.solver.impulses.take() if self.solver.impulses else None
 
-    def take_ties(self) -> TieSums | None:
+    def take_ties(self) -> Ties | None:
         """The sums of joints and cords since the last call; None where nobody keeps them."""
         return self.solver.tie_impulses.take() if self.solver.tie_impulses else None
 

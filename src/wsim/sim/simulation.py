@@ -291,6 +291,7 @@ class Simulation:
             "device": str(self.device),
             "world_count": max(1, self.model.world_count),
             "time_step": self.dt,
+            "loose_order": 2,  # of the steps of bodies that gravity and contacts alone move
             "time_step_reason": self.built.time_step.reason,
             "particles": self.model.particle_count,
             "controlled": self._controller is not None,

@@ -42,7 +42,8 @@ def _constraints(solver: Any) -> dict[str, tuple[int, ...]]:
     """MuJoCo's equality constraints by the prim that they hold for."""
     if not solver.mj_model.neq:
         return {}
-    labels, found = getattr(solver.model.mujoco, "equality_constraint_label", []), {}
+    labels = getattr(solver.model.mujoco, "equality_constraint_label", [])
+    found: dict[str, tuple[int, ...]] = {}
     for eq, newton in enumerate(solver.mjc_eq_to_newton_eq.numpy()[0].tolist()):
         if newton >= 0:
             found[str(labels[newton])] = (*found.get(str(labels[newton]), ()), eq)

@@ -19,6 +19,7 @@ from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
 from wsim.solvers.host_models import host_models
+from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
@@ -117,6 +118,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 self._drives = DrivesWarp(self._hosts(), driven, self.mjw_data.nworld) if driven else None
         else:  # Runge and Kutta's stages take drives as MuJoCo does
             self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
+        self._ropes: Any = None
+        if not on_c and self.mj_model.tendon_limited.any():
+            with wp.ScopedDevice(model.device):
+                self._ropes = RopesWarp(self._mujoco_warp, self.mjw_data)
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
             self._touched_for.zero_()
@@ -323,6 +328,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         warp = self._mujoco_warp
         if self._smooth_steps:
             self._smooth_steps.before(model, data)
+        if self._ropes:
+            self._ropes.look_ahead(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         if self._flight:
@@ -345,6 +352,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self.impulses.add(data, self._dt)
         self._implicit(model, data)
         if self._flight:
+            self._flight.ease_warp(model, data, self._jacobian(model, data.efc), self.contact_config.steady)
             self._flight.fly(self._dt)
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
@@ -387,17 +395,20 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, *self._jacobian(model, efc), config.threshold, config.settle_time,
-                config.settle_speed, config.smallest_friction,
+                data.qacc_smooth, self._touched_for, self._flight.row, self._flight.exact, *self._jacobian(model, efc),
+                config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
             dim=(data.nworld, data.njmax),
-            inputs=[data.nefc, efc.type, efc.pos, efc.vel, h, config.settle_time, config.settle_speed],
+            inputs=[
+                data.nefc, efc.type, efc.pos, efc.vel, h, efc.id, data.ten_length,
+                self._ropes.length if self._ropes else data.ten_length, config.settle_time, config.settle_speed,
+            ],
             outputs=[efc.aref],
-        )
+        )  # fmt: skip
 
     def _aim_again(self, model: Any, data: Any) -> None:
         efc, contact = data.efc, data.contact

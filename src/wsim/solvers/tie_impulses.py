@@ -6,22 +6,24 @@ Dynamics Algorithms*, 2008, section 5.3). What acts along the joint's own motion
 that the two can be held against each other.
 
 A step of the first order has the forces of its start. One of Runge and Kutta's has them change: their mean is that of
-its start and its end, which is the next step's start, or at the end of a frame goes on as it came.
+its start and its end, which is the next step's start, or where there is none goes on as it came.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
-from wsim.recording.ties import CORD_WIDTH, JOINT_WIDTH, TieSums
+from wsim.recording.ties import CORD_WIDTH, JOINT_WIDTH
 
 Array = np.ndarray
 WORLD = 0  # MuJoCo's body
+BATCH_BYTES = 4 * 1024 * 1024  # of steps that wait to be summed: of a single frame NumPy would take half a step's time
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,33 @@ class _Frame:
         return self.parts[name].reshape(len(self.smooth), -1, *shape)
 
 
+class TieSumsLater:
+    """Sums of one frame (`wsim.recording.ties.TieSums`), made with those of others once somebody asks for them."""
+
+    def __init__(self, make: Callable[[], None]) -> None:
+        self._make, self._made = make, (np.zeros(0), np.zeros(0))
+        self._is_made = False
+
+    def tell(self, joints: Array, cords: Array) -> None:
+        """Keep what was made."""
+        self._made, self._is_made = (joints.astype(np.float32), cords.astype(np.float32)), True
+
+    @property
+    def joints(self) -> Array:
+        """(J, JOINT_WIDTH)."""
+        return self._parts()[0]
+
+    @property
+    def cords(self) -> Array:
+        """(K, CORD_WIDTH)."""
+        return self._parts()[1]
+
+    def _parts(self) -> tuple[Array, Array]:
+        if not self._is_made:
+            self._make()
+        return self._made
+
+
 class TieImpulsesC:
     """One world on the CPU.
 
@@ -91,16 +120,14 @@ class TieImpulsesC:
         self._parts = self.OF_BODIES + (self.OF_CORDS if cords else ())
         self._views: list[Array] = []
         self._kept: list[_Step] = []
+        self._frames: list[tuple[int, TieSumsLater]] = []  # that wait: where their steps end
         self._before: Array | None = None  # what joints and cords gave at the last step's start, where it was smooth
         self._told: Array | None = None  # of that step: how many constraints it had, and what its drives were set to
         kinds, types = mujoco.mjtConstraint, mujoco.mjtEq
         self._equality, self._rubs = int(kinds.mjCNSTR_EQUALITY), int(kinds.mjCNSTR_FRICTION_DOF)
         self._drives, self._taut = int(kinds.mjCNSTR_FRICTION_TENDON), int(kinds.mjCNSTR_LIMIT_TENDON)
-        self._stops, self._weld, self._gear = (
-            int(kinds.mjCNSTR_LIMIT_JOINT),
-            int(types.mjEQ_WELD),
-            int(types.mjEQ_JOINT),
-        )
+        self._stops = int(kinds.mjCNSTR_LIMIT_JOINT)
+        self._weld, self._gear = int(types.mjEQ_WELD), int(types.mjEQ_JOINT)
         sites = [int(model.site_bodyid[k]) if kind == mujoco.mjtWrap.mjWRAP_SITE else -1
                  for kind, k in zip(model.wrap_type, model.wrap_objid, strict=True)]  # fmt: skip
         self._sites = [
@@ -119,24 +146,35 @@ class TieImpulsesC:
             rows = tuple(array.copy() for array in (data.efc_type, data.efc_id, data.efc_force, data.efc_pos))
         self._kept.append(_Step(smooth, np.concatenate(self._views), data.ctrl.copy(), rows))
 
-    def take(self) -> TieSums:
+    def take(self) -> TieSumsLater:
         """The sums since the last call, which start anew."""
-        kept, self._kept = self._kept, []
-        joints, ends = len(self._joints), sum(len(cord.bodies) for cord in self._cords)
-        if not kept:
-            return TieSums(np.zeros((joints, JOINT_WIDTH), np.float32), np.zeros((ends, CORD_WIDTH), np.float32))
-        frame = self._frame(kept)
-        cords = self._of_cords(frame)
-        acting = np.concatenate([self._of_joints(frame).reshape(len(kept), -1), cords.reshape(len(kept), -1)], axis=1)
-        sums = self._model.opt.timestep * self._means(acting, frame).sum(axis=0)
-        return TieSums(
-            sums[: joints * JOINT_WIDTH].reshape(joints, JOINT_WIDTH).astype(np.float32),
-            sums[joints * JOINT_WIDTH :].reshape(ends, CORD_WIDTH).astype(np.float32),
-        )
+        later = TieSumsLater(self._sum)
+        self._frames.append((len(self._kept), later))
+        if self._kept and len(self._kept) * self._kept[-1].state.nbytes > BATCH_BYTES:
+            self._sum()
+        return later
 
     def clear(self) -> None:
         """Forget the sums: the run starts anew."""
-        self._kept, self._before, self._told = [], None, None
+        self._kept, self._frames, self._before, self._told = [], [], None, None
+
+    def _sum(self) -> None:
+        """Make the sums of all frames that wait."""
+        kept, frames, joints = self._kept, self._frames, len(self._joints)
+        ends = sum(len(cord.bodies) for cord in self._cords)
+        last = frames[-1][0]
+        self._kept, self._frames = kept[last:], []
+        width = joints * JOINT_WIDTH
+        total = np.zeros((1, width + ends * CORD_WIDTH))
+        if last:
+            frame = self._frame(kept[:last])
+            parts = [part.reshape(last, -1) for part in (self._of_joints(frame), self._of_cords(frame))]
+            given = self._model.opt.timestep * self._means(np.concatenate(parts, axis=1), frame)
+            total = np.concatenate([total, np.cumsum(given, axis=0)])
+        start = 0
+        for end, later in frames:
+            sums, start = total[end] - total[start], end
+            later.tell(sums[:width].reshape(joints, JOINT_WIDTH), sums[width:].reshape(ends, CORD_WIDTH))
 
     def _means(self, acting: Array, frame: _Frame) -> Array:
         """Over each step of what acts at its start, (S, n)."""
@@ -193,18 +231,18 @@ class TieImpulsesC:
         number = parts["ten_wrapnum"][:, tendon].astype(int)
         first = parts["ten_wrapnum"][:, :tendon].sum(axis=1).astype(int)
         points, objects = frame.of("wrap_xpos", 3), frame.of("wrap_obj").astype(int)
-        ways = [tuple(objects[k, first[k] : first[k] + number[k]]) for k in range(count)]
-        for way in set(ways):
-            steps = np.array([k for k in range(count) if ways[k] == way])
+        ways, which = np.unique(np.c_[first, number, objects], axis=0, return_inverse=True)
+        for k, (start, stops, *geoms) in enumerate(ways.tolist()):
+            steps, way = np.flatnonzero(which.ravel() == k), geoms[start : start + stops]
             sites = iter(self._sites[tendon])
             bodies = [int(model.geom_bodyid[geom]) if geom >= 0 else next(sites) for geom in way]
-            at = points[steps[:, None], first[steps, None] + np.arange(len(way))]
+            at = points[steps, start : start + stops]
             along = np.diff(at, axis=1)
             along /= np.maximum(np.linalg.norm(along, axis=2, keepdims=True), 1e-12)
-            for k, (one, two) in enumerate(zip(bodies[:-1], bodies[1:], strict=True)):
+            for n, (one, two) in enumerate(pairwise(bodies)):
                 if one == two:
                     continue
-                for body, place, pull in ((one, at[:, k], along[:, k]), (two, at[:, k + 1], -along[:, k])):
+                for body, place, pull in ((one, at[:, n], along[:, n]), (two, at[:, n + 1], -along[:, n])):
                     found[steps, body] += np.concatenate([pull, np.cross(place, pull)], axis=1)
         return found
 

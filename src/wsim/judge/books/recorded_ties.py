@@ -1,8 +1,7 @@
 """What a recording says that joints, springs and ropes gave: to whom, and how it should have been by frames and laws.
 
-Between two frames a reaction's arm and axis turn by the angle t that its bodies turn. An impulse taken at the arm of the
-middle is off by t^2 / 24 of it where both change evenly, and by t / 2 dJ where it changes by dJ meanwhile and all at
-one end: where a stop or a blow comes in, up to t / 2 of it.
+Between two frames a reaction's arm and axis turn by the angle t that its bodies turn. An impulse taken at the arm of
+the middle is off by t^2 / 12 of it where both change evenly; where it all comes at one end, as in a blow, by t / 2.
 """
 
 from __future__ import annotations
@@ -156,7 +155,7 @@ class RecordedTies:
         rows = [row for row in self.pairs[k] if row >= 0]
         angle = self._turning[:, rows].max(axis=1) * motion.h
         size = np.linalg.norm(self.track.joints[1:, k, :12].astype(np.float64), axis=1)
-        change = np.abs(np.gradient(size)) / np.maximum(size, 1e-30) if len(size) > 1 else np.ones_like(size)
+        change = _jump(size) / np.maximum(size, 1e-30)
         found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0), 2.0)
         return found
 
@@ -217,9 +216,9 @@ class RecordedTies:
 
     # ---- cords
     def cord(self, k: int) -> tuple[Floats, Floats, Floats]:
-        """Of end k of a cord: by how much its wrench is not its tension's along its way, may be, and its size, (T - 1,).
+        """Of end k of a cord: by how much its wrench is not its tension's along its way, and may be; and its size.
 
-        [N s], torques by the arm.
+        (T - 1,) each [N s], torques by the arm.
         """
         evidence, (cord, row) = self._evidence, self.ends[k]
         given, tension = self.track.cords[1:, k, :6].astype(np.float64), self.track.tension[1:, k].astype(np.float64)
@@ -228,7 +227,7 @@ class RecordedTies:
         scale = np.repeat([1.0, 1.0 / arm], 3)
         off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
         turned = np.linalg.norm((last - first) * scale, axis=1)
-        change = np.abs(np.gradient(tension)) if len(tension) > 1 else np.abs(tension)
+        change = _jump(tension)
         late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
         may = (0.5 * np.minimum(change, np.abs(tension)) + (late + turned / 12.0) * np.abs(tension)) * turned
         return off, may, np.abs(tension)
@@ -267,3 +266,12 @@ class RecordedTies:
     def effective(self, joint: Joint) -> bool:
         """Whether nothing but what is recorded acts along a joint's own motion."""
         return joint.armature == 0.0 and joint.kind != "compound"
+
+
+def _jump(values: Floats) -> Floats:
+    """By how much each of some numbers in a row differs from one beside it, at most, (n,)."""
+    if len(values) < 2:
+        return np.abs(values)
+    step = np.abs(np.diff(values))
+    found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
+    return found

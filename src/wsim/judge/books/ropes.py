@@ -113,7 +113,7 @@ class Ropes:
         first, last = at_frames[:-1], at_frames[1:]
         mean = (first + 4.0 * between + last) / 6.0
         way = path_length(moving_stops(rope.path, self._poses(rope, q)))
-        rate = self._rate(rope)
+        rate = self.rate(rope)
         rounding = 8.0 * FLOAT32 * np.abs(q[..., :3]).max(initial=0.0)
         long = rope.length * (1.0 - SLACK) - rounding
         near = way >= long
@@ -136,7 +136,7 @@ class Ropes:
                     found[:, n, 3:] += np.cross(at - com[:, self._row[body]], along)
         return found
 
-    def _rate(self, rope: Rope) -> Floats:
+    def rate(self, rope: Rope) -> Floats:
         """How fast its way gets longer, (T,) [m/s]."""
         motion = self._motion
         rows = np.array(sorted({self._row[guide.body] for guide in rope.path if guide.body is not None}), dtype=np.intp)

@@ -24,6 +24,10 @@ class Check:
         """The answers; empty when the question does not arise in this world."""
         raise NotImplementedError
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget | None:
+        """What to change where a finding failed that does not say so itself; None where no rule is known."""
+        return None
+
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
         """Work out at once what it asks of all copies of a world, and keep it with each; nothing if it need not.
 

@@ -95,12 +95,12 @@ class CheckContinuity(Check):
         """How far places come from where velocities take them, from any of some moments to any later one.
 
         Of a smooth motion the trapezoidal rule's errors h^3 v'' / 12 add up to what its ends differ by, h^2 dv/dt / 12
-        (Euler and Maclaurin), and a step of first order is off by dt / 2 of the change of velocity: neither grows with
+        (Euler and Maclaurin), and steps of first order are off by dt / 2 of the change of velocity: neither grows with
         the run. What grows is as much as velocities bend from frame to frame, in blows, by twice the rule's error.
         """
         motion, h = evidence.motion, evidence.motion.h[:, None]
         change = lengths(np.diff(motion.v, axis=-3))
-        ends = motion.dt * lengths(np.ptp(motion.v, axis=-3)) + (h * change).max(axis=-2) / 6.0
+        ends = motion.late * lengths(np.ptp(motion.v, axis=-3)) + (h * change).max(axis=-2) / 6.0
         # What is set down settles by a step, also along a slope.
         ends = ends + self._rounding(evidence).max(axis=-2) + evidence.gravity * motion.dt**2
         ends = (ends + self._by_hand(evidence).sum(axis=-2))[..., None, :]

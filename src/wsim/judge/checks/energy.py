@@ -1,4 +1,4 @@
-"""The energy budget: what bodies have, less what was put into them, never rises."""
+"""The energy budget: what bodies have, less what was put into them, never rises, and falls by what may be taken."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import lengths
+from wsim.judge.books.losses import Losses
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
 class CheckEnergy(Check):
     """Nothing gains energy from nowhere: kinetic, potential and springs' energy, less work done on it, only fall.
 
-    By mechanism, over the time in which it meets no other, and for all bodies together. What friction and impacts take
-    is not known, so a loss is always possible; a gain never is.
+    By mechanism, over the time in which it meets no other, and for all bodies together. Where contacts, joints and
+    cords are recorded, what is lost must be what friction, blows, stops and dampers may take by their laws; elsewhere
+    that is not known, and of what is lost nothing is asked here.
     """
 
     share: float = 0.01  # of the energy that changes hands
@@ -58,7 +60,58 @@ class CheckEnergy(Check):
         rows = np.flatnonzero(~motion.kinematic)
         if any(not finding.passed for finding in found):
             return found  # what one gains all have together
-        return [*found, self._finding(evidence, rows, together, stored)] if len(rows) else found
+        losses = Losses.of(evidence)
+        if len(rows) and not (losses and losses.whole):
+            found.append(self._finding(evidence, rows, together, stored))
+        return found if losses is None else [*found, *self._accounted(evidence, losses, stored)]
+
+    def _accounted(self, evidence: Evidence, losses: Losses, stored: Floats) -> list[Finding]:
+        """Of bodies that hang together or touch: the gain or the loss that is largest by its limit."""
+        motion = evidence.motion
+        energy = motion.kinetic + motion.potential + motion.elastic
+        if motion.applied_work is not None:
+            energy = energy - motion.applied_work
+        chattered, held = self._chattered(evidence), np.where(np.isfinite(stored), stored, 0.0)
+        found: list[tuple[float, Finding]] = []
+        for rows in losses.groups:
+            taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
+            limit, scale = (float(each[0]) for each in self._limit(evidence, of))
+            limit += self.share * (max(scale, taken.held) - scale) - float((self._late(evidence) @ of)[0])
+            limit += losses.give(rows)
+            limits = limit, max(scale, taken.held)
+            ahead, stray = losses.ahead(rows)
+            known = energy[:, rows].sum(axis=1) + ahead - taken.driven + taken.damped
+            doubt = taken.unsure + stray + chattered[:, rows].sum(axis=1)
+            gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
+            found += [
+                self._changed(evidence, rows, known - doubt, gives, limits, "gains"),
+                self._changed(evidence, rows, -known - doubt - taken.most, gives, limits, "loses"),
+            ]
+        return [max(found, key=lambda each: each[0])[1]] if found else []
+
+    def _changed(
+        self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, gives: Floats, limits: tuple[float, float],
+        verb: str,
+    ) -> tuple[float, Finding]:  # fmt: skip
+        """How far a balance rises, by its limit; contacts and stops may have held a part at either end."""
+        had = balance + (gives if verb == "gains" else 0.0)
+        rise = balance - (0.0 if verb == "gains" else gives) - np.minimum.accumulate(had)
+        end = int(np.argmax(rise))
+        start, value, (limit, scale) = int(np.argmin(had[: end + 1])), max(float(rise[end]), 0.0), limits
+        over = np.flatnonzero(rise > limit)
+        motion = evidence.motion
+        body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[:, rows].max(axis=0)))]]
+        story = "that nothing gives" if verb == "gains" else "that nothing takes"
+        return value / max(limit, 1e-300), self.measured(
+            f"{body.prim}{' and what it meets' if len(rows) > 1 else ''} {verb} {value:.3g} J {story}"
+            + (f", {value / scale:.2%} of what moves it" if scale else ""),
+            value, limit, "J", expected=0.0, prim=body.prim, time=float(evidence.time[over[0] if len(over) else end]),
+            span=(float(evidence.time[start]), float(evidence.time[end])),
+            fine="What bodies lose is what friction, blows, stops, drives and dampers may take",
+            limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, what one time step cannot resolve, and "
+            f"a lift by {self.settling:g} of the size of what may touch something",
+            target=RepairTarget(kind="program", prim=body.prim, why="something takes or gives energy unseen"),
+        )  # fmt: skip
 
     @staticmethod
     def _one(evidence: Evidence) -> bool:
@@ -155,9 +208,7 @@ class CheckEnergy(Check):
         gain = np.maximum(balance - np.minimum.accumulate(had), 0.0)
         end = int(np.argmax(gain))
         start = int(np.argmin(had[: end + 1]))
-        limit, scale = (
-            float(each[0]) for each in self._limit(evidence, np.isin(np.arange(len(motion.mass)), rows)[:, None])
-        )
+        limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(motion.mass))))
         wrong = gain[end] > limit
         alone = len(np.unique(motion.unit[rows])) == 1
         body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[end, rows]))]]
@@ -193,9 +244,19 @@ class CheckEnergy(Check):
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
         settles = self.settling * size * (motion.touched.any(axis=0) | ~motion.jointed)
         lift = weight * (settles + 4.0 * FLOAT32 * height)
-        # A first-order step leaves positions behind velocities by up to half a step's fall.
-        late = weight * motion.speed.max(axis=0) * 0.5 * min(motion.dt, 0.005)
-        return self.share * scale + (lift + late) @ of, scale
+        return self.share * scale + (lift + self._late(evidence)) @ of, scale
+
+    @staticmethod
+    def _late(evidence: Evidence) -> Floats:
+        """A first-order step leaves positions behind velocities by up to half a step's fall, (B,) [J]."""
+        motion = evidence.motion
+        late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * 0.5 * min(motion.dt, 0.005)
+        return late
+
+
+def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:
+    """These of so many bodies, as a group, (count, 1)."""
+    return np.asarray(np.isin(np.arange(count), rows)[:, None])
 
 
 def _summed(energy: Floats, of: NDArray[np.bool_]) -> Floats:

@@ -55,7 +55,7 @@ class CheckRecordedTies(Check):
 
     exact: float = 1e-3  # of what is passed on: the solver's tolerance, and single precision
     place: float = 0.01  # of an impulse's moment, beside how far its arm turns
-    law: float = 0.02  # of what a law gives
+    law: float = 0.01  # of what a law gives
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each kind of question, of the joint or the cord that is farthest off by its limit."""
@@ -75,11 +75,11 @@ class CheckRecordedTies(Check):
         start, end = float(evidence.time[k]), float(evidence.time[k + 1])
         value, limit = float(asked.off[k]) / h, float(asked.limit[k]) / h
         return self.measured(
-            f"{asked.prim} {asked.what}, {value:.3g} {asked.unit}, from {start:.3f} to {end:.3f} s",
+            f"{asked.prim} {asked.what}, by {value:.3g} {asked.unit}, from {start:.3f} to {end:.3f} s",
             value, limit, asked.unit, prim=asked.body, line=evidence.line(asked.prim), time=end, span=(start, end),
             expected=0.0, fine=SAYS[asked.kind],
-            limit_from=f"{self.exact:g} of what it passes on, {self.law:g} of what a law gives, and what frames tell of "
-            "an arm that turns and a force that changes",
+            limit_from=f"{self.exact:g} of what it passes on, {self.law:g} of what a law gives, and what frames do not "
+            "tell of an arm that turns and a force that changes",
             target=RepairTarget(kind="joint", prim=asked.prim, why="it gives what the stated one does not"),
         )  # fmt: skip
 

@@ -19,6 +19,7 @@ from wsim.judge.checks import (
     forces,
     impacts,
     joint,
+    lift,
     mass,
     motion,
     physics,
@@ -40,8 +41,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, energy, contact, rest, joint, cord, mass, plan,
-    plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water, camera,
+    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, energy, contact, rest, joint, cord,
+    mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift, fluid_height, water,
+    camera,
 )  # fmt: skip
 
 

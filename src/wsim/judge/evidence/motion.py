@@ -105,6 +105,17 @@ class Motion:
         return float(known or (np.median(self.h) if len(self.h) else 1.0))
 
     @cached_property
+    def late(self) -> Floats:
+        """How far behind their velocities places may be, (B,) [s]: a time step, of first order.
+
+        Nothing of what gravity and contacts alone move, where the simulator says that its steps are of second order.
+        """
+        world, metadata = self._recorded.world, self._recorded.recording.metadata
+        if metadata.get("loose_order") != 2 or world.fluids or metadata.get("controlled"):
+            return np.full(len(self.jointed), self.dt)
+        return np.where(self.jointed | self.kinematic, self.dt, 0.0)
+
+    @cached_property
     def dt_frames(self) -> float:
         """The time between frames [s]."""
         return float(np.median(self.h)) if len(self.h) else 1.0

@@ -11,7 +11,9 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
+    from wsim.judge.verdict import Finding, RepairTarget
     from wsim.plan.schema.formula import Predicate
 
     Floats = NDArray[np.float64]
@@ -79,6 +81,20 @@ class Measure:
 
 Measurer = Callable[[Any, "Signals"], list[Measure]]
 MEASURERS: dict[type[Predicate], Measurer] = {}
+
+
+Mender = Callable[[Any, "Finding", "Evidence"], "RepairTarget"]
+MENDERS: dict[type[Predicate], Mender] = {}
+
+
+def mends(*kinds: type[Predicate]) -> Callable[[Mender], Mender]:
+    """Register what is to be changed where a predicate fails: a rule of it, of a finding about it and the evidence."""
+
+    def register(mender: Mender) -> Mender:
+        MENDERS.update(dict.fromkeys(kinds, mender))
+        return mender
+
+    return register
 
 
 def measures(kind: type[Predicate]) -> Callable[[Measurer], Measurer]:

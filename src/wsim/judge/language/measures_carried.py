@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import conjugate, level, rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.support import Support, height_over, support_of
 from wsim.judge.evidence.welded import welded
-from wsim.judge.language.measure import Measure, measures
-from wsim.plan.schema.formula_contact import LiesOn, RestsOn, StaysOn, WeighsOn
+from wsim.judge.language.measure import Measure, measures, mends
+from wsim.judge.repair.lasting import settled
+from wsim.judge.repair.matter import LEVEL, NEAR, friction, heavier, slope
+from wsim.judge.repair.passing import beside, fallen_through
+from wsim.judge.repair.rule import density, longer_run
+from wsim.judge.verdict import Finding, RepairTarget
+from wsim.plan.schema.formula_contact import LiesOn, RestsOn, StaysOn, SupportedBy, WeighsOn
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -132,3 +139,54 @@ def _by_fluid(signals: Signals, name: str, fluid: Fluid) -> tuple[float, float]:
     poses = {k: evidence.resting_pose(k) for k in welded(evidence, i)}
     under = sum(evidence.solid(k).volume_below(q, float(at[2]), level) for k, (at, q) in poses.items())
     return specific * under, film
+
+
+# ---- what to change
+@mends(LiesOn, RestsOn, WeighsOn, SupportedBy)
+def _put_on(asked: LiesOn | RestsOn | WeighsOn | SupportedBy, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Beside it: put it over it. Below it: nothing stops it. Above it: too light, or not there yet."""
+    prim, ref, value = finding.prim or "", evidence.prim(asked.ref), finding.value or 0.0
+    if finding.unit != "m":
+        return settled(finding, evidence)
+    i, fluid = evidence.index(prim), next((f for f in evidence.world.fluids if f.container == ref), None)
+    support = support_of(evidence, i, ref)
+    if not support.over[evidence.window].all():
+        return beside(evidence, prim, ref)
+    if value < 0.0:
+        return fallen_through(evidence, prim, ref)
+    if fluid is not None and density(evidence, prim) < fluid.density:
+        return heavier(evidence, prim, fluid.density)
+    fall = -float((evidence.body_qd[evidence.window, i, :3] @ evidence.up).mean())
+    if fall > 0.0:
+        return longer_run(evidence, float(evidence.time[-1]) + value / fall, f"it still comes down at {fall:.2g} m/s")
+    why = f"it hangs {value:.3g} m above {ref}: its collision shape is larger than it looks"
+    return RepairTarget(kind="geometry", prim=prim, parameter="collision", direction="change", why=why)
+
+
+@mends(StaysOn)
+def _keep_on(asked: StaysOn, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It slides off: on a slope friction must be more than its tangent. Or it was never on it."""
+    prim, ref = finding.prim or "", evidence.prim(asked.ref)
+    if not support_of(evidence, evidence.index(prim), ref).over[0]:
+        return beside(evidence, prim, ref)
+    steep = slope(evidence, prim, ref)
+    if steep > LEVEL:
+        why = f"a body stays on a slope of {math.degrees(steep):.3g} degrees where friction is above its tangent"
+        return friction(evidence, prim, "raise", math.tan(steep), why, ref)
+    if _slipped(finding, evidence, ref):
+        why = "it slides or is carried off: more friction holds it"
+        return friction(evidence, prim, "raise", None, why, ref)
+    why = f"it comes off {ref} and does not slide: what lifts or throws it must be slower"
+    return RepairTarget(kind="settlement", prim=prim, parameter="motion", direction="change", why=why)
+
+
+def _slipped(finding: Finding, evidence: Evidence, ref: str) -> bool:
+    """Whether the finding's body has moved along what it is to stay on, by more than it has moved off it."""
+    i = evidence.index(finding.prim or "")
+    here = evidence.body_q[:, i, :3]
+    if evidence.static(ref) is None and evidence.container(ref) is None:
+        other = evidence.body_q[:, evidence.index(ref)]
+        here = rotate(conjugate(other[:, 3:]), here - other[:, :3])  # as seen from what carries it
+    along = float(np.linalg.norm(level(here - here[0], evidence.up), axis=1).max())
+    off = float(np.max(evidence.ends(i)[0] - evidence.ends(i)[0][0]))
+    return along > max(off, NEAR * evidence.solid(i).smallest)

@@ -15,8 +15,14 @@ import numpy as np
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.welded import displaced, still_draft, unheld_lift, welded
-from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import latest
+from wsim.judge.repair.lasting import settled
+from wsim.judge.repair.matter import heavier, lighter, own_density
+from wsim.judge.repair.passing import started_in, too_small
+from wsim.judge.repair.place import over
+from wsim.judge.repair.rule import density, finer, longer_run, planned_density
+from wsim.judge.verdict import Finding, RepairTarget
 from wsim.plan.schema.formula_fluid import Fills, FillsTo, Floats, LevelIn, Sinks, Submerged, SwirlsBetween
 
 if TYPE_CHECKING:
@@ -29,6 +35,7 @@ if TYPE_CHECKING:
 
 LIFT = 0.25  # of a body's weight, that may be missing to what is under and should rise
 SHARE, SPACINGS = 0.1, 0.5  # of the body's height, or particle spacings if more: what particles resolve of a draft
+SAME = 0.01  # share by which two densities differ by rounding alone
 
 
 @dataclass
@@ -212,3 +219,88 @@ def _swirls(asked: SwirlsBetween, signals: Signals) -> list[Measure]:
         Measure(what, fluid.prim, value, limit, "deg/s", scale, "the objective's range", at_most=at_most)
         for limit, at_most in ((asked.low, False), (asked.high, True))
     ]
+
+
+# ---- what to change
+@mends(Floats)
+def _float(asked: Floats, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Out of its container, too heavy, or not as dense as planned; else the particles are too coarse for its draft."""
+    prim, fluid = finding.prim or "", evidence.fluid(evidence.prim(asked.fluid))
+    container = evidence.container_of(fluid)
+    if container is not None and finding.expected == 0.0:
+        put = None if started_in(evidence, prim, container) else over(
+            evidence, prim, container.prim, f"it starts beside {container.prim}"
+        )  # fmt: skip
+        return put or too_small(evidence, container.prim, finding.value or 0.0)
+    now, planned = density(evidence, prim), planned_density(evidence, prim)
+    if now >= fluid.density:
+        return lighter(evidence, prim, fluid.density)
+    if planned is not None and abs(planned / now - 1.0) > SAME:
+        why = f"the plan's material; it floats as deep as its share of the fluid's {fluid.density:g} kg/m^3"
+        return own_density(evidence, prim, planned, why)
+    value, limit, expected = finding.value, finding.limit, finding.expected
+    if value is None or limit is None or expected is None or value == expected:
+        return settled(finding, evidence)
+    why = "its density gives another draft than is seen; the draft's error shrinks with the spacing"
+    return finer(evidence, fluid, abs(limit - expected) / abs(value - expected), why)
+
+
+@mends(Sinks, Submerged)
+def _sink(asked: Sinks | Submerged, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Too light to go under, or the fluid too shallow to cover it."""
+    prim, fluid = finding.prim or "", evidence.fluid(evidence.prim(asked.fluid))
+    if density(evidence, prim) <= fluid.density:
+        return heavier(evidence, prim, fluid.density)
+    level, i = evidence.level(fluid), evidence.index(prim)
+    height = float((evidence.ends(i)[1] - evidence.ends(i)[0])[evidence.window].mean())
+    depth = level.height - level.floor
+    if height > depth:
+        return RepairTarget(
+            kind="fluid", prim=fluid.prim, parameter="level", direction="raise", current=depth,
+            suggested=depth + (height - depth) + fluid.spacing, unit="m", why="it is taller than the fluid is deep",
+        )  # fmt: skip
+    return longer_run(evidence, None, "it is heavy enough to sink, and the fluid deep enough: it has not got there yet")
+
+
+@mends(FillsTo)
+def _fill_to(asked: FillsTo, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """As much fluid as the level needs: the level is as high as the volume."""
+    value, expected = finding.value or 0.0, finding.expected
+    fluid = evidence.fluid(finding.prim or "")
+    now = fluid.size[2]
+    return RepairTarget(
+        kind="fluid", prim=fluid.prim, parameter="level", direction="raise" if value < (expected or 0.0) else "lower",
+        current=now, suggested=now * expected / value if expected and value > 0.0 else None, unit="m",
+        why="in the same container the level is as high as the volume",
+    )  # fmt: skip
+
+
+@mends(Fills)
+def _fill(asked: Fills, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """More than the container holds, or still on its way."""
+    fluid, container = evidence.fluid(finding.prim or ""), evidence.container(evidence.prim(asked.ref))
+    if container is None:
+        return RepairTarget(kind="missing object", direction="add", why="there is nothing to fill")
+    room, volume = math.prod(container.inner_size), math.prod(fluid.size)
+    if volume > room:
+        top = volume / math.prod(container.inner_size[:2])
+        return RepairTarget(
+            kind="geometry", prim=container.prim, parameter="inner_size.z", direction="raise",
+            current=container.inner_size[2], suggested=top, unit="m", why="there is more fluid than it holds",
+        )  # fmt: skip
+    return longer_run(evidence, None, "it holds that much: the rest is still on its way, or is poured beside it")
+
+
+@mends(LevelIn)
+def _pour(asked: LevelIn, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """More or less of the fluid must come into the vessel."""
+    way = "raise" if (finding.value or 0.0) < (finding.expected or 0.0) else "lower"
+    why = "what comes into the vessel stands as high as its volume over the vessel's floor"
+    return RepairTarget(kind="fluid", prim=finding.prim, parameter="size", direction=way, unit="m", why=why)
+
+
+@mends(SwirlsBetween)
+def _stir(asked: SwirlsBetween, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What turns a fluid is a body, a wall or a jet that goes round."""
+    why = "something must drive it round: a paddle, a wall that turns, an inlet along the wall"
+    return RepairTarget(kind="fluid", prim=finding.prim, parameter="motion", direction="change", why=why)

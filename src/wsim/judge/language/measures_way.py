@@ -12,13 +12,19 @@ from wsim.geometry.shapes import into, kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.support import downhill
-from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import latest
+from wsim.judge.repair.drive import by_drive
+from wsim.judge.repair.matter import LEVEL, friction, slope
+from wsim.judge.repair.passing import pushed_over
+from wsim.judge.repair.rule import FARTHEST, ROOM, density, longer_run, shorter_step, time_step
+from wsim.judge.verdict import Finding, RepairTarget
 from wsim.plan.schema.formula_motion import Drops, FallsFreely, Flies, GoesDown, Moves, Rolls, RollsFreely, TiltsTo
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
 
     Floats = NDArray[np.float64]
@@ -190,3 +196,116 @@ def _tilts_to(asked: TiltsTo, signals: Signals) -> list[Measure]:
     what, prim = f"angle down on the side of {asked.ref}", signals.prim(asked.object)
     source = "clearly out of level" if math.isclose(asked.least, 5.0) else "the objective's"
     return [Measure(what, prim, value, asked.least, "deg", asked.least, source, at_most=False)]
+
+
+# ---- what to change
+@mends(Moves, GoesDown)
+def _go(asked: Moves | GoesDown, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Under friction a way goes as the square of the speed it starts with."""
+    body = evidence.body(finding.prim or "")
+    speed = float(np.linalg.norm(body.velocity))
+    value, limit = finding.value or 0.0, finding.limit or 0.0
+    share = (1.0 + ROOM) * limit / value if 0.0 < value < limit else None
+    driven = by_drive(evidence, body.prim, share, "its drive gets where it is set to, which is not far enough")
+    if driven is not None and not speed:
+        return driven
+    if any(joint.child == body.prim or joint.parent == body.prim for joint in evidence.world.joints) and not speed:
+        why = "a joint holds it, and nothing drives that"
+        return RepairTarget(kind="drive", prim=body.prim, parameter="drive", direction="add", why=why)
+    going = _gets_there(finding, evidence)
+    if going is not None:
+        return longer_run(evidence, going, "it is on its way, and fast enough to get there")
+    if speed > 0.0:
+        to = (1.0 + ROOM / 2) * speed * math.sqrt(limit / value) if 0.0 < value < limit else None
+        return RepairTarget(
+            kind="physical parameter", prim=body.prim, parameter="velocity", direction="raise", current=speed,
+            suggested=to, unit="m/s", why="under friction it gets as far as v^2 / (2 mu g)",
+        )  # fmt: skip
+    ref, to = evidence.prim(asked.ref) if isinstance(asked, GoesDown) else "", None
+    steep = slope(evidence, body.prim, ref)
+    if steep > LEVEL:  # from rest it goes g t^2 (sin - mu cos) / 2
+        t = float(evidence.time[-1] - evidence.time[0])
+        to = max(0.0, math.tan(steep) - 2.0 * limit / (evidence.gravity * math.cos(steep) * t**2))
+    return friction(evidence, body.prim, "lower", to, "it starts at rest: less friction lets it go", ref)
+
+
+def _gets_there(finding: Finding, evidence: Evidence) -> float | None:
+    """When what still moves at the end has gone as far as asked [s], slowed as it is; None if it stops before."""
+    missing = (finding.limit or 0.0) - (finding.value or 0.0)
+    i, late = evidence.index(finding.prim or ""), evidence.window
+    speed = np.linalg.norm(level(evidence.body_qd[late, i, :3].astype(np.float64), evidence.up), axis=1)
+    time = evidence.time[late]
+    if missing <= 0.0 or len(time) < 2 or speed[-1] <= 0.0:
+        return None
+    slowed = max(0.0, float((speed[0] - speed[-1]) / (time[-1] - time[0])))
+    v, wanted = float(speed[-1]), (1.0 + ROOM) * missing
+    if v**2 <= 2.0 * slowed * wanted:
+        return None
+    left = wanted / v if slowed == 0.0 else (v - math.sqrt(v**2 - 2.0 * slowed * wanted)) / slowed
+    end = float(evidence.time[-1])
+    return end + left if end + left <= FARTHEST["duration"] * end else None  # what creeps gets nowhere
+
+
+@mends(Rolls)
+def _roll(asked: Rolls, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A ball rolls without slipping where friction is above 2/7 of the slope's tangent; what is to slide has less."""
+    prim, ref = finding.prim or "", evidence.prim(asked.on) if asked.on else ""
+    if (finding.value or 0.0) > (finding.limit or 0.0):
+        return friction(evidence, prim, "lower", None, "friction turns it: with less it slides", ref)
+    return _gripping(evidence, prim, ref)
+
+
+@mends(RollsFreely)
+def _roll_freely(asked: RollsFreely, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Too fast: it slips. Too slow: something holds it back."""
+    prim, ref = finding.prim or "", evidence.prim(asked.ref)
+    if (finding.value or 0.0) > (finding.expected or 0.0):
+        return _gripping(evidence, prim, ref)
+    why = "something holds a ball back that should roll freely"
+    return friction(evidence, prim, "lower", None, why, ref)
+
+
+def _gripping(evidence: Evidence, prim: str, ref: str) -> RepairTarget:
+    steep = slope(evidence, prim, ref)
+    to = 2.0 / 7.0 * math.tan(steep) if steep > LEVEL else None
+    why = "a ball rolls without slipping where friction is above 2/7 tan(slope)"
+    return friction(evidence, prim, "raise", to, why, ref)
+
+
+@mends(Flies)
+def _fly(asked: Flies, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It lands too soon."""
+    prim, limit = finding.prim or "", finding.limit or 0.0
+    rise = 0.5 * evidence.gravity * limit * (1.0 + ROOM)
+    why = f"a flight of {limit:g} s takes {rise:.3g} m/s upwards, or as much height"
+    return RepairTarget(
+        kind="physical parameter", prim=prim, parameter="velocity.z", direction="raise",
+        current=float(np.array(evidence.body(prim).velocity) @ evidence.up), suggested=rise, unit="m/s", why=why,
+    )  # fmt: skip
+
+
+@mends(FallsFreely)
+def _let_fall(asked: FallsFreely, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Something beside gravity acts on it, or it is the integration's error."""
+    value, limit = finding.value or 0.0, finding.limit or 0.0
+    step, last = time_step(evidence), float(evidence.time[-1])
+    if step is not None and 0.0 < limit < value <= evidence.gravity * step * last:
+        return shorter_step(evidence, limit / value, "the integration's error, g dt t / 2, is as large as this")
+    why = "something beside gravity acts on it: a drive, damping, a joint or a control"
+    return RepairTarget(kind="physical parameter", prim=finding.prim, parameter="forces", direction="remove", why=why)
+
+
+@mends(Drops)
+def _topple(asked: Drops, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What stays up is to be pushed over."""
+    return pushed_over(finding, evidence)
+
+
+@mends(TiltsTo)
+def _tilt(asked: TiltsTo, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """The lever needs more weight on that side."""
+    ref, why = evidence.prim(asked.ref), "the side goes down whose weight times arm is greater"
+    return RepairTarget(
+        kind="physical parameter", prim=ref, parameter="density", direction="raise", current=density(evidence, ref),
+        unit="kg/m^3", why=why,
+    )  # fmt: skip

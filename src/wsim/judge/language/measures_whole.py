@@ -10,13 +10,19 @@ import numpy as np
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.pendulum import Pendulum, period_of, pivot_of
 from wsim.judge.evidence.welded import welded
-from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import latest
+from wsim.judge.repair.drive import drive_of
+from wsim.judge.repair.lasting import leak
+from wsim.judge.repair.matter import damped, friction
+from wsim.judge.repair.rule import longer_run, shorter_step
+from wsim.judge.verdict import Finding, RepairTarget
 from wsim.plan.schema.formula_motion import ClimbsTo, Conserves, DiesDown, Swings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
 
     Floats = NDArray[np.float64]
@@ -215,3 +221,50 @@ def _mass(asked: Conserves, signals: Signals) -> Measure:
     value = (np.abs(there - there[0]) * total)[latest(track.time, signals.time)][None]
     source = f"{asked.share:g} of {total:.4g} kg"
     return Measure("change of mass", fluid.prim, value, asked.share * total, "kg", total, source, expected=0.0)
+
+
+# ---- what to change
+@mends(Swings)
+def _swing(asked: Swings, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Let go too low, too short a run for a period, or a period that the hinge spoils."""
+    if finding.unit == "deg" and finding.expected is None:
+        return RepairTarget(
+            kind="settlement", prim=finding.prim, parameter="rotation", direction="raise", current=finding.value,
+            suggested=finding.limit, unit="deg", why="at rest below its hinge it has nowhere to swing from",
+        )  # fmt: skip
+    if finding.value is None and finding.expected is not None and finding.expected > evidence.world.duration:
+        return longer_run(evidence, 2 * finding.expected, "a period takes longer than the run")
+    why = "its hinge holds it back or drives it: a pendulum's period needs one with no friction, damping or drive"
+    return RepairTarget(kind="joint", prim=finding.prim, parameter="damping", direction="lower", why=why)
+
+
+@mends(Conserves)
+def _conserve(asked: Conserves, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A fluid's mass leaks; energy and momentum go with the step's error."""
+    if finding.unit == "kg":
+        return leak(finding, evidence)
+    why = "what is conserved drifts with the step's error; half the step is the first to try"
+    return shorter_step(evidence, 0.5, why)
+
+
+@mends(DiesDown)
+def _damp(asked: DiesDown, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What goes on as far is taken energy from: by its joint's drive, or where it touches."""
+    prim = finding.prim or ""
+    joint = drive_of(evidence, prim)
+    if joint is None or joint.drive is None:
+        return damped(evidence, evidence.index(prim), "nothing takes its energy: it goes as far each time")
+    why = "nothing damps it: it goes as far each time"
+    return RepairTarget(
+        kind="drive", prim=joint.prim, parameter="drive.damping", direction="raise", current=joint.drive.damping,
+        why=why,
+    )  # fmt: skip
+
+
+@mends(ClimbsTo)
+def _climb(asked: ClimbsTo, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What comes up too little has lost too much on its way; what comes too high has got energy from the step."""
+    if (finding.value or 0.0) > (finding.limit or 0.0):
+        why = "it rises above its start: the integration adds energy; half the step is the first to try"
+        return shorter_step(evidence, 0.5, why)
+    return friction(evidence, finding.prim or "", "lower", None, "it loses too much on its way up")

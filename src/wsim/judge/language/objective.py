@@ -9,8 +9,9 @@ import numpy as np
 
 from wsim.judge.checks.check import Check
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.evaluate import evaluate
+from wsim.judge.language.evaluate import Outcome, evaluate
 from wsim.judge.language.kinds import formula_of
+from wsim.judge.language.mending import target_of, uncovered
 from wsim.judge.language.sentence import sentence
 from wsim.judge.language.signals import Signals
 from wsim.plan.schema.formula import And, Finally, Formula, Mean, Predicate
@@ -21,9 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.language.evaluate import Outcome
     from wsim.judge.language.measure import Measure
-    from wsim.judge.verdict import Finding
+    from wsim.judge.verdict import Finding, RepairTarget
     from wsim.plan.schema import Objective
 
 
@@ -81,7 +81,9 @@ class ObjectiveCheck(Check):
         try:
             found = self.evaluate(evidence)
         except MissingError as error:
-            found = [self.failed(f"{prim}: {error.args[0]}")]
+            said = self.objective.formula
+            longer = uncovered(said, evidence) if said is not None else None
+            found = [self.failed(f"{prim}: {error.args[0]}", target=longer)]
         except Exception as error:  # noqa: BLE001 - as for every check
             found = [self.failed(f"{prim}: {self.name} could not be evaluated: {type(error).__name__}: {error}")]
         for finding in found:
@@ -105,8 +107,12 @@ class Asked:
     world: int = 0
 
     def findings(self, check: Check, evidence: Evidence) -> list[Finding]:
-        """One for each."""
-        return [self._finding(check, *each, evidence) for each in self.outcomes]
+        """One for each, with what to change where it fails."""
+        found = [self._finding(check, *each, evidence) for each in self.outcomes]
+        for finding, (part, *_) in zip(found, self.outcomes, strict=True):
+            if not finding.passed:
+                finding.target = _target(part, finding, evidence)
+        return found
 
     def _finding(self, check: Check, part: Formula, said: str, outcome: Outcome, evidence: Evidence) -> Finding:
         signals, n = self.signals, self.world
@@ -174,6 +180,16 @@ def findings(check: Check, formula: Formula, evidence: Evidence) -> list[Finding
 
 def _outcomes(formula: Formula, signals: Signals) -> list[tuple[Formula, str, Outcome]]:
     return [(part, sentence(part), evaluate(part, signals)) for part in conjuncts(formula)]
+
+
+def _target(part: Formula, finding: Finding, evidence: Evidence) -> RepairTarget | None:
+    """What to change for a part that fails in one world."""
+    try:
+        outcome = evaluate(part, Signals.of(evidence))
+        decides = int(outcome.measure[0])
+        return target_of(part, outcome.predicates[decides], outcome.measures[decides], finding, evidence)
+    except Exception:  # noqa: BLE001 - evidence too broken for the objective may be so for its rule: nothing is known
+        return None
 
 
 def conjuncts(formula: Formula) -> tuple[Formula, ...]:

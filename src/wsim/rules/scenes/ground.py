@@ -130,7 +130,7 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
         if bounces(thing):
             surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))
-            part.objectives.append(bounce(thing, item, surface, part, cast))
+            part.objectives += bounce(thing, item, surface, part, cast)
             continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
 
