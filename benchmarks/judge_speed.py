@@ -4,8 +4,9 @@
     .venv/bin/python benchmarks/judge_speed.py --simulate      # the sweep's worlds from the simulator, on its device
 
 The recording is 30 s of 200 bodies that stand, stand on one another, slide to rest and fall, by closed-form mechanics;
-it is written, read back and judged by a plan of 20 objectives besides the checks that always run. The sweep is 1,024
-worlds of 5 such bodies over 5 s, judged from arrays.
+it is written, read back and judged by a plan of 20 objectives besides the checks that always run. The pile is 100 boxes
+and balls that fall into a heap, from the simulator: all of them are one problem of contacts. The sweep is 1,024 worlds
+of 5 such bodies over 5 s, judged from arrays.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from wsim.scene.world import Body, Shape, Static, World
 G, FRICTION, EDGE, RATE = 9.81, 0.5, 0.2, 30.0
 BODIES, SECONDS, OBJECTIVES, LIMIT = 200, 30.0, 20, 2.0
 WORLDS, WORLD_BODIES, WORLD_SECONDS, WORLDS_LIMIT = 1024, 5, 5.0, 5.0
+PILE_BODIES, PILE_SECONDS, PILE_LIMIT = 100, 6.0, 10.0
 KINDS = ("stands", "stands_on", "slides", "falls")
 
 
@@ -158,6 +160,37 @@ def one_recording(profile: bool) -> dict[str, Any]:
     return row
 
 
+def pile() -> dict[str, Any]:
+    """Judge a heap of bodies that fell on each other, by the checks that always run."""
+    from wsim.scene import Scene
+    from wsim.sim import Simulation
+    from wsim.sim.collect import collect
+
+    random, scene = np.random.default_rng(0), Scene()
+    scene.simulation(duration=PILE_SECONDS, frame_rate=RATE)
+    scene.ground(friction=FRICTION)
+    for i in range(PILE_BODIES):
+        x, y = (1.25 * EDGE * (i % 16 // n % 4) + random.uniform(-0.02, 0.02) for n in (1, 4))
+        options = {"density": 500.0, "friction": FRICTION, "position": (x, y, 0.15 + 1.25 * EDGE * (i // 16))}
+        if i % 4 == 3:
+            scene.sphere(f"ball_{i}", radius=EDGE / 2, **options)
+        else:
+            scene.box(f"box_{i}", size=(EDGE,) * 3, **options)
+    with tempfile.TemporaryDirectory() as folder:
+        heap = collect(Simulation(scene.save(Path(folder) / "stage.usda"), device="cpu")).recording(0)
+    began, busy = time.perf_counter(), time.process_time()
+    verdict = judge(heap)
+    return {
+        "case": f"a pile of {PILE_BODIES} bodies over {PILE_SECONDS:g} s",
+        "seconds": time.perf_counter() - began,
+        "processor_seconds": time.process_time() - busy,
+        "limit": PILE_LIMIT,
+        "frames": len(heap.time),
+        "status": verdict.status,
+        "failures": [f.message for f in verdict.failures],
+    }
+
+
 def many_worlds(count: int, processes: int | None, simulate: bool, device: str) -> list[dict[str, Any]]:
     """Judge the worlds of a sweep in full, and weigh them by one formula."""
     from wsim.judge.language import parse
@@ -256,7 +289,11 @@ def main() -> None:
     parser.add_argument("--device", default="auto")
     parser.add_argument("--profile", action="store_true", help="print where the time of the long recording goes")
     given = parser.parse_args()
-    rows = [one_recording(given.profile), *many_worlds(given.worlds, given.processes, given.simulate, given.device)]
+    rows = [
+        one_recording(given.profile),
+        pile(),
+        *many_worlds(given.worlds, given.processes, given.simulate, given.device),
+    ]
     print(f"machine: {machine()}; Python {platform.python_version()}, NumPy {np.__version__}\n")
     print(f"{'case':58} {'time':>9} {'limit':>7}")
     for row in rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,10 +10,18 @@ import numpy as np
 import pytest
 
 from wsim.judge import judge
+from wsim.judge.books.balance import Balance
+from wsim.judge.checks.contact import CheckSupport
+from wsim.judge.checks.continuity import CheckContinuity
+from wsim.judge.checks.rest import CheckJitter
+from wsim.judge.decide import judge_copies
+from wsim.judge.evidence.alike import alike
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.worlds import judge_worlds, weigh
 from wsim.plan.schema import Plan
 from wsim.recording.trajectories import Trajectories
 from wsim.scene import Scene
+from wsim.scene.world import Body, Shape, Static, World
 
 WORLDS, G = 8, 9.81
 BALL = {"kind": "proxy", "primitive": "sphere", "size": [0.1]}
@@ -93,6 +102,72 @@ def test_each_verdict_is_that_of_the_world_alone(planted: Trajectories, processe
         margins = sorted(f.margin for f in alone.findings if f.margin is not None)
         here = [margin[k] for margin in found.margin.values()]
         assert sorted(m for m in here if not np.isnan(m)) == pytest.approx(margins, nan_ok=True)
+
+
+def test_what_copies_ask_alike_is_worked_out_once_for_all(planted: Trajectories, monkeypatch) -> None:
+    """Their books, distances, courses and trembling."""
+    sound = [k for k in range(WORLDS) if k != 2]  # the one whose numbers are no numbers is told of by itself
+    copies = [Evidence(planted.recording(k), sweep_plan()) for k in sound]
+    calls: Counter[str] = Counter()
+
+    def counted(function):
+        def called(*given, **named):
+            calls[function.__qualname__] += 1
+            return function(*given, **named)
+
+        return called
+
+    for owner, name in (
+        (Balance, "every"), (CheckContinuity, "_asked"), (CheckSupport, "_asked"), (CheckJitter, "_tremble"),
+    ):  # fmt: skip
+        monkeypatch.setattr(owner, name, counted(getattr(owner, name)))
+    verdicts = judge_copies(copies)
+    assert calls == {
+        "Balance.every": 1, "CheckContinuity._asked": 1, "CheckSupport._asked": 1, "CheckJitter._tremble": 1,
+    }  # fmt: skip
+    for k, verdict in zip(sound, verdicts, strict=True):
+        alone = judge(planted.recording(k), sweep_plan())
+        assert [(f.check, f.passed, f.message, f.line) for f in verdict.findings] == [
+            (f.check, f.passed, f.message, f.line) for f in alone.findings
+        ]
+        assert [f.target for f in verdict.findings] == [f.target for f in alone.findings]
+
+
+def test_copies_may_differ_in_how_they_start_and_in_their_masses(worlds: Trajectories) -> None:
+    """A box that slides, thrown at another speed and of another mass in each copy, has its own forces in each."""
+    frames, t = len(worlds.time), worlds.time[None, :, None]
+    speed, mass = np.linspace(0.2, 0.9, WORLDS), np.linspace(2.0, 9.0, WORLDS)
+    body_q, body_qd, force = (np.zeros((WORLDS, frames, 1, width)) for width in (7, 6, 3))
+    stop = (speed / (0.5 * G))[:, None, None]
+    moving = np.minimum(t, stop)
+    body_q[..., 0] = speed[:, None, None] * moving - 0.25 * G * moving**2
+    body_q[..., 2], body_q[..., 6] = 0.1, 1.0
+    body_qd[..., 0] = np.maximum(speed[:, None, None] - 0.5 * G * t, 0.0)
+    force[..., 2] = mass[:, None, None] * G
+    force[..., 0] = np.where(t < stop, -0.5 * force[..., 2], 0.0)
+    shape = Shape(prim="/World/box/geometry", kind="box", size=(0.2, 0.2, 0.2), friction=0.5)
+    box = Body(
+        prim="/World/box", mass=4.0, volume=0.008, inertia=tuple((np.eye(3) * 4.0 * 0.04 / 6.0).ravel().tolist()),
+        position=(0.0, 0.0, 0.1), rotation=(0.0, 0.0, 0.0, 1.0), shapes=[shape],
+    )  # fmt: skip
+    floor = Shape(prim="/World/ground/geometry", kind="plane", size=(), friction=0.5)
+    world = World(duration=0.6, frame_rate=50.0, bodies=[box], statics=[Static(prim="/World/ground", shapes=[floor])])
+    force[3] *= 1.5  # one copy's forces are those of another mass
+    body_q[5, 12:, 0, 0] += 0.05  # one jumps aside
+    told = {"time_step": 1.0 / 800.0}
+    copies = Trajectories(world, worlds.time, body_q, body_qd, force, mass=mass[:, None], metadata=told)
+    # The last two are said to have a floor of ice: their motion is not one of that world.
+    ice = floor.model_copy(update={"friction": 0.05})
+    other = world.model_copy(update={"statics": [Static(prim="/World/ground", shapes=[ice])]})
+    worlds_of = [copies.world_of(k) if k < 6 else other for k in range(WORLDS)]
+    assert [alike(worlds_of[0], each) for each in worlds_of] == [k < 6 for k in range(WORLDS)]
+    for given in (copies, replace(copies, worlds=worlds_of)):
+        found = judge_worlds(given, None, 1)
+        for k in range(WORLDS):
+            alone = judge(given.recording(k))
+            wrong = k in (3, 5) or (k >= 6 and given is not copies)
+            assert found.status[k] == alone.status == ("rejected" if wrong else "accepted"), alone.summary
+            assert sorted(found.failures(k)) == sorted({f.objective or f.check for f in alone.failures})
 
 
 def test_a_formula_is_weighed_on_all_worlds_at_once(planted: Trajectories) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.books.copies import work_out
 from wsim.judge.checks.registry import physics_checks, run_checks
+from wsim.judge.evidence.alike import groups
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
@@ -36,18 +37,19 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
 def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
     """Judge several copies of one world, over the same times and by the same plan, each as by itself.
 
-    They may differ in how they move, in their masses and inertias, and in what went wrong.
+    They may differ in how they move, and in their descriptions; only those are worked out at once whose descriptions
+    differ in masses and inertias alone (`wsim.judge.evidence.alike`).
     """
-    first = copies[0]
-    if len(first.time) == 0:
+    if len(copies[0].time) == 0:
         return [_nothing() for _ in copies]
-    if first.world.foreign:
+    if copies[0].world.foreign:
         return [_cannot_judge(evidence) for evidence in copies]
     runs = [[finding for check in run_checks() for finding in check.run(evidence)] for evidence in copies]
     broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
-    if len(sound) > 1:
-        _work_out(sound)
+    for group in groups(sound):
+        if len(group) > 1:
+            _work_out(group)
     return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
 
 

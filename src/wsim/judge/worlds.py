@@ -59,8 +59,8 @@ def judge_worlds(
 ) -> WorldVerdicts:
     """Judge every world by the checks that always run, and by a plan's objectives, without a recording on disk.
 
-    Worlds are independent: they are shared out to processes that see the arrays where they are, uncopied. One process,
-    or a system that cannot fork, judges them one after another.
+    Worlds are independent: they are shared out to processes that see the arrays where they are, uncopied; each works
+    some out at once (`wsim.judge.decide.judge_copies`). One process, or a system that cannot fork, takes them in turn.
 
     Args:
         worlds: The copies.

@@ -55,7 +55,7 @@ class Evidence(Recorded):
         """Work out at once what several copies of a world have alike.
 
         Args:
-            copies: W of one world, over the same times: they may differ in how they move, and in masses and inertias.
+            copies: W of like worlds (`wsim.judge.evidence.alike`), over the same times.
 
         Returns:
             Evidence whose motion has an axis of copies before that of time; None where what fluid or control gave them
