@@ -27,7 +27,7 @@ from wsim.judge.checks.mass import CheckMass
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_joints import CheckPlanJoints
 from wsim.plan.schema import Objective, Plan
-from wsim.plan.schema.formula import Crosses
+from wsim.plan.schema.formula_place import Crosses
 from wsim.recording.recording import SeenTrack
 from wsim.scene.world import Motor, Parameter
 

@@ -45,8 +45,8 @@ def turned(evidence: Evidence, size: Floats) -> Floats:
     sprung = [row[guide.body] for spring in world.springs for guide in spring.path if guide.body in row]
     found[:, sprung] = np.maximum(found[:, sprung], rate[:, sprung])
     for unit in np.unique(motion.unit[motion.jointed]):
-        ours = np.flatnonzero(motion.unit == unit)
-        found[:, ours] = found[:, ours].max(axis=1, keepdims=True)
+        own = np.flatnonzero(motion.unit == unit)
+        found[:, own] = found[:, own].max(axis=1, keepdims=True)
     return found
 
 

@@ -79,7 +79,7 @@ def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) ->
     at = np.maximum(rows, 0)
     if not len(poses.v):
         return np.zeros((len(rows), 3))
-    velocity = poses.v[at] + cross(poses.w[at], contacts.point - poses.com[at])
+    velocity = poses.v[at] + cross(poses.w[at], contacts.surface(side) - poses.com[at])
     belts = touching.surface_velocity[contacts.shapes[:, side]]
     turn = np.where(moving[:, None], poses.q[at, 3:], (0.0, 0.0, 0.0, 1.0))
     found: Floats = np.where(moving[:, None], velocity, 0.0) + rotate(turn, belts)
@@ -116,7 +116,8 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
             force = np.concatenate([force, (n - friction[:, None] * along[:, 0])[turns]])
             spin = np.concatenate([spin, way * (rolling[:, None] * axis)[turns]])
             which = np.concatenate([which, turns])
-    arms = [contacts.point - poses.com[np.maximum(rows, 0)] for rows in (contacts.one, contacts.two)]
+    both = enumerate((contacts.one, contacts.two))
+    arms = [contacts.surface(side) - poses.com[np.maximum(rows, 0)] for side, rows in both]
     on_two = np.concatenate([force, cross(arms[1][which], force) + spin], axis=1)
     on_one = np.concatenate([-force, -cross(arms[0][which], force) - spin], axis=1)
     return Columns(contacts.one[which], contacts.two[which], on_one, on_two, np.zeros(len(which), dtype=bool))

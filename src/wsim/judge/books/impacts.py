@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.forces import Poses, slip
 from wsim.judge.books.touching import Contacts, Touching
 from wsim.judge.evidence.motion import FLOAT32
@@ -74,7 +74,21 @@ def blows(evidence: Evidence) -> list[Blow]:
     if not changed.any():
         return []
     touching, courses = Touching.of(evidence), _Courses(evidence, changed)
-    return [blow for k in np.flatnonzero(changed.any(axis=1)) for blow in _of_interval(courses, touching, int(k))]
+    ks = np.flatnonzero(changed.any(axis=1))
+    near = zip(ks, _near(evidence, touching, ks), strict=True)
+    return [blow for k, pairs in near for blow in _of_interval(courses, touching, int(k), pairs)]
+
+
+def _near(evidence: Evidence, touching: Touching, ks: Rows) -> list[set[tuple[int, int]]]:
+    """Rows of the pairs that may have met in each of some intervals: that are near each other at either end."""
+    bodies = evidence.body_q.shape[1]
+    reach = 2.0 * evidence.motion.reach[ks].max(axis=1)
+    frames, rows = np.stack([ks, ks + 1], axis=1).ravel(), np.repeat(np.arange(len(ks)), 2)
+    contacts = touching.of_many(evidence.body_q[frames], np.repeat(reach, 2), rows)
+    found: list[set[tuple[int, int]]] = [set() for _ in ks]
+    for one, two in {(int(a), int(b)) for a, b in zip(contacts.one, contacts.two, strict=True)}:
+        found[max(one, two) // bodies].add((one % bodies if one >= 0 else one, two % bodies if two >= 0 else two))
+    return found
 
 
 def _jumps(evidence: Evidence) -> Bools:
@@ -83,7 +97,7 @@ def _jumps(evidence: Evidence) -> Bools:
     gained = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0) * motion.radius[:, None]], axis=2)
     fall = np.zeros_like(gained) + motion.h[:, None, None] * np.concatenate([motion.gravity, np.zeros(3)])
     around = np.concatenate([fall[:1], gained, fall[:1]])
-    jump = np.min([np.linalg.norm(gained - other, axis=2) for other in (around[:-2], around[2:], fall)], axis=0)
+    jump = np.min([lengths(gained - other) for other in (around[:-2], around[2:], fall)], axis=0)
     fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
     return np.asarray(jump > 2.0 * evidence.gravity * step_of(evidence) + SLIGHT * fastest)
 
@@ -115,23 +129,31 @@ class _Courses:
 
     def at(self, k: int, side: int, when: float) -> Poses:
         """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
-        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
-        frame, by = k + side, when - side * h
-        speed_up = (self.after if side else self.before)[k]
-        v, w = motion.v[frame] + speed_up[:, :3] * by, motion.w[frame] + speed_up[:, 3:] * by
-        com = motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
+        v, com = self._going(k, side, when)
+        w = motion.w[frame] + (self.after if side else self.before)[k, :, 3:] * by
         angle = 0.5 * (motion.w[frame] + w) * by
-        size = np.linalg.norm(angle, axis=1, keepdims=True)
+        size = lengths(angle)[:, None]
         turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
         q = self.evidence.body_q[frame]
         place = com + rotate(turn, q[:, :3] - motion.com[frame])
         return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
 
+    def _going(self, k: int, side: int, when: float) -> tuple[Floats, Floats]:
+        """Velocities and centres of mass, as `at`."""
+        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
+        v = motion.v[frame] + (self.after if side else self.before)[k, :, :3] * by
+        return v, motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+
+    def _since(self, k: int, side: int, when: float) -> tuple[int, float]:
+        """The frame that a course is told from, and how long after it that is [s]."""
+        return k + side, when - side * float(self.evidence.motion.h[k])
+
     def meet(self, k: int, rows: list[int]) -> float | None:
         """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
         motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
-        ends = [[self.at(k, side, when) for side in (0, 1)] for when in (0.0, h)]
-        first, last = (before.com[rows] - after.com[rows] for before, after in ends)
+        ends = [[self._going(k, side, when)[1] for side in (0, 1)] for when in (0.0, h)]
+        first, last = (before[rows] - after[rows] for before, after in ends)
         apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
         when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
         when = min(max(when, 0.0), h)
@@ -150,11 +172,8 @@ class _Courses:
         return when
 
 
-def _of_interval(courses: _Courses, touching: Touching, k: int) -> list[Blow]:
+def _of_interval(courses: _Courses, touching: Touching, k: int, near: set[tuple[int, int]]) -> list[Blow]:
     motion, changed = courses.evidence.motion, courses.changed[k]
-    reach = 2.0 * float(motion.reach[k].max())
-    ends = [touching.at(courses.evidence.body_q[frame], reach) for frame in (k, k + 1)]
-    near = {(int(a), int(b)) for c in ends for a, b in zip(c.one, c.two, strict=True)}
     found = []
     for pair in sorted(near):
         rows = [row for row in pair if row >= 0]
@@ -207,7 +226,10 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
-    unsure = 2.0 * faster
+    # A step takes a blow where it finds the body, above the surface or below: what comes back is slower or faster.
+    back = law.restitution * speed
+    there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * lowest, 0.0)))
+    unsure = 2.0 * faster + abs(there - back)
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]

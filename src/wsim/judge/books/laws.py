@@ -87,20 +87,17 @@ class Laws:
                 wrong[:, row] += np.where(law.known[:, None], off, 0.0)
         return total, wrong
 
-    def rate(self, joint: Joint) -> Floats:
-        """The speed of a hinge or a slider, (T,) [rad/s or m/s]."""
-        return self._along(joint).rate
-
     # ---- springs
     def _spring(self, spring: Spring) -> Law:
         track = track_of_spring(self._evidence, spring)
         rows = [self._row.get(guide.body or "", -1) for guide in spring.path]
-        arms = [self._arm(row, self._end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
+        arms = [self.arm(row, self.end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
         force = -(track.pull[:, None] * track.along)
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
         return self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
 
-    def _end(self, guide: Guide) -> Floats:
+    def end(self, guide: Guide) -> Floats:
+        """Where a point of a spring's way is, (T, 3) [m]."""
         frames = len(self._evidence.time)
         if guide.body is None:
             return np.tile(np.array(guide.position, dtype=np.float64), (frames, 1))
@@ -108,7 +105,8 @@ class Laws:
         place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(guide.position)[None])
         return place
 
-    def _arm(self, row: int, place: Floats) -> Floats:
+    def arm(self, row: int, place: Floats) -> Floats:
+        """From a body's centre of mass, (T, 3) [m]; zeros of the world."""
         return np.zeros_like(place) if row < 0 else place - self._motion.com[:, row]
 
     def _looseness(self, row: int, arm: Floats, along: Floats) -> Floats:
@@ -163,8 +161,8 @@ class Laws:
     def _along(self, joint: Joint) -> _Along:
         rows = [self._row.get(joint.parent or "", -1), self._row[joint.child]]
         place = self._end_of(joint)
-        arms = [self._arm(row, place) for row in rows]
-        axis, turns = self._axis(joint), joint.kind == "revolute"
+        arms = [self.arm(row, place) for row in rows]
+        axis, turns = self.axis(joint), joint.kind == "revolute"
         loose = np.zeros(len(place))
         for row, arm in zip(rows, arms, strict=True):
             if row >= 0 and not self._motion.kinematic[row]:
@@ -175,12 +173,17 @@ class Laws:
                 loose = loose + own
         return _Along(rows, arms, axis, turns, self._rate(joint, rows, arms, axis), loose)
 
+    def speed(self, joint: Joint) -> Floats:
+        """A hinge's or a slider's own speed at each frame, (T,) [rad/s or m/s]."""
+        rows, place = [self._row.get(joint.parent or "", -1), self._row[joint.child]], self._end_of(joint)
+        return self._rate(joint, rows, [self.arm(row, place) for row in rows], self.axis(joint))
+
     def _end_of(self, joint: Joint) -> Floats:
         q = self._evidence.body_q[:, self._row[joint.child]]
         place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(joint.child_anchor)[None])
         return place
 
-    def _axis(self, joint: Joint) -> Floats:
+    def axis(self, joint: Joint) -> Floats:
         """The joint's axis in the world, by its child, (T, 3)."""
         own = rotate(np.array(joint.child_turn), np.eye(3)[AXES[joint.axis]])
         found: Floats = rotate(self._evidence.body_q[:, self._row[joint.child], 3:], np.asarray(own)[None])

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import rotate
-from wsim.geometry.shapes import kind_of
 from wsim.judge.checks.check import Check, Checks
-from wsim.judge.evidence.containment import local
-from wsim.scene.contact import within
+from wsim.judge.evidence.containment import local, lone_pool
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,25 +43,12 @@ class CheckFluidHeight(Check):
             return found
         for fluid in evidence.world.fluids:
             container = evidence.container_of(fluid)
-            if container is None or self._shared(evidence, container):
+            if container is None or not lone_pool(evidence, container):
                 continue
             rows = self._within(evidence, container)
             if rows is not None:
                 found += self._height(evidence, fluid, container, rows)
         return found
-
-    @staticmethod
-    def _shared(evidence: Evidence, container: Container) -> bool:
-        """Whether it leans, or something that stands still is in it."""
-        if rotate(np.array(container.rotation), np.array([0.0, 0.0, 1.0])) @ evidence.up < 1.0 - 1e-6:
-            return True
-        half = np.array(container.inner_size) / 2
-        shapes = [shape for static in evidence.world.statics for shape in static.shapes]
-        return any(
-            (np.abs(local(container, np.array(shape.position))) < half + kind_of(shape).radius_about).all()
-            for shape in shapes
-            if shape.kind != "plane" and not within(shape.prim, container.prim)
-        )
 
     @staticmethod
     def _within(evidence: Evidence, container: Container) -> list[int] | None:

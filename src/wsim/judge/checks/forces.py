@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.books.balance import Balance, rounding
-from wsim.judge.books.creep import creeps
-from wsim.judge.books.standing import standing
+from wsim.geometry.rotations import lengths
+from wsim.judge.books.balance import Books, rounding, unseen
+from wsim.judge.books.copies import lasting, told
 from wsim.judge.checks.check import Check, Checks, listed
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.books.balance import Books
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
@@ -38,35 +37,34 @@ class CheckForces(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The force and the torque that nothing in the world gives, where they are largest by their limits."""
-        motion, recording = evidence.motion, evidence.recording
-        if not len(motion.h) or not len(motion.mass):
+        motion = evidence.motion
+        if not told(evidence):
             return []
-        if recording.applied_impulse is None and (evidence.world.fluids or recording.metadata.get("controlled")):
-            return []
-        balance = Balance(evidence)
-        books = balance.books()
+        books, unknown = Books.of(evidence), unseen(evidence)
         if not books.judged.any():
             return []
         slack = np.where(books.hit, self.blow * books.blow / motion.h[:, None], 0.0) + rounding(evidence)
         found = [self._missing(evidence, books, books.force, slack + books.turned[..., 0], motion.mass, "N")]
-        if not balance.unseen.all():
-            torque, slack = np.where(balance.unseen[None, :, None], 0.0, books.torque), slack + books.turned[..., 1]
-            found.append(self._missing(evidence, books, torque, slack, motion.mass * balance.size, "N m"))
-        return found + self._over_many(evidence, balance, books)
+        if not unknown.all():
+            torque, slack = np.where(unknown[None, :, None], 0.0, books.torque), slack + books.turned[..., 1]
+            found.append(self._missing(evidence, books, torque, slack, motion.mass * books.size, "N m"))
+        return found + self._over_many(evidence, books)
 
-    def _over_many(self, evidence: Evidence, balance: Balance, books: Books) -> list[Finding]:
+    def _over_many(self, evidence: Evidence, books: Books) -> list[Finding]:
         """The body that lacks most to creep, or to stand, as it does; none where nothing lacks more than its limit."""
         share = SHARES[8]
         least = np.maximum(share, _pushed(evidence)) * max(evidence.gravity, 1.0)
         limits = least + rounding(evidence) + books.turned[..., 0]
-        args = evidence, books, balance.size, limits
-        found = creeps(*args) + standing(*args)
-        worst = max(found, key=lambda lacking: np.linalg.norm(lacking.force) / lacking.limit, default=None)
-        if worst is None or np.linalg.norm(worst.force) <= worst.limit:
+        found = [
+            (float(np.linalg.norm(each.force)), float(limits[each.first : each.last, each.row].mean()), each)
+            for each in lasting(evidence)
+        ]
+        size, limit, worst = max(found, key=lambda each: each[0] / each[1], default=(0.0, 0.0, None))
+        if worst is None or size <= limit:
             return []
         body, mass = evidence.world.bodies[worst.row], float(evidence.motion.mass[worst.row])
         span = float(evidence.time[worst.first]), float(evidence.time[worst.last])
-        far, size = float(np.linalg.norm(worst.drift)), float(np.linalg.norm(worst.force))
+        far = float(np.linalg.norm(worst.drift))
         if far > 0.0:
             way = listed(tuple((worst.drift / far).round(2)))
             story = f"creeps by {far * 1e3:.3g} mm towards {way} over what it touches, against friction, by"
@@ -76,7 +74,7 @@ class CheckForces(Check):
             self.measured(
                 f"{body.prim} {story} {size * mass:.3g} N that nothing in the world gives, from {span[0]:.3f} to "
                 f"{span[1]:.3f} s",
-                size * mass, worst.limit * mass, "N", prim=body.prim, time=span[1], span=span, expected=0.0,
+                size * mass, limit * mass, "N", prim=body.prim, time=span[1], span=span, expected=0.0,
                 limit_from=f"{share:g} of gravity, and how far bodies turn between two frames",
                 target=RepairTarget(kind="program", prim=body.prim, why="it would fall, or friction would hold it"),
             )
@@ -93,7 +91,7 @@ class CheckForces(Check):
             if n > len(left) or worst[0] > 1.0:
                 break
             means, limits = _mean(left, n), pull * _mean(np.maximum(share, least), n) + _mean(slack, n)
-            ratio = np.linalg.norm(means, axis=2) / limits
+            ratio = lengths(means) / limits
             k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))
             worst = max(worst, (float(ratio[k, i]), n, k, i, means[k, i], float(limits[k, i])), key=_ratio)
         _, n, k, i, mean, limit = worst

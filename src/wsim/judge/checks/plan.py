@@ -37,6 +37,8 @@ FINE = 0.05  # of the time between frames: about a step, where nobody says how l
 class CheckPlanSizes(Check):
     """Each object is of the plan's shape and size, and of that one shape."""
 
+    of_world = True
+
     share: float = 0.05
     height: float = 0.01  # [m]: of the ground
 
@@ -227,6 +229,8 @@ class CheckPlanPlaces(Check):
 @dataclass
 class CheckPlanLooks(Check):
     """Each object has the plan's colour, and its surface the plan's friction, restitution and rolling resistance."""
+
+    of_world = True
 
     color: float = 0.1  # of linear RGB, in its largest part: what is seen as another shade
     surface: float = 0.08  # of friction or restitution, of what the plan has, and at least

@@ -20,6 +20,7 @@ from wsim.judge.checks import (
     forces,
     impacts,
     joint,
+    lift,
     mass,
     motion,
     physics,
@@ -29,6 +30,7 @@ from wsim.judge.checks import (
     plan_joints,
     plan_motion,
     recorded,
+    recorded_ties,
     rest,
     rolling,
     run,
@@ -41,8 +43,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, impacts, rolling, catches, energy, contact, rest, joint,
-    cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, fluid_height, water,
+    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy, contact,
+    rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift,
+    fluid_height, water,
     camera,
 )  # fmt: skip
 

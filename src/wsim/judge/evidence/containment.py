@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.shapes import kind_of
+from wsim.scene.contact import within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.recorded import Recorded
     from wsim.scene.world import Container
 
     Floats = NDArray[np.float64]
@@ -50,6 +53,19 @@ def local(container: Container, points: Floats) -> Floats:
     if np.array_equal(q, [0.0, 0.0, 0.0, 1.0]):
         return shifted
     return rotate(conjugate(q), shifted)
+
+
+def lone_pool(evidence: Recorded, container: Container) -> bool:
+    """Whether a container is upright and nothing that stands still is in it."""
+    if rotate(np.array(container.rotation), np.array([0.0, 0.0, 1.0])) @ evidence.up < 1.0 - 1e-6:
+        return False
+    half = np.array(container.inner_size) / 2
+    shapes = [shape for static in evidence.world.statics for shape in static.shapes]
+    return not any(
+        (np.abs(local(container, np.array(shape.position))) < half + kind_of(shape).radius_about).all()
+        for shape in shapes
+        if shape.kind != "plane" and not within(shape.prim, container.prim)
+    )
 
 
 def pools_of(dry: Bools) -> NDArray[np.intp]:

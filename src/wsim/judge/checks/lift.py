@@ -1,0 +1,89 @@
+"""What a fluid is said to have given a body is what the fluid about the body says that it gave."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.books.fluids import fluid_impulse
+from wsim.judge.books.lift import Surroundings
+from wsim.judge.checks.check import Check, Checks
+from wsim.judge.evidence.containment import lone_pool
+from wsim.judge.verdict import RepairTarget
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Fluid
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass
+class CheckLift(Check):
+    """The vertical force that the fluid gives a body is in its particles' own momentum and pressure, too.
+
+    `CheckFluidMomentum` asks for bodies and walls together, and what a body did not get may be written down as the
+    walls'. Here the fluid near the body is asked, which knows of no walls.
+    """
+
+    spacings: float = (
+        0.5  # of water over the body's area: particles pack and press by some percent more here than there
+    )
+    errors: float = 2.0  # standard errors of the mean, from how the intervals scatter
+    least: int = 4  # intervals
+    most: int = 90  # of a body that are looked at
+    spilled: float = 0.001  # share of the particles, beyond which what is left in the tank is not a whole pool
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """One finding for each body that swims, sinks or rises far enough from the floor and from other bodies."""
+        impulse, fluids = fluid_impulse(evidence.recording), evidence.world.fluids
+        if impulse is None or len(fluids) != 1 or evidence.gravity == 0.0 or not evidence.world.bodies:
+            return []
+        fluid = fluids[0]
+        container, track = evidence.container_of(fluid), evidence.track(fluid)
+        frames = np.flatnonzero(np.isin(evidence.time, track.time))
+        if container is None or not lone_pool(evidence, container) or len(frames) < len(track.time):
+            return []
+        if track.density.size == 0 or evidence.outside(fluid).max(initial=0.0) > self.spilled:
+            return []
+        about = Surroundings(evidence, fluid, container, frames)
+        given = np.diff(np.cumsum(impulse[..., 2], axis=0)[frames], axis=0) / np.diff(track.time)[:, None]
+        found = [self._body(evidence, fluid, about, i, given[:, i]) for i in range(len(evidence.world.bodies))]
+        return [finding for finding in found if finding is not None]
+
+    def _body(self, evidence: Evidence, fluid: Fluid, about: Surroundings, i: int, given: Floats) -> Finding | None:
+        near = np.array([k for k in range(len(given)) if about.near(i, k)], dtype=int)
+        if len(near) > self.most:
+            near = near[np.linspace(0, len(near) - 1, self.most).astype(int)]
+        lifts = {k: lift for k in near.tolist() if (lift := about.lift(i, k)) is not None}
+        if len(lifts) < self.least:
+            return None
+        rows, felt = np.array(list(lifts)), np.array(list(lifts.values()))
+        off, time = given[rows] - felt, evidence.track(fluid).time
+        area = float(np.prod(2.0 * np.array([about.column(i, k).half for k in rows]).mean(axis=0)))
+        # Waves make errors last: as many are independent as there are times sqrt(H / g) in the span.
+        span = float(np.diff(time)[rows].sum())
+        alike = min(1.0, math.sqrt(fluid.size[2] / evidence.gravity) / span)
+        noise = self.errors * float(off.std()) * math.sqrt(max(alike, 1.0 / len(rows)))
+        resolved = self.spacings * fluid.spacing * fluid.density * evidence.gravity * area
+        body, start, end = evidence.world.bodies[i], float(time[rows[0]]), float(time[rows[-1] + 1])
+        return self.measured(
+            f"{fluid.prim} is said to lift {body.prim} by {given[rows].mean():.4g} N; by the momentum and the pressure "
+            f"of its particles about it, it gives {felt.mean():.4g} N",
+            abs(float(off.mean())), resolved + noise, "N", prim=body.prim, time=end, span=(start, end), expected=0.0,
+            fine=f"{fluid.prim} lifts {body.prim} by what its particles about it say, {felt.mean():.4g} N",
+            limit_from=f"{self.spacings:g} spacing of the fluid over the body's area, as far as particles tell levels "
+            f"apart, and {self.errors:g} standard errors of the mean",
+            target=RepairTarget(
+                kind="program", prim=body.prim, why="something lifts it in the fluid's name that no particle feels"
+            ),
+        )  # fmt: skip
+
+
+CHECKS: Checks = (CheckLift,)
