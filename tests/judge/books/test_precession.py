@@ -1,4 +1,4 @@
-"""A gyroscope that a ball joint holds: it precesses as its weight turns its spin (Goldstein, Classical Mechanics, 5.7)."""
+"""A gyroscope that a ball joint holds precesses as its weight turns its spin (Goldstein, Classical Mechanics, 5.7)."""
 
 import math
 

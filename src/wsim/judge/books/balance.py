@@ -129,8 +129,8 @@ class Balance:
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
-        whole = np.split(wanted, len(self._copies))
-        turned += np.concatenate([unknown(*each) for each in zip(self._copies, whole, strict=True)])
+        changes = np.split(both, len(self._copies))
+        turned += np.concatenate([unknown(*each) for each in zip(self._copies, changes, strict=True)])
         found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted
         count = len(self._copies)
         parts = zip(*(np.split(array, count) for array in found), self._sizes, strict=True)

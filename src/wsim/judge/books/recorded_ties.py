@@ -163,10 +163,9 @@ class RecordedTies:
         """What joint k's drive gives by its law; None where it has none, or somebody sets it while the world runs."""
         joint = self.joints[k]
         drive = joint.drive
-        laws = self.laws.joints.get(joint.prim, [])
-        if drive is None or joint.kind not in OWN or not laws:
+        if drive is None or joint.kind not in OWN or not self.laws.joints[joint.prim]:
             return None
-        law, at = laws[0], self._evidence.joint(joint)  # the drive's, before the friction's
+        law, at = self.laws.joints[joint.prim][0], self._evidence.joint(joint)
         rate = self.laws.rate(joint)
         if at is None or not drive.told or self._evidence.recording.metadata.get("controlled"):
             return None
@@ -200,8 +199,8 @@ class RecordedTies:
     def rubs(self, k: int) -> tuple[Floats, Bools]:
         """Joint k's direction of motion, (T - 1,), and where it keeps it all the interval."""
         rate, joint, h = self.laws.rate(self.joints[k]), self.joints[k], self._evidence.motion.h
-        law = self.laws.joints[joint.prim][-1]  # the friction's
-        return np.sign(rate[1:]), law.known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0)
+        known = np.all([law.known for law in self.laws.joints[joint.prim]], axis=0)
+        return np.sign(rate[1:]), known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0)
 
     def pushed_off(self, k: int, near: float) -> Floats:
         """Where joint k's stops may not push: 1 upwards, 2 downwards, 3 both, (T - 1,)."""
