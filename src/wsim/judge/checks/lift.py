@@ -32,12 +32,10 @@ class CheckLift(Check):
     walls'. Here the fluid near the body is asked, which knows of no walls.
     """
 
-    spacings: float = (
-        0.5  # of water over the body's area: particles pack and press by some percent more here than there
-    )
+    spacings: float = 0.6  # of fluid over the body's area: particles press by some percent more here than there
     errors: float = 2.0  # standard errors of the mean, from how the intervals scatter
     least: int = 4  # intervals
-    most: int = 90  # of a body that are looked at
+    most: int = 60  # of a body that are looked at
     spilled: float = 0.001  # share of the particles, beyond which what is left in the tank is not a whole pool
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
