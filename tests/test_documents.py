@@ -11,7 +11,7 @@ from tests.documents import DOCUMENTS, ROOT, blocks, inline
 from wsim.cli.verbs import VERBS as NAMES
 from wsim.cli.verbs import load
 from wsim.judge.checks.registry import physics_checks, run_checks
-from wsim.judge.objectives.registry import OBJECTIVES
+from wsim.judge.language.kinds import KINDS
 from wsim.judge.verdict import RepairKind
 from wsim.plan.schema import Plan
 from wsim.rules.lexicon import lexicon
@@ -92,7 +92,7 @@ def test_the_skills_are_as_many_as_the_readme_says() -> None:
 
 def test_the_judges_page_has_every_check_and_objective() -> None:
     checks = {check.name for check in run_checks() + physics_checks()}
-    for title, names in (("Checks", checks), ("Objectives", set(OBJECTIVES))):
+    for title, names in (("Checks", checks), ("Objectives", set(KINDS))):
         said = re.findall(r"^\| `([A-Za-z_]+)`", section(title, "docs/judge.md"), re.MULTILINE)
         assert sorted(said) == sorted(names)
 

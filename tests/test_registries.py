@@ -1,7 +1,6 @@
 """What a file offers is named where it is looked up: a file that is forgotten there is told by name."""
 
 import ast
-import inspect
 from importlib import import_module
 from pathlib import Path
 from typing import get_args
@@ -9,9 +8,10 @@ from typing import get_args
 import wsim
 from wsim.cli.verbs import VERBS
 from wsim.judge.checks.registry import PHYSICS, RUN
-from wsim.judge.objectives.objective import ObjectiveCheck
-from wsim.judge.objectives.registry import OBJECTIVES
+from wsim.judge.language.kinds import KINDS
+from wsim.judge.language.measure import MEASURERS
 from wsim.plan.schema.draft import KindOfOne, KindOfTwo
+from wsim.plan.schema.formula import VOCABULARY, Ordered
 from wsim.tools import TOOLS
 
 HOME = Path(wsim.__file__).parent
@@ -44,24 +44,16 @@ def test_each_file_of_checks_is_asked():
     assert not missing, f"name {sorted(missing)} in RUN or PHYSICS of judge/checks/registry.py"
 
 
-def test_each_file_of_objectives_is_asked():
-    files = offering("judge/objectives", "OBJECTIVES")
-    defined = {
-        thing
-        for file in files
-        for thing in vars(import_module(f"wsim.judge.objectives.{file}")).values()
-        if inspect.isclass(thing) and issubclass(thing, ObjectiveCheck) and thing is not ObjectiveCheck
-    }
-    missing = {f"{thing.__module__}.{thing.__name__}" for thing in defined - {*OBJECTIVES.values()}}
-    assert len(files) > 3
-    assert not missing, f"name {sorted(missing)} in OBJECTIVES of their files, and the files in objectives/registry.py"
+def test_each_file_of_measures_is_read():
+    """A predicate without a measure could be written in a plan, and never judged."""
+    assert set(VOCABULARY.values()) - {*MEASURERS} == {Ordered}
 
 
 def test_the_plan_and_the_judge_know_the_same_objectives():
     planned = {*get_args(KindOfOne), *get_args(KindOfTwo)}
-    unplanned, unjudged = sorted({*OBJECTIVES} - planned), sorted(planned - {*OBJECTIVES})
+    unplanned, unjudged = sorted({*KINDS} - planned), sorted(planned - {*KINDS})
     assert not unplanned, f"name {unplanned} in KindOfTwo (it needs a ref) or KindOfOne of plan/schema/draft.py"
-    assert not unjudged, f"write {unjudged} in a file of judge/objectives/ and name it in its OBJECTIVES"
+    assert not unjudged, f"say in KINDS of judge/language/kinds.py which formula {unjudged} are"
 
 
 def test_each_file_of_tools_is_offered():

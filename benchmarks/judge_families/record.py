@@ -22,13 +22,14 @@ from wsim.importers.trajectory import from_arrays
 from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame
 from wsim.recording.recording import FluidTrack, Recording
+from wsim.recording.ties import TieTrack
 from wsim.scene.cord_paths import spring_track
 from wsim.scene.describe import describe
 from wsim.scene.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 CACHE = ROOT / "build" / "judge_faults" / "families"
-FORMAT = 4  # of what is kept: raise it where the simulator records more
+FORMAT = 5  # of what is kept: raise it where the simulator records more
 Array = np.ndarray
 
 
@@ -94,9 +95,12 @@ def _simulate(stage: Path, push: Push | None) -> Track:
         frames.append(measure(simulation.built, simulation.state, simulation.rigid, simulation.fluid))
     if problems := simulation.problems():
         raise RuntimeError("; ".join(problems))
-    names = [f.name for f in fields(Frame) if f.name not in ("fluids", "scalars", "contacts")]
+    names = [f.name for f in fields(Frame) if f.name not in ("fluids", "scalars", "contacts", "ties")]
     arrays = {name: np.array([getattr(frame, name) for frame in frames]) for name in names
               if getattr(frames[-1], name) is not None}  # fmt: skip
+    if frames[-1].ties is not None:
+        arrays["tie_joints"] = np.array([frame.ties.joints for frame in frames])  # type: ignore[union-attr]
+        arrays["tie_cords"] = np.array([frame.ties.cords for frame in frames])  # type: ignore[union-attr]
     if frames[-1].contacts is not None:
         counts = [len(frame.contacts.pair) for frame in frames]  # type: ignore[union-attr]
         arrays["contact_frame"] = np.repeat(np.arange(len(frames), dtype=np.int32), counts)
@@ -126,6 +130,7 @@ def own(track: Track, world: World) -> Recording:
         log=[],
         images={},
         contacts=_contacts(track),
+        ties=TieTrack(track.frames["tie_joints"], track.frames["tie_cords"]) if "tie_joints" in track.frames else None,
         **{name: array for name, array in track.frames.items() if name in names},
     )
 

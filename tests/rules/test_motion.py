@@ -9,7 +9,8 @@ from wsim.errors import UserError
 from wsim.plan.layout import check_clear
 from wsim.plan.layout.bodies import around
 from wsim.plan.layout.boxes import Box
-from wsim.plan.schema.formula import CollidesWith, StaysWithin
+from wsim.plan.schema.formula_contact import CollidesWith
+from wsim.plan.schema.formula_place import StaysWithin
 from wsim.plan.views import _sees
 from wsim.rules.planner import plan
 

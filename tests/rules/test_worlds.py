@@ -26,6 +26,13 @@ PROMPTS = [
     "A wooden block rests on a ramp",
     "A ball rolls at 2 m/s down a ramp of 10 degrees",
     "A stack of four crates topples",
+    "A crate slides at 2 m/s and stops before a wall",
+    "A rubber ball bounces and dies down",
+    "A rubber ball drops from 0.3 m, bounces and comes up to 30 % of its height for 1 second",
+    "A 0.4 m pendulum swings from 30 degrees and dies down",
+    "A 0.4 m pendulum swings and climbs to 95 % of its height for 1.5 seconds",
+    "A crate falls onto a seesaw and the seesaw tilts by 8 degrees",
+    "A turntable turns at 30 rpm",
     "A steel ball with a restitution of 0.8 drops from 0.3 m for 1 second",
 ]
 

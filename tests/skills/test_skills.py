@@ -12,9 +12,9 @@ from tests.skills.blocks import PYTHON, WHOLE, Block, blocks
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import parse
-from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives.registry import OBJECTIVES
-from wsim.judge.verdict import Finding, Verdict
+from wsim.judge.language.kinds import KINDS
+from wsim.judge.language.objective import ObjectiveCheck, name_of
+from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Objective
 from wsim.recording import read
 from wsim.runs.iteration import Iteration
@@ -33,7 +33,7 @@ PATTERNS = {
     "waves-and-dam-breaks",
 }  # fmt: skip
 CHECKS = {check.name for check in [*run_checks(), *physics_checks()]} | {"CheckConverged", "ObjectiveFormula"}
-CHECKS |= {check.__name__ for check in OBJECTIVES.values()}
+CHECKS |= {name_of(kind) for kind in KINDS}
 LONGEST = 6600  # characters: a language model pays for each
 
 by_name = pytest.mark.parametrize("skill", skills(), ids=lambda skill: skill.name)
@@ -108,11 +108,6 @@ def test_the_program_is_accepted(block: Block, runs: Path) -> None:
     assert verdict.status == "accepted" and len(verdict.findings) >= 10, failed
 
 
-def asked(objective: Objective, evidence: Evidence) -> list[Finding]:
-    check = ObjectiveFormula if objective.formula is not None else OBJECTIVES[objective.kind]
-    return check(objective).run(evidence)
-
-
 def test_the_objectives_hold_in_their_program(runs: Path) -> None:
     (skill,) = [skill for skill in skills() if skill.name == "objectives"]
     (block,) = [block for block in WHOLE if block.name.startswith("objectives")]
@@ -125,7 +120,7 @@ def test_the_objectives_hold_in_their_program(runs: Path) -> None:
     items = [Objective.model_validate(item) for item in json.loads(texts["json"])]
     assert len(sentences) >= 6 and len(items) >= 4
     for objective in [*sentences, *items]:
-        findings = asked(objective, evidence)
+        findings = ObjectiveCheck(objective).run(evidence)
         assert findings and all(finding.passed for finding in findings), findings
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wsim.solvers.contact_law import extrapolated
+from wsim.solvers.slips import extrapolated
 
 slopes = st.floats(-5.0, 0.94)
 slips = st.floats(0.1, 10.0)

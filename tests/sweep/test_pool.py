@@ -40,12 +40,12 @@ def raises(task: int) -> int:
 
 
 def test_every_task_has_its_result() -> None:
-    assert sorted(Pool(double, 2, 60.0).run(range(9))) == [(k, 2 * k) for k in range(9)]
-    assert list(Pool(double, 2, 60.0).run([])) == []
+    assert sorted(Pool(double, 2, lambda task: 60.0).run(range(9))) == [(k, 2 * k) for k in range(9)]
+    assert list(Pool(double, 2, lambda task: 60.0).run([])) == []
 
 
 def test_who_kills_two_workers_is_lost_and_the_others_are_not() -> None:
-    results = dict(Pool(dies_at_three, 2, 60.0).run(range(7)))
+    results = dict(Pool(dies_at_three, 2, lambda task: 60.0).run(range(7)))
     lost = results.pop(3)
     assert isinstance(lost, Lost)
     assert "signal 9" in lost.reason
@@ -53,23 +53,25 @@ def test_who_kills_two_workers_is_lost_and_the_others_are_not() -> None:
 
 
 def test_who_dies_once_is_tried_again(tmp_path) -> None:
-    assert [result for _, result in Pool(dies_once, 1, 60.0).run([str(tmp_path / "was here")])] == ["done"]
+    assert [result for _, result in Pool(dies_once, 1, lambda task: 60.0).run([str(tmp_path / "was here")])] == ["done"]
 
 
 def test_who_hangs_is_given_up() -> None:
     started = time.monotonic()
-    results = dict(Pool(sleeps_at_two, 2, 4.0).run(range(4)))
+    results = dict(Pool(sleeps_at_two, 2, lambda task: 4.0).run(range(4)))
     assert results[2] == Lost("took more than 4 s")
     assert [results[k] for k in (0, 1, 3)] == [0, 1, 3]
     assert time.monotonic() - started < 60.0
 
 
 def test_work_that_raises_is_lost_with_its_worker() -> None:
-    assert [result for _, result in Pool(raises, 1, 60.0).run([1])] == [Lost("its process ended with exit code 1")]
+    assert [result for _, result in Pool(raises, 1, lambda task: 60.0).run([1])] == [
+        Lost("its process ended with exit code 1")
+    ]
 
 
 def test_who_stops_listening_leaves_no_process_behind() -> None:
-    pool = Pool(sleeps_at_two, 2, 600.0)
+    pool = Pool(sleeps_at_two, 2, lambda task: 600.0)
     results = pool.run([0, 2, 2])
     assert next(results) == (0, 0)
     workers = [worker.process for worker in pool._workers]
@@ -79,7 +81,7 @@ def test_who_stops_listening_leaves_no_process_behind() -> None:
 
 @pytest.mark.parametrize("workers", [1, 3])
 def test_more_workers_than_tasks_are_not_started(workers: int) -> None:
-    pool = Pool(double, workers, 60.0)
+    pool = Pool(double, workers, lambda task: 60.0)
     results = pool.run([1])
     assert next(results) == (1, 2)
     assert len(pool._workers) == 1

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Candidate, Outcome
+from wsim.sweep.run import batches
 from wsim.sweep.spec import Spec
-from wsim.sweep.sweep import batches
 
 X = Axis(name="x", low=-2.0, high=2.0, start=-1.5)
 K = Axis(name="k", low=1.0, high=1e4, scale="log", start=2.0)

@@ -18,8 +18,8 @@ from wsim.sweep.axis import Axis
 from wsim.sweep.declared import axes_of
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.picture import draw
+from wsim.sweep.run import sweep
 from wsim.sweep.spec import Spec
-from wsim.sweep.sweep import sweep
 from wsim.sweep.table import ranked
 
 SLOPE = 20.0  # [deg]

@@ -23,9 +23,9 @@ from wsim.sweep.candidate import Outcome
 from wsim.sweep.declared import axes_of, check, parameters_of
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.picture import draw
+from wsim.sweep.run import sweep as run_sweep
 from wsim.sweep.sampling import Method, Point, read_points
 from wsim.sweep.spec import Spec
-from wsim.sweep.sweep import sweep as run_sweep
 from wsim.sweep.table import parameters
 
 SHOWN = 12  # rows
@@ -53,6 +53,9 @@ def sweep(
     plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
     device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …")] = "cpu",
     time_step: TimeStep = None,
+    worlds: Annotated[
+        int, typer.Option("--worlds", min=0, help="Worlds simulated at once; 0: one on a CPU, 1024 on a GPU.")
+    ] = 0,
     workers: Annotated[int, typer.Option("--workers", min=0, help="Processes; 0: one for each core.")] = 0,
     patience: Annotated[
         float, typer.Option("--patience", min=1.0, help="Seconds after which a candidate is given up.")
@@ -91,6 +94,7 @@ def sweep(
             device=device,
             time_step=time_step,
             isolation=isolation,
+            worlds=worlds,
             patience=patience,
             batch=max(1, (workers or len(os.sched_getaffinity(0))) // max(1, len(targets or []) * repeats)),
         )

@@ -14,18 +14,27 @@ from wsim.cli.judge import find_recording
 from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.recording.display import has_display
+from wsim.report.side_by_side import recorded, side_by_side
+from wsim.runs.named import is_run, named
 
 
 def view(
-    target: Annotated[Path, typer.Argument(help="The folder of a run, or a recording.rrd.")],
+    target: Annotated[
+        Path, typer.Argument(help="The folder of a run, of an iteration or a sweep, or a recording.rrd.")
+    ],
     web: Annotated[bool, typer.Option("--web", help="Serve the web viewer on 127.0.0.1 until Ctrl-C.")] = False,
     port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port of the page; 0 takes a free one.")] = 0,
     finding: Annotated[
         int | None, typer.Option("--finding", min=1, help="Open at the time and prim of this finding of the verdict.")
     ] = None,
 ) -> None:
-    """Open a recording in Rerun's viewer; with no display, print the command to use elsewhere."""
-    recording, _ = find_recording(target)
+    """Open a recording in Rerun's viewer; with no display, print the command to use elsewhere.
+
+    Of a run with several iterations, and of a sweep, all that were recorded are shown side by side.
+    """
+    recording = _all_of(named(target)) if finding is None else None
+    if recording is None:
+        recording, _ = find_recording(target)
     time, prim = _moment(recording, finding) if finding is not None else (None, None)
     if web:
         with recordings.serve_web(recording, port, time=time, entity=prim) as server:
@@ -44,6 +53,13 @@ def view(
     print(f"  wsim view {name}{chosen}" if chosen else f"  rerun {name}")
     print("or serve it to a browser on this machine (also through an SSH tunnel):")
     print(f"  wsim view --web {shlex.quote(str(target))}{chosen}")
+
+
+def _all_of(folder: Path) -> Path | None:
+    """All that a run or a sweep recorded in one recording; None where that is one or none."""
+    if not is_run(folder) or len(recorded(folder)) < 2:
+        return None
+    return side_by_side(folder)
 
 
 def _moment(recording: Path, number: int) -> tuple[float | None, str | None]:

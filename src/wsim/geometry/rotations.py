@@ -20,7 +20,15 @@ def cross(a: Floats, b: Floats) -> Floats:
     """Cross products (..., 3); for short arrays several times as fast as NumPy's own."""
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    x = ay * bz - az * by
+    found = np.empty((*x.shape, 3))
+    found[..., 0], found[..., 1], found[..., 2] = x, az * bx - ax * bz, ax * by - ay * bx
+    return found
+
+
+def lengths(v: Floats) -> Floats:
+    """Of vectors (..., n); for short ones several times as fast as NumPy's norm."""
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", v, v)))
 
 
 def conjugate(q: Floats) -> Floats:
@@ -38,13 +46,15 @@ def multiply(a: Floats, b: Floats) -> Floats:
 
 def matrices(q: Floats) -> Floats:
     """Unit quaternions (..., 4) as rotation matrices (..., 3, 3)."""
-    x, y, z, w = np.moveaxis(q, -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+    x, y, z, w = (q[..., k] for k in range(4))
+    found = np.empty((*x.shape, 3, 3))
+    for k, row in enumerate((
+        (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+        (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+        (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
+    )):  # fmt: skip
+        found[..., k, 0], found[..., k, 1], found[..., k, 2] = row
+    return found
 
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING
 
+from wsim.judge.books.copies import work_out
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.language.objective import ObjectiveFormula
-from wsim.judge.objectives.registry import OBJECTIVES
+from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from wsim.plan.schema import Plan
     from wsim.recording.recording import Recording
 
@@ -27,19 +30,47 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
         Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge, or something
         acts in the world that the judge does not know.
     """
-    evidence = Evidence(recording, plan)
-    if len(evidence.time) == 0:
-        finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
-        aim([finding])
-        return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
-    if evidence.world.foreign:
-        return _cannot_judge(evidence)
-    findings = [finding for check in run_checks() for finding in check.run(evidence)]
-    broken = next((f for f in findings if f.check == "CheckFinite" and not f.passed), None)
+    return judge_copies([Evidence(recording, plan)])[0]
+
+
+def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
+    """Judge several copies of one world, over the same times and by the same plan, each as by itself.
+
+    They may differ in how they move, in their masses and inertias, and in what went wrong.
+    """
+    first = copies[0]
+    if len(first.time) == 0:
+        return [_nothing() for _ in copies]
+    if first.world.foreign:
+        return [_cannot_judge(evidence) for evidence in copies]
+    runs = [[finding for check in run_checks() for finding in check.run(evidence)] for evidence in copies]
+    broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
+    sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
+    if len(sound) > 1:
+        _work_out(sound)
+    return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
+
+
+def _work_out(copies: Sequence[Evidence]) -> None:
+    """At once what the checks ask of all copies. What cannot be is left to each by itself, whose check tells of it."""
+    joined = None
+    with contextlib.suppress(Exception):
+        joined = Evidence.join(copies)
+    with contextlib.suppress(Exception):
+        work_out(copies)
+    if joined is not None:
+        asked = copies[0].plan.objectives if copies[0].plan is not None else []
+        for check in (*physics_checks(), *map(ObjectiveCheck, asked)):
+            with contextlib.suppress(Exception):
+                check.prepare(joined, copies)
+
+
+def _conclusion(evidence: Evidence, findings: list[Finding], broken: Finding | None) -> Verdict:
+    """The verdict on what moved, unless the numbers are broken."""
     if broken is None:
         findings += [finding for check in physics_checks() for finding in check.run(evidence)]
-    for objective in plan.objectives if plan is not None else []:
-        check = (OBJECTIVES[objective.kind] if objective.formula is None else ObjectiveFormula)(objective)
+    for objective in evidence.plan.objectives if evidence.plan is not None else []:
+        check = ObjectiveCheck(objective)
         if broken is None:
             findings += check.run(evidence)
         else:
@@ -49,6 +80,12 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
                 check.failed(message, objective=check.sentence, prim=prim, time=broken.time, line=evidence.line(prim))
             )
     return conclude(findings, evidence)
+
+
+def _nothing() -> Verdict:
+    finding = Finding(check="CheckComplete", passed=False, message="The recording has no frames")
+    aim([finding])
+    return Verdict(status="blocked", summary="Blocked: the recording has no frames.", findings=[finding])
 
 
 def _cannot_judge(evidence: Evidence) -> Verdict:

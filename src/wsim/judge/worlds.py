@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.decide import judge
+from wsim.judge.decide import judge, judge_copies
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import Signals, evaluate
 from wsim.progress import Progress, silent
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
     Row = tuple[Status, dict[str, tuple[bool, float]]]  # a world's status, and its findings by key
 
-CHUNK = 16  # worlds judged between two reports of progress
+CHUNK = 32  # worlds judged between two reports of progress
 _shared: tuple[Trajectories, Plan | None]  # in a worker: what it was started with
 
 
@@ -97,7 +98,7 @@ def _parts(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator[
     """The rows of all worlds in order, some at a time."""
     chunks = [range(k, min(k + CHUNK, worlds.world_count)) for k in range(0, worlds.world_count, CHUNK)]
     if min(processes, len(chunks)) < 2 or "fork" not in multiprocessing.get_all_start_methods():
-        yield from ([_row(verdict_of(worlds, plan, k)) for k in chunk] for chunk in chunks)
+        yield from (_judged(worlds, plan, chunk) for chunk in chunks)
         return
     # A forked child has the arrays already. It does no more than NumPy and the judge: it never touches a device.
     fork = multiprocessing.get_context("fork")
@@ -111,7 +112,13 @@ def _take(worlds: Trajectories, plan: Plan | None) -> None:
 
 
 def _rows(chunk: range) -> list[Row]:
-    return [_row(verdict_of(*_shared, k)) for k in chunk]
+    return _judged(*_shared, chunk)
+
+
+def _judged(worlds: Trajectories, plan: Plan | None, chunk: range) -> list[Row]:
+    copies = [Evidence(worlds.recording(k), plan) for k in chunk]
+    together = [[each] for each in copies] if worlds.worlds else [copies]  # each of its own shapes, or all of the same
+    return [_row(verdict) for some in together for verdict in judge_copies(some)]
 
 
 def _row(verdict: Verdict) -> Row:

@@ -86,7 +86,7 @@ def let_go(
 def break_worst(
     # Data in:
     constraint: wp.array2d(dtype=int),
-    strength: wp.array2d(dtype=float),  # force [N] and torque [N m]
+    strength: wp.array3d(dtype=float),  # force [N] and torque [N m], in all worlds alike or in each
     first: wp.array2d(dtype=int),
     kind: wp.array(dtype=int),
     now: wp.array2d(dtype=wp.vec2),
@@ -100,10 +100,11 @@ def break_worst(
     """Break the joint that bears most by its strength, if that is too much; else note what all bear."""
     world = wp.tid()
     anew[world] = 0
+    own = world % strength.shape[0]
     worst = int(-1)
     most = float(1.0)
     for k in range(constraint.shape[0]):
-        share = wp.max(now[world, k][0] / strength[k, 0], now[world, k][1] / strength[k, 1])
+        share = wp.max(now[world, k][0] / strength[own, k, 0], now[world, k][1] / strength[own, k, 1])
         if broken[world, k] == 0 and share > most:
             worst = k
             most = share

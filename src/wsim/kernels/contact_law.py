@@ -96,6 +96,14 @@ def waiting(goal: float, distance: float, speed: float, touched: bool, threshold
 
 
 @wp.func
+def went_exactly(exact: wp.array2d(dtype=int), world: int, loose: int) -> bool:
+    """Whether a body of a row among the loose ones did in the step before; -1 goes as stated."""
+    if loose >= 0:
+        return exact[world, loose] != 0
+    return loose == -1
+
+
+@wp.func
 def coefficients(pair: wp.vec3, bend: float, smallest: float) -> vec5:
     """Of the rows of friction: two of sliding, one of spinning [m], two of rolling [m]; `bend` is 1/R1 + 1/R2 [1/m]."""
     roll = float(0.0)
@@ -117,9 +125,9 @@ def strike(
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
     bow: wp.array(dtype=float),
-    geom_class: wp.array(dtype=int),
+    geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec3),
+    law: wp.array3d(dtype=wp.vec3),
     threshold: float,
     # Data out:
     struck: wp.array2d(dtype=int),
@@ -132,7 +140,8 @@ def strike(
     if row < 0:
         return
     world, geom = contact_world[k], contact_geom[k]
-    restitution = law[geom_class[geom[0]], geom_class[geom[1]]][1]
+    own = world % law.shape[0]
+    restitution = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
     if meets(contact_dist[k], velocity[world, row] + bow[k], restitution, h, threshold * h):
         for side in range(2):
@@ -153,16 +162,18 @@ def aim(
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
     bow: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
-    geom_class: wp.array(dtype=int),
+    geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
     geom_body: wp.array(dtype=int),
-    law: wp.array2d(dtype=wp.vec3),
+    law: wp.array3d(dtype=wp.vec3),
     geom_kind: wp.array(dtype=int),
-    curvature: wp.array(dtype=float),
+    curvature: wp.array2d(dtype=float),
     geom_turn: wp.array2d(dtype=wp.mat33),
     contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
     touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
+    loose: wp.array(dtype=int),  # which of the loose bodies a body is; -1 goes as stated
+    exact: wp.array2d(dtype=int),  # whether a loose body went exactly in the step before
     sparse: bool,
     nv: int,
     jacobian: wp.array3d(dtype=float),
@@ -190,7 +201,8 @@ def aim(
     if row < 0:
         return
     world, geom = contact_world[k], contact_geom[k]
-    pair = law[geom_class[geom[0]], geom_class[geom[1]]]
+    own = world % law.shape[0]
+    pair = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]]
     h = timestep[world % timestep.shape[0]]
     distance, speed = contact_dist[k], velocity[world, row] + bow[k]
     goal = settling(distance, h, settle_time, settle_speed)
@@ -200,6 +212,8 @@ def aim(
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
             smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
+            one, two = loose[geom_body[geom[0]]], loose[geom_body[geom[1]]]
+            smooth = smooth or (went_exactly(exact, world, one) and went_exactly(exact, world, two))
             goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         else:
@@ -210,7 +224,8 @@ def aim(
     bend = float(0.0)
     if pair[2] > 0.0:
         for side in range(2):
-            bend += bent(geom_turn[world, geom[side]], contact_frame[k], curvature[geom[side]], geom_kind[geom[side]])
+            round = curvature[own, geom[side]]
+            bend += bent(geom_turn[world, geom[side]], contact_frame[k], round, geom_kind[geom[side]])
     friction = coefficients(pair, bend, smallest)
     contact_friction[k] = friction
     for j in range(2, contact_dim[k] - 1):
@@ -330,6 +345,9 @@ def stop(
     position: wp.array2d(dtype=float),
     velocity: wp.array2d(dtype=float),
     timestep: wp.array(dtype=float),
+    which: wp.array2d(dtype=int),  # stop or tendon
+    length: wp.array2d(dtype=float),  # of tendons
+    ahead: wp.array2d(dtype=float),  # the same where a step at the present speeds would take them
     settle_time: float,
     settle_speed: float,
     # Data out:
@@ -344,4 +362,7 @@ def stop(
     goal = float(0.0)
     if what != RUBBING:
         goal = settling(position[world, row], h, settle_time, settle_speed)
+    if what == TAUT:
+        k = which[world, row]
+        goal += (ahead[world, k] - length[world, k]) / h + velocity[world, row]
     aref[world, row] = (goal - velocity[world, row]) / h

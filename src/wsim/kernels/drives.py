@@ -33,8 +33,8 @@ def aim_drives(
     rows: wp.array(dtype=int),
     kind: wp.array2d(dtype=int),
     tendon: wp.array2d(dtype=int),  # of a row of a drive
-    damping: wp.array(dtype=float),  # of each tendon's drive
-    mobility: wp.array(dtype=float),  # what each yields to an effort
+    damping: wp.array2d(dtype=float),  # of each tendon's drive, in all worlds alike or in each
+    mobility: wp.array2d(dtype=float),  # what each yields to an effort, likewise
     dof: wp.array(dtype=int),  # of each tendon
     effort: wp.array2d(dtype=float),
     most: wp.array2d(dtype=float),  # effort of a row
@@ -54,9 +54,10 @@ def aim_drives(
     if row >= rows[world] or kind[world, row] != DRIVE:
         return
     which = tendon[world, row]
-    share = damping[which] * timestep[world % timestep.shape[0]]
+    own = world % damping.shape[0]
+    share = damping[own, which] * timestep[world % timestep.shape[0]]
     weight[world, row] = share
     given = most[world, row]
-    known = given * mobility[which] + wp.abs(free[world, dof[which]]) + wp.abs(last[world, dof[which]])
+    known = given * mobility[own, which] + wp.abs(free[world, dof[which]]) + wp.abs(last[world, dof[which]])
     bound = given / share + BEYOND * known
     aref[world, row] = wp.clamp(effort[world, which] / share, -bound, bound)

@@ -4,6 +4,8 @@ from typing import Any
 
 import warp as wp
 
+from wsim.kernels.contact_law import along
+
 LARGEST_TURN = wp.constant(wp.float64(0.05))  # [rad] of a part of a step
 MOST_PARTS = wp.constant(1000)
 
@@ -134,8 +136,8 @@ def keep(
 def tumble(
     # Data in:
     freedom: wp.array(dtype=int),  # of each loose body
-    principal: wp.array(dtype=wp.quatd),
-    moments: wp.array(dtype=wp.vec3d),
+    principal: wp.array2d(dtype=wp.quatd),  # in all worlds alike, or in each
+    moments: wp.array2d(dtype=wp.vec3d),
     h: wp.float64,
     true_qd: wp.array2d(dtype=wp.float64),
     # Data out:
@@ -147,14 +149,50 @@ def tumble(
     Both spins are along the body's axes as they are at the start: that is where contacts see them.
     """
     world, k = wp.tid()
-    first = freedom[k] + 3
-    spin, axes = three(true_qd, world, first), principal[k]
-    turn = free_turn(axes, moments[k], spin, h)
-    gain = (wp.quat_rotate(turn, spin_after(axes, moments[k], spin, turn)) - spin) / h
+    first, own = freedom[k] + 3, world % moments.shape[0]
+    spin, axes, inertia = three(true_qd, world, first), principal[own, k], moments[own, k]
+    turn = free_turn(axes, inertia, spin, h)
+    gain = (wp.quat_rotate(turn, spin_after(axes, inertia, spin, turn)) - spin) / h
     change[world, k] = gain
-    torque = in_axes(axes, moments[k], gain) + wp.cross(spin, in_axes(axes, moments[k], spin))
+    torque = in_axes(axes, inertia, gain) + wp.cross(spin, in_axes(axes, inertia, spin))
     for i in range(3):
         bias[world, first + i] = bias[world, first + i] - bias.dtype(torque[i])
+
+
+@wp.kernel(enable_backward=False)
+def jolt(
+    # Data in:
+    count: wp.array(dtype=int),
+    contact_world: wp.array(dtype=int),
+    contact_geom: wp.array(dtype=wp.vec2i),
+    contact_row: wp.array2d(dtype=int),
+    geom_body: wp.array(dtype=int),
+    loose: wp.array(dtype=int),  # which of the loose bodies a body is, or below 0
+    force: wp.array2d(dtype=float),
+    acceleration: wp.array2d(dtype=float),
+    sparse: bool,
+    nv: int,
+    jacobian: wp.array3d(dtype=float),
+    row_nnz: wp.array2d(dtype=int),
+    row_start: wp.array2d(dtype=int),
+    column: wp.array3d(dtype=int),
+    least: float,  # [m/s^2]
+    # Data out:
+    steady: wp.array2d(dtype=int),
+):
+    """Mark the bodies that a contact speeds up or slows down along its normal: that hit, or go round a bend."""
+    k = wp.tid()
+    if k >= count[0] or contact_row[k, 0] < 0:
+        return
+    world, row, geom = contact_world[k], contact_row[k, 0], contact_geom[k]
+    if force[world, row] <= 0.0:
+        return
+    change = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
+    if wp.abs(change) > least:
+        for side in range(2):
+            i = loose[geom_body[geom[side]]]
+            if i >= 0:
+                steady[world, i] = 0
 
 
 @wp.kernel(enable_backward=False)
@@ -162,14 +200,19 @@ def fly(
     # Data in:
     place: wp.array(dtype=int),  # of each loose body, in qpos
     freedom: wp.array(dtype=int),
-    center: wp.array(dtype=wp.vec3d),  # of mass, in its axes
-    principal: wp.array(dtype=wp.quatd),
-    moments: wp.array(dtype=wp.vec3d),
+    center: wp.array2d(dtype=wp.vec3d),  # of mass, in its axes
+    principal: wp.array2d(dtype=wp.quatd),  # in all worlds alike, or in each
+    moments: wp.array2d(dtype=wp.vec3d),
     h: wp.float64,
     change: wp.array2d(dtype=wp.vec3d),
     qacc: wp.array2d(dtype=Any),
     held: wp.array2d(dtype=Any),  # what constraints push with
+    pushed: wp.array2d(dtype=Any),  # what all else pushes with
+    bias: wp.array2d(dtype=Any),  # gravity's part of that, and the spin's own, the other way
+    tied: wp.array(dtype=int),  # whether a rope or a loop may hold it
+    steady: wp.array2d(dtype=int),  # whether its contacts leave it no jolt
     # Data out:
+    exact: wp.array2d(dtype=int),
     true_q: wp.array2d(dtype=wp.float64),
     true_qd: wp.array2d(dtype=wp.float64),
     qpos: wp.array2d(dtype=Any),
@@ -178,29 +221,39 @@ def fly(
     """Advance the loose bodies: what pushes them changes their spin at the step's start, then they turn freely.
 
     Where nothing holds a body its centre of mass goes straight, else its origin, whose velocity contacts have seen.
+    Under gravity and steady contacts alone it goes by the mean of the velocities before and after: what accelerates
+    evenly then is where it should be. Of a spring's force, which changes with the place, that would add energy.
     """
     world, k = wp.tid()
-    p, f, c = place[k], freedom[k], center[k]
+    own = world % moments.shape[0]
+    p, f, c, axes, inertia = place[k], freedom[k], center[own, k], principal[own, k], moments[own, k]
     v, w, x = three(true_qd, world, f), three(true_qd, world, f + 3), three(true_q, world, p)
     q = wp.normalize(wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3]))
     push, twist = wp.vec3d(), wp.vec3d()
-    free = bool(True)
+    free, alone = bool(True), bool(True)
     for i in range(3):
         push[i] = wp.float64(qacc[world, f + i])
         twist[i] = wp.float64(qacc[world, f + 3 + i])
         free = free and held[world, f + i] == held.dtype(0.0) and held[world, f + 3 + i] == held.dtype(0.0)
-    kicked = w + h * (twist - change[world, k])
-    turn = free_turn(principal[k], moments[k], kicked, h)
-    after = spin_after(principal[k], moments[k], kicked, turn)
+        alone = alone and pushed[world, f + i] == -bias[world, f + i]
+        alone = alone and pushed[world, f + 3 + i] == -bias[world, f + 3 + i]
+    late = wp.float64(0.0)  # how much of the step's change of velocity its way lacks
+    if alone and (free or (tied[k] == 0 and steady[world, k] != 0)):
+        late = wp.float64(0.5) * h
+    exact[world, k] = wp.where(late > wp.float64(0.0), 1, 0)
+    kick = twist - change[world, k]
+    kicked = w + h * kick
+    turn = free_turn(axes, inertia, kicked - late * kick, h)
+    after = spin_after(axes, inertia, kicked, turn)
     end = wp.normalize(q * turn)
     if free:
         pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
         way = v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull
-        x += wp.quat_rotate(q, c) + h * way - wp.quat_rotate(end, c)
+        x += wp.quat_rotate(q, c) + h * (way - late * pull) - wp.quat_rotate(end, c)
         v = way - wp.quat_rotate(end, wp.cross(after, c))
     else:
         v += h * push
-        x += h * v
+        x += h * (v - late * push)
     for i in range(3):
         true_q[world, p + i] = x[i]
         true_q[world, p + 4 + i] = end[i]

@@ -33,7 +33,7 @@ def make_blueprint(world: World, *, paused: bool = False, entity: str | None = N
         contents=["/World/**"],
         background=BACKGROUND,
         line_grid=False,
-        eye_controls=_eye(world, entity),
+        eye_controls=eye_controls(world, entity),
     )
     views: list[Any] = [scene]
     cameras = [
@@ -66,7 +66,7 @@ def _log() -> Any:
     return rrb.TextLogView(name="Log", origin="/", contents=[f"{LOG_ENTITY}/**", "/World/**"])
 
 
-def _eye(world: World, entity: str | None) -> Any | None:
+def eye_controls(world: World, entity: str | None) -> Any | None:
     """Near the first camera, turned aside: from its very place its own picture would hide the scene."""
     tracked = entity_path(entity) if entity is not None else None
     if not world.cameras:

@@ -14,6 +14,7 @@ import rerun as rr
 from wsim.recording import columns as names
 from wsim.recording.contacts import columns_of
 from wsim.recording.shapes import ROOT_FRAME, is_nested, rgba
+from wsim.recording.ties import columns_of_ties
 from wsim.scene.cord_lines import cord_lines
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from wsim.recording.contacts import Pushes
     from wsim.recording.frames import FluidFrame
+    from wsim.recording.ties import Ties
     from wsim.scene.world import Fluid, World
 
     Floats = NDArray[np.float32]
@@ -38,7 +40,7 @@ class BodyBuffer:
     """The frames' times; poses, velocities and forces of all bodies."""
 
     def __init__(self, stream: Any, world: World) -> None:
-        self._stream = stream
+        self._stream, self._world = stream, world
         self._entities = [names.entity_path(body.prim) for body in world.bodies]
         self._nested = [is_nested(body.prim, world) for body in world.bodies]
         self._heights = [names.entity_path(names.HEIGHT_ROOT + _short(b.prim)) for b in world.bodies[:MAX_HEIGHT_PLOTS]]
@@ -48,6 +50,7 @@ class BodyBuffer:
         self._causes: list[dict[str, Floats]] = []
         self._whole: list[dict[str, Floats]] = []
         self._contacts: list[Pushes] = []
+        self._ties: list[Ties] = []
         self._bytes = 0
 
     def add(
@@ -58,6 +61,7 @@ class BodyBuffer:
         causes: dict[str, Floats],
         whole: dict[str, Floats],
         contacts: Pushes | None,
+        ties: Ties | None,
     ) -> None:
         """Keep one frame.
 
@@ -68,6 +72,7 @@ class BodyBuffer:
             causes: Columns of what pushed the bodies, (B, width).
             whole: Columns that a frame has once, (width,).
             contacts: What pairs of shapes gave each other.
+            ties: What joints and cords gave.
         """
         self._times.append(ns)
         self._seconds.append(t)
@@ -77,6 +82,8 @@ class BodyBuffer:
         if contacts is not None:
             self._contacts.append(contacts)
             self._bytes += contacts.sums.nbytes
+        if ties is not None:
+            self._ties.append(ties)
         self._bytes += sum(row.nbytes for row in [*rows, *causes.values()])
         if len(self._times) >= CHUNK_ROWS or self._bytes >= CHUNK_BYTES:
             self.flush()
@@ -100,9 +107,10 @@ class BodyBuffer:
         # Last, so that a frame that the file knows of has all its bodies, even if the process is killed here.
         seconds = names.column(names.FRAME_TIME, np.array(self._seconds))
         whole = [names.column(name, np.stack([each[name] for each in self._whole])) for name in self._whole[0]]
+        whole += columns_of_ties(self._ties, self._world) if self._ties else []
         self._stream.send_columns(names.FRAME_ENTITY, [index], [seconds, *whole], strict=True)
         self._times, self._seconds, self._rows, self._bytes = [], [], [], 0
-        self._causes, self._whole, self._contacts = [], [], []
+        self._causes, self._whole, self._contacts, self._ties = [], [], [], []
 
     @staticmethod
     def _pose(q: Floats, nested: bool) -> list[Any]:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.recording.contacts import Pushes
+    from wsim.recording.ties import Ties
 
     Floats = NDArray[np.float32]
 else:
@@ -45,6 +46,7 @@ class Frame:
     control_impulse: Floats | None = None  # (B, 3) [N s], what of the applied one is control's
     wall_impulse: Floats | None = None  # (3,) [N s], of fluid on all that stands still
     contacts: Pushes | None = None  # what pairs of shapes gave each other
+    ties: Ties | None = None  # what joints, springs and ropes gave
 
 
 @dataclass(frozen=True)

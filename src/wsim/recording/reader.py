@@ -23,6 +23,7 @@ from wsim.recording.contacts import read_contacts
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
 from wsim.recording.table import Clock, Table
+from wsim.recording.ties import read_ties
 from wsim.scene.world import World
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def read(path: str | Path) -> Recording:
         control_impulse=control,
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
         contacts=read_contacts(table, frame_ns),
+        ties=read_ties(table, world, frame_ns),
     )
 
 

@@ -13,6 +13,7 @@ from PIL import Image
 
 from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame, LogLine
+from wsim.recording.ties import TieTrack
 from wsim.scene.world import World
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ class Recording:
     control_impulse: Floats | None = None  # (T, B, 3) [N s], what of the applied one is control's
     wall_impulse: Floats | None = None  # (T, 3) [N s], of fluid on all that stands still since the frame before
     contacts: ContactTrack | None = None  # what pairs of shapes gave each other since the frame before
+    ties: TieTrack | None = None  # what joints, springs and ropes gave, likewise; None in recordings of before
 
     @property
     def complete(self) -> bool:

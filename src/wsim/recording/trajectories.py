@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +35,7 @@ class Trajectories:
         scalars: (W, T) each: what else a recording keeps of a copy, by its name there.
         problems: (W,) lists of what went wrong in a copy, as its log would say it; empty: nothing in any.
         metadata: As of a recording.
+        worlds: (W,) what each copy's own stage states, where they differ in more than masses; empty where they do not.
     """
 
     world: World
@@ -46,6 +48,7 @@ class Trajectories:
     scalars: dict[str, Array] = field(default_factory=dict)
     problems: list[list[str]] = field(default_factory=list)
     metadata: dict[str, Any] = field(default_factory=dict)
+    worlds: Sequence[World] = ()
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit one another.
@@ -68,6 +71,8 @@ class Trajectories:
                 raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
         if self.problems and len(self.problems) != worlds:
             raise ValueError(f"problems has {len(self.problems)} entries; it must have one for each of {worlds} worlds")
+        if self.worlds and len(self.worlds) != worlds:
+            raise ValueError(f"worlds has {len(self.worlds)} entries; it must have one for each of {worlds} worlds")
 
     @property
     def world_count(self) -> int:
@@ -75,7 +80,9 @@ class Trajectories:
         return len(self.body_q)
 
     def world_of(self, k: int) -> World:
-        """World k as it was, with its own masses; inertias go with them."""
+        """World k as it was, or with its own masses; inertias go with them."""
+        if self.worlds:
+            return self.worlds[k]
         if self.mass is None:
             return self.world
         bodies = [

@@ -93,7 +93,7 @@ class RecordingWriter:
                 raise ValueError(f"scalar {name!r}: a name is letters, digits and _.-, its parts separated by /")
         self._last_ns = ns
         self.frame_count += 1
-        self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame), frame.contacts)
+        self._bodies.add(ns, float(t), rows, causes, causes_of_frame(frame), frame.contacts, frame.ties)
         self._cords.add(ns, rows[0])
         for prim, arrays in fluids.items():
             self._fluids[prim].add(ns, *arrays)
@@ -252,7 +252,8 @@ class RecordingWriter:
     def _check_causes(self, frame: Frame) -> dict[str, NDArray[np.float32]]:
         """What pushed the bodies, by column."""
         arrays = {name: np.array(given, dtype=np.float32) for name, given in causes_of_bodies(frame).items()}
-        known = {*arrays, *causes_of_frame(frame), *(["contacts"] if frame.contacts is not None else [])}
+        given = {"contacts": frame.contacts, "ties": frame.ties}
+        known = {*arrays, *causes_of_frame(frame), *(name for name, each in given.items() if each is not None)}
         if self.frame_count and known != self._causes:
             raise ValueError(f"frame: {sorted(known ^ self._causes)} come in all frames or in none")
         self._causes = known

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.repair.asked import ref_of
+from wsim.report.asked import ref_of
 from wsim.report.chart import Chart, Limit, Mark, Series
 from wsim.report.signals import Signal, find_signal
 from wsim.report.text import limit_word, percent, prim_name

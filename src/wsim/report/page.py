@@ -13,9 +13,9 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.repair.asked import sentence_of
 from wsim.judge.verdict import Finding, Verdict
 from wsim.report import text
+from wsim.report.asked import sentence_of
 from wsim.report.attempts import make_attempts
 from wsim.report.chart import Chart
 from wsim.report.contents import RunContents, gather

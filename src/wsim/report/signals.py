@@ -1,8 +1,8 @@
 """Which recorded quantity a finding judged: the one from which its value comes.
 
 A finding carries a number, not the signal behind it. Quantities of its prim in its unit are worked out as the judge
-does, and the first that has the finding's value (at a frame, as the mean over the final window, or as the rms of the
-last half second) is the judged one. Where none has it, the first shows what went on, and no limit is drawn in it.
+does, and the first that has the finding's value (at a frame, as the mean over the final window, or as the mean or rms
+of the last half second) is the judged one. Where none has it, the first shows what went on, and no limit is drawn.
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, level, rotate, tilt
 from wsim.judge.evidence.contact import distance, overlaps
-from wsim.judge.objectives.motion import downhill
-from wsim.judge.objectives.objective import support_of
-from wsim.judge.repair.asked import decider
+from wsim.judge.evidence.support import downhill, support_of
+from wsim.report.asked import decider
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     Values = NDArray[np.float64]
 
 EXACT = 1e-6  # share by which a value may differ from the signal's, which is worked out in another order
-LAST = 0.5  # [s] of the rms of what is to be at rest
+LAST = 0.5  # [s] at the end, of what is to be at rest
 
 
 @dataclass(frozen=True)
@@ -80,6 +79,7 @@ def _match(signal: Signal, finding: Finding, evidence: Evidence) -> Signal | Non
     # What stands still has the mean's value at every frame too: the means come first.
     stretches = (
         (evidence.window_start, "the mean", lambda part: float(np.mean(part))),
+        (float(evidence.time[-1]) - LAST, "the mean", lambda part: float(np.mean(part))),
         (float(evidence.time[-1]) - LAST, "the rms", lambda part: math.sqrt(float(np.mean(part**2)))),
     )
     for start, word, statistic in stretches if signal.averaged else ():
@@ -137,7 +137,7 @@ def _of_formula(evidence: Evidence, finding: Finding) -> Iterator[Signal]:
     """The measure that decides a formula."""
     found = decider(finding, evidence)
     if found is not None:
-        measure = found[1]
+        measure = found[1].single or found[1]
         value = np.broadcast_to(measure.value, (1, len(evidence.time)))[0]
         title = measure.what[:1].upper() + measure.what[1:]
         yield Signal(title.replace("/World/", ""), measure.unit, evidence.time, np.asarray(value, np.float64))
@@ -181,7 +181,7 @@ def _ways(evidence: Evidence, i: int, ref: str | None) -> Iterator[Signal]:
     """How far from where it started."""
     moved = evidence.body_q[:, i, :3] - evidence.body_q[0, i, :3]
     if ref and _slopes(evidence, ref, i):
-        yield Signal("Way down the slope", "m", evidence.time, moved @ downhill(evidence, ref.rsplit("/", 1)[-1], i))
+        yield Signal("Way down the slope", "m", evidence.time, moved @ downhill(evidence, ref, i))
     yield Signal("Way from the start", "m", evidence.time, np.linalg.norm(level(moved, evidence.up), axis=1))
     for title, axis, sign in (("front", 0, 1), ("back", 0, -1), ("left", 1, 1), ("right", 1, -1)):
         yield Signal(f"Way to the {title}", "m", evidence.time, sign * moved[:, axis])
@@ -192,7 +192,7 @@ def _ways(evidence: Evidence, i: int, ref: str | None) -> Iterator[Signal]:
 
 def _slopes(evidence: Evidence, ref: str, i: int) -> bool:
     try:
-        downhill(evidence, ref.rsplit("/", 1)[-1], i)
+        downhill(evidence, ref, i)
     except LookupError:
         return False
     return True

@@ -110,6 +110,8 @@ def _bounce(reader: Reader, thing: Thing, action: Action) -> None:
         at = where(reader, place.phrase) if place.phrase is not None and on else None
         if place.preposition == "from" and place.length is not None:
             thing.drop_height = place.length
+        elif place.preposition == "share":
+            thing.share = place.value
         elif isinstance(at, Thing) and place.preposition in ("off", "against") and at.noun.key == "wall":
             walls.append(place)
         elif isinstance(at, Thing):
@@ -302,9 +304,40 @@ def _swing(reader: Reader, thing: Thing, action: Action) -> None:
 
 
 def _tilt(_reader: Reader, thing: Thing, action: Action) -> None:
-    if thing.noun.family != "seesaw" or action.places:
+    if thing.noun.family != "seesaw" or any(place.preposition != "angle" for place in action.places):
         raise NotUnderstood([action.words], "lets a seesaw tilt, but not this:")
+    thing.angle = action.places[0].value if action.places else thing.angle
     do(thing, "tilt")
+
+
+# ---- how it goes on
+def _stop(reader: Reader, thing: Thing, action: Action) -> None:
+    """Slide towards something, and stand still before it."""
+    _movable(thing, action)
+    others = [place for place in action.places if not common(reader, thing, place)]
+    phrases = [place.phrase for place in others if place.preposition == "before" and place.phrase is not None]
+    if len(phrases) != 1 or len(others) > 1 or thing.round or {"roll", "throw"} & {*thing.does}:
+        raise NotUnderstood([action.words], "lets a thing that slides stop before another, but not so:")
+    if not {"slide", "push"} & {*thing.does}:
+        do(thing, "slide")
+    _aim(reader, thing, phrases[0], action)
+    do(thing, "stop")
+
+
+def _come_again(reader: Reader, thing: Thing, action: Action) -> None:
+    """What swings or bounces: ever less far, or up to a share of its height again."""
+    swings = thing.noun.family == "pendulum" or thing.rod is not None
+    if not (swings or "bounce" in thing.does):
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets what swings or bounces do this, but not this:")
+    others = [place for place in action.places if not common(reader, thing, place)]
+    shares = [place.value for place in others if place.preposition == "share"]
+    if len(shares) != len(others) or (action.verb == "climb") != (len(shares) == 1):
+        raise NotUnderstood([action.words], NOT_IN_THIS_ORDER)
+    thing.share = shares[0] if shares else thing.share
+    if swings:
+        put(thing, "ground")
+        do(thing, "swing")
+    do(thing, action.verb)
 
 
 # ---- at rest
@@ -348,5 +381,6 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
     "carry": _carry, "move": _move, "ride": _ride, "run": _run,
+    "stop": _stop, "climb": _come_again, "die": _come_again,
     "stack": _stack, "face": _face, "rest": _rest, "hold": _refused, "pour": _refused,
 }  # fmt: skip

@@ -44,6 +44,7 @@ class Thing:
     direction: str | None = None
     rod: Phrase | None = None  # what it hangs on
     spin: float | None = None  # of what turns [deg/s]
+    share: float | None = None  # of its start's height, that it comes up to again
     surface: dict[str, float] = field(default_factory=dict)  # "friction", "restitution": as it touches anything
     pairs: list[tuple[Thing | None, str, float]] = field(default_factory=list)  # the same, against one; None: ground
 
@@ -88,6 +89,7 @@ class Pour:
 
     vessel: Thing | None  # None: into a tank
     height: float | None  # [m] above the rim
+    level: float | None = None  # [m] that it is to stand at
 
 
 @dataclass

@@ -358,6 +358,14 @@ class _Clauses(Transformer):
     def toward(self, meta: Any, children: list[Any]) -> Place:
         return Place("toward", direction=_meaning(children[0]), words=self._words(meta))
 
+    def to_share(self, meta: Any, children: list[Any]) -> Place:
+        if _meaning(children[0]) != "to":
+            raise self.tokens.fail(children[0].start_pos)
+        return Place("share", value=round(_meaning(children[1]), 6), words=self._words(meta))
+
+    def up_to(self, meta: Any, children: list[Any]) -> Place:
+        return Place("up to", length=_meaning(children[1]), words=self._words(meta))
+
     def surfaced(self, meta: Any, children: list[Any]) -> Place:
         things = [*(child for child in children if isinstance(child, Phrase)), None, None]
         value = float(_meaning(children[1]))

@@ -79,11 +79,15 @@ def _of_scenery(reader: Reader, clause: Clause, scenery: list[Phrase], subjects:
 
 
 def _pour(reader: Reader, action: Action) -> None:
-    vessel, height = None, None
+    vessel, height, level = None, None, None
     into = False
     for place in action.places:
         if place.preposition == "from" and place.length is not None:
             height = place.length
+        elif place.preposition == "up to":
+            level = place.length
+        elif place.preposition == "time":
+            reader.cast.duration = place.value
         elif place.preposition in ("into", "in", "inside", "onto") and place.phrase is not None:
             into = True
             if place.phrase.kind == "pronoun":
@@ -97,7 +101,7 @@ def _pour(reader: Reader, action: Action) -> None:
             raise NotUnderstood([place.words], "cannot pour water there:")
     if not into or (vessel is not None and (vessel.noun.family != "vessel" or vessel.count > 1)):
         raise NotUnderstood([action.words], "pours water into a tank, a bowl or a bucket:")
-    reader.cast.pour = Pour(vessel, height)
+    reader.cast.pour = Pour(vessel, height, level)
 
 
 def _settle(reader: Reader) -> None:

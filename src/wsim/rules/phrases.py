@@ -40,7 +40,7 @@ class Phrase:
 class Place:
     """Where something is, goes to or comes from, how fast, and for how long."""
 
-    preposition: str  # a key of the lexicon, or "side", "between", "speed", "spin", "angle", "time", ...
+    preposition: str  # a key of the lexicon, or "side", "between", "speed", "spin", "angle", "share", "time", ...
     phrase: Phrase | None = None
     other: Phrase | None = None  # the second of "between", or of a "friction" or "restitution" between two
     side: Side | None = None

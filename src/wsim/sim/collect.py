@@ -53,7 +53,17 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
         progress("simulating", frame, frames - 1)
     mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
     return Trajectories(
-        world, time, q, qd, force, deepest, mass, scalars, _problems(simulation, q, qd), simulation.facts()
+        world=world,
+        time=time,
+        body_q=q,
+        body_qd=qd,
+        contact_force=force,
+        penetration=deepest,
+        mass=mass,
+        scalars=scalars,
+        problems=_problems(simulation, q, qd),
+        metadata=simulation.facts(),
+        worlds=built.worlds if len(built.worlds) > 1 else (),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -69,22 +70,22 @@ def let_roll(builder: Any, world: World) -> None:
     if not any(shape.rolling for shape in _shapes(world).values()) and not any(pair.rolling for pair in world.contacts):
         return
     surfaces = _surfaces([str(label) for label in builder.shape_label], world)
-    kinds = np.column_stack([surfaces.classes, surfaces.curvature > 0.0, np.array(builder.shape_body) >= 0])
+    kinds = np.column_stack([surfaces.classes[0], surfaces.curvature[0] > 0.0, np.array(builder.shape_body) >= 0])
     needs = set()
     for one in {tuple(kind) for kind in kinds.tolist()}:
         for other in {tuple(kind) for kind in kinds.tolist()}:
             # Of a contact one side asks for the rows: of two that move the round one.
             asks = one[2] and (one[1] or (other[1] and not other[2]))
-            if asks and surfaces.law[one[0], other[0], 2] > 0.0:
+            if asks and surfaces.law[0, one[0], other[0], 2] > 0.0:
                 needs.add(one)
     rows = {k: 6 for k, kind in enumerate(kinds.tolist()) if tuple(kind) in needs}
     builder.custom_attributes["mujoco:condim"].values = dict.fromkeys(range(builder.shape_count), 3) | rows
 
 
-def surfaces_of(model: Any, world: World) -> Surfaces:
-    """The surfaces of the shapes of the model's first world."""
-    count = model.shape_count // max(1, model.world_count)
-    return _surfaces([str(label) for label in model.shape_label[:count]], world)
+def surfaces_of(model: Any, worlds: Sequence[World]) -> Surfaces:
+    """The surfaces of the model's shapes: of all worlds alike, or of each."""
+    labels = _labels(model)
+    return Surfaces.of([_surfaces(labels, world) for world in worlds])
 
 
 def _surfaces(labels: list[str], world: World) -> Surfaces:
@@ -106,23 +107,29 @@ def _surfaces(labels: list[str], world: World) -> Surfaces:
         for j, b in enumerate(kinds.values()):
             pair = pair_law(world, a, b)
             law[i, j] = pair.friction, pair.restitution, pair.rolling
-    return Surfaces(classes, law, bends)
+    return Surfaces(classes[None], law[None], bends[None])
 
 
-def surface_velocities(model: Any, world: World) -> Array:
-    """How each shape of the first world moves its surface [m/s], in its body's or the world's axes, (shapes, 3)."""
-    known = _shapes(world)
-    count = model.shape_count // max(1, model.world_count)
-    labels = [str(label) for label in model.shape_label[:count]]
-    return np.array([_of_label(label, known).surface_velocity for label in labels]).reshape(-1, 3)
+def surface_velocities(model: Any, worlds: Sequence[World]) -> Array:
+    """How each shape of all worlds alike, or of each, moves its surface [m/s], in its body's or the world's axes,
+    (N, shapes, 3)."""
+    labels, found = _labels(model), []
+    for world in worlds:
+        known = _shapes(world)
+        found.append([_of_label(label, known).surface_velocity for label in labels])
+    return np.array(found).reshape(len(worlds), -1, 3)
 
 
 def shape_numbers(model: Any, world: World) -> Array:
     """The number of each shape of the first world as a recording counts them, (shapes,); -1 for what it has not."""
     known = _shapes(world)
     number = {shape.prim: k for k, shape in enumerate(shapes_of(world))}
-    labels = [str(label) for label in model.shape_label[: model.shape_count // max(1, model.world_count)]]
-    return np.array([number.get(_of_label(label, known).prim, -1) for label in labels], dtype=np.int64)
+    return np.array([number.get(_of_label(label, known).prim, -1) for label in _labels(model)], dtype=np.int64)
+
+
+def _labels(model: Any) -> list[str]:
+    """Of the shapes of the model's first world; the others have the same."""
+    return [str(label) for label in model.shape_label[: model.shape_count // max(1, model.world_count)]]
 
 
 def _shapes(world: World) -> dict[str, Shape]:

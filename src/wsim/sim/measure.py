@@ -51,6 +51,7 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
         scalars=scalars,
         wall_impulse=fluid.take_wall_impulse().astype(np.float32) if fluid else None,
         contacts=rigid.take_contacts() if rigid else None,
+        ties=rigid.take_ties() if rigid else None,
         **applied,
     )
 

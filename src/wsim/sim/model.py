@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.scene.world import World
+from wsim.sim.alike import check_alike
 from wsim.sim.articulations import complete_articulations, importable
 from wsim.sim.constraints import add_constraints
 from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
@@ -27,6 +29,7 @@ from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 from wsim.solvers.surface_contacts import SurfaceParts
 
+LEAST_MOMENT = 1e-15  # [kg m^2]: MuJoCo takes nothing below
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
 
@@ -34,19 +37,36 @@ SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 class Built:
     """A Newton model, with what the solvers need to know of the stage.
 
-    `bodies[k]` is the index of `world.bodies[k]` in the first world of the model; `fluids[prim]` the range of its
-    particles in the first world.
+    `worlds` is what the stage of all worlds alike, or that of each, states. `bodies[k]` is the index of
+    `world.bodies[k]` in the first world of the model; `fluids[prim]` the range of its particles in the first world;
+    `breakable` the joints that may break, of all worlds alike or of each.
     """
 
     model: Any
-    world: World
+    worlds: tuple[World, ...]
     bodies: np.ndarray
     fluids: dict[str, slice]
     sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
     time_step: TimeStep
-    breakable: list[Breakable]
+    breakable: list[list[Breakable]]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
+
+    @property
+    def world(self) -> World:
+        """What the stage of the first world states."""
+        return self.worlds[0]
+
+
+@dataclass(frozen=True)
+class _One:
+    """A builder of one world, and what else there is of it."""
+
+    builder: Any
+    world: World
+    fluids: dict[str, slice]
+    breakable: list[Breakable]
+    surfaces: SurfaceParts | None
 
 
 def build_model(stage: Path, world: World, device: Any, world_count: int = 1, time_step: float | None = None) -> Built:
@@ -62,16 +82,51 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     Raises:
         UserError: If the stage holds what the solvers cannot simulate.
     """
-    single = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
+    config = _sph_config(world)
+    one = _import(stage, world, config)
+    step = _time_step([one.world], config, time_step)
+    builder = one.builder
+    if world_count == 1:
+        add_cord_shapes(builder, one.world)
+    else:
+        builder = _builder(world)
+        builder.replicate(one.builder, world_count)
+    return _finalized(builder, [one], config, step, device)
+
+
+def build_batch(stages: Sequence[Path], worlds: Sequence[World], device: Any, time_step: float | None = None) -> Built:
+    """Import checked stages of one topology (`wsim.sim.alike`) into one Newton model, a world each, without fluid.
+
+    Args:
+        stages: USD files, two or more.
+        worlds: What `wsim.scene.describe` read from them.
+        device: Warp device, or its name.
+        time_step: Upper bound for the time step of all worlds [s]; by default the shortest that one of them needs.
+
+    Raises:
+        UserError: If a stage holds what the solvers cannot simulate, or a fluid.
+        ValueError: If worlds differ in more than numbers.
+    """
+    check_alike(stages, worlds)
+    if worlds[0].fluids:
+        raise UserError(f"{worlds[0].fluids[0].prim}: worlds with fluid are not batched; simulate them one by one")
+    ones = [_import(stage, world, None) for stage, world in zip(stages, worlds, strict=True)]
+    builder = _builder(worlds[0])
+    for one in ones:
+        builder.add_world(one.builder)
+    return _finalized(builder, ones, None, _time_step(worlds, None, time_step), device)
+
+
+def _import(stage: Path, world: World, config: Any | None) -> _One:
+    _weigh_spins(world)
+    single = _builder(world)
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
     SolverSPH.register_custom_attributes(single)
     ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
     single.add_usd(importable(stage, world), ignore_paths=ignore, apply_up_axis_from_stage=True)
     complete_articulations(single)
     breakable = add_constraints(single, world)
-    config = _sph_config(world)
     fluids = _add_fluids(single, world, config) if config else {}
-    step = choose_time_step(world, config.max_time_step if config else None, time_step or world.time_step or None)
     harden_contacts(single, ContactConfig())
     let_roll(single, world)
     spare_kinematic(single)
@@ -80,15 +135,54 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     world = with_pieces(single, world)
     add_cords(single, world, ContactConfig())
     add_drives(single, world)
-    if world_count == 1:
-        add_cord_shapes(single, world)
-    builder = single
-    if world_count > 1:
-        builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
-        builder.replicate(single, world_count)
-    model = builder.finalize(device=device)
-    bodies = _body_indices(model, world)
-    return Built(model, world, bodies, fluids, config, containers_of(world), step, breakable, surfaces)
+    return _One(single, world, fluids, breakable, surfaces)
+
+
+def _time_step(worlds: Sequence[World], config: Any | None, given: float | None) -> TimeStep:
+    """The shortest of those that the worlds need."""
+    limit = config.max_time_step if config else None
+    return min((choose_time_step(world, limit, given or world.time_step or None) for world in worlds), key=_length)
+
+
+def _length(step: TimeStep) -> float:
+    return step.dt
+
+
+def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: TimeStep, device: Any) -> Built:
+    model, first = builder.finalize(device=device), ones[0]
+    return Built(
+        model=model,
+        worlds=tuple(one.world for one in ones),
+        bodies=_body_indices(model, first.world),
+        fluids=first.fluids,
+        sph=config,
+        containers=containers_of(first.world),
+        time_step=step,
+        breakable=[one.breakable for one in ones],
+        surfaces=first.surfaces,
+    )
+
+
+def _builder(world: World) -> Any:
+    """A builder that takes small bodies as they are: Newton would add 1e-6 kg m^2 to moments below 1e-10.
+
+    A box of 5 mm has 1e-10 kg m^2.
+    """
+    builder = newton.ModelBuilder(up_axis=newton.Axis.Z, gravity=world.gravity)
+    builder.inertia_absolute_tolerance = LEAST_MOMENT
+    builder.inertia_correction = 0.0
+    return builder
+
+
+def _weigh_spins(world: World) -> None:
+    """Refuse what is too light to turn."""
+    for body in world.bodies:
+        least = float(np.linalg.eigvalsh(np.reshape(body.inertia, (3, 3)))[0])
+        if not body.kinematic and least < LEAST_MOMENT:
+            raise UserError(
+                f"{body.prim}: its smallest moment of inertia is {least:.2g} kg m^2; make it larger or heavier, to "
+                f"{LEAST_MOMENT:.0e} kg m^2 or more: a grain of sand of half a millimetre"
+            )
 
 
 def _sph_config(world: World) -> Any | None:

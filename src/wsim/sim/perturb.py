@@ -47,8 +47,9 @@ def _perturb_joints(built: Built, state: Any, seeds: Sequence[int]) -> None:
     coordinates = state.joint_q.numpy()
     kinds, starts, children = (a.numpy() for a in (model.joint_type, model.joint_q_start, model.joint_child))
     per_world, bodies = model.joint_count // len(seeds), model.body_count // len(seeds)
-    size = {int(index): thickness(body) for index, body in zip(built.bodies, built.world.bodies, strict=True)}
     for w, seed in enumerate(seeds):
+        world = built.worlds[w % len(built.worlds)]
+        size = {int(index): thickness(body) for index, body in zip(built.bodies, world.bodies, strict=True)}
         draw = np.random.default_rng([seed, 0])
         for joint in range(w * per_world, (w + 1) * per_world) if seed else ():
             first, place = starts[joint], PLACE * size.get(int(children[joint]) - w * bodies, 0.0)

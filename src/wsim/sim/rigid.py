@@ -12,6 +12,7 @@ from newton import ShapeFlags
 
 from wsim.kernels.overflow import accumulate_overflow
 from wsim.recording.contacts import Pushes
+from wsim.recording.ties import Ties
 from wsim.scene.world import World
 from wsim.sim.constraints import constraint_rows
 from wsim.sim.contacts import shape_numbers, surface_velocities, surfaces_of
@@ -19,6 +20,7 @@ from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
+from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_law import ContactConfig
@@ -65,10 +67,10 @@ class RigidBodies:
 
     Args:
         model: The Newton model.
-        world: What the stage states of its surfaces and drives.
+        worlds: What the stage of all worlds alike, or that of each, states.
         dt: Time step [s].
         controlled: Whether a controller pushes bodies or joints.
-        breakable: The joints that may break.
+        breakable: The joints that may break, of all worlds alike or of each.
         surfaces: What collides by its triangles.
 
     Attributes:
@@ -78,20 +80,21 @@ class RigidBodies:
     def __init__(
         self,
         model: Any,
-        world: World,
+        worlds: Sequence[World],
         dt: float,
         controlled: bool = False,
-        breakable: Sequence[Breakable] = (),
+        breakable: Sequence[Sequence[Breakable]] = ((),),
         surfaces: SurfaceParts | None = None,
     ) -> None:
-        self.model, self.breakable, self._world = model, breakable, world
+        world = worlds[0]
+        self.model, self.breakable, self._world = model, breakable[0], world
         self.on_c = steps_in_c(model.device, model.world_count)
         capacity = contact_capacity(model)
         # A mechanism keeps its energy only with a higher order: over 5 s at 1.7 ms the double pendulum of the examples
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
         swings = bool(world.joints or world.springs)
-        smooth = swings and model.particle_count == 0 and not is_overdamped(world, dt)
+        smooth = swings and model.particle_count == 0 and not any(is_overdamped(each, dt) for each in worlds)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
         self._touching = touching
@@ -101,9 +104,9 @@ class RigidBodies:
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + drive_count(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
-        found = surfaces_of(model, world)
+        found = surfaces_of(model, worlds)
         self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, **sizes)
-        self.solver.move_surfaces(surface_velocities(model, world))
+        self.solver.move_surfaces(surface_velocities(model, worlds))
         kinds: set[Any] = set()
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
@@ -144,20 +147,27 @@ class RigidBodies:
         self.solver.steps(state, control, dt, count)
 
     def keep_contacts(self) -> None:
-        """Sum from here on what pairs of the first world's shapes give each other."""
+        """Sum from here on what the first world's pairs of shapes give each other; in C its joints and cords, too."""
         self.solver.keep_impulses(shape_numbers(self.model, self._world))
+        if self.on_c and (self._world.joints or self._world.cords):
+            self.solver.keep_ties(*ties_of(self.solver, self._world))
 
     def take_contacts(self) -> Pushes | None:
         """The sums since the last call; None where nobody asked to keep them."""
         return self.solver.impulses.take() if self.solver.impulses else None
+
+    def take_ties(self) -> Ties | None:
+        """The sums of joints and cords since the last call; None where nobody keeps them."""
+        return self.solver.tie_impulses.take() if self.solver.tie_impulses else None
 
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
         self._kinematic.reset(state)
         self.solver.reset(state, flags=0)
         self.solver.mend()
-        if self.solver.impulses:
-            self.solver.impulses.clear()
+        for sums in (self.solver.impulses, self.solver.tie_impulses):
+            if sums:
+                sums.clear()
         if self.ledger:
             self.ledger.clear()
         if not self.on_c:

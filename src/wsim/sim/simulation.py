@@ -20,7 +20,7 @@ from wsim.scene.describe import describe
 from wsim.scene.world import World
 from wsim.sim.devices import pick_device
 from wsim.sim.measure import measure
-from wsim.sim.model import build_model
+from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
 from wsim.sim.rigid import RigidBodies
@@ -55,9 +55,10 @@ class Simulation:
     """Newton simulation of a stage.
 
     Args:
-        stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else.
+        stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else. Several, of one topology
+            (`wsim.sim.alike`) and without fluid, are a batch of as many worlds.
         device: "cpu", "cuda:0", or "auto": CUDA where there is any.
-        world_count: Copies simulated at once.
+        world_count: Copies of one stage simulated at once.
         time_step: Upper bound of the step [s]; chosen from the stage by default.
         controller: Called every `control_interval` seconds.
         control_interval: Time between calls [s]; rounded to whole steps.
@@ -66,7 +67,7 @@ class Simulation:
             not. By default none does.
 
     Attributes:
-        world: What the stage states.
+        world: What the stage states, the first one of several.
         model: The Newton model.
         state: The present state.
         control: Joint targets and forces.
@@ -75,7 +76,7 @@ class Simulation:
 
     def __init__(
         self,
-        stage: str | Path,
+        stage: str | Path | Sequence[str | Path],
         device: str = "auto",
         world_count: int = 1,
         time_step: float | None = None,
@@ -84,12 +85,19 @@ class Simulation:
         progress: Progress = silent,
         seeds: Sequence[int] = (),
     ) -> None:
+        stages = [Path(stage)] if isinstance(stage, str | Path) else [Path(each) for each in stage]
+        if len(stages) > 1 and world_count != 1:
+            raise ValueError(f"world_count={world_count}: {len(stages)} stages are as many worlds; leave it out")
+        world_count = max(world_count, len(stages))
         if seeds and len(seeds) != world_count:
             raise ValueError(f"seeds: {len(seeds)} were given for {world_count} worlds; give one for each")
         progress("compiling kernels", 0, 3)
-        self.stage = Path(stage)
+        self.stage = stages[0]
         self.device = wp.get_device(pick_device(device))
-        self.built = build_model(self.stage, describe(self.stage), self.device, world_count, time_step)
+        if len(stages) > 1:
+            self.built = build_batch(stages, [describe(each) for each in stages], self.device, time_step)
+        else:
+            self.built = build_model(self.stage, describe(self.stage), self.device, world_count, time_step)
         self.world: World = self.built.world
         self.model = self.built.model
         self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps
@@ -99,7 +107,12 @@ class Simulation:
         progress("compiling kernels", 1, 3)
         self.rigid = (
             RigidBodies(
-                self.model, self.world, self.dt, controller is not None, self.built.breakable, self.built.surfaces
+                self.model,
+                self.built.worlds,
+                self.dt,
+                controller is not None,
+                self.built.breakable,
+                self.built.surfaces,
             )
             if self.model.body_count
             else None
@@ -108,7 +121,7 @@ class Simulation:
         self.state, self.control = self.model.state(), self.model.control()
         perturb(self.built, self.state, seeds)
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
-        start_joints(self.model, self.world, self.built.bodies, self.state)
+        start_joints(self.model, self.built.worlds, self.built.bodies, self.state)
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         if self.rigid and self.rigid.ledger and controller is not None:
             self.rigid.ledger.control = self.control_force
@@ -253,7 +266,7 @@ class Simulation:
     def _breakages(self, scalars: Mapping[str, float]) -> list[tuple[str, str]]:
         """Joints of the first world that have broken since the last call: prim and what to say."""
         found = []
-        for joint in self.built.breakable:
+        for joint in self.built.breakable[0]:
             name = joint.prim.removeprefix("/World")
             if scalars[f"broken{name}"] and joint.prim not in self._broken:
                 self._broken.add(joint.prim)
@@ -278,6 +291,7 @@ class Simulation:
             "device": str(self.device),
             "world_count": max(1, self.model.world_count),
             "time_step": self.dt,
+            "loose_order": 2,  # of the steps of bodies that gravity and contacts alone move
             "time_step_reason": self.built.time_step.reason,
             "particles": self.model.particle_count,
             "controlled": self._controller is not None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import newton
@@ -15,7 +16,7 @@ QUIET = 1e-3  # weight of standing still where nothing is said of a body's motio
 CLOSE = 1e-3  # share of a stated speed by which the joints may miss it
 
 
-def start_joints(model: Any, world: World, bodies: Array, state: Any) -> None:
+def start_joints(model: Any, worlds: Sequence[World], bodies: Array, state: Any) -> None:
     """Give the joints the speeds with which the bodies move as the stage states.
 
     Velocities are linear in the joints' speeds: their matrix is read off forward kinematics, and the speeds are the
@@ -23,43 +24,57 @@ def start_joints(model: Any, world: World, bodies: Array, state: Any) -> None:
 
     Args:
         model: The Newton model.
-        world: What the stage states.
+        worlds: What the stage of all worlds alike, or that of each, states.
         bodies: Index of each of the world's bodies in the model's first world.
-        state: Its `joint_qd` and `body_qd` are set, in all worlds alike.
+        state: Its `joint_qd` and `body_qd` are set.
 
     Raises:
         UserError: If the joints do not let a body start as stated.
     """
-    jointed = {end for joint in world.joints for end in (joint.parent, joint.child) if end}
-    stated = [b for b in world.bodies if b.prim in jointed and not b.kinematic and _moves(b)]
-    if not stated:
+    first = worlds[0]
+    jointed = {end for joint in first.joints for end in (joint.parent, joint.child) if end}
+    if not any(
+        body.prim in jointed and not body.kinematic and _moves(body) for world in worlds for body in world.bodies
+    ):
         return
-    worlds = max(1, model.world_count)
-    dofs, count = model.joint_dof_count // worlds, model.body_count // worlds
-    response = np.zeros((count, 6, dofs))
-    for k in range(dofs):
-        response[:, :, k] = _velocities(model, state, np.eye(dofs)[k], worlds)[:count]
+    count, dofs = len(worlds), model.joint_dof_count // max(1, model.world_count)
+    response = np.stack([_velocities(model, state, row[None], count)[:, bodies] for row in np.eye(dofs)], axis=-1)
+    speeds = np.array([_speeds(world, jointed, own) for world, own in zip(worlds, response, strict=True)])
+    reached = _velocities(model, state, speeds, count)
+    for world, velocities in zip(worlds, reached[:, bodies], strict=True):
+        for body, velocity in zip(world.bodies, velocities, strict=True):
+            if body.prim in jointed and not body.kinematic and _moves(body):
+                _check(body, velocity)
+
+
+def _speeds(world: World, jointed: set[str], response: Array) -> Array:
+    """The joints' speeds of one world, (dofs,), from what each moves its bodies by, (bodies, 6, dofs)."""
     rows, goals = [], []
-    for body, index in zip(world.bodies, bodies, strict=True):
+    for body, moved in zip(world.bodies, response, strict=True):
         for part, value in ((slice(0, 3), body.velocity), (slice(3, 6), body.angular_velocity)):
             weight = 1.0 if body.prim not in jointed or any(value) else QUIET
-            rows.append(weight * response[index, part])
+            rows.append(weight * moved[part])
             goals.append(weight * np.array(value))
-    speeds = np.linalg.lstsq(np.concatenate(rows), np.concatenate(goals), rcond=None)[0]
-    reached = _velocities(model, state, speeds, worlds)
-    for body in stated:
-        _check(body, reached[bodies[world.bodies.index(body)]])
+    return np.asarray(np.linalg.lstsq(np.concatenate(rows), np.concatenate(goals), rcond=None)[0])
 
 
 def _moves(body: Body) -> bool:
     return any(body.velocity) or any(body.angular_velocity)
 
 
-def _velocities(model: Any, state: Any, speeds: Array, worlds: int) -> Array:
-    """The bodies' velocities under the joints' speeds of one world, given to all, (bodies, 6)."""
-    state.joint_qd.assign(np.tile(speeds, worlds).astype(np.float32))
+def _velocities(model: Any, state: Any, speeds: Array, count: int) -> Array:
+    """The velocities of the bodies of the first `count` worlds, (count, bodies, 6).
+
+    Args:
+        model: The Newton model.
+        state: Gets the speeds and the velocities.
+        speeds: Of the joints of all worlds alike, or of each, (N, dofs).
+        count: How many are asked for.
+    """
+    worlds = max(1, model.world_count)
+    state.joint_qd.assign(np.broadcast_to(speeds, (worlds, speeds.shape[1])).astype(np.float32).ravel())
     newton.eval_fk(model, state.joint_q, state.joint_qd, state)
-    return state.body_qd.numpy().astype(np.float64)
+    return np.asarray(state.body_qd.numpy().astype(np.float64).reshape(worlds, -1, 6)[:count])
 
 
 def _check(body: Body, reached: Array) -> None:

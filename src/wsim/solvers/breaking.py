@@ -38,7 +38,7 @@ class BreakingC:
         mujoco: The module.
         model: MuJoCo's model.
         constraints: MuJoCo's equality constraints of each joint.
-        strength: (joints, 2), the force [N] and the torque [N m] that each bears.
+        strength: (1, joints, 2), the force [N] and the torque [N m] that each bears.
 
     Attributes:
         broken: (1, joints), whether each is broken.
@@ -46,7 +46,7 @@ class BreakingC:
     """
 
     def __init__(self, mujoco: Any, model: Any, constraints: Sequence[Sequence[int]], strength: Array) -> None:
-        self.mujoco, self.model, self.constraints, self.strength = mujoco, model, constraints, strength
+        self.mujoco, self.model, self.constraints, self.strength = mujoco, model, constraints, strength[0]
         self.broken = np.zeros((1, len(constraints)), dtype=bool)
         self.load = np.zeros((1, len(constraints), 2))
 
@@ -95,6 +95,8 @@ class BreakingC:
 
 class BreakingWarp:
     """The same for all worlds of a batch, in MuJoCo Warp; for the arguments see `BreakingC`.
+
+    `strength` is (N, joints, 2), N = 1 where all worlds are alike.
 
     Attributes:
         anew: (worlds,), whether something broke in the last step.

@@ -37,13 +37,14 @@ from wsim.solvers.breaking import BreakingC
 from wsim.solvers.contact_impulses import ContactImpulsesC
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
+from wsim.solvers.ropes import RopesC
+from wsim.solvers.slips import extrapolated
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
 LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
-SMALL_CHANGE = 1e-5  # [m/s]: less says nothing about how what is left goes with the guess
-MOST_SHARE = 19.0  # of the solution before: as where what is left is 0.95 of what was
 ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
 
 
@@ -82,6 +83,9 @@ class ContactConfig:
     """Change of the slip, times friction, below which it stays [m/s]."""
     rough: float = 3e-3
     """The same after `solutions` [m/s]: what is hit would hop by 0.5 um."""
+    steady: float = 0.5
+    """Acceleration along its normal below which a contact goes on as it was [m/s^2]: what it puts a gap off by in a step
+    of 1.25 ms has faded at 6 um."""
     smallest_friction: float = 1e-5
     """MuJoCo's least, and ours for none."""
 
@@ -153,35 +157,6 @@ def targets(
     return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
 
-def extrapolated(slip: Array, left: Array, before: tuple[Array, Array], bodies: Array) -> Array:
-    """Slips that a solution will leave as they were guessed, by the secant through two solutions (Anderson 1965).
-
-    A push is asked for by the slip, and its friction changes the slip. What is left goes by a / (1 + a) with the guess
-    where a ball slides, a = mu² A_t / A_n, A what it yields to a push along and across: 3.5 mu². It goes against the
-    guess where a crate is shoved off, and what comes to stick leaves nothing. The contacts of a body change together:
-    the share of each of two solutions is that which would have left the least over all of them, for a contact over
-    those of both its bodies.
-
-    Args:
-        slip: Guessed, times friction [m/s], (contacts,).
-        left: By the solution with that guess.
-        before: The same two of the solution before; equal ones where there was none.
-        bodies: (contacts, 2), 0 for the world.
-    """
-    rest = left - slip
-    change = rest - (before[1] - before[0])
-    over, under = _of_both_bodies(change * rest, bodies), _of_both_bodies(change * change, bodies)
-    share = np.divide(over, under, out=np.zeros(len(slip)), where=under > SMALL_CHANGE**2)
-    return np.maximum(left - np.clip(share, -MOST_SHARE, 1.0) * (left - before[1]), 0.0)
-
-
-def _of_both_bodies(values: Array, bodies: Array) -> Array:
-    """Sums of contacts' values over all contacts of their first body and of their second, the world's left out."""
-    sums = np.bincount(bodies.ravel(), np.repeat(values, 2))
-    sums[0] = 0.0
-    return np.asarray(sums[bodies].sum(axis=1))
-
-
 def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
     """Turn each cylinder by `angle` [rad] in its body.
 
@@ -203,7 +178,7 @@ class ContactLawC:
         mujoco: The module.
         model: MuJoCo's model.
         flight: Steps the loose bodies.
-        surfaces: Of the geoms.
+        surfaces: Of the geoms of the one world.
         smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
@@ -225,16 +200,19 @@ class ContactLawC:
     ) -> None:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.impulses: ContactImpulsesC | None = None  # where somebody wants them summed
+        self.ties: TieImpulsesC | None = None  # likewise
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.surfaces, self.touching, self._bow = surfaces, touching, np.zeros(0)
+        self.touching, self._bow = touching, np.zeros(0)
+        self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
         self.touched = 0  # steps of the first order since the last smooth one
-        self.rolls = bool(surfaces.law[..., 2].any())
+        self.rolls = bool(self.law[..., 2].any())
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
+        self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -246,6 +224,8 @@ class ContactLawC:
         while self.breaking is not None and self.breaking.give_way(data):
             touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
+        if self.ties is not None:
+            self.ties.add(data, self.smooth and not touching)
         if self.smooth and not touching:
             # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
             model.opt.disableflags |= self.unilateral
@@ -318,6 +298,10 @@ class ContactLawC:
         h = self.model.opt.timestep
         if len(stops):
             goal = settling(data.efc_pos[stops], h, self.config)
+            taut = kinds[stops] == self.stops[1]
+            if self.ropes is not None and taut.any():
+                rows = stops[taut]
+                goal[taut] += self.ropes.growth(data, data.efc_id[rows], data.efc_vel[rows], h) / h
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
         rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
@@ -327,12 +311,13 @@ class ContactLawC:
             self._solve_contacts(data, chosen, first[chosen], h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
+            self.flight.ease(chosen)
 
     def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
         mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
         geoms = contact.geom[chosen]
-        classes = self.surfaces.classes[geoms]
-        law = self.surfaces.law[classes[:, 0], classes[:, 1]]
+        classes = self.classes[geoms]
+        law = self.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
         contact.friction[chosen] = friction
         contact.mu[chosen] = friction[:, 0]
@@ -343,6 +328,7 @@ class ContactLawC:
         speed, bow = data.efc_vel[normal], self._bow[chosen]
         free, bodies = image[normal], model.geom_bodyid[geoms]
         smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
+        smooth |= self.flight.smooth(bodies)
         goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], bodies, h, config, smooth)
         goal = goal + bow
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
@@ -362,12 +348,14 @@ class ContactLawC:
             left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
             change = float(np.abs(left - slip).max())
             if change < config.tolerance and (k or not blow.any()):
-                return
+                break
             if change < config.rough and k + 1 >= config.solutions:
-                return
+                break
             slip, before = extrapolated(slip, left, before, bodies), (slip, left)
             given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
             data.qacc_warmstart[:] = data.qacc
+        jolted = (data.efc_force[normal] > 0.0) & (np.abs(image[normal]) > config.steady)
+        self.flight.ease(bodies[jolted])
 
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
         """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""
@@ -376,7 +364,7 @@ class ContactLawC:
             axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
             leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
             on_end = self.flat_ended[geoms] & (leans > ON_END)
-            bend = np.where(on_end, 0.0, self.surfaces.curvature[geoms]).sum(axis=1)
+            bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
             np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
         return np.maximum(
             np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction

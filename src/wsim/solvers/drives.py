@@ -8,6 +8,7 @@ start and a the acceleration of the step: implicit in the speed, at most F, and 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,9 +43,13 @@ def drive_rows(mujoco: Any, model: Any) -> list[DriveRow]:
         joint = model.wrap_objid[first]
         drives = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (model.actuator_trnid[:, 0] == joint)
         actuators = np.flatnonzero(drives)
-        damping = -float(model.actuator_biasprm[actuators, 2].sum())
-        found.append(DriveRow(tendon, int(model.jnt_dofadr[joint]), tuple(actuators.tolist()), damping))
+        own = tuple(actuators.tolist())
+        found.append(DriveRow(tendon, int(model.jnt_dofadr[joint]), own, _damping(model, own)))
     return found
+
+
+def _damping(model: Any, actuators: tuple[int, ...]) -> float:
+    return -float(model.actuator_biasprm[list(actuators), 2].sum())
 
 
 class DrivesC:
@@ -95,23 +100,30 @@ class DrivesWarp:
     """Drives as rows of MuJoCo Warp, in the law's steps.
 
     Args:
-        model: MuJoCo's model.
-        rows: Its drives.
+        hosts: MuJoCo's model of all worlds alike, or of each in turn (`wsim.solvers.host_models`).
+        rows: The drives of the first.
         worlds: How many there are.
     """
 
-    def __init__(self, model: Any, rows: list[DriveRow], worlds: int) -> None:
-        damping, dofs = np.zeros(model.ntendon), np.zeros(model.ntendon, dtype=int)
+    def __init__(self, hosts: Iterable[Any], rows: list[DriveRow], worlds: int) -> None:
+        damping, mobility = [], []
+        for host in hosts:
+            own = np.zeros(host.ntendon)
+            for row in rows:
+                own[row.tendon] = _damping(host, row.actuators)
+            damping.append(own)
+            mobility.append(host.tendon_invweight0.copy())
+        dofs = np.zeros(len(damping[0]), dtype=int)
         for row in rows:
-            damping[row.tendon], dofs[row.tendon] = row.damping, row.dof
+            dofs[row.tendon] = row.dof
         pairs = [(*row.actuators, -1)[:2] for row in rows]
         self._count = len(rows)
         self._dof = wp.array([row.dof for row in rows], dtype=int)
         self._tendon = wp.array([row.tendon for row in rows], dtype=int)
         self._actuator = wp.array(np.array(pairs), dtype=int)
-        self._of_tendon = [wp.array(damping, dtype=float), wp.array(model.tendon_invweight0, dtype=float),
-                           wp.array(dofs, dtype=int)]  # fmt: skip
-        self._effort = wp.zeros((worlds, model.ntendon), dtype=float)
+        numbers = [wp.array(np.array(each), dtype=float) for each in (damping, mobility)]
+        self._of_tendon = [*numbers, wp.array(dofs, dtype=int)]
+        self._effort = wp.zeros((worlds, len(dofs)), dtype=float)
 
     def take_over(self, data: Any) -> None:
         """Take the drives out of what is applied."""

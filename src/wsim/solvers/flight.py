@@ -2,22 +2,26 @@
 
 MuJoCo takes a body's gyroscopic torque at the step's start and makes it implicit, which costs a body that tumbles its
 energy, by the square of what it turns in a step. Here the spin of the step's end follows from the free motion over the
-step; contacts see it as a smooth force. Newton's state is in single precision, where a kilometre has steps of 0.06 mm:
+step; contacts see it as a smooth force. Where gravity, and what touches a body without a jolt, are all that acts on it,
+the step goes the way of the mean of its first and last velocities: falls, throws, slides and rolling are exact, where
+v += a h, x += v h would come a t h / 2 too far. Newton's state is in single precision, where a kilometre has steps of 0.06 mm:
 what is true between two steps is kept beside it in double, for as long as nobody else writes the state.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import newton
 import numpy as np
 import warp as wp
 
-from wsim.kernels.flight import fly, keep, recall, tumble
+from wsim.kernels.flight import fly, jolt, keep, recall, tumble
 
 Array = np.ndarray
+STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
 
 
 class Flight:
@@ -27,20 +31,24 @@ class Flight:
         mujoco: The module of MuJoCo in C.
         solver: Newton's MuJoCo solver.
         data: MuJoCo's data that it steps, in C or in Warp.
+        hosts: MuJoCo's model of all worlds alike, or of each in turn (`wsim.solvers.host_models`).
     """
 
-    def __init__(self, mujoco: Any, solver: Any, data: Any) -> None:
+    def __init__(self, mujoco: Any, solver: Any, data: Any, hosts: Iterable[Any]) -> None:
         model = solver.model
         self.model, self._qpos, self._qvel = model, _rows(data.qpos), _rows(data.qvel)
         self._qacc, self._bias, self._held = _rows(data.qacc), _rows(data.qfrc_bias), _rows(data.qfrc_constraint)
+        self._pushed = _rows(data.qfrc_smooth)
         kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
         place, freedom = solver.mj_q_start.numpy(), solver.mj_qd_start.numpy()
         self.joints = len(place)
         ours = ~kinematic[model.joint_child.numpy()[: self.joints]] & (place >= 0)
         loose = _loose(mujoco, solver.mj_model, place[ours])
-        center, principal, moments = _inertia(mujoco, solver.mj_model, loose)
+        of_worlds = [_inertia(mujoco, host, loose) for host in hosts]
+        center, principal, moments = (np.stack(each) for each in zip(*of_worlds, strict=True))
         jnt = solver.mj_model.body_jntadr[loose]
         shape = self._qpos.shape[0], len(loose)
+        rows = _rows_of_bodies(solver, loose, place[kinematic[model.joint_child.numpy()[: self.joints]]])
         with wp.ScopedDevice(model.device):
             self._joints = [wp.array(np.where(ours, start, -1), dtype=int) for start in (place, freedom)]
             self._place = wp.array(solver.mj_model.jnt_qposadr[jnt], dtype=int)
@@ -49,17 +57,23 @@ class Flight:
             self._principal = wp.array(principal, dtype=wp.quatd)
             self._moments = wp.array(moments, dtype=wp.vec3d)
             self._change = wp.zeros(shape, dtype=wp.vec3d)
+            self.row = wp.array(rows, dtype=int)  # of each of MuJoCo's bodies among the loose ones, or below 0
+            self._tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
+            self._steady = wp.zeros(shape, dtype=int)  # in this step
+            self.exact = wp.zeros(shape, dtype=int)  # in the step before
             self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
             self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
         # Of C's numbers: a kernel's launch takes longer than a step of a small world.
         in_c = [(true.numpy(), array.numpy()) for true, array in zip(self._true, (self._qpos, self._qvel), strict=True)]
         self._shared = in_c if isinstance(data.qpos, Array) else []
+        self._row_c, self._steady_c, self._exact_c = rows, self._steady.numpy()[0], self.exact.numpy()[0]
         self.forget()
 
     def forget(self) -> None:
         """Start from the state, whatever was told."""
         for told in self._told:
             told.fill_(math.nan)
+        self.exact.fill_(1)
 
     def recall(self, state: Any) -> None:
         """Put what is true of `state` into MuJoCo's data, which has it in single precision."""
@@ -89,6 +103,31 @@ class Flight:
         for true, array in zip(self._true, (self._qpos, self._qvel), strict=True):
             wp.launch(keep, dim=array.shape, inputs=[array], outputs=[true], device=self.model.device)
 
+    def smooth(self, bodies: Array) -> Array:
+        """Of contacts in C, whether both bodies (contacts, 2) went exactly in the step before."""
+        rows = self._row_c[bodies]
+        known = np.append(self._exact_c, [0, 1])  # at OTHER, and at STATED
+        return np.asarray((known[rows] > 0).all(axis=1))
+
+    def ease(self, jolted: Array) -> None:
+        """Note in C that all bodies go on as they did, but for those that are jolted."""
+        self._steady_c[:] = 1
+        rows = self._row_c[jolted]
+        self._steady_c[rows[rows >= 0]] = 0
+
+    def ease_warp(self, model: Any, data: Any, jacobian: list[Any], least: float) -> None:
+        """The same in Warp: jolted is what a contact accelerates along its normal by more than `least` [m/s^2]."""
+        self._steady.fill_(1)
+        wp.launch(
+            jolt,
+            dim=data.naconmax,
+            inputs=[
+                data.nacon, data.contact.worldid, data.contact.geom, data.contact.efc_address, model.geom_bodyid,
+                self.row, data.efc.force, data.qacc, *jacobian, least,
+            ],
+            outputs=[self._steady],
+        )  # fmt: skip
+
     def tumble(self, h: float) -> None:
         """Mend the bias of loose bodies, between what hangs on velocities and the accelerations."""
         wp.launch(
@@ -106,9 +145,9 @@ class Flight:
             dim=self._change.shape,
             inputs=[
                 self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
-                self._qacc, self._held,
+                self._qacc, self._held, self._pushed, self._bias, self._tied, self._steady,
             ],
-            outputs=[*self._true, self._qpos, self._qvel],
+            outputs=[self.exact, *self._true, self._qpos, self._qvel],
             device=self.model.device,
         )  # fmt: skip
 
@@ -124,6 +163,29 @@ def _loose(mujoco: Any, model: Any, places: Array) -> Array:
     free = model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)
     alone = freedoms[model.dof_treeid[model.jnt_dofadr]] == 6
     return np.asarray(model.jnt_bodyid[free & alone & np.isin(model.jnt_qposadr, places)])
+
+
+def _rows_of_bodies(solver: Any, loose: Array, led: Array) -> Array:
+    """Of each of MuJoCo's bodies its row among the loose ones; STATED of what goes as stated, else OTHER."""
+    model = solver.mj_model
+    rows = np.full(model.nbody, OTHER)
+    rows[loose] = np.arange(len(loose))
+    rows[0] = STATED
+    rows[model.jnt_bodyid[np.isin(model.jnt_qposadr, led)]] = STATED
+    return rows
+
+
+def _tied(mujoco: Any, model: Any, loose: Array) -> Array:
+    """Whether a tendon or an equality may hold each of some bodies, (bodies,)."""
+    kinds = mujoco.mjtWrap
+    sites = model.wrap_objid[model.wrap_type == int(kinds.mjWRAP_SITE)]
+    geoms = model.wrap_objid[np.isin(model.wrap_type, [int(kinds.mjWRAP_SPHERE), int(kinds.mjWRAP_CYLINDER)])]
+    bodies = [model.site_bodyid[sites], model.geom_bodyid[geoms]]
+    acts = model.eq_active0 != 0  # Newton gives each loose body a weld, in case it is led
+    body, site = (model.eq_objtype == int(kind) for kind in (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE))
+    for ends in (model.eq_obj1id, model.eq_obj2id):
+        bodies += [ends[acts & body], model.site_bodyid[ends[acts & site]]]
+    return np.isin(loose, np.concatenate(bodies)).astype(np.int32)
 
 
 def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Array]:

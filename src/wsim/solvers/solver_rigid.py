@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import newton
@@ -18,10 +18,13 @@ from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
 from wsim.solvers.contact_law import ContactConfig, ContactLawC
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
+from wsim.solvers.host_models import host_models
+from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
 
 Array = np.ndarray
 ALWAYS = 2**30  # steps
@@ -43,12 +46,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
 
     Args:
         model: The Newton model.
-        surfaces: Of the shapes of the first world.
+        surfaces: Of the shapes of all worlds alike, or of each; where of each, worlds differ in numbers.
         on_c: Whether MuJoCo in C steps the first world alone.
         smooth: Whether steps that touch nothing are of the fourth order.
         may_touch: Whether any contact, stop or dry friction can come up.
         time_step: Of the steps to come [s].
-        breakable: The joints that may break.
+        breakable: The joints that may break, of all worlds alike or of each.
         touching: Finds contacts with what MuJoCo does not know.
         options: For `newton.solvers.SolverMuJoCo`.
     """
@@ -61,13 +64,14 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         smooth: bool,
         may_touch: bool,
         time_step: float,
-        breakable: Sequence[Breakable] = (),
+        breakable: Sequence[Sequence[Breakable]] = (),
         touching: SurfaceContacts | None = None,
         **options: Any,
     ) -> None:
         self.contact_config = ContactConfig()
         self._flight: Flight | None = None
         self.impulses: ContactImpulsesC | ContactImpulsesWarp | None = None
+        self.tie_impulses: TieImpulsesC | None = None
         super().__init__(
             model,
             use_mujoco_cpu=on_c,
@@ -79,18 +83,20 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             tolerance=self.contact_config.solver_tolerance if on_c else self.contact_config.solver_tolerance_warp,
             **options,
         )
-        of_geoms = surfaces.taken(self.mjc_geom_to_newton_shape.numpy()[0])
+        self._differ = len(surfaces.classes) > 1
+        of_geoms = surfaces.taken(self.mjc_geom_to_newton_shape.numpy())
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
-        self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
+        yielding = [_yielding(host) for host in self._hosts()]
+        self.mj_model.body_invweight0[:, 0] = yielding[0]
         self._harden_constraints(time_step)
-        self.breaking = self._breaking(breakable) if breakable else None
+        self.breaking = self._breaking(breakable) if breakable and breakable[0] else None
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
         mujoco = self.import_mujoco()[0]
-        self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data)
+        self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data, self._hosts())
         driven = drive_rows(mujoco, self.mj_model)
         self._drives: Any = None
         if on_c:
@@ -107,11 +113,15 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 drives,
             )
         elif may_touch or not smooth:
-            self._prepare_warp(of_geoms)
+            self._prepare_warp(of_geoms, np.array(yielding))
             with wp.ScopedDevice(model.device):
-                self._drives = DrivesWarp(self.mj_model, driven, self.mjw_data.nworld) if driven else None
+                self._drives = DrivesWarp(self._hosts(), driven, self.mjw_data.nworld) if driven else None
         else:  # Runge and Kutta's stages take drives as MuJoCo does
             self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
+        self._ropes: Any = None
+        if not on_c and self.mj_model.tendon_limited.any():
+            with wp.ScopedDevice(model.device):
+                self._ropes = RopesWarp(self._mujoco_warp, self.mjw_data)
         self._smooth_steps: Any = None
         if smooth and may_touch and not on_c:
             self._touched_for.zero_()
@@ -119,26 +129,30 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data, self._touched_for
             )
 
+    def _hosts(self) -> Iterator[Any]:
+        return host_models(self, self._differ)
+
     def move_surfaces(self, velocity: Array) -> None:
         """Let surfaces move as belts do: what touches them slips against that velocity.
 
         MuJoCo adds a geom's `surfacevel` to what its contacts' friction rows have for velocity, in C and in Warp.
 
         Args:
-            velocity: Of each shape of the first world [m/s], in its body's axes, or the world's, (shapes, 3).
+            velocity: Of each shape of all worlds alike, or of each [m/s], in its body's axes, or the world's,
+                (N, shapes, 3).
         """
-        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
-        stated = np.where(shapes[:, None] >= 0, velocity[np.maximum(shapes, 0) % max(1, len(velocity))], 0.0)
-        if not stated.any():
+        if not velocity.any():
             return
-        for geom in np.flatnonzero(stated.any(axis=1)):
-            x, y, z, w = self.mj_model.geom_quat[geom][[1, 2, 3, 0]]
-            self.mj_model.geom_surfacevel[geom, :3] = rotate(conjugate(np.array([x, y, z, w])), stated[geom])
+        shapes = self.mjc_geom_to_newton_shape.numpy()[0]
+        moving = np.zeros((len(velocity), self.mj_model.ngeom, 6))
+        for stated, moved, host in zip(velocity, moving, self._hosts(), strict=True):
+            for geom in np.flatnonzero((shapes >= 0) & stated[shapes].any(axis=1)):
+                turn = conjugate(host.geom_quat[geom][[1, 2, 3, 0]])
+                moved[geom, :3] = rotate(turn, stated[shapes[geom]])
+        self.mj_model.geom_surfacevel[:] = moving[0]
         self.mj_model.flg_surfacevel = 1
         if not self.use_mujoco_cpu:
-            moving = self.mjw_model.geom_surfacevel
-            values = np.broadcast_to(self.mj_model.geom_surfacevel, (moving.shape[0], self.mj_model.ngeom, 6))
-            moving.assign(values.astype(np.float32))
+            self._give_warp("geom_surfacevel", moving)
             self.mjw_model.flg_surfacevel = True
 
     def _harden_constraints(self, h: float) -> None:
@@ -163,14 +177,22 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _tell_warp(self, *names: str) -> None:
         """Give all worlds of MuJoCo Warp's model what MuJoCo's model has under these names."""
         for name in names:
-            array = getattr(self.mjw_model, name)
-            array.assign(np.broadcast_to(getattr(self.mj_model, name), array.numpy().shape).astype(np.float32))
+            self._give_warp(name, getattr(self.mj_model, name)[None])
 
-    def _breaking(self, breakable: Sequence[Breakable]) -> Any:
+    def _give_warp(self, name: str, values: Array) -> None:
+        """Give MuJoCo Warp's model what all worlds have under a name, or each, (N, …); it counts worlds modulo N."""
+        array = getattr(self.mjw_model, name)
+        if len(values) > array.shape[0]:
+            made = wp.array(values.astype(np.float32), dtype=array.dtype, device=self.model.device)
+            setattr(self.mjw_model, name, made)
+            return
+        array.assign(np.broadcast_to(values, array.numpy().shape).astype(np.float32))
+
+    def _breaking(self, breakable: Sequence[Sequence[Breakable]]) -> Any:
         """What breaks joints, under MuJoCo's numbers of their constraints."""
         rows = self.mjc_eq_to_newton_eq.numpy()[0].tolist()
-        constraints = [[rows.index(row) for row in joint.rows] for joint in breakable]
-        strength = np.array([[joint.force, joint.torque] for joint in breakable])
+        constraints = [[rows.index(row) for row in joint.rows] for joint in breakable[0]]
+        strength = np.array([[[joint.force, joint.torque] for joint in own] for own in breakable])
         if self.use_mujoco_cpu:
             return BreakingC(self.import_mujoco()[0], self.mj_model, constraints, strength)
         with wp.ScopedDevice(self.model.device):
@@ -190,12 +212,18 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         capacity = self.mjw_data.naconmax // self.mjw_data.nworld
         self.impulses = ContactImpulsesWarp(self.mj_model, of_geoms, self.model.device, capacity)
 
+    def keep_ties(self, joints: Sequence[TiedJoint], cords: Sequence[TiedCord]) -> None:
+        """Sum what joints and cords give from here on, in C alone."""
+        if self.use_mujoco_cpu:
+            ties = TieImpulsesC(self.import_mujoco()[0], self.mj_model, joints, cords)
+            self.tie_impulses = self._law_c.ties = ties
+
     def mend(self) -> None:
         """Make all joints whole that broke."""
         if self.breaking is not None:
             self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
-    def _prepare_warp(self, surfaces: Surfaces) -> None:
+    def _prepare_warp(self, surfaces: Surfaces, yielding: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
@@ -203,7 +231,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         if soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config):
             self.mjw_model.opt.solver = int(self._mujoco.mjtSolver.mjSOL_CG)
-        self._tell_warp("body_invweight0", "geom_solimp")
+        self._tell_warp("geom_solimp")
+        weights = self.mjw_model.body_invweight0.numpy()[: len(yielding)]
+        weights[..., 0] = yielding
+        self._give_warp("body_invweight0", weights)
         margin = self.mjw_model.geom_margin
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
         with wp.ScopedDevice(device):
@@ -297,6 +328,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         warp = self._mujoco_warp
         if self._smooth_steps:
             self._smooth_steps.before(model, data)
+        if self._ropes:
+            self._ropes.look_ahead(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         if self._flight:
@@ -319,6 +352,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self.impulses.add(data, self._dt)
         self._implicit(model, data)
         if self._flight:
+            self._flight.ease_warp(model, data, self._jacobian(model, data.efc), self.contact_config.steady)
             self._flight.fly(self._dt)
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
@@ -361,17 +395,20 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, *self._jacobian(model, efc), config.threshold, config.settle_time,
-                config.settle_speed, config.smallest_friction,
+                data.qacc_smooth, self._touched_for, self._flight.row, self._flight.exact, *self._jacobian(model, efc),
+                config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
         )  # fmt: skip
         wp.launch(
             stop,
             dim=(data.nworld, data.njmax),
-            inputs=[data.nefc, efc.type, efc.pos, efc.vel, h, config.settle_time, config.settle_speed],
+            inputs=[
+                data.nefc, efc.type, efc.pos, efc.vel, h, efc.id, data.ten_length,
+                self._ropes.length if self._ropes else data.ten_length, config.settle_time, config.settle_speed,
+            ],
             outputs=[efc.aref],
-        )
+        )  # fmt: skip
 
     def _aim_again(self, model: Any, data: Any) -> None:
         efc, contact = data.efc, data.contact

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from wsim.sweep.axis import Axis
     from wsim.sweep.candidate import Candidate, Outcome
     from wsim.sweep.folder import SweepFolder
+    from wsim.sweep.run import sweep
     from wsim.sweep.spec import Spec
-    from wsim.sweep.sweep import sweep
 
 __all__ = ["Axis", "Candidate", "Outcome", "Spec", "SweepFolder", "sweep"]
 
@@ -27,6 +27,6 @@ __getattr__ = door(
         "Outcome": "candidate",
         "Spec": "spec",
         "SweepFolder": "folder",
-        "sweep": "sweep",
+        "sweep": "run",
     },
 )

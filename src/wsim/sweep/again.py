@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.alone import run_in_folder
-from wsim.sweep.work import Job
+from wsim.sweep.work import settings
 
 if TYPE_CHECKING:
     from wsim.runs.folder import RunFolder
@@ -41,7 +41,7 @@ def run_again(folder: SweepFolder, outcome: Outcome, pictures: bool = True, prog
     if plan is not None:
         (run.path / "plan.json").write_text(plan_file.read_text(encoding="utf-8"), encoding="utf-8")
     run.record(prompt=plan.prompt if plan else None, program=candidate.program, params=candidate.params)
-    settings = Job(candidate, folder.path, spec).settings(pictures)
-    verdict = run_in_folder(run, folder.path / candidate.program, plan, settings, progress)
+    program = folder.path / candidate.program
+    verdict = run_in_folder(run, program, plan, settings(spec, candidate, pictures), progress)
     run.record(seed=candidate.seed, in_sweep=outcome.status, same=verdict.status == outcome.status)
     return run

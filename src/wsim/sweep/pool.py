@@ -8,7 +8,7 @@ import os
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
 
@@ -31,7 +31,7 @@ class _Worker:
     process: Any
     pipe: Connection
     task: int | None = None
-    since: float = field(default_factory=time.monotonic)
+    until: float = 0.0  # [s] of the clock, when it is given up
 
 
 class Pool(Generic[Task, Result]):
@@ -40,10 +40,10 @@ class Pool(Generic[Task, Result]):
     Args:
         work: Called in a worker with each task; a function of a module.
         workers: How many processes.
-        patience: After how many seconds a task's worker is stopped [s].
+        patience: After how many seconds a task's worker is stopped [s], of each task.
     """
 
-    def __init__(self, work: Callable[[Task], Result], workers: int, patience: float) -> None:
+    def __init__(self, work: Callable[[Task], Result], workers: int, patience: Callable[[Task], float]) -> None:
         self._work, self._patience, self._count = work, patience, max(1, workers)
         self._workers: list[_Worker] = []
 
@@ -54,7 +54,7 @@ class Pool(Generic[Task, Result]):
             while todo or any(worker.task is not None for worker in self._workers):
                 self._fill(tasks, todo, tries)
                 for worker in self._ready():
-                    index, result = self._answer(worker)
+                    index, result = self._answer(worker, tasks)
                     if index is None:
                         continue
                     if isinstance(result, Lost) and tries[index] < TRIES and not result.reason.startswith("took"):
@@ -77,7 +77,7 @@ class Pool(Generic[Task, Result]):
             if todo and worker.task is None:
                 index = todo.popleft()
                 tries[index] += 1
-                worker.task, worker.since = index, time.monotonic()
+                worker.task, worker.until = index, time.monotonic() + self._patience(tasks[index])
                 with contextlib.suppress(OSError):  # it has died; what it was to do is found lost
                     worker.pipe.send(tasks[index])
 
@@ -85,23 +85,23 @@ class Pool(Generic[Task, Result]):
         """Workers that have answered, ended, or been given up."""
         busy = [worker for worker in self._workers if worker.task is not None]
         signs = {worker.pipe: worker for worker in busy} | {worker.process.sentinel: worker for worker in busy}
-        left = min((worker.since + self._patience for worker in busy), default=0.0) - time.monotonic()
+        left = min((worker.until for worker in busy), default=0.0) - time.monotonic()
         found = wait(list(signs), timeout=max(0.0, left))
-        late = [worker for worker in busy if time.monotonic() - worker.since >= self._patience]
+        late = [worker for worker in busy if time.monotonic() >= worker.until]
         return list({id(worker): worker for worker in [*(signs[sign] for sign in found), *late]}.values())
 
-    def _answer(self, worker: _Worker) -> tuple[int | None, Any]:
+    def _answer(self, worker: _Worker, tasks: Sequence[Task]) -> tuple[int | None, Any]:
         index, worker.task = worker.task, None
         try:
             if worker.pipe.poll():
                 return index, worker.pipe.recv()
         except (EOFError, OSError):
             worker.process.join(2.0)  # it says itself how it ends
-        hung = worker.process.is_alive() and time.monotonic() - worker.since >= self._patience
+        hung = worker.process.is_alive() and time.monotonic() >= worker.until
         _end(worker)
         self._workers.remove(worker)
-        if hung:
-            return index, Lost(f"took more than {self._patience:g} s")
+        if hung and index is not None:
+            return index, Lost(f"took more than {self._patience(tasks[index]):g} s")
         return index, Lost(f"its process ended with {_cause(worker.process.exitcode)}")
 
 

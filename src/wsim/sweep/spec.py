@@ -10,6 +10,8 @@ from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Candidate
 from wsim.sweep.sampling import Method, Point, sample
 
+TOGETHER = 1024  # worlds at once on a CUDA device; fewer where its memory holds fewer
+
 
 class Spec(BaseModel):
     """What is run.
@@ -26,6 +28,7 @@ class Spec(BaseModel):
         time_step: Upper bound of the step [s]; None: chosen.
         isolation: Of the programs.
         batch: The least number of points of a search that run side by side.
+        worlds: Worlds that are simulated at once; 0: one by one on a CPU, `TOGETHER` on a CUDA device.
         patience: Seconds after which a candidate is given up [s].
     """
 
@@ -42,12 +45,18 @@ class Spec(BaseModel):
     time_step: float | None = None
     isolation: str = "auto"
     batch: int = Field(default=1, ge=1, le=100_000)
+    worlds: int = Field(default=0, ge=0, le=100_000)
     patience: float = Field(default=600.0, gt=0.0)
 
     @property
     def count(self) -> int:
         """Candidates in all; of a search, at most about as many."""
         return (1 + self._points) * self.each
+
+    @property
+    def together(self) -> int:
+        """Worlds that are simulated at once, where they are of one topology."""
+        return self.worlds or (TOGETHER if self.device.startswith("cuda") else 1)
 
     @property
     def each(self) -> int:

@@ -1,20 +1,28 @@
-"""One candidate, run and judged in a worker's process."""
+"""A shard of candidates, built, run and judged in a worker's process."""
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from wsim.assets import assets_folder
 from wsim.errors import UserError
 from wsim.judge.verdict import Verdict
 from wsim.plan.store import load
-from wsim.runs.iteration import Iteration
+from wsim.program import sandbox
+from wsim.runs.iteration import Iteration, no_world
 from wsim.runs.settings import Settings
+from wsim.sweep.batch import batches, verdicts
 from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.spec import Spec
+
+if TYPE_CHECKING:
+    from wsim.plan.schema import Plan
+    from wsim.program.sandbox import BuildResult
 
 # What they hold against the plan is what a parameter is there to change.
 VARIED = (
@@ -25,54 +33,59 @@ VARIED = (
     "CheckPlanJoints",
     "CheckPlanMotion",
 )
+FAILURES = (ValueError, RuntimeError, LookupError, ArithmeticError, MemoryError, OSError, UserError)
 
 
 @dataclass(frozen=True)
-class Job:
-    """A candidate, and what it is run with.
+class Shard:
+    """Candidates that one worker takes at a time, and what they are run with.
 
     Attributes:
-        candidate: It.
+        candidates: They.
         folder: The sweep's, with its programs and perhaps plan.json.
         spec: The sweep's.
     """
 
-    candidate: Candidate
+    candidates: tuple[Candidate, ...]
     folder: Path
     spec: Spec
 
-    def settings(self, pictures: bool = False) -> Settings:
-        """As `wsim run` takes them."""
-        spec, candidate = self.spec, self.candidate
-        return Settings(
-            device=spec.device,
-            params=candidate.params,
-            isolation=spec.isolation,
-            pictures=pictures,
-            time_step=spec.time_step,
-            seed=candidate.seed,
-        )
+    @property
+    def patience(self) -> float:
+        """How long it may take [s]."""
+        return self.spec.patience * len(self.candidates)
 
 
-def work(job: Job) -> Outcome:
+def settings(spec: Spec, candidate: Candidate, pictures: bool = False) -> Settings:
+    """A candidate's, as `wsim run` takes them."""
+    return Settings(
+        device=spec.device,
+        params=candidate.params,
+        isolation=spec.isolation,
+        pictures=pictures,
+        time_step=spec.time_step,
+        seed=candidate.seed,
+    )
+
+
+def work(shard: Shard) -> list[Outcome]:
     """Build, simulate, judge; nothing stays on disk."""
-    started = time.perf_counter()
-    plan_file = job.folder / "plan.json"
-    scratch = Path(tempfile.mkdtemp(prefix="wsim-candidate-"))
-    try:
-        plan = load(plan_file) if plan_file.is_file() else None
-        iteration = Iteration.of(job.folder / job.candidate.program, scratch, plan, job.settings())
-        verdict = iteration.run()
-        if job.candidate.params:
-            verdict = as_varied(verdict)
-        return Outcome.of(job.candidate, verdict, time.perf_counter() - started)
-    except (ValueError, RuntimeError, LookupError, ArithmeticError, MemoryError, OSError, UserError) as error:
-        text = " ".join(str(error).split())[:400]
-        reason = f"{type(error).__name__}: {text}"
-        seconds = round(time.perf_counter() - started, 3)
-        return Outcome(candidate=job.candidate, status="failed", reason=reason, seconds=seconds)
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+    plan_file = shard.folder / "plan.json"
+    plan = load(plan_file) if plan_file.is_file() else None
+    with tempfile.TemporaryDirectory(prefix="wsim-candidates-") as scratch:
+        made = [
+            (candidate, *each)
+            for candidate, each in zip(shard.candidates, _build(shard, Path(scratch), plan), strict=True)
+        ]
+        found: dict[int, Outcome] = {}
+        if shard.spec.together > 1:
+            runnable = [(candidate, iteration) for candidate, iteration, built in made if built.ok]
+            for batch in batches(runnable, shard.spec.together):
+                found |= _together(batch, plan)
+        return [
+            found[candidate.number] if candidate.number in found else _alone(candidate, iteration, built)
+            for candidate, iteration, built in made
+        ]
 
 
 def as_varied(verdict: Verdict) -> Verdict:
@@ -84,3 +97,60 @@ def as_varied(verdict: Verdict) -> Verdict:
         return verdict.model_copy(update={"findings": kept})
     summary = f"Accepted: all {len(kept)} findings pass; what differs from the plan was asked for."
     return verdict.model_copy(update={"status": "accepted", "summary": summary, "findings": kept})
+
+
+def _build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteration, BuildResult]]:
+    """Each candidate's folder and stage; those of one program are built in one process."""
+    made: dict[int, tuple[Iteration, BuildResult]] = {}
+    for name in dict.fromkeys(candidate.program for candidate in shard.candidates):
+        program, own = shard.folder / name, [each for each in shard.candidates if each.program == name]
+        iterations = []
+        for candidate in own:
+            folder = scratch / f"{candidate.number:06d}"
+            folder.mkdir()
+            iterations.append(Iteration(folder, plan, settings(shard.spec, candidate), source=program))
+        built = sandbox.build_many(
+            program,
+            [iteration.stage for iteration in iterations],
+            [candidate.params for candidate in own],
+            iterations[0].settings.limits(),
+            shard.spec.isolation,
+            readable=[assets_folder()],
+        )
+        made |= {
+            candidate.number: each for candidate, each in zip(own, zip(iterations, built, strict=True), strict=True)
+        }
+    return [made[candidate.number] for candidate in shard.candidates]
+
+
+def _alone(candidate: Candidate, iteration: Iteration, built: BuildResult) -> Outcome:
+    def run() -> Verdict:
+        return iteration.happen() if built.ok else no_world(built)
+
+    started = time.perf_counter()
+    return _outcome(candidate, run, lambda: built.seconds + time.perf_counter() - started)
+
+
+def _together(batch: Sequence[tuple[Candidate, Iteration]], plan: Plan | None) -> dict[int, Outcome]:
+    """The outcomes of a batch, by candidate; none where it cannot be simulated as one: each is run alone then."""
+    started = time.perf_counter()
+    try:
+        found = verdicts(batch, plan)
+    except FAILURES:
+        return {}
+    seconds = (time.perf_counter() - started) / len(batch)
+    return {
+        candidate.number: _outcome(candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
+        for (candidate, _), verdict in zip(batch, found, strict=True)
+    }
+
+
+def _outcome(candidate: Candidate, run: Callable[[], Verdict], seconds: Callable[[], float]) -> Outcome:
+    try:
+        verdict = run()
+        if candidate.params:
+            verdict = as_varied(verdict)
+        return Outcome.of(candidate, verdict, seconds())
+    except FAILURES as error:
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())[:400]}"
+        return Outcome(candidate=candidate, status="failed", reason=reason, seconds=round(seconds(), 3))

@@ -38,7 +38,8 @@ def test_what_is_too_heavy_never_floats(pool):
     case = pool()
     heavy = case.body("/World/wooden_block", mass=1.2 * 5.6)
     outcome = found(f"floats({BLOCK}, water)", heavy)
-    assert not outcome.satisfied[0] and outcome.margin[0] == pytest.approx(-0.2 * 0.015)
+    assert not outcome.satisfied[0] and outcome.margin[0] == pytest.approx(1.0 - 0.6 * 1.2 / 0.6)
+    assert outcome.units == ["1"]  # as deep as what floats may be, and heavier than what does
     assert not found(f"floats({BALL}, water)", case).satisfied[0]
 
 
@@ -133,3 +134,16 @@ def test_a_level_in_a_vessel_is_that_of_what_is_in_it(pool):
     assert found(f"always[0, 1](level_in(water, tank, {half} m, within 1 cm))", case).margin[0] == pytest.approx(
         0.01, abs=1e-3
     )
+
+
+def test_a_vessel_is_filled_by_the_part_that_is_in_it(pool):
+    case, share = pouring(pool())
+    assert found("fills(water, tank)", case).margin[0] == pytest.approx(0.1)
+    assert found("always[0, 1](fills(water, tank))", case).margin[0] == pytest.approx(0.1 - share)
+    assert found("always[0, 1](fills(water, tank, share 40 %))", case).satisfied[0] == (share <= 0.6)
+
+
+def test_what_is_out_of_the_tank_does_not_float_in_it(pool):
+    case = pool().edit("body_q", (slice(60, None), 0, 0), 0.6)
+    outcome = found(f"floats({BLOCK}, water)", case)
+    assert not outcome.satisfied[0] and outcome.margin[0] == pytest.approx(0.33 - 0.6, abs=1e-6)

@@ -11,7 +11,8 @@ from tests.judge.language.conftest import moving, shape, solid
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
 from wsim.judge.language.python import always, eventually, finally_, ordered, stays_within
-from wsim.plan.schema.formula import Always, And, Eventually, Formula, Not, Or, StaysWithin, Then, Until
+from wsim.plan.schema.formula import Always, And, Eventually, Formula, Not, Or, Then, Until
+from wsim.plan.schema.formula_place import StaysWithin
 from wsim.scene.world import World
 
 A, B = (stays_within(name, (0.0, 0.0, 0.0), radius=1.0) for name in "ab")

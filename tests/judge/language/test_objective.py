@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from wsim.judge import judge
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.language import ObjectiveFormula, parse
+from wsim.judge.language import ObjectiveCheck, parse
 from wsim.plan.schema import Objective, Plan
 
 TOP = "/World/box_3"
@@ -72,7 +72,7 @@ def test_a_signal_that_was_not_recorded_is_not_satisfied(stack):
     case = case.changed(contact_force=np.full_like(case.recording.contact_force, np.nan))
     for said in ("supported_by(box_1, ground)", "not supported_by(box_1, ground)"):
         objective = Objective(kind="formula", object="box_1", formula=parse(said))
-        (finding,) = ObjectiveFormula(objective).run(Evidence(case.recording, case.plan))
+        (finding,) = ObjectiveCheck(objective).run(Evidence(case.recording, case.plan))
         assert not finding.passed and finding.margin is None
         assert "force of contacts upwards of /World/box_1 is not known" in finding.message
 

@@ -4,18 +4,23 @@ import json
 import math
 import re
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
 from tests.judge.language.conftest import moving, shape, solid, still, times
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.language import Signals, evaluate, from_json, parse, python
+from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.language import Signals, evaluate, from_json, parse, python, sentence
+from wsim.judge.language.kinds import KINDS, formula_of
 from wsim.plan.schema import Objective
-from wsim.plan.schema.formula import VOCABULARY
+from wsim.plan.schema.draft import KindOfTwo
+from wsim.plan.schema.formula import VOCABULARY, Predicate
 from wsim.recording.recording import FluidTrack, Recording
 from wsim.scene.world import Container, Fluid, Shape, World
 
+KINDS_OF_TWO = get_args(KindOfTwo)
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "objectives.md").read_text(encoding="utf-8")
 ROWS = [[cell.strip() for cell in line.strip("|").split("|")] for line in PAGE.splitlines() if line.startswith("| `")]
@@ -35,6 +40,7 @@ def signals() -> Signals:
         ],
         statics=[
             still("ground", Shape(prim="/g", kind="plane", size=())), still("wall", shape("box", 0.1, 4.0, 2.0)),
+            still("ramp", shape("box", 2.0, 1.0, 0.2, position=(-5.0, 0.0, 0.0), rotation=(0.0, 0.2, 0.0, 0.98**0.5))),
             still("tank", shape("box", 1.0, 1.0, 0.1, position=(0.0, 0.0, -0.05))),
         ],
         containers=[Container(prim="/World/tank", inner_size=(1.0, 1.0, 0.6), inner_center=(0.0, 0.0, 0.3))],
@@ -64,7 +70,7 @@ def signals() -> Signals:
 def test_the_page_has_every_predicate_and_operator() -> None:
     assert {row[0].strip("`") for row in PREDICATES} == set(VOCABULARY)
     assert {row[0].strip("`") for row in OPERATORS} == {
-        "always", "eventually", "until", "then", "finally", "and", "or", "not",
+        "always", "eventually", "until", "then", "finally", "mean", "and", "or", "not",
     }  # fmt: skip
 
 
@@ -105,3 +111,35 @@ def test_the_code_for_many_worlds_runs(signals) -> None:
     }  # fmt: skip
     exec(CODE["python"][1], names)
     assert names["outcome"].satisfied.shape == (1,)
+
+
+JUDGE = (ROOT / "docs" / "judge.md").read_text(encoding="utf-8").split("\n## Objectives\n")[1].split("\n## ")[0]
+SAID = dict(re.findall(r"^\| `(\w+)` \| `([^`]+)`", JUDGE, re.MULTILINE))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_judges_page_says_which_formula_each_kind_is(kind, signals) -> None:
+    formula = parse(SAID[kind])
+    first = next(node for node in formula.walk() if isinstance(node, Predicate))
+    names = {"object": getattr(first, "object", None) or first.fluid}
+    names |= {"ref": getattr(first, "ref", None) or getattr(first, "fluid", None)} if kind in KINDS_OF_TWO else {}
+    value = getattr(first, "least", None) if kind in ("moves", "slides", "rolls_down") else None
+    asked = Objective(kind=kind, value=value, direction=getattr(first, "direction", None), **names)
+    signals.evidence.recording.contact_force[:] = 1.0
+    assert sentence(formula_of(asked, signals.evidence)) == sentence(formula)
+
+
+def test_a_kind_takes_the_objectives_own_tolerance(signals) -> None:
+    for kind, ref, said in (
+        ("floats", "water", "mean(floats(box, water, within 0.03 m))"),
+        ("stays_inside", "tank", "stays_inside(box, tank, within 0.03 m)"),
+        ("rests_on", "tank", "mean(lies_on(box, tank, within 0.03 m)) and mean(weighs_on(box, tank))"),
+        ("settles", None, "mean[0.5](settles(box, speed 0.03 m/s))"),
+        ("tilts", "ball", "tilts_to(box, ball, least 0.03 deg)"),
+    ):
+        asked = Objective(kind=kind, object="box", ref=ref, tolerance=0.03)
+        assert formula_of(asked, signals.evidence) == parse(said)
+    asked = Objective(kind="stays_inside", object="water", ref="tank", tolerance=0.03)
+    assert formula_of(asked, signals.evidence) == parse("stays_inside(water, tank, share 3 %)")
+    with pytest.raises(MissingError, match='"rests_on" needs another object'):
+        formula_of(Objective(kind="rests_on", object="box"), signals.evidence)

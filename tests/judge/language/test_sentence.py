@@ -10,17 +10,18 @@ from wsim.plan.schema.formula import (
     VOCABULARY,
     Always,
     And,
-    Conserves,
     Eventually,
     Finally,
+    Mean,
     Not,
     Or,
     Ordered,
     Predicate,
-    SpeedBetween,
     Then,
     Until,
 )
+from wsim.plan.schema.formula_motion import Conserves
+from wsim.plan.schema.formula_place import SpeedBetween
 
 names = st.one_of(
     st.from_regex(r"\A[A-Za-z_][A-Za-z0-9_]{0,8}\Z"),
@@ -45,7 +46,8 @@ def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
         "target": st.one_of(names, points), "center": st.one_of(names, points), "radius": numbers, "share": shares,
         "path": st.lists(points, min_size=2, max_size=4), "axis": st.sampled_from("xyz"), "at": st.floats(-1e6, 1e6),
         "clearance": st.one_of(st.just(0.0), numbers), "period": st.one_of(st.none(), numbers), "level": numbers,
-        "least": numbers,
+        "least": st.floats(1e-6, 90.0) if kind is VOCABULARY["tilts_to"] else numbers,
+        "direction": st.sampled_from([None, "front", "back", "left", "right"]),
         "amplitude": st.one_of(st.none(), st.floats(0.1, 180)), "speed": st.one_of(st.none(), numbers),
         "restitution": st.one_of(st.none(), st.floats(0, 1)), "what": st.sampled_from(["energy", "momentum"]),
         "objects": st.lists(names, min_size=kind is VOCABULARY["counts"], max_size=3), "height": numbers,
@@ -69,6 +71,7 @@ formulas = st.recursive(
         st.lists(inner, min_size=2, max_size=3).map(lambda of: And(of=of)),
         st.lists(inner, min_size=2, max_size=3).map(lambda of: Or(of=of)),
         inner.map(lambda of: Not(of=of)),
+        st.tuples(predicates, st.one_of(st.none(), numbers)).map(lambda p: Mean(of=p[0], seconds=p[1])),
         st.tuples(inner, windows).map(lambda p: Always(of=p[0], window=p[1])),
         st.tuples(inner, windows).map(lambda p: Eventually(of=p[0], window=p[1])),
         st.tuples(inner, st.one_of(st.none(), numbers)).map(lambda p: Finally(of=p[0], seconds=p[1])),

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, times
 from wsim.judge.evidence.pendulum import pivot_of, swing_stretch
 from wsim.judge.language import Signals, evaluate, parse
-from wsim.scene.world import World
+from wsim.scene.world import Joint, World
 
 
 def margin(text, signals):
@@ -63,6 +63,32 @@ def test_swings_with_the_period_of_theory_at_any_amplitude():
     expected = found.measures[0].expected
     small = 2 * math.pi * math.sqrt((1.0 + 0.4 * RADIUS**2) / G)
     assert np.ravel(expected) == pytest.approx(small * swing_stretch(np.array([0.1, 0.8, 1.5])), rel=1e-4)
+
+
+def test_a_bob_that_is_fixed_to_its_rod_swings_as_both():
+    """A ball of 1 kg at the end of a thin rod of 2 kg: I = 2 L^2 / 3 + (2 / 5 r^2 + L^2), m d = 2 L / 2 + 1 L."""
+    time, amplitude = times(8.0, 60.0), 0.5
+    inertia, moment = 2.0 * ARM**2 / 3.0 + 0.4 * RADIUS**2 + ARM**2, 2.0 * ARM / 2.0 + ARM
+    found = solve_ivp(
+        lambda t, y: [y[1], -G * moment / inertia * math.sin(y[0])], (0, 8.0), [amplitude, 0.0], t_eval=time,
+        rtol=1e-10, atol=1e-12,
+    )  # fmt: skip
+    arm = np.stack([-np.sin(found.y[0]), 0.0 * time, -np.cos(found.y[0])], axis=-1)
+    spin = np.stack([0.0 * time, found.y[1], 0.0 * time], axis=-1)
+    about = 2.0 * ARM**2 / 12.0
+    rod = solid("rod", shape("box", 0.01, 0.01, ARM), 2.0, inertia=(about, 0, 0, 0, about, 0, 0, 0, 1e-4))
+    hold = Joint(prim="/World/hold", kind="fixed", parent="/World/rod", child="/World/bob")
+    for joints, swings in (([hold], True), ([], False)):
+        world = World(bodies=[solid("bob", shape("sphere", RADIUS)), rod], joints=joints)
+        v = np.stack([np.cross(spin, length * arm) for length in (ARM, ARM / 2)], axis=1)
+        places = (np.array([2.0, 0.0, 3.0]) + length * arm for length in (ARM, ARM / 2))
+        both = moving(world, time, *places, q=about_axis("y", found.y[0])[:, None], v=v, w=spin[:, None])
+        outcome = evaluate(parse("swings(bob)"), both)
+        assert outcome.satisfied[0] == swings
+        small = 2 * math.pi * math.sqrt(inertia / (G * moment))
+        assert not swings or outcome.measures[0].expected[0, 0] == pytest.approx(
+            small * float(swing_stretch(amplitude)), rel=1e-3
+        )
 
 
 def test_a_pendulum_in_another_gravity_does_not_swing_as_it_should():

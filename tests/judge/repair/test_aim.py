@@ -7,13 +7,13 @@ import pytest
 
 from wsim.judge import judge
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.objectives.registry import OBJECTIVES
-from wsim.judge.repair.aim import STAGES, aim, rules
-from wsim.judge.repair.language import RULES
+from wsim.judge.language import parse
+from wsim.judge.language.measure import MENDERS
+from wsim.judge.repair.aim import STAGES, aim
 from wsim.judge.repair.rule import tried
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.plan.schema import Objective, Registration
-from wsim.plan.schema.formula import VOCABULARY
+from wsim.plan.schema.formula import VOCABULARY, Ordered
 from wsim.scene.world import Joint, Shape, Static
 
 BLOCK, BALL, TANK, WATER = "/World/wooden_block", "/World/steel_ball", "/World/tank", "/World/water"
@@ -42,10 +42,15 @@ def water(pool):
     return pool().changed(metadata={"time_step": STEP, "speed_of_sound": 20.0})
 
 
-def test_every_objective_and_predicate_has_a_rule():
-    classes = {kind.__name__ for kind in OBJECTIVES.values()}
-    assert classes <= set(rules())
-    assert set(VOCABULARY) - {"ordered"} == set(RULES)
+def mended(case, said: str, prim: str, **numbers) -> RepairTarget:
+    """The target of a finding that a predicate decides."""
+    predicate = parse(said)
+    finding = Finding(check="ObjectiveFormula", passed=False, message="", prim=prim, **numbers)
+    return tried(MENDERS[type(predicate)](predicate, finding, Evidence(case.recording, case.plan)))
+
+
+def test_every_predicate_has_a_rule():
+    assert set(VOCABULARY.values()) - {*MENDERS} == {Ordered}
 
 
 def test_passed_findings_have_no_target_and_failed_ones_all_do(pool):
@@ -92,10 +97,11 @@ def test_a_draft_off_by_the_density_or_by_the_spacing(pool):
 
 def test_a_light_ball_is_to_be_heavier(pool):
     case = pool().body(BALL, mass=0.5 * 1000.0 * 4 / 3 * math.pi * 0.06**3)
-    finding = failed("ObjectiveSubmerged", BALL, objective="steel_ball submerged water", value=-0.05, limit=0.0)
-    objective = Objective(kind="submerged", object="steel_ball", ref="water")
-    case.plan = case.plan.model_copy(update={"objectives": [objective]})
-    found = aimed(case, finding)
+    case.plan = case.plan.model_copy(
+        update={"objectives": [Objective(kind="submerged", object="steel_ball", ref="water")]}
+    )
+    case = case.edit("body_q", (slice(None), 1, 2), 0.35)  # it floats up
+    found = target(judge(case.recording, case.plan), "ObjectiveSubmerged", BALL)
     assert (found.parameter, found.direction, found.suggested) == ("density", "raise", 7850.0)
 
 
@@ -194,9 +200,7 @@ def test_what_slides_off_a_slope_needs_friction_above_its_tangent(stack):
     bodies = case.recording.world.bodies
     slick = bodies[0].model_copy(update={"shapes": [bodies[0].shapes[0].model_copy(update={"friction": 0.2})]})
     case = case.world(bodies=[slick, *bodies[1:]], statics=[Static(prim="/World/ramp", shapes=[ramp])])
-    objective = Objective(kind="stays_on", object="box_1", ref="ramp")
-    case.plan = case.plan.model_copy(update={"objectives": [objective]})
-    found = aimed(case, failed("ObjectiveStaysOn", slick.prim, objective="box_1 stays_on ramp", unit="m"))
+    found = mended(case, "stays_on(box_1, ramp)", slick.prim, unit="m")
     assert (found.parameter, found.direction, found.current) == ("friction", "raise", 0.2)
     assert found.suggested == pytest.approx(1.1 * math.tan(math.radians(30.0)))  # at the tangent itself it may slip
 
@@ -236,12 +240,12 @@ def test_what_rolls_on_for_ever_is_told_no_run_that_long(stack):
 def test_a_way_goes_as_the_square_of_the_speed(stack):
     case = stack()
     case = case.body("/World/box_1", velocity=(2.0, 0.0, 0.0))
-    found = aimed(case, failed("ObjectiveMoves", "/World/box_1", value=0.5, limit=2.0, unit="m"))
+    found = mended(case, "moves(box_1, 2 m)", "/World/box_1", value=0.5, limit=2.0, unit="m")
     assert (found.parameter, found.direction, found.current) == ("velocity", "raise", 2.0)
     assert found.suggested == pytest.approx(1.05 * 4.0)
     joint = Joint(prim="/World/rail", kind="prismatic", parent=None, child="/World/box_2")
     driven = case.world(joints=[joint])
-    assert aimed(driven, failed("ObjectiveMoves", "/World/box_2", value=0.5, limit=2.0, unit="m")).kind == "drive"
+    assert mended(driven, "moves(box_2, 2 m)", "/World/box_2", value=0.5, limit=2.0, unit="m").kind == "drive"
 
 
 def test_a_formula_has_the_target_of_the_predicate_that_decides(pool):
@@ -326,7 +330,7 @@ def test_what_is_on_its_way_is_given_time_and_what_stops_short_speed(stack, spee
     case = going(stack, speed, slowed)
     end = float(case.recording.time[-1])
     value = speed * end - slowed * end**2 / 2
-    found = aimed(case, failed("ObjectiveMoves", "/World/box_1", value=value, limit=asked, unit="m"))
+    found = mended(case, f"moves(box_1, {asked} m)", "/World/box_1", value=value, limit=asked, unit="m")
     assert found.parameter == parameter
     if parameter == "duration":  # it gets there by then, and not long before
         t = found.suggested
@@ -358,7 +362,5 @@ def test_friction_is_raised_on_the_smoother_of_two_surfaces(stack):
     ramp = Shape(prim="/World/ramp/g", kind="box", size=(2, 1, 0.1), rotation=(0, math.sin(half), 0, math.cos(half)),
                  friction=0.1)  # fmt: skip
     case = case.world(statics=[Static(prim="/World/ramp", shapes=[ramp])])
-    objective = Objective(kind="stays_on", object="box_1", ref="ramp")
-    case.plan = case.plan.model_copy(update={"objectives": [objective]})
-    found = aimed(case, failed("ObjectiveStaysOn", "/World/box_1", objective="box_1 stays_on ramp", unit="m"))
+    found = mended(case, "stays_on(box_1, ramp)", "/World/box_1", unit="m")
     assert (found.prim, found.parameter, found.current) == ("/World/ramp", "friction", 0.1)

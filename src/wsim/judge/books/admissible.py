@@ -3,7 +3,8 @@
 Bodies that pass impulses to each other make one small problem each; there are thousands in a recording. Where all
 impulses are one-sided, alternating projections between "they make the change" and "they only push" (von Neumann;
 Bauschke and Borwein 1996) explain all that rests or slides in a few products of stacked matrices. What they do not
-explain is left to non-negative least squares (Lawson and Hanson 1974), one problem after another.
+explain is left to non-negative least squares (Lawson and Hanson 1974), one problem after another; of many bodies
+without ties in a way of its own (`wsim.judge.books.pushing`).
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import lsq_linear, nnls
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import connected_components
+
+from wsim.judge.books.pushing import not_negative, pushing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 ROUNDS = 12  # of alternating projections
 ALIKE = 16  # columns of problems that are solved at once differ by less
 LARGE = 24  # bodies: beyond, a problem is its own
+SMALL = 6  # bodies: up to so many, a dense matrix is the quickest
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ class Problems:
         by_label = members[np.argsort(label[members], kind="stable")]
         starts, ends = (np.searchsorted(label[by_label], groups, side) for side in ("left", "right"))
         bodies = [by_label[start:end] for start, end in zip(starts, ends, strict=True)]
-        return cls(bodies, np.split(by_owner, first[1:]))
+        return cls(bodies, np.split(by_owner, first[1:])[: len(groups)])
 
 
 def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float) -> tuple[Floats, Floats]:
@@ -69,9 +72,14 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
     problems = Problems.of(columns, judged)
     hard = _easy(columns, problems, rest, scale, enough)
     for bodies, chosen in ((problems.bodies[k], problems.columns[k]) for k in hard):
+        if len(bodies) > SMALL and not columns.both[chosen].any():
+            sparse = _sparse(columns, bodies, chosen, scale)
+            rest[bodies] -= (sparse @ pushing(sparse, rest[bodies].ravel(), enough)).reshape(-1, 6)
+            continue
         matrix = _matrices(columns, bodies[None], [chosen], scale)[0]
-        ties = columns.both[chosen][~columns.goes_on[chosen]]
-        strength = least(matrix, rest[bodies].ravel(), ties)
+        new = ~columns.goes_on[chosen]
+        ties = columns.both[chosen][new]
+        strength = least(matrix, rest[bodies].ravel(), ties, columns.most[chosen][new])
         rest[bodies] -= (matrix @ strength).reshape(-1, 6)
         if ties.any():
             each = (np.abs(matrix[:, ties]) @ np.abs(strength[ties])).reshape(-1, 6) / scale[bodies]
@@ -80,8 +88,18 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
     return rest, passed
 
 
-def least(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
-    """Strengths (c,) that leave least of what is wanted (r,); those that do not act both ways are not negative."""
+def least(matrix: Floats, wanted: Floats, both: Bools, most: Floats) -> Floats:
+    """Strengths (c,) that leave least of what is wanted (r,): not negative but of `both`, and no more than `most`."""
+    strength, full = _unbounded(matrix, wanted, both), np.zeros(len(both), dtype=bool)
+    while np.any(over := ~full & (np.abs(strength) > most)):  # what is at its most stays there, and others do the rest
+        full |= over
+        held = np.where(full, np.clip(strength, -most, most), 0.0)
+        strength = held.copy()
+        strength[~full] = _unbounded(matrix[:, ~full], wanted - matrix @ held, both[~full])
+    return strength
+
+
+def _unbounded(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
     length = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
     matrix = matrix / length
     free, pushing = matrix[:, both], matrix[:, ~both]
@@ -91,18 +109,10 @@ def least(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
         basis, size, _ = np.linalg.svd(free, full_matrices=False) if free.shape[1] else (free, np.zeros(0), None)
         span = basis[:, : int((size > 1e-9 * size.max(initial=0.0)).sum())]
         outside = pushing - span @ (span.T @ pushing)
-        strength[~both] = _not_negative(outside, wanted - span @ (span.T @ wanted))
+        strength[~both] = not_negative(outside, wanted - span @ (span.T @ wanted))
     if free.shape[1]:
         strength[both] = np.linalg.lstsq(free, wanted - pushing @ strength[~both], rcond=1e-9)[0]
     found: Floats = strength / length
-    return found
-
-
-def _not_negative(matrix: Floats, wanted: Floats) -> Floats:
-    try:
-        found: Floats = nnls(matrix, wanted, maxiter=10 * matrix.shape[1])[0]
-    except RuntimeError:  # where many columns are alike it may go round in circles
-        found = lsq_linear(matrix, wanted, (0.0, np.inf)).x
     return found
 
 
@@ -154,3 +164,17 @@ def _matrices(columns: Columns, bodies: Rows, chosen: list[Rows], scale: Floats)
         body = which[ours]
         made[problem[ours], column[ours], place[body]] += on[every[ours]] * scale[body]
     return made.reshape(len(chosen), made.shape[1], -1).transpose(0, 2, 1)
+
+
+def _sparse(columns: Columns, bodies: Rows, chosen: Rows, scale: Floats) -> csr_matrix:
+    """One problem's columns for its bodies (b,), (6 b, c)."""
+    column = np.cumsum(~columns.goes_on[chosen]) - 1
+    place = np.full(len(scale), -1)
+    place[bodies] = np.arange(len(bodies))
+    parts = []
+    for which, on in ((columns.one[chosen], columns.on_one[chosen]), (columns.two[chosen], columns.on_two[chosen])):
+        ours = np.flatnonzero((which >= 0) & (place[np.maximum(which, 0)] >= 0))
+        rows = 6 * place[which[ours]][:, None] + np.arange(6)
+        parts.append((on[ours] * scale[which[ours]], rows, np.repeat(column[ours], 6)))
+    values, rows, at = (np.concatenate([part[n].ravel() for part in parts]) for n in range(3))
+    return csr_matrix((values, (rows, at)), shape=(6 * len(bodies), int(column[-1]) + 1))

@@ -4,18 +4,22 @@ The change of momentum and of angular momentum of each body, less gravity and wh
 sum of impulses that the world can exert: of contacts where shapes touch or may have met in the interval, pushing only
 and inside the cone of the pair's friction, on its edge against a slip that lasts; of joints and springs along what they
 hold. What no sum of them gives is the finding.
+
+The copies of a world are worked out at once: their intervals stand one after another, N = W (T - 1) of them, and their
+frames, W T. A recording by itself is one copy.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
+from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
+from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.steps import step_error
@@ -53,35 +57,64 @@ class Books:
     judged: Bools  # (T - 1, B)
     hit: Bools  # (T - 1, B), whether it is so much that something hit the body
     wanted: Floats  # (T - 1, B, 6), what contacts and ties were asked for, as what is left over
+    size: Floats  # (B,) [m], that torques are counted by
+
+    @staticmethod
+    def of(evidence: Evidence) -> Books:
+        """Of a recording, worked out once for all who ask."""
+        if Books not in evidence.kept:
+            evidence.kept[Books] = Balance(evidence).books()
+        kept = evidence.kept[Books]
+        assert isinstance(kept, Books)
+        return kept
 
 
 class Balance:
-    """Works the books out."""
+    """Works the books out, of one recording or of several copies of one world over the same times."""
 
-    def __init__(self, evidence: Evidence) -> None:
-        self._evidence, self._motion = evidence, evidence.motion
-        self._touching = Touching.of(evidence)
-        self._ties = Ties(evidence)
-        motion = self._motion
-        self._unit = max(float(np.linalg.norm(motion.gravity)), 1.0)  # [m/s^2]
-        self.size = np.maximum(np.maximum(motion.radius, self._ties.arms), 1e-4)
+    def __init__(self, *copies: Evidence) -> None:
+        self._copies, self._world = copies, copies[0].world
+        self._touching = Touching.of(copies[0])
+        self._ties = [Ties(evidence) for evidence in copies]
+        motions = [evidence.motion for evidence in copies]
+        count = len(motions[0].h)
+        self._unit = max(float(np.linalg.norm(motions[0].gravity)), 1.0)  # [m/s^2]
+        self._kinematic, self._mechanism = motions[0].kinematic, motions[0].unit  # (B,), of all copies
+        self._mass = np.stack([motion.mass for motion in motions])  # (W, B)
+        held = np.stack([ties.arms for ties in self._ties])
+        self._sizes = np.maximum(np.maximum(motions[0].radius, held), 1e-4)  # (W, B)
+        # Frames, (W T, B, ...), and intervals, (N, ...)
+        self._q = np.concatenate([evidence.body_q for evidence in copies])
+        self._com, self._v, self._w = (
+            np.concatenate([getattr(motion, name) for motion in motions]) for name in ("com", "v", "w")
+        )
+        self._h, self._reach = (
+            np.concatenate([getattr(motion, name) for motion in motions]) for name in ("h", "reach")
+        )
+        self._copy = np.repeat(np.arange(len(copies)), count)
+        self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
     def books(self) -> Books:
-        """All intervals."""
-        motion = self._motion
-        force = motion.acceleration - motion.gravity
-        arm = (motion.mass * self.size)[:, None]
-        torque = motion.torque / arm
-        turning = np.linalg.norm(torque, axis=2)
-        blow = (np.linalg.norm(force, axis=2) + turning) * motion.h[:, None]
-        judged = np.tile(~motion.kinematic, (len(motion.h), 1))
-        given, wrong = self._ties.laws.given()
-        scale, arm = self._scale(), np.stack([motion.mass, motion.mass * self.size], axis=1)
-        wanted = np.where(judged[..., None], np.concatenate([force, torque], axis=2) - given * scale, 0.0)
+        """Of a recording by itself."""
+        return self.every()[0]
+
+    def every(self) -> list[Books]:
+        """All intervals of each copy."""
+        h, mass = self._h[:, None], self._mass[self._copy]
+        gravity = self._copies[0].motion.gravity
+        force = np.concatenate([evidence.motion.acceleration for evidence in self._copies]) - gravity
+        arm = mass * self._sizes[self._copy]
+        torque = np.concatenate([evidence.motion.torque for evidence in self._copies]) / arm[..., None]
+        blow = (np.linalg.norm(force, axis=2) + np.linalg.norm(torque, axis=2)) * h
+        judged = np.concatenate([followed(evidence) for evidence in self._copies]) & ~self._kinematic
+        laws = [ties.laws.given() for ties in self._ties]
+        given, wrong = (np.concatenate([law[n] for law in laws]) for n in range(2))
+        both = np.concatenate([force, torque], axis=2) - given * self._scale(np.arange(len(h)))
+        wanted = np.where(judged[..., None], both, 0.0)
         left, turned = wanted.copy(), np.zeros((*blow.shape, 2))
-        hit = judged & (blow > SOFT * self._unit * motion.h[:, None])
-        anew = fresh(self._evidence, wanted, hit, self.size, self._unit)
-        for ks in _parts(np.flatnonzero(anew.any(axis=1)), len(motion.mass)):
+        hit = judged & (blow > SOFT * self._unit * h)
+        anew = fresh(self._copies, wanted, hit, self._sizes, self._unit)
+        for ks in _parts(np.flatnonzero(anew.any(axis=1)), mass.shape[1]):
             change, asked = left[ks], judged[ks] & anew[ks]
             left[ks], turned[ks] = self._explained(ks, change, asked, hit[ks], hit[ks] & anew[ks])
             odd = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & ~hit[ks] & asked
@@ -91,32 +124,23 @@ class Balance:
                 between = (hit[some] | odd[strange]) & anew[some]
                 left[some], turned[some] = self._explained(some, change[strange], asked[strange], hit[some], between)
         left, turned = again(anew, left, wanted), again(anew, turned)
-        rate = np.linalg.norm(motion.w, axis=2).max(axis=1, initial=0.0)
-        turn = np.maximum(rate[1:], rate[:-1]) * motion.h
-        turned *= (turn**2 / 12.0)[:, None, None]  # the error of an arm taken halfway
-        turned += (wrong + self._ties.ropes.error()) / arm + step_error(self._evidence)[..., None]
-        return Books(left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted)
+        angles = [arms.turned(evidence, size) for evidence, size in zip(self._copies, self._sizes, strict=True)]
+        turned *= (np.concatenate(angles) ** 2 / 12.0)[..., None]  # of an arm taken halfway
+        pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
+        stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
+        turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
+        whole = np.split(wanted, len(self._copies))
+        turned += np.concatenate([unknown(*each) for each in zip(self._copies, whole, strict=True)])
+        found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted
+        count = len(self._copies)
+        parts = zip(*(np.split(array, count) for array in found), self._sizes, strict=True)
+        return [Books(*part) for part in parts]
 
-    @cached_property
-    def unseen(self) -> Bools:
-        """Bodies that something turns by a torque that is not recorded, (B,): what a controller does to joints.
-
-        In older recordings a fluid's torques, too, and all of a controller's.
-        """
-        recording = self._evidence.recording
-        controlled = bool(recording.metadata.get("controlled"))
-        if recording.applied_turn is not None:
-            return ~self._motion.kinematic & self._motion.jointed & controlled
-        if controlled:
-            return ~self._motion.kinematic
-        pushed, none = recording.applied_impulse, np.zeros(len(self._motion.mass), dtype=bool)
-        return none if pushed is None else np.any(pushed != 0.0, axis=(0, 2))
-
-    def _scale(self) -> Floats:
-        """What a force and a torque on each body count for, (B, 6)."""
-        scale = np.repeat(1.0 / self._motion.mass, 6).reshape(-1, 6)
-        scale[:, 3:] /= self.size[:, None]
-        return scale
+    def _scale(self, ks: Rows) -> Floats:
+        """What a force and a torque on each body count for in some intervals, (K, B, 6)."""
+        scale = np.repeat(1.0 / self._mass[..., None], 6, axis=2)
+        scale[..., 3:] /= self._sizes[..., None]
+        return np.asarray(scale[self._copy[ks]])
 
     def _explained(self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
         """What is left of the changes (K, B, 6) of some intervals, and how much ties passed on, (K, B, 2).
@@ -128,24 +152,25 @@ class Balance:
         rest = np.where(judged[..., None], change, 0.0).reshape(-1, 6)
         passed = np.zeros((len(rest), 2))
         columns = self._pushes(ks, judged, hit, between)
-        for n, k in enumerate(ks) if self._ties.any else ():
-            columns += [each.shifted(n * bodies) for each in self._ties.columns(int(k))]
+        for n, k in enumerate(ks) if self._ties[0].any else ():
+            copy = int(self._copy[k])
+            ties = self._ties[copy].columns(int(self._first[k]) - copy * len(self._copies[0].time))
+            columns += [each.shifted(n * bodies) for each in ties]
         if columns:
-            unseen = np.flatnonzero(np.tile(self.unseen, count))
-            all_ = Columns.of([*columns, turns(unseen)] if len(unseen) else columns)
-            scale = np.tile(self._scale(), (count, 1))
-            rest, passed = explain(all_, judged.ravel(), rest, scale, ENOUGH * self._unit)
+            turned = np.flatnonzero(np.stack([unseen(evidence) for evidence in self._copies])[self._copy[ks]])
+            all_ = Columns.of([*columns, turns(turned)] if len(turned) else columns)
+            rest, passed = explain(all_, judged.ravel(), rest, self._scale(ks).reshape(-1, 6), ENOUGH * self._unit)
         return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
 
     # ---- contacts
     def _pushes(self, ks: Rows, asked: Bools, hit: Bools, between: Bools) -> list[Columns]:
-        h = self._motion.h[ks]
-        ends = self._poses(ks), self._poses(ks + 1)
+        h, frames = self._h[ks], self._first[ks]
+        ends = self._poses(frames), self._poses(frames + 1)
         some = np.flatnonzero(between.any(axis=1))
-        far = np.minimum(self._motion.reach[ks].max(axis=1, initial=0.0), FAST)
+        far = np.minimum(self._reach[ks].max(axis=1, initial=0.0), FAST)
         reach = NEAR + np.where(between.any(axis=1), far, 2.0 * self._unit * h**2)
         found = []
-        for side, contacts in enumerate(self._at_frames(ks, reach)):
+        for side, contacts in enumerate(self._at_frames(frames, reach)):
             contacts = contacts.only(_any(asked, contacts))
             contacts = contacts.only(self._within_reach(contacts, ends[side], h, 0.0, between))
             if len(contacts):
@@ -162,26 +187,28 @@ class Balance:
                 found.append((contacts, moved, side))
         if not found:
             return []
-        lasting = self._lasting(found, ends, hit)
+        lasting = self._lasting(found, ends, hit, self._copy[ks])
         columns = []
         for (contacts, moved, _), along in zip(found, lasting, strict=True):
             friction, rolling = self._touching.laws(contacts.shapes)
-            columns.append(pushes(contacts, moved, friction, along, self._rolling(contacts, rolling, friction)))
+            columns.append(
+                pushes(contacts, moved, friction, along, self._rolling(contacts, rolling, friction, self._copy[ks]))
+            )
         return columns
 
-    def _at_frames(self, ks: Rows, reach: Floats) -> tuple[Contacts, Contacts]:
+    def _at_frames(self, firsts: Rows, reach: Floats) -> tuple[Contacts, Contacts]:
         """Contacts at both ends of some intervals; a frame that ends one and begins another is looked at once."""
-        frames, which = np.unique(np.concatenate([ks, ks + 1]), return_inverse=True)
+        frames, which = np.unique(np.concatenate([firsts, firsts + 1]), return_inverse=True)
         far, sides = np.zeros(len(frames)), which.reshape(2, -1)
         np.maximum.at(far, which.ravel(), np.tile(reach, 2))
-        bodies = self._evidence.body_q.shape[1]
-        every = self._touching.of_many(self._evidence.body_q[frames], far, np.arange(len(frames)))
+        bodies = self._q.shape[1]
+        every = self._touching.of_many(self._q[frames], far, np.arange(len(frames)))
         frame = np.maximum(every.one, every.two) // max(bodies, 1)
         first = np.searchsorted(frame, np.arange(len(frames) + 1))
         found = []
         for side in sides:
             counts = first[side + 1] - first[side]
-            row = np.repeat(np.arange(len(ks)), counts)
+            row = np.repeat(np.arange(len(firsts)), counts)
             at = np.arange(counts.sum()) + np.repeat(first[side] - np.cumsum(counts) + counts, counts)
             chosen, by = every.only(at), (row - frame[at]) * bodies
             one, two = (np.where(rows >= 0, rows + by, rows) for rows in (chosen.one, chosen.two))
@@ -196,7 +223,9 @@ class Balance:
         close = contacts.gap <= NEAR + (speed + self._unit * length) * part
         return np.asarray(close & (_any(between, contacts) | (share == 0.0)))
 
-    def _lasting(self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools) -> list[Floats]:
+    def _lasting(
+        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, copy: Rows
+    ) -> list[Floats]:
         """The unit ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
 
         Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end.
@@ -218,41 +247,43 @@ class Balance:
         speed, speed_then = np.linalg.norm(own, axis=1), np.linalg.norm(then, axis=1)
         # It lasts where it would have a frame longer: what sticks may have stuck, or come loose, within the interval.
         slowest, change = np.minimum(speed, speed_then), np.linalg.norm(own - then, axis=1)
-        lasts = (slowest > np.maximum(self._creep(every), change)) & (
+        lasts = (slowest > np.maximum(self._creep(every, copy), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
         lasts &= ~_any(hit, every)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
-        if self._evidence.world.cone == "pyramid":  # its edges are up to 45 degrees off the slip, its sides nearer
+        if self._world.cone == "pyramid":  # its edges are up to 45 degrees off the slip, its sides nearer
             across = np.cross(every.normal, ways)
             ways = np.concatenate([ways, *((ways + side * across) * np.sqrt(0.5) for side in (-1.0, 0.0, 1.0))])
         along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 
-    def _creep(self, contacts: Contacts) -> Floats:
-        """The slip of each contact that soft friction may leave, (n,) [m/s].
+    def _creep(self, contacts: Contacts, copy: Rows) -> Floats:
+        """The slip of each contact that soft friction may leave, (n,) [m/s]; of intervals (K,) of some copies.
 
         It takes the acceleration mu N / m of the body alone, which may be pressed by thrice all that hangs on it.
         """
-        motion, friction = self._motion, self._touching.laws(contacts.shapes)[0]
-        total = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit]) / motion.mass
+        if self._world.give.creep == 0.0:
+            return np.full(len(contacts), STILL)
+        friction = self._touching.laws(contacts.shapes)[0]
+        of = self._mechanism[:, None] == self._mechanism[None]
+        total = (self._mass @ of / self._mass)[copy].ravel()
         rows = np.stack([contacts.one, contacts.two])
-        loads = np.where(rows >= 0, total[rows % len(total)], 0.0).max(axis=0)
+        loads = np.where(rows >= 0, total[np.maximum(rows, 0)], 0.0).max(axis=0)
         taken = LOADS * friction * self._unit * loads
-        found: Floats = np.maximum(STILL, self._evidence.world.give.creep * taken)
+        found: Floats = np.maximum(STILL, self._world.give.creep * taken)
         return found
 
-    def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats) -> Floats:
+    def _rolling(self, contacts: Contacts, rolling: Floats, friction: Floats, copy: Rows) -> Floats:
         """The torque that resists turning, for a push of one [m]: rolling's, or spinning's, which is the greater."""
         rows = np.where(contacts.two >= 0, contacts.two, contacts.one)
-        found: Floats = np.maximum(rolling, np.pi * friction * rolling) * self.size[rows % len(self.size)]
+        found: Floats = np.maximum(rolling, np.pi * friction * rolling) * self._sizes[copy].ravel()[rows]
         return found
 
     def _poses(self, frames: Rows) -> Poses:
-        motion = self._motion
-        q, com, v, w = self._evidence.body_q[frames], motion.com[frames], motion.v[frames], motion.w[frames]
+        q, com, v, w = self._q[frames], self._com[frames], self._v[frames], self._w[frames]
         return Poses(q.reshape(-1, 7), com.reshape(-1, 3), v.reshape(-1, 3), w.reshape(-1, 3))
 
 
@@ -284,6 +315,21 @@ def _any(bodies: Bools, contacts: Contacts) -> Bools:
     """Whether either body of a contact is one of some (K, B)."""
     rows = np.stack([contacts.one, contacts.two])
     return np.asarray((bodies.ravel()[np.maximum(rows, 0)] & (rows >= 0)).any(axis=0))
+
+
+def unseen(evidence: Evidence) -> Bools:
+    """Bodies that something turns by a torque that is not recorded, (B,): what a controller does to joints.
+
+    In older recordings a fluid's torques, too, and all of a controller's.
+    """
+    recording, motion = evidence.recording, evidence.motion
+    controlled = bool(recording.metadata.get("controlled"))
+    if recording.applied_turn is not None:
+        return ~motion.kinematic & motion.jointed & controlled
+    if controlled:
+        return ~motion.kinematic
+    pushed, none = recording.applied_impulse, np.zeros(len(motion.mass), dtype=bool)
+    return none if pushed is None else np.any(pushed != 0.0, axis=(0, 2))
 
 
 def rounding(evidence: Evidence) -> Floats:

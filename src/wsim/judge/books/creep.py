@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.admissible import explain
+from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import STILL, Poses, pushes
 from wsim.judge.books.touching import Contacts, Touching
 from wsim.judge.evidence.motion import FLOAT32
@@ -22,7 +23,6 @@ from wsim.judge.evidence.motion import FLOAT32
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.books.balance import Books
     from wsim.judge.evidence.evidence import Evidence
 
     Floats = NDArray[np.float64]
@@ -45,34 +45,26 @@ class Lacking:
     last: int
     drift: Floats  # (3,) [m], of it over what it touches; 0 if it stands
     force: Floats  # (3,) [m/s^2], of its mass: what nothing gives
-    limit: float  # [m/s^2]
 
 
-def creeps(evidence: Evidence, books: Books, size: Floats, limits: Floats) -> list[Lacking]:
-    """All of a recording, in spans that overlap by a half.
-
-    Args:
-        evidence: T frames of B bodies.
-        books: Of its intervals.
-        size: That torques are counted by, (B,) [m].
-        limits: What may be missing of a force in each interval, (T - 1, B) [m/s^2].
-    """
-    motion = evidence.motion
-    found = []
-    free = ~motion.jointed & ~motion.kinematic
-    for first in range(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2):
-        last = first + INTERVALS
-        moved = np.linalg.norm(motion.com[last] - motion.com[first], axis=1)
-        calm = free & ~books.hit[first:last].any(axis=0)
-        if np.any(moved[calm] > CREEP * (evidence.time[last] - evidence.time[first])):
-            found += _of_span(evidence, books, size, limits, calm, first, last)
-    return found
+def creeps(evidence: Evidence) -> list[Lacking]:
+    """All of a recording, in spans that overlap by a half."""
+    motion, books = evidence.motion, Books.of(evidence)
+    firsts = np.arange(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2)
+    moved = lengths(motion.com[firsts + INTERVALS] - motion.com[firsts])
+    hit = books.hit[firsts[:, None] + np.arange(INTERVALS)].any(axis=1)
+    calm = ~motion.jointed & ~motion.kinematic & ~hit
+    least = CREEP * (evidence.time[firsts + INTERVALS] - evidence.time[firsts])
+    spans = np.flatnonzero(np.any(calm & (moved > least[:, None]), axis=1))
+    return [
+        lacking
+        for span in spans
+        for lacking in _of_span(evidence, books, calm[span], int(firsts[span]), int(firsts[span]) + INTERVALS)
+    ]
 
 
-def _of_span(
-    evidence: Evidence, books: Books, size: Floats, limits: Floats, calm: NDArray[np.bool_], first: int, last: int
-) -> list[Lacking]:
-    motion, touching, middle = evidence.motion, Touching.of(evidence), (first + last) // 2
+def _of_span(evidence: Evidence, books: Books, calm: NDArray[np.bool_], first: int, last: int) -> list[Lacking]:
+    motion, touching, middle, size = evidence.motion, Touching.of(evidence), (first + last) // 2, books.size
     poses = Poses(evidence.body_q[middle], motion.com[middle], motion.v[middle], motion.w[middle])
     contacts = touching.at(poses.q, NEAR)
     if not len(contacts):
@@ -96,10 +88,7 @@ def _of_span(
     for row in creeping:
         own = slips & ((contacts.one == row) | (contacts.two == row))
         sign = np.where(contacts.two[own] == row, 1.0, -1.0)
-        found.append(
-            Lacking(row, first, last, (sign[:, None] * drift[own]).mean(axis=0), rest[row, :3],
-                  float(limits[first:last, row].mean()))
-        )  # fmt: skip
+        found.append(Lacking(row, first, last, (sign[:, None] * drift[own]).mean(axis=0), rest[row, :3]))
     return found
 
 

@@ -44,11 +44,17 @@ class Columns:
     on_two: Floats
     both: NDArray[np.bool_]  # (c,) whether it may act both ways, or only as it is
     more: NDArray[np.bool_] | None = None  # (c,) whether it is the one before it, on more bodies; None: none is
+    cap: Floats | None = None  # (c,) the most that its strength may be, either way; None: any
 
     @property
     def goes_on(self) -> NDArray[np.bool_]:
         """Whether each is one with the column before it, whose strength it has, (c,)."""
         return np.zeros(len(self.one), dtype=bool) if self.more is None else self.more
+
+    @property
+    def most(self) -> Floats:
+        """The greatest strength of each, (c,)."""
+        return np.full(len(self.one), np.inf) if self.cap is None else self.cap
 
     def shifted(self, by: int) -> Columns:
         """The same on bodies whose rows are higher."""
@@ -59,7 +65,7 @@ class Columns:
     def of(parts: list[Columns]) -> Columns:
         """All of several."""
         return Columns(*(np.concatenate([getattr(part, name) for part in parts])
-                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on")))  # fmt: skip
+                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on", "most")))  # fmt: skip
 
 
 def slip(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:
@@ -73,7 +79,7 @@ def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) ->
     at = np.maximum(rows, 0)
     if not len(poses.v):
         return np.zeros((len(rows), 3))
-    velocity = poses.v[at] + cross(poses.w[at], contacts.point - poses.com[at])
+    velocity = poses.v[at] + cross(poses.w[at], contacts.surface(side) - poses.com[at])
     belts = touching.surface_velocity[contacts.shapes[:, side]]
     turn = np.where(moving[:, None], poses.q[at, 3:], (0.0, 0.0, 0.0, 1.0))
     found: Floats = np.where(moving[:, None], velocity, 0.0) + rotate(turn, belts)
@@ -110,7 +116,8 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
             force = np.concatenate([force, (n - friction[:, None] * along[:, 0])[turns]])
             spin = np.concatenate([spin, way * (rolling[:, None] * axis)[turns]])
             which = np.concatenate([which, turns])
-    arms = [contacts.point - poses.com[np.maximum(rows, 0)] for rows in (contacts.one, contacts.two)]
+    both = enumerate((contacts.one, contacts.two))
+    arms = [contacts.surface(side) - poses.com[np.maximum(rows, 0)] for side, rows in both]
     on_two = np.concatenate([force, cross(arms[1][which], force) + spin], axis=1)
     on_one = np.concatenate([-force, -cross(arms[0][which], force) - spin], axis=1)
     return Columns(contacts.one[which], contacts.two[which], on_one, on_two, np.zeros(len(which), dtype=bool))
@@ -126,11 +133,11 @@ def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torqu
     return Columns(*rows, on_one, on_two, np.ones(count, dtype=bool))
 
 
-def shared(rows: NDArray[np.intp], on: Floats) -> Columns:
-    """One impulse on several bodies at once, (n, 6), which only acts as it is."""
+def shared(rows: NDArray[np.intp], on: Floats, *, both: bool = False) -> Columns:
+    """One impulse on several bodies at once, (n, 6), which acts only as it is, or both ways."""
     count = len(rows)
     before = np.concatenate([[-1], rows[:-1]]).astype(np.intp)
-    return Columns(before, rows, np.zeros((count, 6)), on, np.zeros(count, dtype=bool), np.arange(count) > 0)
+    return Columns(before, rows, np.zeros((count, 6)), on, np.full(count, both), np.arange(count) > 0)
 
 
 def turns(rows: NDArray[np.intp]) -> Columns:

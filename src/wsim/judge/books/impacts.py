@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.forces import Poses, slip
 from wsim.judge.books.touching import Contacts, Touching
 from wsim.judge.evidence.motion import FLOAT32
@@ -31,12 +31,25 @@ if TYPE_CHECKING:
 SLIGHT = 0.003  # of a body's speed: what changes by less is no blow
 SHOWS = 0.1  # of an approach: where it is less sure than that the frames say nothing of the parting
 ACROSS = 0.2  # cosine between the normals of two contacts that do not share a blow
-FINE = 0.05  # of the time between frames: the longest step at which frames show when a blow was
-SLOW = 0.3  # [m/s]: of wsim's own blows of what is no ball 3 of 73 were off by up to 0.1 of it, all slower; why is open
+FINE = 0.1  # of the time between frames: about a step, where nobody says how long one is
 STAYS = 0.05  # of the approach: what was to bounce and parts by less may have done so more than once
 WITHIN = 0.2  # of a step: courses that pass each other by no more of the jump meet
 SURE = 0.02  # of a step: points that come to touch within it do so together,
 APART = 3.0  # and those that do after so many do not
+
+
+@dataclass(frozen=True)
+class Rub:
+    """What friction did in a blow, over the mass that the point feels across it: speeds [m/s].
+
+    Coulomb's law asks of the impulses what it asks of forces (Routh 1860): friction takes the slip away, or it is the
+    friction's coefficient times the push, and no more, as long as the surfaces slip.
+    """
+
+    impulse: float  # of friction; of balls, whose slip keeps its way, what of it is against the slip that is left
+    most: float  # the coefficient times the push
+    before: float  # the slip as they met
+    after: float  # and as they parted
 
 
 @dataclass(frozen=True)
@@ -51,6 +64,7 @@ class Blow:
     parting: float  # [m/s]
     restitution: float  # by the pair's law
     unsure: float  # of either speed [m/s]: what a step changes, and how far the normal turned
+    rub: Rub | None = None  # where it was one point of both, and neither touched anything else
 
 
 def blows(evidence: Evidence) -> list[Blow]:
@@ -60,7 +74,21 @@ def blows(evidence: Evidence) -> list[Blow]:
     if not changed.any():
         return []
     touching, courses = Touching.of(evidence), _Courses(evidence, changed)
-    return [blow for k in np.flatnonzero(changed.any(axis=1)) for blow in _of_interval(courses, touching, int(k))]
+    ks = np.flatnonzero(changed.any(axis=1))
+    near = zip(ks, _near(evidence, touching, ks), strict=True)
+    return [blow for k, pairs in near for blow in _of_interval(courses, touching, int(k), pairs)]
+
+
+def _near(evidence: Evidence, touching: Touching, ks: Rows) -> list[set[tuple[int, int]]]:
+    """Rows of the pairs that may have met in each of some intervals: that are near each other at either end."""
+    bodies = evidence.body_q.shape[1]
+    reach = 2.0 * evidence.motion.reach[ks].max(axis=1)
+    frames, rows = np.stack([ks, ks + 1], axis=1).ravel(), np.repeat(np.arange(len(ks)), 2)
+    contacts = touching.of_many(evidence.body_q[frames], np.repeat(reach, 2), rows)
+    found: list[set[tuple[int, int]]] = [set() for _ in ks]
+    for one, two in {(int(a), int(b)) for a, b in zip(contacts.one, contacts.two, strict=True)}:
+        found[max(one, two) // bodies].add((one % bodies if one >= 0 else one, two % bodies if two >= 0 else two))
+    return found
 
 
 def _jumps(evidence: Evidence) -> Bools:
@@ -69,9 +97,15 @@ def _jumps(evidence: Evidence) -> Bools:
     gained = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0) * motion.radius[:, None]], axis=2)
     fall = np.zeros_like(gained) + motion.h[:, None, None] * np.concatenate([motion.gravity, np.zeros(3)])
     around = np.concatenate([fall[:1], gained, fall[:1]])
-    jump = np.min([np.linalg.norm(gained - other, axis=2) for other in (around[:-2], around[2:], fall)], axis=0)
+    jump = np.min([lengths(gained - other) for other in (around[:-2], around[2:], fall)], axis=0)
     fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
-    return np.asarray(jump > 2.0 * evidence.gravity * min(motion.dt, FINE * motion.dt_frames) + SLIGHT * fastest)
+    return np.asarray(jump > 2.0 * evidence.gravity * step_of(evidence) + SLIGHT * fastest)
+
+
+def step_of(evidence: Evidence) -> float:
+    """The simulator's time step [s]."""
+    known = evidence.recording.metadata.get("time_step") or evidence.world.time_step
+    return float(known or FINE * evidence.motion.dt_frames)
 
 
 class _Courses:
@@ -79,7 +113,7 @@ class _Courses:
 
     def __init__(self, evidence: Evidence, changed: Bools) -> None:
         self.evidence, self.changed, motion = evidence, changed, evidence.motion
-        self.dt = float(min(motion.dt, FINE * motion.dt_frames))
+        self.dt = step_of(evidence)
         falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
         # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
         own = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0)], axis=2) / motion.h[:, None, None]
@@ -95,23 +129,31 @@ class _Courses:
 
     def at(self, k: int, side: int, when: float) -> Poses:
         """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
-        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
-        frame, by = k + side, when - side * h
-        speed_up = (self.after if side else self.before)[k]
-        v, w = motion.v[frame] + speed_up[:, :3] * by, motion.w[frame] + speed_up[:, 3:] * by
-        com = motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
+        v, com = self._going(k, side, when)
+        w = motion.w[frame] + (self.after if side else self.before)[k, :, 3:] * by
         angle = 0.5 * (motion.w[frame] + w) * by
-        size = np.linalg.norm(angle, axis=1, keepdims=True)
+        size = lengths(angle)[:, None]
         turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
         q = self.evidence.body_q[frame]
         place = com + rotate(turn, q[:, :3] - motion.com[frame])
         return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
 
+    def _going(self, k: int, side: int, when: float) -> tuple[Floats, Floats]:
+        """Velocities and centres of mass, as `at`."""
+        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
+        v = motion.v[frame] + (self.after if side else self.before)[k, :, :3] * by
+        return v, motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+
+    def _since(self, k: int, side: int, when: float) -> tuple[int, float]:
+        """The frame that a course is told from, and how long after it that is [s]."""
+        return k + side, when - side * float(self.evidence.motion.h[k])
+
     def meet(self, k: int, rows: list[int]) -> float | None:
         """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
         motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
-        ends = [[self.at(k, side, when) for side in (0, 1)] for when in (0.0, h)]
-        first, last = (before.com[rows] - after.com[rows] for before, after in ends)
+        ends = [[self._going(k, side, when)[1] for side in (0, 1)] for when in (0.0, h)]
+        first, last = (before[rows] - after[rows] for before, after in ends)
         apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
         when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
         when = min(max(when, 0.0), h)
@@ -130,11 +172,8 @@ class _Courses:
         return when
 
 
-def _of_interval(courses: _Courses, touching: Touching, k: int) -> list[Blow]:
+def _of_interval(courses: _Courses, touching: Touching, k: int, near: set[tuple[int, int]]) -> list[Blow]:
     motion, changed = courses.evidence.motion, courses.changed[k]
-    reach = 2.0 * float(motion.reach[k].max())
-    ends = [touching.at(courses.evidence.body_q[frame], reach) for frame in (k, k + 1)]
-    near = {(int(a), int(b)) for c in ends for a, b in zip(c.one, c.two, strict=True)}
     found = []
     for pair in sorted(near):
         rows = [row for row in pair if row >= 0]
@@ -179,6 +218,7 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     shapes = [touching.shapes[s][2] for s in contacts.shapes[touches[0]]]
     law = pair_law(evidence.world, *shapes)
     parting = -_closing(touching, contacts, after)[touches]
+    parting[closing[touches] < SHOWS * approach] = np.inf  # they were not in it
     n = int(np.argmin(parting - law.restitution * closing[touches]))
     met, speed = contacts.only(touches[n : n + 1]), float(closing[touches[n]])
     # As bodies fall and turn, and their surfaces do, points that touch a step earlier meet at another speed.
@@ -186,12 +226,37 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
-    returns |= speed < SLOW and not _balls(evidence, pair)
-    unsure = 2.0 * faster
+    # A step takes a blow where it finds the body, above the surface or below: what comes back is slower there, or faster.
+    back = law.restitution * speed
+    there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * lowest, 0.0)))
+    unsure = 2.0 * faster + abs(there - back)
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
-    return Blow(k, *pair, (prims[0], prims[1]), speed, float(parting[n]), law.restitution, unsure)
+    parts = float(parting[n])
+    rub = _rub(courses, touching, met, (before, after), speed + parts, law.friction, pair)
+    alone = len(touches) == 1 and not _others(contacts, pair).any()
+    return Blow(k, *pair, (prims[0], prims[1]), speed, parts, law.restitution, unsure, rub if alone else None)
+
+
+def _rub(
+    courses: _Courses, touching: Touching, met: Contacts, poses: tuple[Poses, Poses], bounce: float, friction: float,
+    pair: tuple[int, int],
+) -> Rub:  # fmt: skip
+    """Of one contact of a pair, whose points part by `bounce` [m/s] faster than they met, by the poses around it."""
+    motion, normal = courses.evidence.motion, met.normal[0]
+    row, sign = (pair[1], 1.0) if pair[1] >= 0 and not motion.kinematic[pair[1]] else (pair[0], -1.0)
+    change = sign * (poses[1].v[row] - poses[0].v[row])  # of the push, and of friction, over the body's mass
+    push = float(change @ normal)
+    slips = [slip(touching, met, each)[0] for each in poses]
+    slips = [each - (each @ normal) * normal for each in slips]
+    after = float(np.linalg.norm(slips[1]))
+    scale = bounce / max(push, 1e-12)  # to the mass that the point feels
+    across = scale * (change - push * normal)
+    before, impulse = float(np.linalg.norm(slips[0])), float(np.linalg.norm(across))
+    if after > STAYS * before and _balls(courses.evidence, pair):
+        impulse = -float(across @ slips[1]) / after
+    return Rub(impulse, friction * bounce, before, after)
 
 
 def _changing(
@@ -212,13 +277,18 @@ def _balls(evidence: Evidence, pair: tuple[int, int]) -> bool:
     return all(len(shapes) == 1 and shapes[0].kind == "sphere" for shapes in solid)
 
 
-def _alone(contacts: Contacts, closing: Floats, touches: Rows, pair: tuple[int, int]) -> bool:
-    """Whether neither body has another contact that pushes along the same way, or is hit there, too."""
+def _others(contacts: Contacts, pair: tuple[int, int]) -> Bools:
+    """Contacts that either body of a pair has with anything else."""
     shared = np.zeros(len(contacts), dtype=bool)
     for row in pair:
         if row >= 0:
             shared |= (contacts.one == row) | (contacts.two == row)
-    shared &= ~((contacts.one == pair[0]) & (contacts.two == pair[1]))
+    return shared & ~((contacts.one == pair[0]) & (contacts.two == pair[1]))
+
+
+def _alone(contacts: Contacts, closing: Floats, touches: Rows, pair: tuple[int, int]) -> bool:
+    """Whether neither body has another contact that pushes along the same way, or is hit there, too."""
+    shared = _others(contacts, pair)
     along = np.abs(contacts.normal @ contacts.normal[touches].T).max(axis=1, initial=0.0)
     return not np.any(shared & ((along > ACROSS) | (closing > SHOWS * closing[touches].max())))
 

@@ -7,7 +7,7 @@ and where somebody sets the law's numbers while the world runs, the force is unk
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Guide, Joint, Spring
+    from wsim.scene.world import Guide, Joint, Motor, Spring
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -38,6 +38,25 @@ class Law:
     two: int
     error: Floats  # (T - 1,) share of the force that the frames do not tell
     known: Bools  # (T - 1,) whether the frames tell it
+    most: float = np.inf  # what it may be at most where they do not [N or N m]
+
+
+@dataclass(frozen=True)
+class _Along:
+    """A joint's own motion, of T frames."""
+
+    rows: list[int]
+    arms: list[Floats]  # from both centres of mass, (T, 3) each [m]
+    axis: Floats  # (T, 3)
+    turns: bool
+    rate: Floats  # (T,) [rad/s or m/s]
+    loose: Floats  # how much a unit effort speeds it up, (T,)
+
+    def acting(self, effort: Floats) -> tuple[list[int], list[Floats], Floats, Floats]:
+        """The bodies and arms of an effort (T,) along it, its force and its torque, (T, 3) each."""
+        along = effort[:, None] * self.axis
+        none = np.zeros_like(along)
+        return self.rows, self.arms, *((none, along) if self.turns else (along, none))
 
 
 class Laws:
@@ -48,13 +67,13 @@ class Laws:
         self._row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
         self._set = bool(evidence.recording.metadata.get("controlled"))
         self.springs = [self._spring(spring) for spring in evidence.world.springs]
-        self.joints = {joint.prim: law for joint in evidence.world.joints if (law := self._joint(joint)) is not None}
+        self.joints = {joint.prim: self._joint(joint) for joint in evidence.world.joints}
 
     def given(self) -> tuple[Floats, Floats]:
         """What is known, (T - 1, B, 6) [N, N m], and how much of forces and torques may be wrong, (T - 1, B, 2)."""
         intervals, bodies = len(self._motion.h), len(self._motion.mass)
         total, wrong = np.zeros((intervals, bodies, 6)), np.zeros((intervals, bodies, 2))
-        for law in [*self.springs, *self.joints.values()]:
+        for law in [*self.springs, *(law for laws in self.joints.values() for law in laws)]:
             for row, wrench in ((law.one, law.back), (law.two, law.wrench)):
                 if row < 0:
                     continue
@@ -68,16 +87,21 @@ class Laws:
                 wrong[:, row] += np.where(law.known[:, None], off, 0.0)
         return total, wrong
 
+    def rate(self, joint: Joint) -> Floats:
+        """The speed of a hinge or a slider, (T,) [rad/s or m/s]."""
+        return self._along(joint).rate
+
     # ---- springs
     def _spring(self, spring: Spring) -> Law:
         track = track_of_spring(self._evidence, spring)
         rows = [self._row.get(guide.body or "", -1) for guide in spring.path]
-        arms = [self._arm(row, self._end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
+        arms = [self.arm(row, self.end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
         force = -(track.pull[:, None] * track.along)
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
         return self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
 
-    def _end(self, guide: Guide) -> Floats:
+    def end(self, guide: Guide) -> Floats:
+        """Where a point of a spring's way is, (T, 3) [m]."""
         frames = len(self._evidence.time)
         if guide.body is None:
             return np.tile(np.array(guide.position, dtype=np.float64), (frames, 1))
@@ -85,7 +109,8 @@ class Laws:
         place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(guide.position)[None])
         return place
 
-    def _arm(self, row: int, place: Floats) -> Floats:
+    def arm(self, row: int, place: Floats) -> Floats:
+        """From a body's centre of mass, (T, 3) [m]; zeros of the world."""
         return np.zeros_like(place) if row < 0 else place - self._motion.com[:, row]
 
     def _looseness(self, row: int, arm: Floats, along: Floats) -> Floats:
@@ -103,54 +128,61 @@ class Laws:
         return np.einsum("ti,ij,tj->t", own, np.linalg.pinv(self._motion.inertia[row]), own)
 
     # ---- joints
-    def _joint(self, joint: Joint) -> Law | None:
-        """What a joint's drive and friction give along its own motion; None where it has neither."""
+    def _joint(self, joint: Joint) -> list[Law]:
+        """What a joint's drive and its friction give along its own motion; none where it has neither."""
         if joint.kind not in ("revolute", "prismatic") or (joint.drive is None and joint.friction <= 0.0):
-            return None
+            return []
         track = track_of(self._evidence, joint)
         if track is None or joint.child_anchor is None:
-            return None
+            return []
+        along = self._along(joint)
+        holds = ~broken(self._evidence, joint)[1:] & (joint.armature == 0.0)
+        laws = [] if joint.drive is None else [self._drive(joint.drive, along, track.position, holds)]
+        laws += [self._friction(joint.friction, along, holds)] if joint.friction > 0.0 else []
+        return [replace(law, most=np.inf) for law in laws] if joint.armature else laws  # what a rotor takes is not told
+
+    def _drive(self, drive: Motor, along: _Along, position: Floats, holds: Bools) -> Law:
+        effort = drive.stiffness * (drive.position - position) + drive.damping * (drive.velocity - along.rate)
+        most, full = np.inf, np.zeros(len(effort))
+        if drive.max_effort is not None:
+            most = drive.max_effort
+            full = np.where(np.abs(effort) >= most, np.sign(effort), 0.0)
+            effort = np.clip(effort, -most, most)
+        law = self._law(*along.acting(effort), (drive.stiffness, drive.damping), along.loose)
+        # All of an interval at its full strength it is known; where it comes to that, or leaves it, it is not.
+        strained, told = full[1:] * full[:-1] > 0.0, drive.told and not self._set
+        known = ((law.known & (full[1:] == full[:-1])) | strained) & holds & told
+        error = np.where(strained, 0.0, law.error)
+        return replace(law, known=known, error=error, most=most if told else np.inf)
+
+    def _friction(self, friction: float, along: _Along, holds: Bools) -> Law:
+        """It is known where the joint goes on all of an interval; at rest it may hold by anything up to as much."""
+        law = self._law(*along.acting(-friction * np.sign(along.rate)), (0.0, 0.0), along.loose)
+        slow, rate = friction * along.loose[1:] * self._motion.h, along.rate
+        goes_on = (rate[1:] * rate[:-1] > 0.0) & (np.minimum(np.abs(rate[1:]), np.abs(rate[:-1])) > slow)
+        return replace(law, known=goes_on & holds, most=friction)
+
+    def _along(self, joint: Joint) -> _Along:
         rows = [self._row.get(joint.parent or "", -1), self._row[joint.child]]
         place = self._end_of(joint)
-        arms = [self._arm(row, place) for row in rows]
-        axis = self._axis(joint)
-        rate, loose = self._rate(joint, rows, arms, axis), np.zeros(len(place))
+        arms = [self.arm(row, place) for row in rows]
+        axis, turns = self.axis(joint), joint.kind == "revolute"
+        loose = np.zeros(len(place))
         for row, arm in zip(rows, arms, strict=True):
             if row >= 0 and not self._motion.kinematic[row]:
-                turns = joint.kind == "revolute"
                 own = self._turning(row, axis) if turns else self._looseness(row, arm, axis)
                 if turns and min(rows) < 0:  # about an axis that stands still its mass goes round as well
                     round_ = self._motion.mass[row] * np.sum(np.cross(arm, axis) ** 2, axis=1)
                     own = 1.0 / (1.0 / np.maximum(own, 1e-12) + round_)
                 loose = loose + own
-        drive, stiffness, damping = joint.drive, 0.0, 0.0
-        effort, full = np.zeros(len(rate)), np.zeros(len(rate))
-        if drive is not None:
-            effort = drive.stiffness * (drive.position - track.position) + drive.damping * (drive.velocity - rate)
-            stiffness, damping = drive.stiffness, drive.damping
-            if drive.max_effort is not None:
-                full = np.where(np.abs(effort) >= drive.max_effort, np.sign(effort), 0.0)
-                effort = np.clip(effort, -drive.max_effort, drive.max_effort)
-        effort = effort - joint.friction * np.sign(rate)
-        along = effort[:, None] * axis
-        none = np.zeros_like(along)
-        force, torque = (none, along) if joint.kind == "revolute" else (along, none)
-        law = self._law(rows, arms, force, torque, (stiffness, damping), loose)
-        # All of an interval at its full strength it is known; where it comes to that, or leaves it, it is not.
-        known = (law.known & (full[1:] == full[:-1])) | (full[1:] * full[:-1] > 0.0)
-        known = known & ~broken(self._evidence, joint)[1:]
-        known &= (drive is None or (drive.told and not self._set)) and joint.armature == 0.0
-        if joint.friction > 0.0:  # it may hold at rest
-            slow = joint.friction * loose[1:] * self._motion.h
-            known = known & (rate[1:] * rate[:-1] > 0.0) & (np.minimum(np.abs(rate[1:]), np.abs(rate[:-1])) > slow)
-        return Law(law.wrench, law.back, law.one, law.two, law.error, known)
+        return _Along(rows, arms, axis, turns, self._rate(joint, rows, arms, axis), loose)
 
     def _end_of(self, joint: Joint) -> Floats:
         q = self._evidence.body_q[:, self._row[joint.child]]
         place: Floats = q[:, :3] + rotate(q[:, 3:], np.array(joint.child_anchor)[None])
         return place
 
-    def _axis(self, joint: Joint) -> Floats:
+    def axis(self, joint: Joint) -> Floats:
         """The joint's axis in the world, by its child, (T, 3)."""
         own = rotate(np.array(joint.child_turn), np.eye(3)[AXES[joint.axis]])
         found: Floats = rotate(self._evidence.body_q[:, self._row[joint.child], 3:], np.asarray(own)[None])

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
+from wsim.judge.books.recorded_ties import RecordedTies
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.recording.contacts import shapes_of
 from wsim.scene.contact import pair_law
@@ -35,8 +36,9 @@ class Balanced:
 
     force: Floats  # (T - 1, B, 3) over the mass [m/s^2]
     torque: Floats  # (T - 1, B, 3) over m R [m/s^2]
-    moved: Floats  # (T - 1, B) what contacts gave, over the mass, and the rounding of velocities [m/s^2]
-    stepped: Floats  # (T - 1, B) what a first-order step leaves of a body whose mass is off its origin [m/s^2]
+    moved: Floats  # (T - 1, B) what contacts and ties gave, over the mass, and the rounding of velocities [m/s^2]
+    stepped: Floats  # (T - 1, B) what a first-order step leaves of a body that turns about another place [m/s^2]
+    lagging: Floats  # (T - 1, B) what it leaves of angular momentum, where ties turn with bodies [m/s^2]
     judged: Bools  # (B,)
     turned: Bools  # (B,) whether its torques are known, too
 
@@ -46,6 +48,8 @@ class RecordedContacts:
 
     def __init__(self, evidence: Evidence, track: ContactTrack) -> None:
         self._evidence, self.track = evidence, track
+        ties = evidence.recording.ties
+        self.ties = RecordedTies(evidence, ties) if ties is not None else None
         self.shapes = shapes_of(evidence.world)
         bodies = [i for i, body in enumerate(evidence.world.bodies) for _ in body.shapes]
         self._owner = np.array(bodies + [-1] * (len(self.shapes) - len(bodies)), dtype=np.intp)
@@ -67,9 +71,13 @@ class RecordedContacts:
         return found[0], found[1]
 
     def balanced(self) -> Balanced:
-        """The books of loose bodies."""
+        """The books of loose bodies, and where it is recorded what ties give, of those on joints, springs and ropes."""
         motion, recording = self._evidence.motion, self._evidence.recording
         push, turn = (array[1:] for array in self.given)
+        moved, stepped = np.linalg.norm(push, axis=2), self._stepped()
+        if self.ties is not None:
+            push, turn = push + self.ties.given[0][1:], turn + self.ties.given[1][1:]
+            moved = moved + self.ties.passed[1:]
         h, size = motion.h[:, None, None], np.maximum(motion.radius, 1e-9)
         force = motion.acceleration - motion.gravity - push / motion.mass[:, None] / h
         torque = (motion.torque - turn / h) / (motion.mass * size)[:, None]
@@ -78,11 +86,14 @@ class RecordedContacts:
             applied = np.linalg.norm(np.asarray(recording.applied_impulse[1:], dtype=np.float64), axis=2)
         speed = motion.speed + np.linalg.norm(motion.w, axis=2) * motion.radius
         rounding = 8.0 * FLOAT32 * np.maximum(speed[1:], speed[:-1])
-        moved = (np.linalg.norm(push, axis=2) + applied) / motion.mass / motion.h[:, None]
-        loose = ~motion.kinematic & ~motion.jointed
+        moved = (moved + applied) / motion.mass / motion.h[:, None]
+        loose = ~motion.kinematic & (~motion.jointed | (self.ties is not None))
+        lagging = np.zeros_like(stepped)
+        if self.ties is not None:
+            lagging = self.ties.stepped(moved + self._evidence.gravity)
         pushed = recording.applied_impulse is not None or bool(recording.metadata.get("controlled"))
         known = loose & (recording.applied_turn is not None or not pushed)
-        return Balanced(force, torque, moved + rounding / motion.h[:, None], self._stepped(), loose, known)
+        return Balanced(force, torque, moved + rounding / motion.h[:, None], stepped + lagging, lagging, loose, known)
 
     def _stepped(self) -> Floats:
         """The solver steps the velocity of a body's origin; that of its centre of mass at l is off, as of a joint's.

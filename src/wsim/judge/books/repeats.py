@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -23,30 +25,37 @@ PLACE = 1e-5  # of a body's size, and [rad]: an arm that is off by less
 SPEED = 1e-3  # of what gravity gives in an interval
 CHANGE = 1e-4  # of gravity
 LONGER = 1.5  # times as long is another interval
-CHUNK = 64  # frames whose distances between all bodies are held at once
+CHUNK = 64  # intervals whose distances between all bodies are held at once
 
 
-def fresh(evidence: Evidence, wanted: Floats, hit: Bools, size: Floats, unit: float) -> Bools:
-    """Where a body, or what it may touch or hangs on, differs from the last interval of its kind, (T - 1, B).
+def fresh(copies: Sequence[Evidence], wanted: Floats, hit: Bools, size: Floats, unit: float) -> Bools:
+    """Where a body, or what it may touch or hangs on, differs from the last interval of its kind, (N, B).
 
     Args:
-        evidence: T frames of B bodies.
-        wanted: Changes to be explained, (T - 1, B, 6) [m/s^2].
-        hit: Whether something hit a body, (T - 1, B).
-        size: (B,) [m].
+        copies: W of them, T frames of B bodies each; their N = W (T - 1) intervals are one after another.
+        wanted: Changes to be explained, (N, B, 6) [m/s^2].
+        hit: Whether something hit a body, (N, B).
+        size: (W, B) [m].
         unit: A strength of gravity [m/s^2].
     """
-    changed = _changed(_seen(evidence, size, unit), np.concatenate([wanted / (CHANGE * unit), hit[..., None]], axis=2))
-    motion = evidence.motion
+    motion, world, count = copies[0].motion, copies[0].world, len(copies)
+    seen = np.stack([_seen(evidence, each, unit) for evidence, each in zip(copies, size, strict=True)], axis=1)
+    kinds = np.concatenate([wanted / (CHANGE * unit), hit[..., None]], axis=2)
+    kinds = kinds.reshape(count, len(motion.h), *kinds.shape[1:]).swapaxes(0, 1)
+    changed = _changed(seen, kinds)  # (T - 1, W, B); the first of each copy is
     longer = np.abs(np.diff(np.log(motion.h), prepend=np.log(motion.h[:1]))) > np.log(LONGER)
-    changed |= longer[:, None]
-    breaks = {end for joint in evidence.world.joints if joint.may_break for end in (joint.parent, joint.child)}
-    changed[:, [body.prim in breaks for body in evidence.world.bodies]] = True
-    some = np.flatnonzero(changed.any(axis=1) & ~changed.all(axis=1))
-    for start in range(0, len(some), CHUNK):
-        ks = some[start : start + CHUNK]
-        changed[ks] = _spread(changed[ks], _near(evidence, ks))
-    return changed
+    changed |= longer[:, None, None]
+    breaks = {end for joint in world.joints if joint.may_break for end in (joint.parent, joint.child)}
+    changed[..., [body.prim in breaks for body in world.bodies]] = True
+    ks, ns = np.nonzero(changed.any(axis=2) & ~changed.all(axis=2))
+    com, ranges = np.stack([evidence.motion.com for evidence in copies]), np.stack([_ranges(each) for each in copies])
+    for start in range(0, len(ks), CHUNK):
+        k, n = ks[start : start + CHUNK], ns[start : start + CHUNK]
+        near = motion.unit[:, None] == motion.unit
+        for frames in (np.maximum(k - 1, 0), k, k + 1):
+            near = near | _near(com[n, frames], ranges[n, frames])
+        changed[k, n] = _spread(changed[k, n], near)
+    return np.ascontiguousarray(changed.swapaxes(0, 1)).reshape(-1, changed.shape[2])
 
 
 def again(fresh: Bools, found: Floats, wanted: Floats | None = None) -> Floats:
@@ -66,38 +75,38 @@ def _seen(evidence: Evidence, size: Floats, unit: float) -> Floats:
 
 
 def _changed(frames: Floats, intervals: Floats) -> Bools:
-    """Whether anything of a body in an interval is more than one off what it was when it last was."""
-    found = np.ones(intervals.shape[:2], dtype=bool)
+    """Whether anything of a body in an interval is more than one off what it was when it last was, (T - 1, W, B)."""
+    found = np.ones(intervals.shape[:3], dtype=bool)
     if not len(found):
         return found
-    steps = np.any(frames[1:] != frames[:-1], axis=(1, 2))
-    steps[1:] |= steps[:-1] | np.any(intervals[1:] != intervals[:-1], axis=(1, 2))
-    last = np.concatenate([frames[0], frames[1], intervals[0]], axis=1)
+    steps = np.any(frames[1:] != frames[:-1], axis=(1, 2, 3))
+    steps[1:] |= steps[:-1] | np.any(intervals[1:] != intervals[:-1], axis=(1, 2, 3))
+    last = np.concatenate([frames[0], frames[1], intervals[0]], axis=2)
     for k in range(1, len(found)):
         if not steps[k]:  # to the bit
             found[k] = False
             continue
-        now = np.concatenate([frames[k], frames[k + 1], intervals[k]], axis=1)
-        found[k] = np.any(np.abs(now - last) > 1.0, axis=1)
+        now = np.concatenate([frames[k], frames[k + 1], intervals[k]], axis=2)
+        found[k] = np.any(np.abs(now - last) > 1.0, axis=2)
         last[found[k]] = now[found[k]]
     return found
 
 
-def _near(evidence: Evidence, ks: Rows) -> Bools:
-    """Whether two bodies may touch, or hang together, in an interval or at the frame before it, (K, B, B)."""
+def _ranges(evidence: Evidence) -> Floats:
+    """How far about its centre of mass each body may be in the intervals about a frame, (T, B) [m]."""
     motion = evidence.motion
     reach = np.concatenate([motion.reach, motion.reach[-1:]])
     margins = [max((shape.margin for shape in body.shapes), default=0.0) for body in evidence.world.bodies]
-    range_ = motion.radius + np.array(margins) + 2.0 * np.maximum(reach, np.roll(reach, 1, axis=0))
-    near = np.tile(motion.unit[:, None] == motion.unit[None, :], (len(ks), 1, 1))
-    for frames in (np.maximum(ks - 1, 0), ks, ks + 1):
-        c = motion.com[frames].astype(np.float32)
-        c = c - c.mean(axis=1, keepdims=True)
-        square = np.einsum("kbi,kbi->kb", c, c)
-        apart2 = square[:, :, None] + square[:, None, :] - 2.0 * c @ c.transpose(0, 2, 1)
-        bound = (range_[frames][:, :, None] + range_[frames][:, None, :]).astype(np.float32) * 1.001 + 0.004
-        near |= apart2 < bound * bound
-    return near
+    return np.asarray(motion.radius + np.array(margins) + 2.0 * np.maximum(reach, np.roll(reach, 1, axis=0)))
+
+
+def _near(com: Floats, ranges: Floats) -> Bools:
+    """Whether two bodies may touch, (K, B, B), at their centres of mass (K, B, 3) with their ranges (K, B) [m]."""
+    c = (com - com.mean(axis=1, keepdims=True)).astype(np.float32)
+    square = np.einsum("kbi,kbi->kb", c, c)
+    apart2 = square[:, :, None] + square[:, None, :] - 2.0 * c @ c.transpose(0, 2, 1)
+    bound = (ranges[:, :, None] + ranges[:, None, :]).astype(np.float32) * 1.001 + 0.004
+    return np.asarray(apart2 < bound * bound)
 
 
 def _spread(some: Bools, near: Bools) -> Bools:

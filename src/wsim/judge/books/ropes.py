@@ -112,8 +112,8 @@ class Ropes:
         between = self._generalised(rope, rows, *self._halfway())
         first, last = at_frames[:-1], at_frames[1:]
         mean = (first + 4.0 * between + last) / 6.0
-        way = path_length(moving_stops(rope.path, self._poses(rope, q)))
-        rate = self._rate(rope)
+        way = path_length(moving_stops(rope.path, self.poses(rope, q)))
+        rate = self.rate(rope)
         rounding = 8.0 * FLOAT32 * np.abs(q[..., :3]).max(initial=0.0)
         long = rope.length * (1.0 - SLACK) - rounding
         near = way >= long
@@ -126,7 +126,7 @@ class Ropes:
         """-dL/dx of each body at each pose (T, B, 7), (T, n, 6)."""
         place = {int(row): n for n, row in enumerate(rows)}
         found = np.zeros((len(q), len(rows), 6))
-        for strand in strands(moving_stops(rope.path, self._poses(rope, q))):
+        for strand in strands(moving_stops(rope.path, self.poses(rope, q))):
             for stop, at, along in zip(
                 strand.stops, (strand.start, strand.end), (strand.along, -strand.along), strict=True
             ):
@@ -136,7 +136,7 @@ class Ropes:
                     found[:, n, 3:] += np.cross(at - com[:, self._row[body]], along)
         return found
 
-    def _rate(self, rope: Rope) -> Floats:
+    def rate(self, rope: Rope) -> Floats:
         """How fast its way gets longer, (T,) [m/s]."""
         motion = self._motion
         rows = np.array(sorted({self._row[guide.body] for guide in rope.path if guide.body is not None}), dtype=np.intp)
@@ -144,7 +144,8 @@ class Ropes:
         found: Floats = -np.einsum("tni,tni->t", pull, np.concatenate([motion.v, motion.w], axis=2)[:, rows])
         return found
 
-    def _poses(self, rope: Rope, q: Floats) -> dict[str, Floats]:
+    def poses(self, rope: Rope, q: Floats) -> dict[str, Floats]:
+        """Poses (T, 7) of the bodies on its way, of those of all (T, B, 7)."""
         held = {guide.body for guide in rope.path if guide.body is not None}
         return {prim: q[:, self._row[prim]] for prim in held}
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.forces import Columns, holds
+from wsim.judge.books.gears import Gears
 from wsim.judge.books.laws import Laws
 from wsim.judge.books.ropes import Ropes
 from wsim.judge.books.touching import WORLD
@@ -33,7 +34,8 @@ class Acting:
     """A joint, and in which intervals something acts along its own motion, (T - 1,) each."""
 
     joint: Joint
-    free: Bools  # a drive or dry friction that the frames do not tell, or a gear
+    free: Bools  # a drive or dry friction that the frames do not tell
+    most: Floats  # what they may give there at most [N or N m]
     low: Bools  # the stop at its lower end, which pushes up
     high: Bools
     gone: Bools  # it is broken
@@ -49,23 +51,30 @@ class Ties:
         self.laws = Laws(evidence)
         self.ropes = Ropes(evidence)
         self._moves: dict[str, list[compound.Placed | None]] = {}
-        geared = {prim for gear in world.gears for prim in (gear.first, gear.second)}
-        self._joints = [acting for joint in world.joints if (acting := self._acting(joint, joint.prim in geared))]
+        self._gears = Gears(evidence)
+        self._joints = [acting for joint in world.joints if (acting := self._acting(joint))]
 
-    def _acting(self, joint: Joint, geared: bool) -> Acting | None:
+    def _acting(self, joint: Joint) -> Acting | None:
         track = track_of(self._evidence, joint)
         if track is None:
             return None
-        law, none = self.laws.joints.get(joint.prim), np.zeros(len(self._evidence.time) - 1, dtype=bool)
-        free = none | geared if law is None else ~law.known | geared
+        laws, none = self.laws.joints[joint.prim], np.zeros(len(self._evidence.time) - 1, dtype=bool)
+        free = none.copy()
+        most = np.zeros(len(none))
+        for law in laws:
+            free |= ~law.known
+            most += np.where(law.known, 0.0, law.most)
+        untold = joint.prim in self._gears.untold
         if joint.kind == "spherical":  # no law for what turns a ball joint, nor where its stop is
-            free = free | (joint.drive is not None or joint.friction > 0.0 or joint.high is not None)
+            untold |= joint.drive is not None or joint.friction > 0.0 or joint.high is not None
+        if untold:
+            free[:], most[:] = True, np.inf
         at, h = track.position, self._evidence.motion.h
         near = NEAR_STOP + 2.0 * np.abs(np.diff(at)) + self._evidence.gravity * h**2
         lowest, highest = np.minimum(at[1:], at[:-1]), np.maximum(at[1:], at[:-1])
         low = none if joint.low is None else lowest <= joint.low + near
         high = none if joint.high is None else highest >= joint.high - near
-        return Acting(joint, free, low, high, broken(self._evidence, joint)[:-1])
+        return Acting(joint, free, most, low, high, broken(self._evidence, joint)[:-1])
 
     @property
     def any(self) -> bool:
@@ -93,7 +102,7 @@ class Ties:
         found = [columns for joint in self._joints if not joint.gone[k] for columns in self._joint(joint, k)]
         springs = zip(self._evidence.world.springs, self.laws.springs, strict=True)
         found += [self._spring(spring, k) for spring, law in springs if not law.known[k]]
-        return found + self.ropes.columns(k)
+        return found + self.ropes.columns(k) + self._gears.columns(k)
 
     def _joint(self, acting: Acting, k: int) -> list[Columns]:
         joint, acts = acting.joint, bool(acting.free[k])
@@ -107,19 +116,19 @@ class Ties:
         across = np.delete(axes, along, axis=0)
         none = np.zeros((0, 3))
         forces, torques = axes, none
-        if joint.kind == "fixed":
+        if joint.kind == "fixed" or (joint.kind == "spherical" and acts):
             torques = axes
         elif joint.kind == "revolute":
-            torques = axes if acts else across
+            torques = across
         elif joint.kind == "prismatic":
-            forces, torques = (axes if acts else across), axes
-        elif acts:
-            torques = axes
+            forces, torques = across, axes
         found = [holds(one, two, arms, forces, torques)]
+        own = (axes[along][None], none) if joint.kind == "prismatic" else (none, axes[along][None])
+        if acts and joint.kind in ("revolute", "prismatic"):
+            found.append(replace(holds(one, two, arms, *own), cap=acting.most[k : k + 1]))
         for way, stops in ((1.0, acting.low[k]), (-1.0, acting.high[k])):
-            if stops and not acts:
-                own = way * axes[along][None]
-                stop = holds(one, two, arms, *((none, own) if joint.kind == "revolute" else (own, none)))
+            if stops and (not acts or np.isfinite(acting.most[k])):
+                stop = holds(one, two, arms, way * own[0], way * own[1])
                 found.append(replace(stop, both=np.zeros(1, dtype=bool)))
         return found
 

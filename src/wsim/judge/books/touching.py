@@ -42,14 +42,22 @@ class Contacts:
     def __len__(self) -> int:
         return len(self.gap)
 
+    def surface(self, side: int) -> Floats:
+        """Where each touches the first body's surface or the second's (1), (n, 3) [m]: they meet with these points."""
+        return np.asarray(self.point + ((side - 0.5) * self.gap)[:, None] * self.normal)
+
     def only(self, chosen: NDArray[Any]) -> Contacts:
         """Some of them."""
         return Contacts(*(getattr(self, name)[chosen] for name in ("one", "two", "shapes", "point", "normal", "gap")))
 
 
+_ROWS, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+NONE = Contacts(_ROWS, _ROWS, _ROWS.reshape(0, 2), _POINTS, _POINTS, np.zeros(0))
+
+
 def together(parts: list[Contacts]) -> Contacts:
     """All contacts of several poses."""
-    return Contacts(*(np.concatenate([getattr(part, name) for part in parts])
+    return Contacts(*(np.concatenate([getattr(part, name) for part in (NONE, *parts)])
                       for name in ("one", "two", "shapes", "point", "normal", "gap")))  # fmt: skip
 
 
@@ -114,23 +122,43 @@ class Touching:
 
     def at(self, poses: Floats, reach: float) -> Contacts:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
-        model, data = self._model, self._data
-        model.geom_margin[:] = 0.5 * reach + self._margin
-        model.body_margin[:] = 0.5 * reach + self._margin.max(initial=0.0)
-        data.qpos[:] = poses[:, [0, 1, 2, 6, 3, 4, 5]].ravel()
-        self._mujoco.mj_kinematics(model, data)
-        self._mujoco.mj_comPos(model, data)
-        self._mujoco.mj_collision(model, data)
-        found = data.contact
-        shapes = self._shape_of_geom[np.asarray(found.geom).reshape(-1, 2)]
-        rows = self._row_of_shape[shapes]
+        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp))
+
+    def of_many(self, poses: Floats, reach: Floats, rows: Rows) -> Contacts:
+        """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of `rows` (K,) by B."""
+        model, data, bodies = self._model, self._data, poses.shape[1]
+        qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
+        widest = self._margin.max(initial=0.0)
+        geoms, places, frames, gaps, others = [], [], [], [], []
+        for k, far in enumerate(reach):
+            model.geom_margin[:] = 0.5 * far + self._margin
+            model.body_margin[:] = 0.5 * far + widest
+            data.qpos[:] = qpos[k]
+            self._mujoco.mj_kinematics(model, data)
+            self._mujoco.mj_comPos(model, data)
+            self._mujoco.mj_collision(model, data)
+            found = data.contact
+            geoms.append(np.array(found.geom).reshape(-1, 2))
+            places.append(np.array(found.pos).reshape(-1, 3))
+            frames.append(np.array(found.frame).reshape(-1, 9))
+            gaps.append(np.array(found.dist).reshape(-1))
+            if self._meshes:
+                others.append(together(self._on_meshes(poses[k], float(far))))
+        geom = np.concatenate([NONE.shapes, *geoms])
+        shapes = self._shape_of_geom[geom]
         contacts = Contacts(
-            rows[:, 0], rows[:, 1], shapes, np.array(found.pos).reshape(-1, 3),
-            np.array(found.frame).reshape(-1, 9)[:, :3],
-            np.array(found.dist).reshape(-1) - self._margin[np.asarray(found.geom).reshape(-1, 2)].sum(axis=1),
+            self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes,
+            np.concatenate([_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
+            np.concatenate([np.zeros(0), *gaps]) - self._margin[geom].sum(axis=1),
         )  # fmt: skip
-        if self._meshes:
-            contacts = together([contacts, *self._on_meshes(poses, reach)])
+        by = np.repeat(rows, [len(gap) for gap in gaps])
+        if others:  # what is of one pose stays together
+            contacts = together([contacts, *others])
+            order = np.concatenate([by, np.repeat(rows, [len(other) for other in others])])
+            at = np.argsort(order, kind="stable")
+            contacts, by = contacts.only(at), order[at]
+        one, two = (np.where(row >= 0, row + by * bodies, row) for row in (contacts.one, contacts.two))
+        contacts = replace(contacts, one=one, two=two)
         return contacts if self._meet.all() else contacts.only(self._meet[contacts.shapes[:, 0], contacts.shapes[:, 1]])
 
     @cached_property
@@ -169,15 +197,6 @@ class Touching:
             return own
         q = poses[row]
         return np.concatenate([q[:3] + rotate(q[3:], own[:3]), multiply(q[3:], own[3:])])
-
-    def of_many(self, poses: Floats, reach: Floats, rows: Rows) -> Contacts:
-        """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of `rows` (K,) by B."""
-        parts = []
-        for q, far, n in zip(poses, reach, rows, strict=True):
-            found, by = self.at(q, float(far)), int(n) * poses.shape[1]
-            one, two = (np.where(rows >= 0, rows + by, rows) for rows in (found.one, found.two))
-            parts.append(replace(found, one=one, two=two))
-        return together(parts)
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""

@@ -9,9 +9,10 @@ import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.framing import framed, in_frame
-from wsim.judge.objectives.registry import check_of
+from wsim.judge.language.kinds import formula_of
+from wsim.judge.language.objective import ObjectiveCheck, conjuncts
 from wsim.judge.verdict import RepairTarget
-from wsim.plan.schema.formula import And, Eventually, Predicate, Then
+from wsim.plan.schema.formula import Eventually, Predicate, Then
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
 
-EVENTS = ("collides_with", "topples", "tilts")  # objectives of something that happens at a moment
 MOMENTS = 48  # frames that are looked at
 ONCE = "what the world is about is to be seen, once at least"
 ASKED = "what the plan asks something of is to be seen as it does it, not only where it starts"
@@ -182,15 +182,13 @@ class CheckSeen(Check):
 def _events(evidence: Evidence) -> Iterator[tuple[str, float, str]]:
     """What comes true, as the plan asks: of which object, when [s], and in words. What always holds has no moment."""
     for objective in evidence.plan.objectives if evidence.plan is not None else []:
-        formula = objective.formula
-        check = check_of(objective)
-        if formula is None and objective.kind not in EVENTS:
-            continue
+        check = ObjectiveCheck(objective)
         found = check.run(evidence)
-        parts = formula.of if isinstance(formula, And) else (formula,) * len(found)
-        for finding, part in zip(found, parts, strict=False):
+        if not any(finding.passed for finding in found):
+            continue  # one that cannot be evaluated has one finding, whatever it is made of
+        for finding, part in zip(found, conjuncts(formula_of(objective, evidence)), strict=True):
             once = isinstance(part, Eventually | Then) or (isinstance(part, Predicate) and part.alone == "eventually")
-            if finding.passed and finding.prim and finding.time is not None and (part is None or once):
+            if once and finding.passed and finding.prim and finding.time is not None:
                 # The moment that decides is that of the greatest margin; it came true before.
                 yield finding.prim, finding.span[0] if finding.span is not None else finding.time, check.sentence
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from wsim.judge.verdict import Finding
 
@@ -18,9 +18,23 @@ Bounds = tuple[float, float]
 class Check:
     """One question put to the evidence. Subclasses are dataclasses whose fields are their limits."""
 
+    of_world: ClassVar[bool] = False  # it asks the world and the plan alone: of several copies of a world once
+
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The answers; empty when the question does not arise in this world."""
         raise NotImplementedError
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget | None:
+        """What to change where a finding failed that does not say so itself; None where no rule is known."""
+        return None
+
+    def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
+        """Work out at once what it asks of all copies of a world, and keep it with each; nothing if it need not.
+
+        Args:
+            joined: Evidence whose motion has an axis of copies (`Evidence.join`).
+            copies: Each by itself.
+        """
 
     @property
     def name(self) -> str:
@@ -29,6 +43,13 @@ class Check:
 
     def run(self, evidence: Evidence) -> list[Finding]:
         """The answers, each with the line that made its prim unless it says its own; a crash is a failed finding."""
+        if not self.of_world:
+            return self._answers(evidence)
+        if type(self) not in evidence.of_world:
+            evidence.of_world[type(self)] = self._answers(evidence)
+        return [finding.model_copy() for finding in evidence.of_world[type(self)]]
+
+    def _answers(self, evidence: Evidence) -> list[Finding]:
         try:
             found = self.evaluate(evidence)
         except Exception as error:  # noqa: BLE001 - whatever the evidence did to a check, the verdict must say it

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.rotations import conjugate, lengths, rotate
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.separation import separation
@@ -15,15 +15,19 @@ from wsim.judge.verdict import RepairTarget
 from wsim.scene.contact import passing
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.evidence.placed import Placed
+    from wsim.judge.evidence.recorded import Recorded
     from wsim.judge.verdict import Finding
     from wsim.scene.world import Shape
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.intp]
+    Asked = tuple[int, Indices, Floats, Floats]  # of a body: frames, limits and gaps there
 
 
 @dataclass
@@ -119,18 +123,44 @@ class CheckSupport(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The body whose nearest surface is farthest away while it is in contact, by its limit."""
-        motion = evidence.motion
         worst: tuple[float, Finding] | None = None
-        for i in np.flatnonzero(motion.touched.any(axis=0) & ~motion.kinematic):
-            frames = np.flatnonzero(motion.touched[:, i])
-            frames = frames[np.unique(np.linspace(0, len(frames) - 1, min(self.moments, len(frames))).astype(int))]
-            limit = self._limit(evidence, int(i), frames)
-            gap = _nearest(evidence, int(i), frames, limit)
+        if CheckSupport not in evidence.kept:
+            evidence.kept[CheckSupport] = self._asked([evidence], evidence)[0]
+        for i, frames, limit, gap in cast("list[Asked]", evidence.kept[CheckSupport]):
             at = int(np.argmax(gap / limit))
             if worst is None or gap[at] / limit[at] > worst[0]:
-                finding = self._finding(evidence, int(i), frames[gap > limit], float(gap[at]), float(limit[at]))
+                finding = self._finding(evidence, i, frames[gap > limit], float(gap[at]), float(limit[at]))
                 worst = (float(gap[at] / limit[at]), finding)
         return [worst[1]] if worst is not None else []
+
+    def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
+        """The distances in all copies at once."""
+        if joined.part is not None:
+            for evidence, asked in zip(copies, self._asked(copies, joined.part.whole), strict=True):
+                evidence.kept[CheckSupport] = asked
+
+    def _asked(self, copies: Sequence[Evidence], whole: Recorded) -> list[list[Asked]]:
+        """Of each copy: each body in contact, in which frames, how far it may be from a shape, and how far it is.
+
+        `whole` has the frames of all copies, one after another.
+        """
+        found: list[list[Asked]] = [[] for _ in copies]
+        for i in np.flatnonzero(~copies[0].motion.kinematic):
+            some = []
+            for n, evidence in enumerate(copies):
+                frames = np.flatnonzero(evidence.motion.touched[:, i])
+                moments = np.linspace(0, len(frames) - 1, min(self.moments, len(frames)))
+                frames = frames[np.unique(moments.astype(int))]
+                if len(frames):
+                    some.append((n, frames, self._limit(evidence, int(i), frames)))
+            if not some:
+                continue
+            at = np.concatenate([n * len(copies[n].time) + frames for n, frames, _ in some])
+            nearest = _nearest(whole, int(i), at, np.concatenate([limit for _, _, limit in some]))
+            gaps = np.split(nearest, np.cumsum([len(frames) for _, frames, _ in some])[:-1])
+            for (n, frames, limit), gap in zip(some, gaps, strict=True):
+                found[n].append((int(i), frames, limit, gap))
+        return found
 
     def _limit(self, evidence: Evidence, i: int, frames: Indices) -> Floats:
         """How far a body may have come from what pressed on it, (n,) [m]."""
@@ -155,21 +185,28 @@ class CheckSupport(Check):
         )  # fmt: skip
 
 
-def _nearest(evidence: Evidence, i: int, frames: Indices, limit: Floats) -> Floats:
-    """How far body i is from the nearest other shape at least, (n,) [m]; what is within the limit is not looked at."""
+def _nearest(evidence: Recorded, i: int, frames: Indices, limit: Floats) -> Floats:
+    """How far body i is from the nearest other shape at least, (n,) [m]; what is within the limit is not looked at.
+
+    In each frame the shapes are asked in the order in which the balls about them are near.
+    """
     nearest, shapes = np.full(len(frames), np.inf), evidence.placed
     radius = np.array([shape.radius for shape in shapes])
+    other = [k for k, shape in enumerate(shapes) if shape.body != i]
+    if not other:
+        return nearest
     for own in (shape for shape in shapes if shape.body == i):
-        apart = np.linalg.norm(own.position[frames][:, None] - evidence.places[frames], axis=2) - own.radius - radius
-        least = apart.min(axis=0)
-        for n in np.argsort(least, kind="stable"):
-            wanted = nearest > limit
-            if not wanted.any() or least[n] >= nearest[wanted].max():
+        apart = lengths(own.position[frames][:, None] - evidence.places[frames][:, other]) - own.radius - radius[other]
+        order = np.argsort(apart, axis=1, kind="stable")
+        for rank in order.T:
+            bound = apart[np.arange(len(frames)), rank]
+            wanted = (nearest > limit) & (bound < nearest)
+            if not wanted.any():
                 break  # all others are farther
-            asked = np.flatnonzero(wanted & (apart[:, n] < nearest))
-            if len(asked) and shapes[n].owner != own.owner:
-                bound = np.maximum(separation(own, shapes[n], frames[asked]), apart[asked, n])
-                nearest[asked] = np.minimum(nearest[asked], bound)
+            for k in np.unique(rank[wanted]):
+                asked = np.flatnonzero(wanted & (rank == k))
+                gap = np.maximum(separation(own, shapes[other[k]], frames[asked]), bound[asked])
+                nearest[asked] = np.minimum(nearest[asked], gap)
     return nearest
 
 

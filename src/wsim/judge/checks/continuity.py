@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.judge.books.laws import Laws
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.strangest import strangest
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import Joint
 
     Floats = NDArray[np.float64]
+    Pair = tuple[Floats, Floats]  # a value and its limit
 
 
 @dataclass
@@ -33,65 +37,88 @@ class CheckContinuity(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The place and the turn that the velocity explains least, and the farthest drift."""
-        motion = evidence.motion
-        if len(motion.h) == 0 or len(motion.mass) == 0:
+        if len(evidence.motion.h) == 0 or len(evidence.motion.mass) == 0:
             return []
-        strayed = np.diff(motion.com, axis=0) - 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
-        going, turning = _driven(evidence)
-        found = [self._places(evidence, strayed, going), self._turns(evidence, turning)]
+        if CheckContinuity not in evidence.kept:
+            evidence.kept[CheckContinuity] = self._asked(evidence)
+        (far, most), (turned, angle), drift = cast("tuple[Pair, Pair, Pair]", evidence.kept[CheckContinuity])
+        change = "half the velocity's change about then, g h, and the speed of what may hit or drive it, over h"
+        rate = "its fastest rate then, half the rate's change, and g h / r or a hit's v / r, over the frame's h"
+        ends = "what its ends and its blows leave of the trapezoidal rule, and a time step of its change of velocity"
+        found = [
+            self._worst(evidence, far, most, "m", "jumps by", change),
+            self._worst(evidence, turned, angle, "rad", "turns by", rate),
+        ]
         # What has jumped is not where its velocities take it, either.
-        return [*found, self._drift(evidence, strayed, going)] if found[0].passed else found
+        return [*found, self._worst(evidence, *drift, "m", "has drifted by", ends)] if found[0].passed else found
 
-    def _places(self, evidence: Evidence, strayed: Floats, driven: Floats) -> Finding:
+    def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
+        """What is asked of all copies at once."""
+        if len(joined.motion.h) and joined.world.bodies and not joined.world.joints:
+            asked = self._asked(joined)
+            for n, evidence in enumerate(copies):
+                evidence.kept[CheckContinuity] = tuple((value[n], limit[n]) for value, limit in asked)
+
+    def _asked(self, evidence: Evidence) -> tuple[Pair, Pair, Pair]:
+        """How far off places, turns and sums of ways are, and by how much they may be, (T - 1, B) each."""
+        motion = evidence.motion
+        strayed = np.diff(motion.com, axis=-3) - 0.5 * _added(motion.v) * motion.h[:, None, None]
+        going, turning = _driven(evidence)
+        handed = self._handed_on(evidence)
+        return (
+            (lengths(strayed), self._place_limit(evidence, handed, going)),
+            self._turns(evidence, handed, turning),
+            self._drift(evidence, strayed, going),
+        )
+
+    def _place_limit(self, evidence: Evidence, handed: Floats, driven: Floats) -> Floats:
         motion, h = evidence.motion, evidence.motion.h[:, None]
         # Within a frame the velocity may be anything between its ends, a body may fall and be caught, one that is hit
         # may hand it on, and a drive that is faster than the frames may have come and gone.
-        pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + self._handed_on(evidence) + driven)
-        limit = h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[1:] + self._added(evidence)
-        source = "half the velocity's change about then, g h, and the speed of what may hit or drive it, over h"
-        return self._worst(evidence, np.linalg.norm(strayed, axis=2), limit, "m", "jumps by", source)
+        pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + handed + driven)
+        return np.asarray(h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[..., 1:, :]
+                          + self._by_hand(evidence))  # fmt: skip
 
-    def _turns(self, evidence: Evidence, driven: Floats) -> Finding:
+    def _turns(self, evidence: Evidence, handed: Floats, driven: Floats) -> Pair:
         motion, h = evidence.motion, evidence.motion.h[:, None]
-        q = evidence.body_q[:, :, 3:]
-        cosine = np.abs(np.einsum("tbi,tbi->tb", q[1:], q[:-1]))
+        q = motion.q[..., 3:]
+        cosine = np.abs(np.einsum("...i,...i->...", q[..., 1:, :, :], q[..., :-1, :, :]))
         turned = 2.0 * np.arccos(np.clip(cosine, 0.0, 1.0))
-        rate = np.linalg.norm(motion.w, axis=2)
-        fastest = np.maximum(rate[1:], rate[:-1])
-        half = np.array([evidence.solid(i).smallest / 2 for i in range(len(motion.mass))])
+        fastest = np.maximum(motion.rate[..., 1:, :], motion.rate[..., :-1, :])
+        half = np.array([evidence.solid(i).smallest / 2 for i in range(len(evidence.world.bodies))])
         # A body that tips over an edge turns at most as g pulls its centre about it.
-        pushed = (evidence.gravity * h + self._handed_on(evidence)) / half + driven
+        pushed = (evidence.gravity * h + handed) / half + driven
         limit = h * (fastest + 0.5 * _around(motion.w) + np.where(motion.kinematic, 0.0, pushed)) + 1e-3
-        turned = np.where(fastest * h > self.alias, 0.0, turned)
-        source = "its fastest rate then, half the rate's change, and g h / r or a hit's v / r, over the frame's h"
-        return self._worst(evidence, turned, limit, "rad", "turns by", source)
+        return np.where(fastest * h > self.alias, 0.0, turned), limit
 
-    def _drift(self, evidence: Evidence, strayed: Floats, driven: Floats) -> Finding:
+    def _drift(self, evidence: Evidence, strayed: Floats, driven: Floats) -> Pair:
         """How far places come from where velocities take them, from any of some moments to any later one.
 
         Of a smooth motion the trapezoidal rule's errors h^3 v'' / 12 add up to what its ends differ by, h^2 dv/dt / 12
-        (Euler and Maclaurin), and a step of first order is off by dt / 2 of the change of velocity: neither grows with
+        (Euler and Maclaurin), and steps of first order are off by dt / 2 of the change of velocity: neither grows with
         the run. What grows is as much as velocities bend from frame to frame, in blows, by twice the rule's error.
         """
         motion, h = evidence.motion, evidence.motion.h[:, None]
-        change = np.linalg.norm(np.diff(motion.v, axis=0), axis=2)
-        ends = motion.dt * np.linalg.norm(np.ptp(motion.v, axis=0), axis=1) + (h * change).max(axis=0) / 6.0
+        change = lengths(np.diff(motion.v, axis=-3))
+        ends = motion.late * lengths(np.ptp(motion.v, axis=-3)) + (h * change).max(axis=-2) / 6.0
         # What is set down settles by a step, also along a slope.
-        ends = ends + self._rounding(evidence).max(axis=0) + evidence.gravity * motion.dt**2
-        ends = ends + self._added(evidence).sum(axis=0)
+        ends = ends + self._rounding(evidence).max(axis=-2) + evidence.gravity * motion.dt**2
+        ends = (ends + self._by_hand(evidence).sum(axis=-2))[..., None, :]
         # A contact that flips from step to step tells of one phase of it, and the body stays.
-        told = 0.5 * np.linalg.norm(motion.v[1:] + motion.v[:-1], axis=2)
-        hides = np.where(motion.touched[1:] | motion.touched[:-1], self.steps * evidence.gravity * motion.dt, 0.0)
-        unsure = np.cumsum(h * (_bends(motion.v) + driven + np.minimum(told, hides)), axis=0)
-        sums = np.cumsum(strayed, axis=0)
-        apart, limit = np.linalg.norm(self._caught(evidence, sums), axis=2), unsure + ends
+        touched = motion.touched[..., 1:, :] | motion.touched[..., :-1, :]
+        hides = np.where(touched, self.steps * evidence.gravity * motion.dt, 0.0)
+        told = np.minimum(0.5 * lengths(_added(motion.v)), hides)
+        unsure = np.cumsum(h * (_bends(motion.v) + driven + told), axis=-2)
+        sums = np.cumsum(strayed, axis=-3)
+        apart, limit = lengths(self._caught(evidence, sums)), unsure + ends
         for start in np.unique(np.linspace(0, len(h), self.starts, endpoint=False).astype(int))[1:]:
-            off = np.linalg.norm(self._caught(evidence, sums[start:] - sums[start - 1]), axis=2)
-            most = unsure[start:] - unsure[start - 1] + ends
-            more = off * limit[start:] > apart[start:] * most
-            apart[start:], limit[start:] = np.where(more, off, apart[start:]), np.where(more, most, limit[start:])
-        source = "what its ends and its blows leave of the trapezoidal rule, and a time step of its change of velocity"
-        return self._worst(evidence, apart, limit, "m", "has drifted by", source)
+            before = slice(start - 1, start)
+            off = lengths(self._caught(evidence, sums[..., start:, :, :] - sums[..., before, :, :]))
+            most = unsure[..., start:, :] - unsure[..., before, :] + ends
+            since, of = apart[..., start:, :], limit[..., start:, :]
+            more = off * of > since * most
+            since[...], of[...] = np.where(more, off, since), np.where(more, most, of)
+        return apart, limit
 
     @staticmethod
     def _caught(evidence: Evidence, drift: Floats) -> Floats:
@@ -102,26 +129,27 @@ class CheckContinuity(Check):
         fallen = np.clip(-(drift @ evidence.up), 0.0, 0.5 * evidence.gravity * float(evidence.motion.h.max()) ** 2)
         fallen = np.where(evidence.motion.kinematic, 0.0, fallen)
         aside = drift + fallen[..., None] * evidence.up
-        far = np.linalg.norm(aside, axis=-1)
+        far = lengths(aside)
         left = np.maximum(far - fallen, 0.0) / np.maximum(far, 1e-300)
         return np.asarray(aside * left[..., None])
 
     def _rounding(self, evidence: Evidence) -> Floats:
         """What single precision leaves of places, (T, B) [m]."""
-        return np.asarray(self.roundings * FLOAT32 * np.abs(evidence.motion.com).max(axis=2))
+        return np.asarray(self.roundings * FLOAT32 * np.abs(evidence.motion.com).max(axis=-1))
 
     @staticmethod
-    def _added(evidence: Evidence) -> Floats:
+    def _by_hand(evidence: Evidence) -> Floats:
         """What goes by hand adds each step's way to its place, and may round one way each time, (T - 1, B) [m]."""
         motion = evidence.motion
         count = motion.h[:, None] / max(motion.dt, 1e-9)
-        return np.where(motion.kinematic, 0.5 * count * FLOAT32 * np.abs(motion.com[1:]).max(axis=2), 0.0)
+        far = np.abs(motion.com[..., 1:, :, :]).max(axis=-1)
+        return np.where(motion.kinematic, 0.5 * count * FLOAT32 * far, 0.0)
 
     @staticmethod
     def _handed_on(evidence: Evidence) -> Floats:
         """The speed of the fastest body, where another may hit a body within an interval, (T - 1, B) [m/s]."""
         motion = evidence.motion
-        fastest = np.maximum(motion.speed[1:], motion.speed[:-1]).max(axis=1, keepdims=True)
+        fastest = np.maximum(motion.speed[..., 1:, :], motion.speed[..., :-1, :]).max(axis=-1, keepdims=True)
         handed: Floats = np.where(motion.meets, fastest, 0.0)
         if evidence.world.stepped == "joints":  # a stop or a contact of one link catches the others within a step
             for unit in np.unique(motion.unit[motion.jointed]):
@@ -140,26 +168,31 @@ class CheckContinuity(Check):
         )  # fmt: skip
 
 
+def _added(rate: Floats) -> Floats:
+    """A rate (..., T, B, 3) at both ends of each interval, added, (..., T - 1, B, 3)."""
+    return rate[..., 1:, :, :] + rate[..., :-1, :, :]
+
+
 def _around(rate: Floats) -> Floats:
-    """The greatest change of a rate (T, B, 3) over an interval or its neighbours, (T - 1, B)."""
-    return _most_about(np.linalg.norm(np.diff(rate, axis=0), axis=2))
+    """The greatest change of a rate (..., T, B, 3) over an interval or its neighbours, (..., T - 1, B)."""
+    return _most_about(lengths(np.diff(rate, axis=-3)))
 
 
 def _most_about(each: Floats) -> Floats:
-    """The greatest of each and its neighbours, along the first axis."""
+    """The greatest of each and its neighbours in time, (..., T - 1, B)."""
     around = each.copy()
-    around[1:] = np.maximum(around[1:], each[:-1])
-    around[:-1] = np.maximum(around[:-1], each[1:])
+    around[..., 1:, :] = np.maximum(around[..., 1:, :], each[..., :-1, :])
+    around[..., :-1, :] = np.maximum(around[..., :-1, :], each[..., 1:, :])
     return around
 
 
 def _bends(rate: Floats) -> Floats:
-    """The greatest difference of second order of a rate (T, B, 3) about each interval, (T - 1, B)."""
-    change = np.diff(rate, axis=0)
-    bend = np.linalg.norm(np.diff(change, axis=0), axis=2)
-    if not len(bend):
-        return np.linalg.norm(change, axis=2)
-    return _most_about(np.concatenate([bend, bend[-1:]]))
+    """The greatest difference of second order of a rate (..., T, B, 3) about each interval, (..., T - 1, B)."""
+    change = np.diff(rate, axis=-3)
+    bend = lengths(np.diff(change, axis=-3))
+    if not bend.shape[-2]:
+        return lengths(change)
+    return _most_about(np.concatenate([bend, bend[..., -1:, :]], axis=-2))
 
 
 def _driven(evidence: Evidence) -> tuple[Floats, Floats]:
@@ -168,15 +201,16 @@ def _driven(evidence: Evidence) -> tuple[Floats, Floats]:
     As fast as the joint has gone; where it is known what the drive is set to, towards that alone.
     """
     motion, world = evidence.motion, evidence.world
-    going, turning = np.zeros((len(motion.h), len(motion.mass))), np.zeros((len(motion.h), len(motion.mass)))
+    going, turning = (np.zeros((len(motion.h), len(world.bodies))) for _ in range(2))
     if not any(joint.drive for joint in world.joints):
         return going, turning
     laws = Laws(evidence).joints
     for joint in world.joints:
         track = None if joint.drive is None else evidence.joint(joint)
-        if track is None or joint.prim not in laws:
+        if track is None or not laws[joint.prim]:
             continue
-        rate = np.where(laws[joint.prim].known, 0.0, np.abs(np.diff(track.position)) / motion.h)
+        known = np.all([law.known for law in laws[joint.prim]], axis=0)
+        rate = np.where(known, 0.0, np.abs(np.diff(track.position)) / motion.h)
         rate = np.where(_towards(evidence, joint, track.position), rate, 0.0)
         child = evidence.index(joint.child)
         rows = np.flatnonzero(motion.unit == motion.unit[child])

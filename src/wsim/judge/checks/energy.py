@@ -1,4 +1,4 @@
-"""The energy budget: what bodies have, less what was put into them, never rises."""
+"""The energy budget: what bodies have, less what was put into them, never rises, and falls by what may be taken."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
+from wsim.judge.books.losses import Losses
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
@@ -27,8 +29,9 @@ if TYPE_CHECKING:
 class CheckEnergy(Check):
     """Nothing gains energy from nowhere: kinetic, potential and springs' energy, less work done on it, only fall.
 
-    By mechanism, over the time in which it meets no other, and for all bodies together. What friction and impacts take
-    is not known, so a loss is always possible; a gain never is.
+    By mechanism, over the time in which it meets no other, and for all bodies together. Where contacts, joints and
+    cords are recorded, what is lost must be what friction, blows, stops and dampers may take by their laws; elsewhere
+    that is not known, and of what is lost nothing is asked here.
     """
 
     share: float = 0.01  # of the energy that changes hands
@@ -57,7 +60,58 @@ class CheckEnergy(Check):
         rows = np.flatnonzero(~motion.kinematic)
         if any(not finding.passed for finding in found):
             return found  # what one gains all have together
-        return [*found, self._finding(evidence, rows, together, stored)] if len(rows) else found
+        losses = Losses.of(evidence)
+        if len(rows) and not (losses and losses.whole):
+            found.append(self._finding(evidence, rows, together, stored))
+        return found if losses is None else [*found, *self._accounted(evidence, losses, stored)]
+
+    def _accounted(self, evidence: Evidence, losses: Losses, stored: Floats) -> list[Finding]:
+        """Of bodies that hang together or touch: the gain or the loss that is largest by its limit."""
+        motion = evidence.motion
+        energy = motion.kinetic + motion.potential + motion.elastic
+        if motion.applied_work is not None:
+            energy = energy - motion.applied_work
+        chattered, held = self._chattered(evidence), np.where(np.isfinite(stored), stored, 0.0)
+        found: list[tuple[float, Finding]] = []
+        for rows in losses.groups:
+            taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
+            limit, scale = (float(each[0]) for each in self._limit(evidence, of))
+            limit += self.share * (max(scale, taken.held) - scale) - float((self._late(evidence) @ of)[0])
+            limit += losses.give(rows)
+            limits = limit, max(scale, taken.held)
+            ahead, stray = losses.ahead(rows)
+            known = energy[:, rows].sum(axis=1) + ahead - taken.driven + taken.damped
+            doubt = taken.unsure + stray + chattered[:, rows].sum(axis=1)
+            gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
+            found += [
+                self._changed(evidence, rows, known - doubt, gives, limits, "gains"),
+                self._changed(evidence, rows, -known - doubt - taken.most, gives, limits, "loses"),
+            ]
+        return [max(found, key=lambda each: each[0])[1]] if found else []
+
+    def _changed(
+        self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, gives: Floats, limits: tuple[float, float],
+        verb: str,
+    ) -> tuple[float, Finding]:  # fmt: skip
+        """How far a balance rises, by its limit; contacts and stops may have held a part at either end."""
+        had = balance + (gives if verb == "gains" else 0.0)
+        rise = balance - (0.0 if verb == "gains" else gives) - np.minimum.accumulate(had)
+        end = int(np.argmax(rise))
+        start, value, (limit, scale) = int(np.argmin(had[: end + 1])), max(float(rise[end]), 0.0), limits
+        over = np.flatnonzero(rise > limit)
+        motion = evidence.motion
+        body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[:, rows].max(axis=0)))]]
+        story = "that nothing gives" if verb == "gains" else "that nothing takes"
+        return value / max(limit, 1e-300), self.measured(
+            f"{body.prim}{' and what it meets' if len(rows) > 1 else ''} {verb} {value:.3g} J {story}"
+            + (f", {value / scale:.2%} of what moves it" if scale else ""),
+            value, limit, "J", expected=0.0, prim=body.prim, time=float(evidence.time[over[0] if len(over) else end]),
+            span=(float(evidence.time[start]), float(evidence.time[end])),
+            fine="What bodies lose is what friction, blows, stops, drives and dampers may take",
+            limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, what one time step cannot resolve, and "
+            f"a lift by {self.settling:g} of the size of what may touch something",
+            target=RepairTarget(kind="program", prim=body.prim, why="something takes or gives energy unseen"),
+        )  # fmt: skip
 
     @staticmethod
     def _one(evidence: Evidence) -> bool:
@@ -89,9 +143,9 @@ class CheckEnergy(Check):
         work is known no better than its force times that.
         """
         motion = evidence.motion
-        force = np.linalg.norm(np.asarray(evidence.recording.contact_force, dtype=np.float64), axis=2)
+        force = lengths(np.asarray(evidence.recording.contact_force, dtype=np.float64))
         told = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
-        hidden = np.linalg.norm(np.diff(motion.com, axis=0) - told, axis=2)
+        hidden = lengths(np.diff(motion.com, axis=0) - told)
         work = np.minimum(force[1:], force[:-1]) * hidden
         chattered: Floats = np.concatenate([np.zeros((1, work.shape[1])), np.cumsum(work, axis=0)])
         return chattered
@@ -105,7 +159,7 @@ class CheckEnergy(Check):
         deepest = recording.scalars.get("contact/penetration")
         size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
-        force = np.linalg.norm(np.asarray(recording.contact_force, dtype=np.float64), axis=2)
+        force = lengths(np.asarray(recording.contact_force, dtype=np.float64))
         stored = force * (give + motion.speed * motion.dt)
         if evidence.world.give.time > 0.0:
             stored = stored + self._pressed_in(evidence)
@@ -133,21 +187,20 @@ class CheckEnergy(Check):
     def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
         motion = evidence.motion
-        worst: Finding | None = None
-        for unit in np.unique(motion.unit[~motion.kinematic]):
-            rows = np.flatnonzero(motion.unit == unit)
-            meets = np.asarray(motion.meets[:, rows].any(axis=1))
-            gained = np.where(meets, 0.0, np.diff(energy[:, rows].sum(axis=1)))
-            # What a contact took up while it met another, it may give back after.
-            parts = np.flatnonzero(meets[:-1] & ~meets[1:]) + 1
-            owed = stored[np.ix_(parts, rows)].sum(axis=1)
-            gained[parts] -= np.where(np.isfinite(owed), owed, 0.0)
-            finding = self._finding(evidence, rows, np.concatenate([[0.0], np.cumsum(gained)]), stored)
-            if worst is None or (finding.value or 0.0) / (finding.limit or 1.0) > (worst.value or 0.0) / (
-                worst.limit or 1.0
-            ):
-                worst = finding
-        return [worst] if worst is not None else []
+        units = np.unique(motion.unit[~motion.kinematic])
+        if not len(units):
+            return []
+        of = motion.unit[:, None] == units  # (B, mechanisms)
+        meets = (motion.meets @ of.astype(np.float32)) > 0.0
+        gained = np.where(meets, 0.0, np.diff(energy @ of, axis=0))
+        # What a contact took up while it met another, it may give back after.
+        held = _summed(stored, of)
+        gained[1:] -= np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
+        balance = np.concatenate([np.zeros((1, len(units))), np.cumsum(gained, axis=0)])
+        gain = np.max(balance - np.minimum.accumulate(balance + held, axis=0), axis=0)
+        limit, _ = self._limit(evidence, of)
+        worst = int(np.argmax(np.maximum(gain, 0.0) / np.where(limit > 0.0, limit, 1.0)))
+        return [self._finding(evidence, np.flatnonzero(of[:, worst]), balance[:, worst], stored)]
 
     def _finding(self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, stored: Floats) -> Finding:
         motion = evidence.motion
@@ -155,7 +208,7 @@ class CheckEnergy(Check):
         gain = np.maximum(balance - np.minimum.accumulate(had), 0.0)
         end = int(np.argmax(gain))
         start = int(np.argmin(had[: end + 1]))
-        limit, scale = self._limit(evidence, rows)
+        limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(motion.mass))))
         wrong = gain[end] > limit
         alone = len(np.unique(motion.unit[rows])) == 1
         body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[end, rows]))]]
@@ -181,19 +234,36 @@ class CheckEnergy(Check):
             ),
         )  # fmt: skip
 
-    def _limit(self, evidence: Evidence, rows: NDArray[np.intp]) -> tuple[float, float]:
-        """The gain that is no finding yet, and the energy that changes hands [J]."""
-        motion, g = evidence.motion, evidence.gravity
-        parts = [energy[:, rows].sum(axis=1) for energy in (motion.kinetic, motion.potential, motion.elastic)]
-        scale = float(max(parts[0].max(), np.ptp(parts[1]), np.ptp(parts[2])))
-        size = np.array([evidence.solid(int(i)).smallest for i in rows])
-        height = (np.abs(motion.com[:, rows]) @ np.abs(evidence.up)).max(axis=0)
+    def _limit(self, evidence: Evidence, of: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """The gain that is no finding yet, and the energy that changes hands, of groups of bodies (B, n), (n,) [J]."""
+        motion, weight = evidence.motion, evidence.motion.mass * evidence.gravity
+        kinetic, potential, elastic = (each @ of for each in (motion.kinetic, motion.potential, motion.elastic))
+        scale = np.max([kinetic.max(axis=0), np.ptp(potential, axis=0), np.ptp(elastic, axis=0)], axis=0)
+        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        height = (np.abs(motion.com) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
-        settles = self.settling * size * (motion.touched[:, rows].any(axis=0) | ~motion.jointed[rows])
-        lift = float((motion.mass[rows] * g * (settles + 4.0 * FLOAT32 * height)).sum())
-        # A first-order step leaves positions behind velocities by up to half a step's fall.
-        late = float((motion.mass[rows] * g * motion.speed[:, rows].max(axis=0)).sum() * 0.5 * min(motion.dt, 0.005))
-        return self.share * scale + lift + late, scale
+        settles = self.settling * size * (motion.touched.any(axis=0) | ~motion.jointed)
+        lift = weight * (settles + 4.0 * FLOAT32 * height)
+        return self.share * scale + (lift + self._late(evidence)) @ of, scale
+
+    @staticmethod
+    def _late(evidence: Evidence) -> Floats:
+        """A first-order step leaves positions behind velocities by up to half a step's fall, (B,) [J]."""
+        motion = evidence.motion
+        late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * 0.5 * min(motion.dt, 0.005)
+        return late
+
+
+def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:
+    """These of so many bodies, as a group, (count, 1)."""
+    return np.asarray(np.isin(np.arange(count), rows)[:, None])
+
+
+def _summed(energy: Floats, of: NDArray[np.bool_]) -> Floats:
+    """Energies (T, B) of groups of bodies (B, n), (T, n), of which some may be infinite."""
+    known = np.isfinite(energy)
+    found: Floats = np.where((~known).astype(np.float32) @ of > 0.0, np.inf, np.where(known, energy, 0.0) @ of)
+    return found
 
 
 CHECKS: Checks = (CheckEnergy,)

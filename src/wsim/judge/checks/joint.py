@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.joints import broken
+from wsim.judge.repair.drive import stronger
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -130,6 +131,12 @@ class CheckDrives(Check):
                 )
             )  # fmt: skip
         return found
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """A drive at its full strength is to be stronger."""
+        joint = next(joint for joint in evidence.world.joints if joint.prim == finding.prim)
+        assert joint.drive is not None
+        return stronger(joint, joint.drive)
 
 
 @dataclass

@@ -22,6 +22,8 @@ LIGHTEST, DENSEST = 1.0, 22_600.0  # [kg/m^3]: an aerogel, osmium
 class CheckMass(Check):
     """Each body weighs what its material and size give, and turns as its mass and size let it."""
 
+    of_world = True
+
     share: float = 0.05  # of the plan's mass: a mesh is not quite the shape it stands for
     varied: float = 0.55  # of it, where a parameter of the program was set to another value than its own
     thin: float = 0.02  # of m R^2: below, its mass would have to lie on a line

@@ -91,7 +91,7 @@ class CheckFreeTurning(Check):
         rate = np.linalg.norm(motion.w, axis=2)
         # A first-order step of length dt turns what tumbles by w dt too far or too late in each 1 / w.
         numerical = most * (
-            np.maximum(rate[1:], rate[:-1]) ** 2 * motion.dt + self.roundings * FLOAT32 / motion.h[:, None]
+            np.maximum(rate[1:], rate[:-1]) ** 2 * motion.late + self.roundings * FLOAT32 / motion.h[:, None]
         )
         limit = self.share * motion.mass * max(evidence.gravity, 1.0) * motion.radius + numerical
         free = ~(motion.touched[1:] | motion.touched[:-1]) & ~motion.kinematic & ~motion.jointed & (limit > 0.0)
@@ -99,7 +99,7 @@ class CheckFreeTurning(Check):
         if not free.any():
             return []
         story = "{prim} touches nothing at {time:.3f} s, and is turned by a torque of {value:.3g} N m"
-        source = f"{self.share:g} m g R, w^2 dt of what it has, and the rounding of recorded velocities"
+        source = f"{self.share:g} m g R, w^2 dt of what it has for steps of first order, and the rounding of recorded velocities"
         fine, why = "Bodies that touch nothing keep their angular momentum", "something turns it unseen"
         torque = np.where(free, torque, 0.0)
         return [strangest(self, evidence, torque, limit, "N m", story, fine, why, limit_from=source)]
@@ -118,6 +118,8 @@ def _leave_out_what_may_touch(evidence: Evidence, free: NDArray[np.bool_], odd: 
 @dataclass
 class CheckGravity(Check):
     """The world's gravity is the Earth's and straight down, unless the prompt is about another place."""
+
+    of_world = True
 
     aslant: float = 0.5  # [deg]
 

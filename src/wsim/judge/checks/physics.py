@@ -14,15 +14,20 @@ from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.carriers import surface_speed
 from wsim.judge.evidence.contact import given_way, overlaps
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.repair.lasting import leak
+from wsim.judge.repair.place import overlapping_start
+from wsim.judge.repair.rule import faster_sound, finer, shorter_step, sound_speed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.verdict import Finding
+    from wsim.judge.verdict import Finding, RepairTarget
     from wsim.scene.world import Fluid, Shape
 
     Floats = NDArray[np.float64]
+
+SOUND_OVER_SPEED = 10.0  # Monaghan (1994): density varies by about (v / c)^2, which is then 1 %
 
 
 @dataclass
@@ -129,6 +134,32 @@ class CheckExplosion(Check):
     def _first(time: Floats, wrong: NDArray[np.bool_], otherwise: float) -> float:
         return float(time[np.argmax(wrong)]) if wrong.any() else otherwise
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """A start inside another shape is pushed apart; sound must outrun a fluid; else the step is too long."""
+        fluid = next((fluid for fluid in evidence.world.fluids if fluid.prim == finding.prim), None)
+        if fluid is not None:
+            sound = sound_speed(evidence, fluid)
+            if sound and finding.limit is not None and finding.limit >= sound * (1 - 1e-9):
+                return faster_sound(
+                    evidence,
+                    fluid,
+                    SOUND_OVER_SPEED * (finding.value or sound),
+                    "sound must be ten times as fast as the fluid",
+                )
+            return shorter_step(
+                evidence,
+                0.5,
+                "particles that outrun gravity were thrown by the solver; half the step is the first to try",
+            )
+        start = overlapping_start(evidence, finding.prim)
+        if start is not None:
+            return start
+        return shorter_step(
+            evidence,
+            0.5,
+            "no fall in this scene gives that speed: the solver made it; half the step is the first to try",
+        )
+
 
 def _lows(evidence: Evidence) -> list[float]:
     """Height of the lowest point of each static shape [m]; none where a plane goes down without end."""
@@ -180,7 +211,7 @@ class CheckPenetration(Check):
         """By how much a depth (T,) is more than `give`, which soft contacts yield."""
         give = np.broadcast_to(np.asarray(give, dtype=np.float64), depth.shape)
         depth = depth - give
-        step = float(np.median(np.diff(evidence.time))) if len(evidence.time) > 1 else 1.0
+        step = evidence.motion.dt_frames
         frames = min(len(depth), max(1, math.ceil(self.seconds / step)) + 1)
         held = np.lib.stride_tricks.sliding_window_view(depth, frames).min(axis=1)
         lasting, brief = float(held.max()), float(depth.max())
@@ -199,6 +230,17 @@ class CheckPenetration(Check):
             value, limit, "m", prim=prim, time=time, limit_from=source,
         )  # fmt: skip
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """A start inside another shape, or a contact that gives way: its depth is speed times step."""
+        start = overlapping_start(evidence, finding.prim)
+        if start is not None:
+            return start
+        value, limit = finding.value or 0.0, finding.limit or 0.0
+        share = limit / value if 0.0 < limit < value else 0.5
+        return shorter_step(
+            evidence, share, "a contact gives way by speed times step, so that depth shrinks with the step"
+        )
+
 
 def _share(finding: Finding) -> float:
     return (finding.value or 0.0) / finding.limit if finding.limit else math.inf
@@ -213,6 +255,10 @@ class CheckFluidContained(Check):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The largest share outside, for each fluid that has a container."""
         return [contained(self, evidence, fluid, self.share) for fluid in evidence.world.fluids if fluid.container]
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """Over the rim, or through a wall."""
+        return leak(finding, evidence)
 
 
 def contained(check: Check, evidence: Evidence, fluid: Fluid, share: float) -> Finding:
@@ -270,6 +316,19 @@ class CheckDensity(Check):
             limit_from="a weakly compressible liquid stays within about 1 %; as much again for splashes",
         )  # fmt: skip
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """Density errors fall with the square of the speed of sound."""
+        fluid = evidence.fluid(finding.prim or "")
+        sound = sound_speed(evidence, fluid)
+        if not sound or not finding.value or not finding.limit or finding.value <= finding.limit:
+            return shorter_step(
+                evidence, 0.5, "the density drifts with the step's error; half the step is the first to try"
+            )
+        wanted = sound * math.sqrt(finding.value / finding.limit)
+        return faster_sound(
+            evidence, fluid, wanted, "the density error of a weakly compressible fluid goes as (v / c)^2"
+        )
+
 
 @dataclass
 class CheckWaterLevel(Check):
@@ -306,6 +365,11 @@ class CheckWaterLevel(Check):
         track = evidence.track(fluid)
         v = track.velocity[track.time >= evidence.window_start - 1e-9]
         return math.sqrt(float(np.mean(np.einsum("tni,tni->tn", v, v)))) if v.size else 0.0
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """Particles that stand higher or lower than their volume: finer ones keep the volume better."""
+        fluid = evidence.fluid(finding.prim or "")
+        return finer(evidence, fluid, 0.5, "particles that do not fill their volume are too coarse for this vessel")
 
 
 CHECKS: Checks = (CheckExplosion, CheckPenetration, CheckFluidContained, CheckDensity, CheckWaterLevel)

@@ -30,11 +30,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 PLATES = 5  # of a tank
+FINE = 0.05  # of the time between frames: about a step, where nobody says how long one is
 
 
 @dataclass
 class CheckPlanSizes(Check):
     """Each object is of the plan's shape and size, and of that one shape."""
+
+    of_world = True
 
     share: float = 0.05
     height: float = 0.01  # [m]: of the ground
@@ -152,7 +155,7 @@ class CheckPlanPlaces(Check):
 
     share: float = 0.25  # of its largest extent: a program may nudge what it places, not exchange it
     turn: float = 4.0  # [deg]
-    speed: float = 0.05  # of the plan's speed, or of what gravity gives over its size
+    speed: float = 0.05  # of the plan's speed, or what gravity gives in a step, up to this of sqrt(g L)
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that starts otherwise, or one for none."""
@@ -199,7 +202,7 @@ class CheckPlanPlaces(Check):
         body = evidence.world.bodies[i]
         planned = np.array(item.velocity)
         off = float(np.linalg.norm(np.array(body.velocity) - planned))
-        limit = self.speed * max(float(np.linalg.norm(planned)), evidence.velocity_scale(evidence.solid(i).smallest))
+        limit = max(self.speed * float(np.linalg.norm(planned)), self._slow(evidence, i))
         if off > limit and not evidence.varied:
             target = RepairTarget(
                 kind="physical parameter", prim=body.prim, parameter="velocity", direction="change",
@@ -208,13 +211,26 @@ class CheckPlanPlaces(Check):
             yield self.measured(
                 f"{body.prim} starts at {listed(body.velocity)} m/s; the plan has {listed(item.velocity)} m/s",
                 off, limit, "m/s", expected=0.0, prim=body.prim, time=0.0, line=body.line,
-                limit_from=f"{self.speed:g} of the plan's speed, or of sqrt(g L) if that is more", target=target,
+                limit_from=f"{self.speed:g} of the plan's speed, or what gravity gives in a step if that is more",
+                target=target,
             )  # fmt: skip
+
+    def _slow(self, evidence: Evidence, i: int) -> float:
+        """The speed of what may as well stand [m/s]: an engine's first frame may be a step after the start.
+
+        Of poses alone a step is a frame: their first velocity is known no better.
+        """
+        recording = evidence.recording
+        known = recording.metadata.get("time_step") or recording.world.time_step
+        step = float(known or FINE * evidence.motion.dt_frames)
+        return min(evidence.gravity * step, self.speed * evidence.velocity_scale(evidence.solid(i).smallest))
 
 
 @dataclass
 class CheckPlanLooks(Check):
     """Each object has the plan's colour, and its surface the plan's friction, restitution and rolling resistance."""
+
+    of_world = True
 
     color: float = 0.1  # of linear RGB, in its largest part: what is seen as another shade
     surface: float = 0.08  # of friction or restitution, of what the plan has, and at least

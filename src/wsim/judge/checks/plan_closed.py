@@ -51,6 +51,8 @@ def assembled(item: PlanObject | None) -> bool:
 class CheckPlanClosed(Check):
     """Nothing in the world acts that the plan has not: no body within an object, path, gear, spring or rope."""
 
+    of_world = True
+
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each thing too many, or one for none."""
         plan = evidence.plan

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 class CheckPlanContacts(Check):
     """Each pair has the friction, restitution and rolling resistance that the plan states, and no other of its own."""
 
+    of_world = True
+
     share: float = 0.05  # of a coefficient
     least: float = 1e-3  # what it may be off of nothing
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 class CheckPlanMotion(Check):
     """What rolls in the plan starts with the spin that fits, all else with its own or none, and belts run as fast."""
 
+    of_world = True
+
     share: float = 0.05  # of the plan's speed
     still: float = 0.05  # [rad/s]: a spin below is none
 

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 @dataclass
 class CheckRecordedForces(Check):
-    """Where the impulses of contacts are recorded, they explain each loose body's motion, and each is admissible.
+    """Where the impulses of contacts are recorded, they explain each body's motion, and each is admissible.
+
+    Of what hangs on joints, springs and ropes with theirs, where they are recorded, too (`CheckRecordedTies`).
 
     They push, inside the cone of their pair's friction and on its edge against a slip that lasts, where both surfaces
     are. Where they are not recorded nothing is asked: then `CheckForces` looks for some that would do.
@@ -57,7 +59,7 @@ class CheckRecordedForces(Check):
         found = []
         for left, judged, weight, limits, unit in (
             (books.force, books.judged, motion.mass, share + books.stepped, "N"),
-            (books.torque, books.turned, motion.mass * motion.radius, share, "N m"),
+            (books.torque, books.turned, motion.mass * motion.radius, share + books.lagging, "N m"),
         ):
             if not judged.any():
                 continue
@@ -69,11 +71,12 @@ class CheckRecordedForces(Check):
             verb, kind = ("pushed", "momentum") if unit == "N" else ("turned", "angular momentum")
             found.append(
                 self.measured(
-                    f"{prim} is {verb} by {value:.3g} {unit} towards {way} that no recorded contact gives, from "
+                    f"{prim} is {verb} by {value:.3g} {unit} towards {way} that nothing recorded gives, from "
                     f"{start:.3f} to {end:.3f} s",
                     value, limit, unit, prim=prim, time=end, span=(start, end), expected=0.0,
-                    fine=f"The recorded contacts give each loose body the {kind} that it gained",
-                    limit_from=f"{part:g} of gravity and of what contacts and fluid gave",
+                    fine=f"What is recorded gives each body the {kind} that it gained",
+                    limit_from=f"{part:g} of gravity and of what contacts, ties and fluid gave, and what steps of the "
+                    "first order leave where bodies turn",
                     target=RepairTarget(kind="program", prim=prim, why=f"a {unit} that is not recorded acts on it"),
                 )
             )  # fmt: skip

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.checks import (
     camera,
+    catches,
     contact,
     continuity,
     cord,
@@ -29,7 +30,9 @@ from wsim.judge.checks import (
     plan_joints,
     plan_motion,
     recorded,
+    recorded_ties,
     rest,
+    rolling,
     run,
     settled,
     water,
@@ -40,8 +43,10 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, impacts, energy, contact, rest, joint, cord, mass, plan,
-    plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift, fluid_height, water, camera,
+    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy, contact,
+    rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift,
+    fluid_height, water,
+    camera,
 )  # fmt: skip
 
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.judge.checks.check import Check, Checks, worst
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -90,15 +93,10 @@ class CheckJitter(Check):
         loose = np.flatnonzero(~motion.jointed & ~motion.kinematic)
         if len(here) < 4 * self.parts or not len(loose):
             return []
-        h = motion.h[here[:-1]][:, None, None]
-        moved = np.diff(motion.com[here][:, loose], axis=0) / h
-        flips = [
-            np.maximum(_flips(places), _flips(rates))
-            for places, rates in zip(
-                np.array_split(moved, self.parts), np.array_split(motion.v[here][:, loose], self.parts), strict=True
-            )
-        ]
-        tremble = np.min(flips, axis=0)
+        h = motion.h[here[:-1]]
+        if CheckJitter not in evidence.kept:
+            evidence.kept[CheckJitter] = self._tremble(evidence)
+        tremble = cast("Floats", evidence.kept[CheckJitter])[loose]
         size = np.array([evidence.solid(int(i)).smallest for i in loose])
         stays = np.linalg.norm(motion.com[here[-1]][loose] - motion.com[here[0]][loose], axis=1) < size
         touched = motion.touched[here][:, loose].mean(axis=0)
@@ -121,11 +119,25 @@ class CheckJitter(Check):
             )
         ]  # fmt: skip
 
+    def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
+        """How all copies' bodies tremble."""
+        if int(joined.window.sum()) >= 4 * self.parts:
+            for evidence, tremble in zip(copies, self._tremble(joined), strict=True):
+                evidence.kept[CheckJitter] = tremble
+
+    def _tremble(self, evidence: Evidence) -> Floats:
+        """By how much bodies alternate in the calmest part of the window, (B,) [m/s]."""
+        motion, here = evidence.motion, np.flatnonzero(evidence.window)
+        moved = np.diff(motion.com[..., here, :, :], axis=-3) / motion.h[here[:-1]][:, None, None]
+        parts = (np.array_split(rates, self.parts, axis=-3) for rates in (moved, motion.v[..., here, :, :]))
+        flips = [np.maximum(_flips(places), _flips(rates)) for places, rates in zip(*parts, strict=True)]
+        return np.asarray(np.min(flips, axis=0))
+
 
 def _flips(rate: Floats) -> Floats:
-    """The amplitude of what alternates from frame to frame in rates (n, B, 3), (B,): a median, blind to single hits."""
-    bend = np.linalg.norm(rate[2:] - 2.0 * rate[1:-1] + rate[:-2], axis=2) / 4.0
-    amplitude: Floats = np.median(bend, axis=0)
+    """How far rates (..., n, B, 3) alternate from frame to frame, (..., B): a median, blind to single hits."""
+    bend = rate[..., 2:, :, :] - 2.0 * rate[..., 1:-1, :, :] + rate[..., :-2, :, :]
+    amplitude: Floats = np.median(lengths(bend) / 4.0, axis=-2)
     return amplitude
 
 

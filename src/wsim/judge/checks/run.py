@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.repair.rule import longer_run, unstable
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -62,6 +63,10 @@ class CheckFinite(Check):
             limit_from="a quaternion's length is 1, to single precision and the integrator's drift",
         )  # fmt: skip
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """Numbers that are not finite, or rotations that are none, come from a step beyond the solver's stability."""
+        return unstable(evidence)
+
 
 def _earlier(a: tuple[float, str, str] | None, b: tuple[float, str, str]) -> tuple[float, str, str]:
     return b if a is None or b[0] < a[0] else a
@@ -105,6 +110,20 @@ class CheckComplete(Check):
                 found.append(self.failed(message, prim=fluid.prim))
         return found
 
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """Too short a run was asked for, or the run broke off."""
+        if finding.prim is not None:
+            why = "the recording holds no particles of it: it is empty, or smaller than a particle"
+            return RepairTarget(kind="fluid", prim=finding.prim, parameter="level", direction="raise", why=why)
+        if finding.unit == "s" and finding.expected is not None:
+            if finding.expected > evidence.world.duration:
+                return longer_run(evidence, finding.expected, "the plan asks for more than the program simulates")
+            return unstable(evidence)
+        why = "the recorder did not keep up with the frame rate that was asked for"
+        return RepairTarget(
+            kind="program", parameter="frame_rate", direction="lower", current=evidence.world.frame_rate, why=why
+        )
+
 
 @dataclass
 class CheckLog(Check):
@@ -122,6 +141,17 @@ class CheckLog(Check):
                 message = f"{entry.level.upper()} in the log: {entry.text}"
                 found.append(self.failed(message, prim=entry.prim, time=entry.time))
         return found or [self.passed("The log has no error and no overflow")]
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """An overflow is contacts that the solver had no room for; another error is the solver's own account."""
+        if "overflow" in finding.message.lower():
+            why = "more contacts than the solver has room for: fewer shapes that touch, and none that start overlapping"
+            return RepairTarget(kind="geometry", prim=finding.prim, parameter="shapes", direction="change", why=why)
+        if "finite" in finding.message.lower():
+            return unstable(evidence)
+        return RepairTarget(
+            kind="program", prim=finding.prim, direction="change", why="the log's error says what to mend"
+        )
 
 
 @dataclass
@@ -156,6 +186,22 @@ class CheckPlanObjects(Check):
             message = f"{prim} is in the world, but not in the plan"
             found.append(self.failed(message, prim=prim))
         return found or [self.passed(f"The world has the plan's {len(planned)} objects and no others")]
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """An object of the plan that the world lacks, or has in another role, or one that the plan does not have."""
+        prim = finding.prim
+        planned = {evidence.prim(item.name) for item in evidence.plan.objects} if evidence.plan is not None else set()
+        if prim not in planned:
+            why = "the plan does not have it"
+            return RepairTarget(kind="extra object", prim=prim, direction="remove", why=why)
+        owners = (evidence.world.bodies, evidence.world.statics, evidence.world.containers, evidence.world.fluids)
+        if prim in {item.prim for group in owners for item in group}:
+            return RepairTarget(
+                kind="program", prim=prim, parameter="role", direction="change", why="the plan has it in another role"
+            )
+        return RepairTarget(
+            kind="missing object", prim=prim, direction="add", why="the plan has it, the world does not"
+        )
 
 
 @dataclass

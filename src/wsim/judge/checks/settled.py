@@ -10,10 +10,11 @@ import numpy as np
 
 from wsim.geometry.kinds import ROUND
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.repair.lasting import settled
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.verdict import Finding
+    from wsim.judge.verdict import Finding, RepairTarget
 
 
 @dataclass
@@ -49,6 +50,10 @@ class CheckSettled(Check):
             speed, limit, "m/s", prim=body.prim, time=float(evidence.time[-1]) - self.seconds,
             limit_from=f"{self.factor:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {self.factor:.0%} of L",
         )  # fmt: skip
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """What dies down needs time; what does not is kept going."""
+        return settled(finding, evidence)
 
 
 CHECKS: Checks = (CheckSettled,)

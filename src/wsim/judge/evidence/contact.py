@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -39,6 +39,16 @@ def overlaps(evidence: Recorded) -> list[Overlap]:
     A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
     edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
     """
+    if evidence.part is not None:
+        frames = evidence.part.frames
+        parts = [(pair, pair.depth[frames]) for pair in overlaps(evidence.part.whole)]
+        return [Overlap(p.a.during(frames), p.b.during(frames), depth) for p, depth in parts if depth.max() > 0.0]
+    if Overlap not in evidence.kept:
+        evidence.kept[Overlap] = _overlaps(evidence)
+    return cast("list[Overlap]", evidence.kept[Overlap])
+
+
+def _overlaps(evidence: Recorded) -> list[Overlap]:
     shapes = evidence.placed
     jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
     passes = passing(evidence.world)
@@ -64,6 +74,15 @@ def overlaps(evidence: Recorded) -> list[Overlap]:
 
 def distance(evidence: Recorded, one: str, other: str) -> Floats:
     """The gap between two objects at each frame, (T,) [m]; not positive when they touch, inf where nothing collides."""
+    if evidence.part is not None:
+        return distance(evidence.part.whole, one, other)[evidence.part.frames]
+    key = distance, one, other
+    if key not in evidence.kept:
+        evidence.kept[key] = _distance(evidence, one, other)
+    return cast("Floats", evidence.kept[key])
+
+
+def _distance(evidence: Recorded, one: str, other: str) -> Floats:
     shapes = evidence.placed
     near = np.ones(len(evidence.time), dtype=bool)
     gap = np.full(len(near), np.inf)

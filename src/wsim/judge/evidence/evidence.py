@@ -16,6 +16,8 @@ from wsim.judge.evidence.motion import Motion
 from wsim.judge.evidence.recorded import MissingError, Recorded
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.verdict import Finding
@@ -45,8 +47,31 @@ class Evidence(Recorded):
         super().__init__(recording, plan)
         self._levels: dict[str, Level] = {}
         self._joints: dict[str, JointTrack | None] = {}
+        self.of_world: dict[type, list[Finding]] = {}  # what checks say of the world and the plan alone
         self.answers: dict[str, list[Finding]] = {}  # of the plan's objectives, each put to the evidence once
-        self.kept: dict[type, object] = {}  # what several checks work out alike, by its class
+
+    @staticmethod
+    def join(copies: Sequence[Evidence]) -> Evidence | None:
+        """Work out at once what several copies of a world have alike.
+
+        Args:
+            copies: W of one world, over the same times: they may differ in how they move, and in masses and inertias.
+
+        Returns:
+            Evidence whose motion has an axis of copies before that of time; None where what fluid or control gave them
+            is recorded.
+        """
+        Recorded.share_geometry(copies)
+        for copy in copies:
+            if copy.world is copies[0].world:
+                copy.of_world = copies[0].of_world
+        if any(copy.recording.applied_impulse is not None for copy in copies):
+            return None
+        joined = Evidence(copies[0].recording, copies[0].plan)
+        joined.part, joined.motion = copies[0].part, Motion.join([copy.motion for copy in copies])
+        for n, copy in enumerate(copies):
+            joined.motion.part(n, copy.motion)
+        return joined
 
     # ---- bodies
     @cached_property

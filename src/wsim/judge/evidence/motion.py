@@ -1,6 +1,7 @@
 """What bodies do between recorded frames: speeds, energies, what they hang on and whom they come near.
 
-T frames, T - 1 intervals between them, B bodies in the order of `world.bodies`. SI units.
+T frames, T - 1 intervals between them, B bodies in the order of `world.bodies`. SI units. Of W copies of a world, over
+the same times, arrays have an axis of copies before that of time: (W, T, B, ...), and masses are (W, 1, B).
 """
 
 from __future__ import annotations
@@ -10,11 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.rotations import conjugate, lengths, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.cords import spring_energy
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.placed import Placed
@@ -24,6 +27,10 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 CHUNK = 64  # frames whose distances between all bodies are held at once
+OF_FRAMES = (
+    "com", "speed", "rate", "surface_speed", "acceleration", "touched", "spin", "angular_momentum", "torque", "kinetic",
+    "potential", "reach", "meets",
+)  # fmt: skip
 FLOAT32 = float(np.finfo(np.float32).eps)  # a recording's rounding, relative
 
 
@@ -35,20 +42,49 @@ class Motion:
         bodies = recorded.world.bodies
         self.gravity: Floats = np.array(recorded.world.gravity)
         self.mass: Floats = np.array([body.mass for body in bodies])
+        self.inertia: Floats = np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
         self.kinematic: Bools = np.array([body.kinematic for body in bodies], dtype=bool)
-        self.v: Floats = recorded.body_qd[:, :, :3]
-        self.w: Floats = recorded.body_qd[:, :, 3:]
+        self.q: Floats = recorded.body_q
+        self.v: Floats = recorded.body_qd[..., :3]
+        self.w: Floats = recorded.body_qd[..., 3:]
         self.h: Floats = np.maximum(np.diff(recorded.time), 1e-9)  # length of each interval (T - 1,) [s]
-        self.speed: Floats = np.linalg.norm(self.v, axis=2)
+        self.contact_force = np.asarray(recorded.recording.contact_force)
+
+    @classmethod
+    def join(cls, copies: Sequence[Motion]) -> Motion:
+        """The motion of all copies at once; what was worked out of it is theirs, too (`part`)."""
+        joined = cls(copies[0]._recorded)
+        joined.mass, joined.inertia = (
+            np.stack([getattr(each, name) for each in copies])[:, None] for name in ("mass", "inertia")
+        )
+        joined.q, joined.v, joined.w, joined.contact_force = (
+            np.stack([getattr(each, name) for each in copies]) for name in ("q", "v", "w", "contact_force")
+        )
+        return joined
+
+    def part(self, n: int, motion: Motion) -> None:
+        """Let a copy have what is worked out of all of them, but for what is of no frame."""
+        for name in OF_FRAMES:
+            motion.__dict__[name] = getattr(self, name)[n]
 
     # ---- where and how fast
     @cached_property
     def com(self) -> Floats:
         """Centres of mass, (T, B, 3) [m]."""
         own = np.array([body.com for body in self._recorded.world.bodies]).reshape(-1, 3)
-        q = self._recorded.body_q
-        moved: Floats = q[:, :, :3] if not own.any() else q[:, :, :3] + rotate(q[:, :, 3:], own[None])
+        q = self.q
+        moved: Floats = q[..., :3] if not own.any() else q[..., :3] + rotate(q[..., 3:], own)
         return moved
+
+    @cached_property
+    def speed(self) -> Floats:
+        """Of each centre of mass, (T, B) [m/s]."""
+        return lengths(self.v)
+
+    @cached_property
+    def rate(self) -> Floats:
+        """Of each body's turning, (T, B) [rad/s]."""
+        return lengths(self.w)
 
     @cached_property
     def radius(self) -> Floats:
@@ -69,6 +105,17 @@ class Motion:
         return float(known or (np.median(self.h) if len(self.h) else 1.0))
 
     @cached_property
+    def late(self) -> Floats:
+        """How far behind their velocities places may be, (B,) [s]: a time step, of first order.
+
+        Nothing of what gravity and contacts alone move, where the simulator says that its steps are of second order.
+        """
+        world, metadata = self._recorded.world, self._recorded.recording.metadata
+        if metadata.get("loose_order") != 2 or world.fluids or metadata.get("controlled"):
+            return np.full(len(self.jointed), self.dt)
+        return np.where(self.jointed | self.kinematic, self.dt, 0.0)
+
+    @cached_property
     def dt_frames(self) -> float:
         """The time between frames [s]."""
         return float(np.median(self.h)) if len(self.h) else 1.0
@@ -76,13 +123,13 @@ class Motion:
     @cached_property
     def surface_speed(self) -> Floats:
         """The most that any point of a body may have, (T, B) [m/s]."""
-        return np.asarray(self.speed + np.linalg.norm(self.w, axis=2) * self.radius)
+        return np.asarray(self.speed + self.rate * self.radius)
 
     @cached_property
     def acceleration(self) -> Floats:
         """Mean acceleration over each interval less what fluid and control gave, (T - 1, B, 3) [m/s^2]."""
         impulse = self._recorded.recording.applied_impulse
-        gained = np.diff(self.v, axis=0)
+        gained = np.diff(self.v, axis=-3)
         if impulse is not None:
             gained = gained - np.asarray(impulse[1:], dtype=np.float64) / self.mass[:, None]
         found: Floats = gained / self.h[:, None, None]
@@ -91,25 +138,24 @@ class Motion:
     @cached_property
     def touched(self) -> Bools:
         """Whether the solver had a contact of the body, (T, B)."""
-        return np.asarray(np.any(self._recorded.recording.contact_force != 0.0, axis=2))
+        return np.asarray(np.any(self.contact_force != 0.0, axis=-1))
 
     # ---- angular momentum and energy
     @cached_property
-    def inertia(self) -> Floats:
-        """Inertia about each centre of mass, in the body's frame, (B, 3, 3) [kg m^2]."""
-        return np.array([body.inertia for body in self._recorded.world.bodies]).reshape(-1, 3, 3)
+    def spin(self) -> Floats:
+        """Angular velocity in the body's frame, (T, B, 3) [rad/s]."""
+        return rotate(conjugate(self.q[..., 3:]), self.w)
 
     @cached_property
     def angular_momentum(self) -> Floats:
         """Angular momentum about each centre of mass, (T, B, 3) [kg m^2/s]."""
-        q = self._recorded.body_q[:, :, 3:]
-        return rotate(q, np.einsum("bij,tbj->tbi", self.inertia, rotate(conjugate(q), self.w)))
+        return rotate(self.q[..., 3:], np.einsum("...ij,...j->...i", self.inertia, self.spin))
 
     @cached_property
     def torque(self) -> Floats:
         """Mean torque over each interval less what fluid and control gave, where that was recorded, (T - 1, B, 3)."""
         turn = self._recorded.recording.applied_turn
-        gained = np.diff(self.angular_momentum, axis=0)
+        gained = np.diff(self.angular_momentum, axis=-3)
         if turn is not None:
             gained = gained - np.asarray(turn[1:], dtype=np.float64)
         found: Floats = gained / self.h[:, None, None]
@@ -118,8 +164,7 @@ class Motion:
     @cached_property
     def kinetic(self) -> Floats:
         """Kinetic energy, (T, B) [J]."""
-        spin = rotate(conjugate(self._recorded.body_q[:, :, 3:]), self.w)
-        turning = np.einsum("tbi,bij,tbj->tb", spin, self.inertia, spin)
+        turning = np.einsum("...i,...ij,...j->...", self.spin, self.inertia, self.spin)
         found: Floats = 0.5 * (self.mass * self.speed**2 + turning)
         return found
 
@@ -174,26 +219,25 @@ class Motion:
     @cached_property
     def reach(self) -> Floats:
         """How far any point of a body can get within each interval, (T - 1, B) [m]: its speed and gravity's pull."""
-        fastest = np.maximum(self.surface_speed[:-1], self.surface_speed[1:])
+        fastest = np.maximum(self.surface_speed[..., :-1, :], self.surface_speed[..., 1:, :])
         found: Floats = (fastest + np.linalg.norm(self.gravity) * self.h[:, None]) * self.h[:, None]
         return found
 
     @cached_property
     def meets(self) -> Bools:
         """Whether a body may touch one of another mechanism within each interval, (T - 1, B)."""
-        count = len(self.mass)
-        met = np.zeros((len(self.h), count), dtype=bool)
+        met = np.zeros(self.reach.shape, dtype=bool)
         other = self.unit[:, None] != self.unit[None, :]
-        if count < 2 or not other.any():
+        if not other.any():
             return met
         for start in range(0, len(self.h), CHUNK):
             part = slice(start, min(start + CHUNK, len(self.h)))
-            c = self.com[part].astype(np.float32)
-            square = np.einsum("tbi,tbi->tb", c, c)
-            distance2 = square[:, :, None] + square[:, None, :] - 2.0 * c @ c.transpose(0, 2, 1)
-            range_ = (self.radius + self.reach[part]).astype(np.float32)
-            bound = range_[:, :, None] + range_[:, None, :]
-            met[part] = np.any((distance2 < bound * bound) & other, axis=2)
+            c = self.com[..., part, :, :].astype(np.float32)
+            square = np.einsum("...i,...i->...", c, c)
+            distance2 = square[..., None] + square[..., None, :] - 2.0 * c @ c.swapaxes(-1, -2)
+            range_ = (self.radius + self.reach[..., part, :]).astype(np.float32)
+            bound = range_[..., None] + range_[..., None, :]
+            met[..., part, :] = np.any((distance2 < bound * bound) & other, axis=-1)
         return met
 
     def near(self, i: int, intervals: NDArray[np.intp]) -> Bools:

@@ -40,6 +40,12 @@ class Placed:
         """Of a ball about it [m]."""
         return self.kind.radius_about
 
+    def during(self, frames: slice) -> Placed:
+        """The same over some frames."""
+        found = Placed(self.owner, self.body, self.shape, self.position[frames], self.rotation[frames])
+        found.__dict__["kind"] = self.kind
+        return found
+
 
 def placed_shapes(world: World, body_q: Floats) -> list[Placed]:
     """All colliding shapes, those of bodies first."""

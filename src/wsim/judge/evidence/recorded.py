@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -32,6 +34,14 @@ class MissingError(LookupError):
     """What a check needs is not in the recording."""
 
 
+@dataclass(frozen=True)
+class Part:
+    """Some frames of many copies' frames, which stand one after another."""
+
+    whole: Recorded
+    frames: slice
+
+
 class Recorded:
     """Times, poses, shapes and who is who. T frames, B bodies in the order of `world.bodies`."""
 
@@ -45,6 +55,8 @@ class Recorded:
         self._solids: dict[int, Solid[Shape]] = {}
         self._containments: dict[tuple[str, str], Containment] = {}
         self._ends: dict[int, tuple[Floats, Floats]] = {}
+        self.kept: dict[object, object] = {}  # what several checks work out alike, by its class, and of what
+        self.part: Part | None = None  # of many copies of this world, where it is one of them
 
     # ---- time
     @cached_property
@@ -135,12 +147,13 @@ class Recorded:
 
     def line(self, prim: str | None) -> str | None:
         """The program's line that made a prim."""
-        lines = {item.prim: item.line for item in self.world.fluids}
-        lines |= {item.prim: item.line for item in self.world.joints}
-        lines |= {item.prim: item.line for item in self.world.cords}
-        lines |= {item.prim: item.line for item in self.world.statics}
-        lines |= {item.prim: item.line for item in self.world.bodies}
-        return lines.get(prim) if prim is not None else None
+        return self._lines.get(prim) if prim is not None else None
+
+    @cached_property
+    def _lines(self) -> dict[str, str | None]:
+        world = self.world
+        made = [*world.fluids, *world.joints, *world.cords, *world.statics, *world.bodies]
+        return {item.prim: item.line for item in made}
 
     @staticmethod
     def _listed(prims: list[str]) -> str:
@@ -149,12 +162,17 @@ class Recorded:
     # ---- bodies
     def solid(self, i: int) -> Solid[Shape]:
         """A body's shapes."""
+        if self.part is not None:
+            return self.part.whole.solid(i)
         if i not in self._solids:
             self._solids[i] = Solid(self.world.bodies[i].shapes)
         return self._solids[i]
 
     def ends(self, i: int) -> tuple[Floats, Floats]:
         """Height of a body's lowest and highest point, (T,) each [m]."""
+        if self.part is not None:
+            low, high = self.part.whole.ends(i)
+            return low[self.part.frames], high[self.part.frames]
         if i not in self._ends:
             low, high = self.solid(i).reach(self.body_q[:, i, 3:], self.up)
             z = self.body_q[:, i, :3] @ self.up
@@ -173,6 +191,8 @@ class Recorded:
     @cached_property
     def placed(self) -> list[Placed]:
         """All colliding shapes through time, those of bodies first."""
+        if self.part is not None:
+            return [shape.during(self.part.frames) for shape in self.part.whole.placed]
         return placed_shapes(self.world, self.body_q)
 
     @cached_property
@@ -180,6 +200,15 @@ class Recorded:
         """Where all colliding shapes are, (T, shapes, 3) [m]."""
         found = [shape.position for shape in self.placed]
         return np.stack(found, axis=1) if found else np.zeros((len(self.time), 0, 3))
+
+    @staticmethod
+    def share_geometry(copies: Sequence[Recorded]) -> None:
+        """Let copies of a world, of T frames each, work out at once what is of each frame by itself: all geometry."""
+        recording, count = copies[0].recording, len(copies[0].time)
+        body_q = np.concatenate([copy.body_q for copy in copies])
+        whole = Recorded(replace(recording, time=np.arange(len(body_q), dtype=np.float64), body_q=body_q))
+        for n, copy in enumerate(copies):
+            copy.part = Part(whole, slice(n * count, (n + 1) * count))
 
     # ---- fluid
     def container_of(self, fluid: Fluid) -> Container | None:

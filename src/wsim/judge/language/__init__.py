@@ -6,8 +6,8 @@ docs/objectives.md has every operator and predicate.
 """
 
 from wsim.judge.language.evaluate import Outcome, evaluate
-from wsim.judge.language.objective import ObjectiveFormula, findings
+from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.language.sentence import from_json, parse, sentence
 from wsim.judge.language.signals import Signals
 
-__all__ = ["ObjectiveFormula", "Outcome", "Signals", "evaluate", "findings", "from_json", "parse", "sentence"]
+__all__ = ["ObjectiveCheck", "Outcome", "Signals", "evaluate", "from_json", "parse", "sentence"]

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.judge.evidence.recorded import WINDOW, WINDOW_MOST, WINDOW_SHARE, MissingError
-from wsim.judge.language import measures_contact, measures_fluid, measures_place, measures_turn, measures_whole
+from wsim.judge.language import (
+    measures_carried,
+    measures_contact,
+    measures_fluid,
+    measures_place,
+    measures_turn,
+    measures_way,
+    measures_whole,
+)
 from wsim.judge.language.measure import MEASURERS, Measure
 from wsim.judge.language.trace import Trace, extreme, following, pick, pick_all, span_of, until
 from wsim.plan.schema.formula import (
@@ -17,6 +25,8 @@ from wsim.plan.schema.formula import (
     Eventually,
     Finally,
     Formula,
+    Mean,
+    Node,
     Not,
     Or,
     Ordered,
@@ -33,10 +43,12 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 PREDICATES = (
+    measures_carried,
     measures_contact,
     measures_fluid,
     measures_place,
     measures_turn,
+    measures_way,
     measures_whole,
 )  # importing them registers them
 
@@ -51,6 +63,7 @@ class Outcome:
     moment: Floats  # (W,) [s]: the frame that decides
     measure: NDArray[np.integer[Any]]  # (W,): which of `measures` decides
     measures: list[Measure]
+    predicates: list[Predicate]  # that each of the measures is of
 
     @property
     def units(self) -> list[str]:
@@ -78,7 +91,8 @@ class _Evaluation:
         self.signals = signals
         self.measures: list[Measure] = []
         self.margins: list[Floats] = []
-        self.rows: dict[Predicate, list[int]] = {}
+        self.predicates: list[Predicate] = []
+        self.rows: dict[Node, list[int]] = {}
         self.shared_unit = True
 
     def outcome(self, formula: Formula) -> Outcome:
@@ -97,20 +111,33 @@ class _Evaluation:
             moment=self.signals.time[frame],
             measure=measure,
             measures=self.measures,
+            predicates=self.predicates,
         )
 
     # ---- predicates
     def _measure(self, formula: Formula) -> None:
         """Take the measures of every predicate of the formula; events of an `ordered` are measured by themselves."""
-        if isinstance(formula, Predicate):
+        if isinstance(formula, (Predicate, Mean)):
             if formula not in self.rows:
-                found = [self._order(formula)] if isinstance(formula, Ordered) else self._of_predicate(formula)
+                predicate, found = self._measures_of(formula)
                 self.rows[formula] = list(range(len(self.measures), len(self.measures) + len(found)))
                 self.measures += found
-                self.margins += [self._known(formula, measure) for measure in found]
+                self.predicates += [predicate] * len(found)
+                self.margins += [self._known(predicate, measure) for measure in found]
             return
         for part in formula.parts():
             self._measure(part)
+
+    def _measures_of(self, node: Predicate | Mean) -> tuple[Predicate, list[Measure]]:
+        """The predicate that a node is, or is the mean of, and its measures."""
+        if isinstance(node, Ordered):
+            return node, [self._order(node)]
+        if isinstance(node, Predicate):
+            return node, self._of_predicate(node)
+        assert isinstance(node.of, Predicate)  # as a plan makes sure
+        shape = (self.signals.count, len(self.signals.time))
+        frames = slice(self._first_of_last(node.seconds), None)
+        return node.of, [measure.averaged(shape, frames) for measure in self._of_predicate(node.of)]
 
     def _of_predicate(self, predicate: Predicate) -> list[Measure]:
         for name in sorted(predicate.objects_named()):
@@ -160,6 +187,8 @@ class _Evaluation:
     def _trace(self, formula: Formula, timed: bool) -> Trace:
         if isinstance(formula, Predicate):
             return self._in_time(formula) if not timed else self._frames(formula)
+        if isinstance(formula, Mean):
+            return self._of_means(formula)
         if isinstance(formula, (And, Or)):
             return pick_all([self._trace(part, timed) for part in formula.of], greatest=isinstance(formula, Or))
         if isinstance(formula, Not):
@@ -186,7 +215,13 @@ class _Evaluation:
         low, high = span_of(self.signals.time, len(trace), None)
         return extreme(trace, low, high, greatest=predicate.alone == "eventually")
 
-    def _frames(self, predicate: Predicate) -> Trace:
+    def _of_means(self, mean: Mean) -> Trace:
+        """The same at each frame; what decides is where the means begin."""
+        trace, first = self._frames(mean), self._first_of_last(mean.seconds)
+        frames = len(self.signals.time)
+        return Trace(trace.robustness, (trace.source // frames * frames + first).astype(np.int32))
+
+    def _frames(self, predicate: Node) -> Trace:
         """A predicate's robustness at each frame: the least of its measures."""
         traces = []
         frames = len(self.signals.time)
@@ -202,13 +237,18 @@ class _Evaluation:
         time = self.signals.time
         if len(inner) < len(time):
             raise MissingError("what is to hold at the end looks beyond it; take the window out of it")
+        low = self._first_of_last(seconds)
+        least = extreme(inner, np.array([low]), np.array([len(time)]), greatest=False)
+        return Trace(np.repeat(least.robustness, len(time), axis=1), np.repeat(least.source, len(time), axis=1))
+
+    def _first_of_last(self, seconds: float | None) -> int:
+        """The first frame of the last seconds, or of the final window; MissingError where they are not covered."""
+        time = self.signals.time
         span = float(time[-1] - time[0])
         wanted = final_window(span) if seconds is None else seconds
         if wanted > span + self.signals.step / 2:
             raise MissingError(f"the last {wanted:g} s are not covered: the recording has {span:.4g} s; record longer")
-        low = np.searchsorted(time, time[-1] - wanted - 1e-6)
-        least = extreme(inner, np.array([low]), np.array([len(time)]), greatest=False)
-        return Trace(np.repeat(least.robustness, len(time), axis=1), np.repeat(least.source, len(time), axis=1))
+        return int(np.searchsorted(time, time[-1] - wanted - 1e-6))
 
     def _one_after_another(self, formula: Then) -> Trace:
         """From the last event backwards: this event, and in its window after it the rest; at any time from now on."""

@@ -8,17 +8,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.kinds import ROUND
+from wsim.geometry.rotations import level
+from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
-from wsim.judge.language.measure import Measure, measures
-from wsim.judge.objectives.objective import support_of
-from wsim.plan.schema.formula import (
+from wsim.judge.language.measure import Measure, measures, mends
+from wsim.judge.repair.lasting import settled
+from wsim.judge.repair.matter import friction, slides_off
+from wsim.judge.repair.passing import missed
+from wsim.judge.verdict import Finding, RepairTarget
+from wsim.plan.schema.formula_contact import (
     CollidesWith,
     NeverTouches,
     Pushes,
-    RestsOn,
     RollsWithoutSlip,
     Settles,
     StopsBefore,
@@ -30,6 +34,7 @@ from wsim.scene.contact import largest_friction
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
 
     Floats = NDArray[np.float64]
@@ -62,30 +67,6 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
             f"gap to {signals.prim(asked.ref)}", signals.prim(asked.object), value, asked.clearance, "m",
             asked.clearance or size, source, at_most=False,
         )
-    ]  # fmt: skip
-
-
-@measures(RestsOn)
-def _rests_on(asked: RestsOn, signals: Signals) -> list[Measure]:
-    prim, other = signals.prim(asked.object), signals.prim(asked.ref)
-    frames = signals.frames(asked.object, asked.ref)
-    i = frames.index(prim)
-    support, solid = support_of(frames, i, other), frames.solid(i)
-    low, high = frames.ends(i)
-    height = float(high[0] - low[0])
-    # Where it is not over the other it cannot rest on it, however near its height.
-    over = support.over & np.isfinite(support.top)
-    value = signals.fold(np.where(over, np.abs(low - np.where(over, support.top, 0.0)), max(solid.smallest, height)))
-    limit = asked.within or STILL * height
-    source = "the objective's" if asked.within else f"{STILL:g} of its height, {height:.3g} m"
-    speed = np.linalg.norm(signals.velocity(asked.object) - signals.velocity(asked.ref), axis=-1)
-    rest = STILL * signals.speed_scale(solid.smallest)
-    return [
-        Measure(f"gap to the top of {other}", prim, value, limit, "m", limit, source, expected=0.0),
-        Measure(
-            f"speed against {other}", prim, speed, rest, "m/s", rest,
-            f"{STILL:g} sqrt(g L), L = {solid.smallest:.3g} m: bobbing by {STILL:.0%} of L", expected=0.0,
-        ),
     ]  # fmt: skip
 
 
@@ -227,3 +208,68 @@ def _pushes(asked: Pushes, signals: Signals) -> list[Measure]:
             asked.least, "the objective's: a blow is over sooner", at_most=False,
         )
     ]  # fmt: skip
+
+
+# ---- what to change
+@mends(Touches)
+def _aim(asked: Touches, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """They miss each other."""
+    return missed(evidence, finding.prim or "", evidence.prim(asked.ref), finding.value or 0.0)
+
+
+@mends(NeverTouches)
+def _part(asked: NeverTouches, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Two that must not touch."""
+    why = "it comes too near: start it farther off, or send it another way"
+    return RepairTarget(
+        kind="settlement", prim=finding.prim, parameter="position", direction="change", unit="m", why=why
+    )
+
+
+@mends(Settles)
+def _still(asked: Settles, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What has slid down what it started on came to rest elsewhere, if at all: time does not help; else it may."""
+    return slides_off(evidence, finding.prim or "") or settled(finding, evidence)
+
+
+@mends(StopsBefore)
+def _stop(asked: StopsBefore, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Under friction it goes v^2 / (2 mu g): as much friction as lets it stop in the gap that it starts with."""
+    if finding.unit == "m/s":
+        return settled(finding, evidence)
+    prim, ref = finding.prim or "", evidence.prim(asked.ref)
+    speed = float(np.linalg.norm(level(np.array(evidence.body(prim).velocity), evidence.up)))
+    gap = float(distance(evidence, prim, ref)[0])
+    to = speed**2 / (2.0 * evidence.gravity * gap) if gap > 0.0 and evidence.gravity > 0.0 else None
+    why = f"to stop within {gap:.3g} m it needs a friction of v^2 / (2 g s)"
+    return friction(evidence, prim, "raise", to, why, ref)
+
+
+@mends(RollsWithoutSlip)
+def _grip(asked: RollsWithoutSlip, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What slips has too little friction."""
+    under, why = evidence.prim(asked.on) if asked.on else "", "it slips where it should roll: more friction turns it"
+    return friction(evidence, finding.prim or "", "raise", None, why, under)
+
+
+@mends(CollidesWith)
+def _collide(asked: CollidesWith, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """They miss, pass through each other, or bounce otherwise than asked."""
+    body, ref = evidence.body(finding.prim or ""), evidence.prim(asked.ref)
+    if finding.unit != "1":
+        return missed(evidence, body.prim, ref, None if finding.unit == "m/s" else finding.value or 0.0)
+    now, expected = body.shapes[0].restitution if body.shapes else None, finding.expected or 0.0
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="restitution",
+        direction="raise" if (finding.value or 0.0) < expected else "lower", current=now, suggested=expected,
+        why="the share of the speed of approach with which it parts",
+    )  # fmt: skip
+
+
+@mends(Pushes)
+def _push(asked: Pushes, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What pushes goes on at the other, in its way and fast enough."""
+    why = "it does not drive the other on for that long: aim it there, and keep it moving"
+    return RepairTarget(
+        kind="physical parameter", prim=finding.prim, parameter="velocity", direction="change", unit="m/s", why=why
+    )

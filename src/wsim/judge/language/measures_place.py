@@ -13,8 +13,13 @@ from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.contacts import about, swept_gap, touch_reach
-from wsim.judge.language.measure import Measure, measures
-from wsim.plan.schema.formula import (
+from wsim.judge.language.measure import Measure, measures, mends
+from wsim.judge.repair.drive import by_drive
+from wsim.judge.repair.lasting import leak
+from wsim.judge.repair.matter import slides_off
+from wsim.judge.repair.passing import beside, fallen_through, pushed_over, started_in, too_small
+from wsim.judge.verdict import Finding, RepairTarget
+from wsim.plan.schema.formula_place import (
     ContainedIn,
     Crosses,
     FollowsPath,
@@ -207,3 +212,74 @@ def _to_segment(p: Floats, a: Floats, b: Floats) -> Floats:
     share = np.sum((p - a) * along, axis=-1) / np.where(length2 > 0.0, length2, 1.0)
     nearest = a + np.clip(share, 0.0, 1.0)[..., None] * along
     return np.asarray(np.linalg.norm(p - nearest, axis=-1))
+
+
+# ---- what to change
+@mends(Reaches, Crosses)
+def _reach(asked: Reaches | Crosses, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It stops short, or goes another way."""
+    short = abs((finding.value or 0.0) - (finding.limit or 0.0))
+    driven = by_drive(evidence, finding.prim or "", None, f"its drive is set to {short:.3g} m beside that")
+    if driven is not None:
+        return driven
+    start = evidence.body(finding.prim or "").velocity
+    why = f"it stays {short:.3g} m short of where it must get: faster, or aimed better"
+    return RepairTarget(
+        kind="physical parameter", prim=finding.prim, parameter="velocity",
+        direction="change", current=float(np.linalg.norm(start)), unit="m/s", why=why,
+    )  # fmt: skip
+
+
+@mends(StaysWithin)
+def _hold(asked: StaysWithin, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """It slides away, or goes too far."""
+    why = "it gets too far: hold it, or start it slower or nearer"
+    return slides_off(evidence, finding.prim or "") or RepairTarget(
+        kind="settlement", prim=finding.prim, parameter="position", direction="change", unit="m", why=why
+    )
+
+
+@mends(ContainedIn, StaysInside)
+def _keep_in(asked: ContainedIn | StaysInside, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A fluid leaks; a body goes through a wall or over it."""
+    if any(fluid.prim == finding.prim for fluid in evidence.world.fluids):
+        return leak(finding, evidence)
+    prim, ref = finding.prim or "", evidence.prim(asked.ref)
+    container = evidence.container(ref)
+    if container is None:
+        return RepairTarget(kind="missing object", prim=ref, direction="add", why="there is nothing to stay inside of")
+    frame = evidence.recording.frame_index(finding.time or 0.0)
+    p = evidence.local(container, evidence.body_q[frame, evidence.index(prim), :3])
+    if not started_in(evidence, prim, container):
+        return beside(evidence, prim, ref)
+    if p[2] > container.inner_size[2] / 2:
+        return too_small(evidence, ref, abs(finding.value or 0.0))
+    return fallen_through(evidence, prim, ref)
+
+
+@mends(Upright)
+def _stand(asked: Upright, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A wider foot tips later: the angle at which it does is that of its middle over its edge."""
+    if (finding.value or 0.0) < (finding.limit or 0.0):
+        return pushed_over(finding, evidence)
+    why = "it tips where its middle is over its edge: a wider or a lower body, or a weaker push"
+    return RepairTarget(kind="geometry", prim=finding.prim, parameter="size", direction="change", unit="m", why=why)
+
+
+@mends(SpeedBetween)
+def _speed_up(asked: SpeedBetween, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """The start decides how fast it is, by as much as is missing."""
+    value, limit = finding.value or 0.0, finding.limit or 0.0
+    now = float(np.linalg.norm(evidence.body(finding.prim or "").velocity))
+    return RepairTarget(
+        kind="physical parameter", prim=finding.prim, parameter="velocity",
+        direction="raise" if value < limit else "lower", current=now, suggested=max(0.0, now + limit - value),
+        unit="m/s", why="it starts with that much less or more",
+    )  # fmt: skip
+
+
+@mends(FollowsPath)
+def _steer(asked: FollowsPath, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What follows a path is steered."""
+    why = "it leaves its path: what steers it must turn sooner or go slower"
+    return RepairTarget(kind="controller", prim=finding.prim, parameter="path", direction="change", why=why)

@@ -8,22 +8,19 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.language.contacts import about, gap, swept_gap, touch_reach
-from wsim.judge.language.measure import Measure, measures
+from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import room_in
-from wsim.plan.schema.formula import (
-    BouncesTo,
-    Counts,
-    GoneBetween,
-    OwnSpinBetween,
-    SpinBetween,
-    TiltBetween,
-    TurnedBetween,
-)
+from wsim.judge.repair.drive import by_drive
+from wsim.judge.verdict import Finding, RepairTarget
+from wsim.plan.schema.formula_contact import BouncesTo
+from wsim.plan.schema.formula_place import Counts, GoneBetween, OwnSpinBetween, SpinBetween, TiltBetween, TurnedBetween
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
+    from wsim.plan.schema.predicate import Predicate
 
     Floats = NDArray[np.float64]
 
@@ -140,3 +137,40 @@ def _counts(asked: Counts, signals: Signals) -> list[Measure]:
             1.0, "the objective's", at_most=False,
         )
     ]  # fmt: skip
+
+
+# ---- what to change
+@mends(TurnedBetween, SpinBetween, GoneBetween, OwnSpinBetween, TiltBetween)
+def _drive(asked: Predicate, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What a joint moves, its drive does; what is free, its start."""
+    prim, value, limit = finding.prim or "", finding.value or 0.0, finding.limit or 0.0
+    way, short = ("raise" if value < limit else "lower"), f"{abs(limit - value):.3g} {finding.unit}"
+    share = limit / value if value * limit > 0.0 else None
+    driven = by_drive(evidence, prim, share, f"its drive brings it {short} off")
+    if driven is not None:
+        return driven
+    why = f"it is {short} off: it starts otherwise, or something stops it"
+    return RepairTarget.model_validate(
+        {"kind": "physical parameter", "prim": prim, "parameter": "velocity", "direction": way, "unit": "m/s",
+         "why": why}
+    )  # fmt: skip
+
+
+@mends(BouncesTo)
+def _bounce(asked: BouncesTo, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """From a height h a restitution e brings it up to e^2 h: as its square root, so is the restitution off."""
+    body, value, expected = evidence.body(finding.prim or ""), finding.value or 0.0, finding.expected or 0.0
+    now = body.shapes[0].restitution if body.shapes else None
+    to = now * (expected / value) ** 0.5 if now and value > 0.0 else None
+    return RepairTarget(
+        kind="physical parameter", prim=body.prim, parameter="restitution",
+        direction="raise" if value < expected else "lower", current=now, suggested=to,
+        why="what bounces comes up to the square of its restitution of where it fell from",
+    )  # fmt: skip
+
+
+@mends(Counts)
+def _gather(asked: Counts, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Some are beside it, or on their way."""
+    why = "too few get into it: start them over it, or give it more room or time"
+    return RepairTarget(kind="settlement", prim=finding.prim, parameter="position", direction="change", why=why)

@@ -9,13 +9,20 @@ import numpy as np
 
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.pendulum import Pendulum, period_of, pivot_of
-from wsim.judge.language.measure import Measure, measures
+from wsim.judge.evidence.welded import welded
+from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import latest
-from wsim.plan.schema.formula import ClimbsTo, Conserves, DiesDown, Swings
+from wsim.judge.repair.drive import drive_of
+from wsim.judge.repair.lasting import leak
+from wsim.judge.repair.matter import damped, friction
+from wsim.judge.repair.rule import longer_run, shorter_step
+from wsim.judge.verdict import Finding, RepairTarget
+from wsim.plan.schema.formula_motion import ClimbsTo, Conserves, DiesDown, Swings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.language.signals import Signals
 
     Floats = NDArray[np.float64]
@@ -58,18 +65,27 @@ def _swings(asked: Swings, signals: Signals) -> list[Measure]:
 
 
 def _pendulum(signals: Signals, name: str) -> Pendulum:
-    """The body as a pendulum about the point that its own velocities turn about."""
+    """The body, with what fixed joints hold to it, as a pendulum about the point that its own velocities turn about."""
     i = signals.row(name)
-    centre, twist = signals.centre_of_mass(i), signals.qd(name)
-    pivot, axis = pivot_of(centre, twist[..., :3], twist[..., 3:])
-    arm = centre - pivot[:, None]
-    arm = arm - np.einsum("wti,wi->wt", arm, axis)[..., None] * axis[:, None]
+    twist = signals.qd(name)
+    pivot, axis = pivot_of(signals.centre_of_mass(i), twist[..., :3], twist[..., 3:])
+    parts = welded(signals.frames(*(body.prim for body in signals.world.bodies)), i)
+    assert signals.mass is not None
+    masses = signals.mass[:, parts]
+    centres = np.stack([signals.centre_of_mass(k) for k in parts], axis=1)  # (W, parts, T, 3)
+    mass = masses.sum(axis=1)
+    arms = _across(centres - pivot[:, None, None], axis)
+    arm = np.einsum("wb,wbti->wti", masses, arms) / mass[:, None, None]
     down = -signals.up
     angle = np.arctan2(np.einsum("wti,wi->wt", np.cross(np.broadcast_to(down, arm.shape), arm), axis), arm @ down)
-    assert signals.mass is not None
-    mass = signals.mass[:, i]
-    length = np.linalg.norm(arm, axis=-1).mean(axis=1)
-    return Pendulum(angle, mass, length, signals.inertia_about(i, axis[:, None])[:, 0] + mass * length**2)
+    own = sum(signals.inertia_about(k, axis[:, None])[:, 0] for k in parts)
+    inertia = own + (masses * np.mean(np.sum(arms**2, axis=-1), axis=-1)).sum(axis=1)
+    return Pendulum(angle, mass, np.linalg.norm(arm, axis=-1).mean(axis=1), inertia)
+
+
+def _across(ways: Floats, axis: Floats) -> Floats:
+    """Ways (W, B, T, 3) without what goes along axes (W, 3)."""
+    return np.asarray(ways - np.einsum("wbti,wi->wbt", ways, axis)[..., None] * axis[:, None, None])
 
 
 def _half_swings(time: Floats, angle: Floats) -> tuple[Floats, Floats]:
@@ -205,3 +221,50 @@ def _mass(asked: Conserves, signals: Signals) -> Measure:
     value = (np.abs(there - there[0]) * total)[latest(track.time, signals.time)][None]
     source = f"{asked.share:g} of {total:.4g} kg"
     return Measure("change of mass", fluid.prim, value, asked.share * total, "kg", total, source, expected=0.0)
+
+
+# ---- what to change
+@mends(Swings)
+def _swing(asked: Swings, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """Let go too low, too short a run for a period, or a period that the hinge spoils."""
+    if finding.unit == "deg" and finding.expected is None:
+        return RepairTarget(
+            kind="settlement", prim=finding.prim, parameter="rotation", direction="raise", current=finding.value,
+            suggested=finding.limit, unit="deg", why="at rest below its hinge it has nowhere to swing from",
+        )  # fmt: skip
+    if finding.value is None and finding.expected is not None and finding.expected > evidence.world.duration:
+        return longer_run(evidence, 2 * finding.expected, "a period takes longer than the run")
+    why = "its hinge holds it back or drives it: a pendulum's period needs one with no friction, damping or drive"
+    return RepairTarget(kind="joint", prim=finding.prim, parameter="damping", direction="lower", why=why)
+
+
+@mends(Conserves)
+def _conserve(asked: Conserves, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """A fluid's mass leaks; energy and momentum go with the step's error."""
+    if finding.unit == "kg":
+        return leak(finding, evidence)
+    why = "what is conserved drifts with the step's error; half the step is the first to try"
+    return shorter_step(evidence, 0.5, why)
+
+
+@mends(DiesDown)
+def _damp(asked: DiesDown, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What goes on as far is taken energy from: by its joint's drive, or where it touches."""
+    prim = finding.prim or ""
+    joint = drive_of(evidence, prim)
+    if joint is None or joint.drive is None:
+        return damped(evidence, evidence.index(prim), "nothing takes its energy: it goes as far each time")
+    why = "nothing damps it: it goes as far each time"
+    return RepairTarget(
+        kind="drive", prim=joint.prim, parameter="drive.damping", direction="raise", current=joint.drive.damping,
+        why=why,
+    )  # fmt: skip
+
+
+@mends(ClimbsTo)
+def _climb(asked: ClimbsTo, finding: Finding, evidence: Evidence) -> RepairTarget:
+    """What comes up too little has lost too much on its way; what comes too high has got energy from the step."""
+    if (finding.value or 0.0) > (finding.limit or 0.0):
+        why = "it rises above its start: the integration adds energy; half the step is the first to try"
+        return shorter_step(evidence, 0.5, why)
+    return friction(evidence, finding.prim or "", "lower", None, "it loses too much on its way up")

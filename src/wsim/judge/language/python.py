@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from wsim.plan.schema import formula as tree
+from wsim.plan.schema import formula_contact, formula_fluid, formula_motion, formula_place
 
 if TYPE_CHECKING:
     from wsim.plan.schema.formula import Formula
@@ -32,14 +33,19 @@ def finally_(of: Formula, seconds: float | None = None) -> tree.Finally:
     return tree.Finally(of=of, seconds=seconds)
 
 
+def mean(of: tree.Predicate, seconds: float | None = None) -> tree.Mean:
+    """A predicate, of the means of its numbers over the recording's last seconds, or the judge's final window."""
+    return tree.Mean(of=of, seconds=seconds)
+
+
 def ordered(*events: Formula) -> tree.Ordered:
     """The events happen for the first time in this order."""
     return tree.Ordered(events=events)
 
 
-def conserves(what: str, *objects: str, **rest: Any) -> tree.Conserves:
+def conserves(what: str, *objects: str, **rest: Any) -> formula_motion.Conserves:
     """Energy or momentum of the objects, or of all, or the mass of a fluid, is as at the start."""
-    return tree.Conserves.model_validate({"what": what, "objects": objects, **rest})
+    return formula_motion.Conserves.model_validate({"what": what, "objects": objects, **rest})
 
 
 def _maker(kind: type[P]) -> Callable[..., P]:
@@ -55,36 +61,48 @@ def _maker(kind: type[P]) -> Callable[..., P]:
     return make
 
 
-reaches = _maker(tree.Reaches)
-stays_within = _maker(tree.StaysWithin)
-rests_on = _maker(tree.RestsOn)
-supported_by = _maker(tree.SupportedBy)
-contained_in = _maker(tree.ContainedIn)
-floats = _maker(tree.Floats)
-sinks = _maker(tree.Sinks)
-submerged = _maker(tree.Submerged)
-touches = _maker(tree.Touches)
-never_touches = _maker(tree.NeverTouches)
-upright = _maker(tree.Upright)
-speed_between = _maker(tree.SpeedBetween)
-follows_path = _maker(tree.FollowsPath)
-crosses = _maker(tree.Crosses)
-swings = _maker(tree.Swings)
-rolls_without_slip = _maker(tree.RollsWithoutSlip)
-settles = _maker(tree.Settles)
-collides_with = _maker(tree.CollidesWith)
-pushes = _maker(tree.Pushes)
-fills_to = _maker(tree.FillsTo)
-stays_inside = _maker(tree.StaysInside)
-turned_between = _maker(tree.TurnedBetween)
-spin_between = _maker(tree.SpinBetween)
-gone_between = _maker(tree.GoneBetween)
-bounces_to = _maker(tree.BouncesTo)
-counts = _maker(tree.Counts)
-own_spin_between = _maker(tree.OwnSpinBetween)
-tilt_between = _maker(tree.TiltBetween)
-dies_down = _maker(tree.DiesDown)
-climbs_to = _maker(tree.ClimbsTo)
-stops_before = _maker(tree.StopsBefore)
-swirls_between = _maker(tree.SwirlsBetween)
-level_in = _maker(tree.LevelIn)
+reaches = _maker(formula_place.Reaches)
+stays_within = _maker(formula_place.StaysWithin)
+rests_on = _maker(formula_contact.RestsOn)
+supported_by = _maker(formula_contact.SupportedBy)
+contained_in = _maker(formula_place.ContainedIn)
+floats = _maker(formula_fluid.Floats)
+sinks = _maker(formula_fluid.Sinks)
+submerged = _maker(formula_fluid.Submerged)
+touches = _maker(formula_contact.Touches)
+never_touches = _maker(formula_contact.NeverTouches)
+upright = _maker(formula_place.Upright)
+speed_between = _maker(formula_place.SpeedBetween)
+follows_path = _maker(formula_place.FollowsPath)
+crosses = _maker(formula_place.Crosses)
+swings = _maker(formula_motion.Swings)
+rolls_without_slip = _maker(formula_contact.RollsWithoutSlip)
+settles = _maker(formula_contact.Settles)
+collides_with = _maker(formula_contact.CollidesWith)
+pushes = _maker(formula_contact.Pushes)
+fills_to = _maker(formula_fluid.FillsTo)
+stays_inside = _maker(formula_place.StaysInside)
+turned_between = _maker(formula_place.TurnedBetween)
+spin_between = _maker(formula_place.SpinBetween)
+gone_between = _maker(formula_place.GoneBetween)
+bounces_to = _maker(formula_contact.BouncesTo)
+counts = _maker(formula_place.Counts)
+own_spin_between = _maker(formula_place.OwnSpinBetween)
+tilt_between = _maker(formula_place.TiltBetween)
+dies_down = _maker(formula_motion.DiesDown)
+climbs_to = _maker(formula_motion.ClimbsTo)
+stops_before = _maker(formula_contact.StopsBefore)
+swirls_between = _maker(formula_fluid.SwirlsBetween)
+level_in = _maker(formula_fluid.LevelIn)
+lies_on = _maker(formula_contact.LiesOn)
+stays_on = _maker(formula_contact.StaysOn)
+weighs_on = _maker(formula_contact.WeighsOn)
+fills = _maker(formula_fluid.Fills)
+drops = _maker(formula_motion.Drops)
+moves = _maker(formula_motion.Moves)
+goes_down = _maker(formula_motion.GoesDown)
+rolls = _maker(formula_motion.Rolls)
+rolls_freely = _maker(formula_motion.RollsFreely)
+flies = _maker(formula_motion.Flies)
+falls_freely = _maker(formula_motion.FallsFreely)
+tilts_to = _maker(formula_motion.TiltsTo)

@@ -17,6 +17,7 @@ from wsim.plan.schema.formula import (
     Eventually,
     Finally,
     Formula,
+    Mean,
     Not,
     Or,
     Ordered,
@@ -48,6 +49,7 @@ GRAMMAR = r"""
     | "always" window? "(" formula ")" -> always
     | "eventually" window? "(" formula ")" -> eventually
     | "finally" ["[" number "]"] "(" formula ")" -> at_the_end
+    | "mean" ["[" number "]"] "(" formula ")" -> mean
     | "ordered" "(" formula ("," formula)+ ")" -> ordered
     | NAME "(" argument ("," argument)* ")" -> predicate
 window: "[" number "," (number | "end") "]"
@@ -62,7 +64,7 @@ NUMBER: /[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?/
 UNIT: /%|[a-z]+(\/[a-z]+)?/
 %ignore /\s+/
 """
-RESERVED = frozenset(("and", "or", "not", "until", "then", "always", "eventually", "finally", "ordered", "end"))
+RESERVED = frozenset(("and", "or", "not", "until", "then", "always", "eventually", "finally", "mean", "ordered", "end"))
 
 
 def parse(text: str) -> Formula:
@@ -178,6 +180,9 @@ class _Build(Transformer[Token, Any]):
     def at_the_end(self, seconds: _Number | None, part: Formula) -> Finally:
         return Finally(seconds=None if seconds is None else seconds.into("s", "finally"), of=part)
 
+    def mean(self, seconds: _Number | None, part: Formula) -> Mean:
+        return Mean(seconds=None if seconds is None else seconds.into("s", "mean"), of=part)
+
     def until(self, hold: Formula, *rest: Any) -> Until:
         return Until(hold=hold, window=rest[0] if len(rest) > 1 else None, goal=rest[-1])
 
@@ -255,9 +260,9 @@ def sentence(formula: Formula) -> str:
         return "not " + _within(formula.of, (Until, Then, Or, And))
     if isinstance(formula, (Always, Eventually)):
         return f"{formula.op}{_window(formula.window)}({sentence(formula.of)})"
-    if isinstance(formula, Finally):
+    if isinstance(formula, (Finally, Mean)):
         seconds = "" if formula.seconds is None else f"[{_digits(formula.seconds)}]"
-        return f"finally{seconds}({sentence(formula.of)})"
+        return f"{formula.op}{seconds}({sentence(formula.of)})"
     if isinstance(formula, Ordered):
         return f"ordered({', '.join(sentence(event) for event in formula.events)})"
     assert isinstance(formula, Predicate)  # the one kind of node that is left

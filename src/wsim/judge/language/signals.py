@@ -5,21 +5,21 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate, upwards
 from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.evidence.posed import posed
 from wsim.judge.evidence.recorded import MissingError
-from wsim.recording.recording import Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.geometry.shapes import Solid
     from wsim.plan.schema import Plan
+    from wsim.recording.recording import Recording
     from wsim.scene.world import Body, Container, Fluid, Shape, World
 
     Floats = NDArray[np.float64]
@@ -72,6 +72,13 @@ class Signals:
             evidence.world, evidence.time, evidence.body_q[None], evidence.body_qd[None],
             np.asarray(evidence.recording.contact_force)[None], evidence=evidence,
         )  # fmt: skip
+
+    @classmethod
+    def of_copies(cls, joined: Evidence) -> Signals:
+        """Many worlds, whose evidence was joined (`Evidence.join`)."""
+        motion = joined.motion
+        turning = np.concatenate([motion.v, motion.w], axis=-1)
+        return cls(joined.world, joined.time, motion.q, turning, motion.contact_force, mass=motion.mass[:, 0])
 
     @classmethod
     def of_recording(cls, recording: Recording, plan: Plan | None = None) -> Signals:
@@ -225,13 +232,7 @@ class Signals:
 
     def posed(self, rows: list[int], time: Floats, q: NDArray[Any]) -> Evidence:
         """Some bodies at any poses, (N, len(rows), 7) at times (N,)."""
-        # Nothing here is asked of velocities and forces; whatever was would come out as not known.
-        qd, force = (np.broadcast_to(np.nan, (len(q), len(rows), width)) for width in (6, 3))
-        recording = Recording(
-            path=Path(), world=self.world.model_copy(update={"bodies": [self.world.bodies[i] for i in rows]}),
-            metadata={}, time=time, body_q=q, body_qd=qd, contact_force=force, fluids={}, scalars={}, log=[], images={},
-        )  # fmt: skip
-        return Evidence(recording)
+        return posed(self.world, rows, time, q)
 
     def fold(self, flat: NDArray[Any]) -> NDArray[Any]:
         """Answers (W * T, ...) with their world axis, (W, T, ...)."""

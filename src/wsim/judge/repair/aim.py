@@ -1,7 +1,8 @@
 """What to change so that a failed finding passes.
 
-A check that knows says so itself, with `target=` in its finding. For the others there is one rule for each check or
-objective class, in the tables of `run`, `objectives` and `language`. What no rule covers gets a target that says so.
+A check that knows says so itself, with `target=` in its finding, as an objective does by the predicate that decides it
+(`wsim.judge.language.mending`); of others it is asked for its rule, `Check.repair`. What no rule covers gets a target
+that says so.
 """
 
 from __future__ import annotations
@@ -9,11 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from wsim.judge.repair.language import formula
-from wsim.judge.repair.objectives import OBJECTIVES
+from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.repair.place import overlapping_start
-from wsim.judge.repair.rule import Rule, time_step, tried
-from wsim.judge.repair.run import CHECKS
+from wsim.judge.repair.rule import time_step, tried
 from wsim.judge.verdict import Finding, RepairTarget
 
 if TYPE_CHECKING:
@@ -28,8 +27,9 @@ STAGES = {
 
 # Of what starts inside something else the solver makes a push that no law explains.
 PUSHED_APART = (
-    "CheckRestitution", "CheckEnergy", "CheckForces", "CheckRecordedForces", "CheckContinuity", "CheckSupport",
-    "CheckJitter", "CheckFreeFlight", "CheckFreeTurning",
+    "CheckRestitution", "CheckBlowFriction", "CheckEnergy", "CheckForces", "CheckRecordedForces", "CheckRecordedTies",
+    "CheckContinuity",
+    "CheckSupport", "CheckJitter", "CheckFreeFlight", "CheckFreeTurning",
 )  # fmt: skip
 DEEP = 0.02  # of the smallest extent: what starts no deeper is hardly pushed
 
@@ -68,11 +68,11 @@ def _target(finding: Finding, evidence: Evidence | None) -> RepairTarget:
         )
     if finding.check in STAGES:
         return RepairTarget(kind="program", direction="change", why=STAGES[finding.check])
-    rule = rules().get(finding.check)
-    if rule is None or evidence is None:
+    check = next((check for check in [*run_checks(), *physics_checks()] if check.name == finding.check), None)
+    if check is None or evidence is None:
         return unknown(finding)
     try:
-        return rule(finding, evidence)
+        return check.repair(finding, evidence) or unknown(finding)
     except Exception:  # noqa: BLE001 - evidence too broken for the check may be so for the rule: nothing is known then
         return unknown(finding)
 
@@ -82,8 +82,3 @@ def unknown(finding: Finding) -> RepairTarget:
     where = "the line that made it" if finding.line else "the program"
     why = f"no formula says which number to change: compare {where} with the finding's message"
     return RepairTarget(kind="program", prim=finding.prim, direction="change", why=why)
-
-
-def rules() -> dict[str, Rule]:
-    """The rule of each check and objective class, by its name."""
-    return {**CHECKS, **OBJECTIVES, "ObjectiveFormula": formula}

@@ -8,7 +8,7 @@ import numpy as np
 
 from wsim.geometry.rotations import sides_of
 from wsim.judge.evidence.contact import distance, overlaps
-from wsim.judge.language.signals import Signals
+from wsim.judge.evidence.posed import posed
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -110,9 +110,9 @@ def _gaps(evidence: Evidence, i: int, places: Floats, others: list[str]) -> Floa
     rows = list(range(len(evidence.world.bodies)))
     q = np.repeat(evidence.body_q[:1].astype(np.float64), len(places), axis=0)
     q[:, i, :3] = places
-    posed = Signals.of(evidence).posed(rows, np.arange(len(places), dtype=np.float64), q)
+    there = posed(evidence.world, rows, np.arange(len(places), dtype=np.float64), q)
     prim = evidence.world.bodies[i].prim
-    return np.asarray(np.min([distance(posed, prim, other) for other in others], axis=0))
+    return np.asarray(np.min([distance(there, prim, other) for other in others], axis=0))
 
 
 def _others(evidence: Evidence, i: int) -> list[str]:

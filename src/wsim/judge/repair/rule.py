@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.verdict import Finding, RepairTarget
+from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
+    from wsim.judge.evidence.evidence import Evidence
     from wsim.scene.world import Fluid, Shape
-
-Rule = Callable[[Finding, Evidence], RepairTarget]
 
 ROOM = 0.1  # of a limit that a suggested value keeps from it: what just meets it fails by rounding
 # What a number may be: rubber on rubber has a friction of 1.2, osmium 22 600 kg/m^3.
@@ -28,6 +25,12 @@ def shorter_step(evidence: Evidence, share: float, why: str) -> RepairTarget:
     return RepairTarget(
         kind="time step", parameter="time_step", direction="lower", current=step, suggested=suggested, unit="s", why=why
     )
+
+
+def unstable(evidence: Evidence) -> RepairTarget:
+    """What grows without bound."""
+    why = "values grow without bound where the step is longer than the solver is stable for; half is the first to try"
+    return shorter_step(evidence, 0.5, why)
 
 
 def longer_run(evidence: Evidence, seconds: float | None, why: str) -> RepairTarget:

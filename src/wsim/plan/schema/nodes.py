@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
-from wsim.plan.schema.base import NotNegative, Positive, Strict
+from wsim.plan.schema.base import NotNegative, Strict
 
 if TYPE_CHECKING:
     Formula: TypeAlias = "Node"  # what is read from a file is one of the closed list
@@ -141,10 +141,10 @@ class Eventually(Node):
 
 
 class Finally(Node):
-    """It holds at each of the recording's last seconds; without a number, over the judge's final window."""
+    """It holds over the recording's last seconds, 0 its last frame; without a number, the judge's final window."""
 
     op: Literal["finally"] = "finally"
-    seconds: Positive | None = None
+    seconds: NotNegative | None = None
     of: Formula
 
     def parts(self) -> tuple[Formula, ...]:

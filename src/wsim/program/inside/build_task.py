@@ -20,7 +20,7 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     """Run the program's `build` and copy the stage that it authored to the parent's descriptor."""
     program = job["program"]
     try:
-        _author(job, program)
+        author(job, program)
     except BaseException as error:  # noqa: BLE001 - whatever a program raises is a finding
         # What the program piled up hangs on its frames; without it there is memory to write the report with.
         traceback.clear_frames(error.__traceback__)
@@ -28,7 +28,8 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     return {"outcome": "ok"}
 
 
-def _author(job: dict[str, Any], program: str) -> None:
+def author(job: dict[str, Any], program: str) -> None:
+    """Copy the stage that a program makes of `params` and `seed` to `stage_fd`; raises what the program raises."""
     Work.SetConcurrencyLimit(1)  # one address space is shared by all threads, and a large machine would start many
     module = load(program)
     call = function(module, "build", "scene")

@@ -20,6 +20,7 @@ None of them hides the time or the machine's kind, or closes side channels; a fa
 from wsim.program.sandbox.builder import build
 from wsim.program.sandbox.isolation import Isolation, available
 from wsim.program.sandbox.limits import Limits
+from wsim.program.sandbox.many import build_many
 from wsim.program.sandbox.result import BuildResult
 
-__all__ = ["BuildResult", "Isolation", "Limits", "available", "build"]
+__all__ = ["BuildResult", "Isolation", "Limits", "available", "build", "build_many"]

@@ -51,8 +51,8 @@ def build(
     """
     started = time.monotonic()
     limits = limits or Limits()
-    program = _program(program)
-    params = _numbers(params or {})
+    program = program_file(program)
+    params = numbers(params or {})
     roots = [Path(path).resolve() for path in readable]
     chosen = choose(isolation)
     with tempfile.TemporaryDirectory(prefix="wsim-stage-") as folder:
@@ -77,12 +77,17 @@ def build(
         finally:
             os.close(target)
         if kind == "ok":
-            _deliver(made, stage)
+            deliver(made, stage)
     seconds = time.monotonic() - started
     return BuildResult(kind == "ok", kind, message, line, log, seconds, chosen, tuple(problems))
 
 
-def _program(program: Path) -> Path:
+def program_file(program: Path) -> Path:
+    """A program's file, absolute.
+
+    Raises:
+        UserError: If it is none, or too long.
+    """
     path = Path(program).resolve()
     if not path.is_file():
         raise UserError(f"{program} is not a file; give the path of a program with a build(scene) function")
@@ -91,7 +96,12 @@ def _program(program: Path) -> Path:
     return path
 
 
-def _numbers(params: Mapping[str, float]) -> dict[str, float]:
+def numbers(params: Mapping[str, float]) -> dict[str, float]:
+    """Values of `scene.param`.
+
+    Raises:
+        UserError: If one is not a finite number.
+    """
     for name, value in params.items():
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
             raise UserError(f"parameter {name} = {value!r} must be a finite number")
@@ -100,7 +110,7 @@ def _numbers(params: Mapping[str, float]) -> dict[str, float]:
 
 def _stage(target: int, checker: SandboxProcess, limits: Limits) -> tuple[Kind, str, list[str]]:
     """What is to be said of the stage that a program wrote, without having it read in this process."""
-    kind, message = _look(target, limits)
+    kind, message = look(target, limits)
     if kind != "ok":
         return kind, message, []
     checker.send(b"g")
@@ -108,7 +118,7 @@ def _stage(target: int, checker: SandboxProcess, limits: Limits) -> tuple[Kind, 
     return _checked(checker)
 
 
-def _look(target: int, limits: Limits) -> tuple[Kind, str]:
+def look(target: int, limits: Limits) -> tuple[Kind, str]:
     """A first look at what is in the stage's file: its size, and that it is text."""
     size = os.fstat(target).st_size
     if size == 0:
@@ -133,7 +143,7 @@ def _checked(checker: SandboxProcess) -> tuple[Kind, str, list[str]]:
     return "ok", "built", []
 
 
-def _deliver(made: Path, stage: Path) -> None:
+def deliver(made: Path, stage: Path) -> None:
     """Copy to a side name in the target's folder, then rename: the target is whole or absent."""
     stage = Path(stage)
     descriptor, side = tempfile.mkstemp(prefix=f".{stage.name}.", dir=stage.parent)

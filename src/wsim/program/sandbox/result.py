@@ -60,6 +60,7 @@ class Report(BaseModel):
     errno: int | None = None
     no_memory: bool = False
     problems: list[str] = Field(default_factory=list, max_length=50)
+    sound: list[int] = Field(default_factory=list, max_length=1000)
 
 
 def read_report(data: bytes) -> Report | None:

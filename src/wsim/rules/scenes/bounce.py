@@ -5,9 +5,10 @@ from __future__ import annotations
 from itertools import combinations_with_replacement
 
 from wsim.plan.schema import Contact, Objective, Plan, PlanObject
-from wsim.plan.schema.formula import CollidesWith
+from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.places import SURFACES
+from wsim.rules.scenes.lasting import asked, to_and_fro
 from wsim.rules.scenes.part import Part, fall_time
 
 HARDLY = 0.2  # a restitution below which a ball that falls from 0.5 m comes up by 2 cm
@@ -23,7 +24,7 @@ def _told(thing: Thing) -> float | None:
     return thing.said("restitution", thing.support)
 
 
-def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cast) -> Objective:
+def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cast) -> list[Objective]:
     """That it comes off what it falls on as fast as the restitution has it; the time of its first bounces is noted."""
     value = returned(thing, item, on, thing.support, cast)
     time = fall_time(thing.drop_height or 0.0)
@@ -33,7 +34,7 @@ def bounce(thing: Thing, item: PlanObject, on: PlanObject, part: Part, cast: Cas
     part.duration = max(part.duration, round(time * (1 + 2 * sum(value**k for k in range(1, SEEN + 1))) + 0.5, 1))
     sentence = f"{item.name} bounces off {on.name} with a restitution of {value:g}."
     formula = CollidesWith(object=item.name, ref=on.name, restitution=value)
-    return Objective(kind="formula", object=item.name, sentence=sentence, formula=formula)
+    return [asked(item.name, sentence, formula), *to_and_fro(thing, item.name, "z", value**2, cast)]
 
 
 def returned(thing: Thing, item: PlanObject, on: PlanObject, other: Thing | None, cast: Cast) -> float:

@@ -7,9 +7,10 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose, Vec3
-from wsim.plan.schema.formula import Reaches
+from wsim.plan.schema.formula_place import Reaches
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
+from wsim.rules.scenes.lasting import turns
 from wsim.rules.scenes.part import Part, fall_time, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies
 
@@ -223,6 +224,8 @@ def _turntable(table: Thing, riders: list[Thing], part: Part, cast: Cast, taken:
     halves = 2 * math.floor(spin / 360.0) + 1  # half turns, an odd number: it ends on the far side
     part.duration = round(halves * 180.0 / spin, 2 if spin > 180.0 else 1)
     turned = math.radians(spin) * (cast.duration or part.duration)
+    if table.spin is not None:
+        part.objectives.append(turns(disc.name, spin))
     for number, (thing, item) in enumerate(loads):
         angle = 2 * math.pi * number / len(loads)
         _spun(thing, item, disc, ring, angle, spin, part)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation
-from wsim.plan.schema.formula import CollidesWith
+from wsim.plan.schema.formula_contact import CollidesWith
 from wsim.rules.cast import Beside, Cast, Thing
 from wsim.rules.places import SIDES
 from wsim.rules.scenes.bounce import bounce, bounces
@@ -130,7 +130,7 @@ def _place(thing: Thing, cast: Cast, taken: set[str], part: Part, ends: _Ends) -
         at = part.names[id(thing.inside)][0] if thing.inside is not None else lower
         if bounces(thing):
             surface = next(o for o in [*part.objects, ground_object()] if o.name == (below or "ground"))
-            part.objectives.append(bounce(thing, item, surface, part, cast))
+            part.objectives += bounce(thing, item, surface, part, cast)
             continue
         part.objectives += _objectives(thing, item, at, last=index == len(made) - 1, cast=cast)
 

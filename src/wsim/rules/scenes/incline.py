@@ -7,7 +7,7 @@ import math
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose, Proxy
-from wsim.plan.schema.formula import StaysWithin
+from wsim.plan.schema.formula_place import StaysWithin
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.scenes.part import MOST_SPEED, Part, pair_friction, tall, tidy
 from wsim.rules.sizes import bodies

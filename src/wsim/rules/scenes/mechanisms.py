@@ -6,17 +6,20 @@ import math
 
 from wsim.defaults import GRAVITY
 from wsim.errors import UserError
-from wsim.plan.schema import Joint, Objective, PlanObject, Pose, Vec3
+from wsim.plan.schema import Joint, JointDrive, Objective, PlanObject, Pose, Vec3
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.materials import material_named
+from wsim.rules.scenes.lasting import leans, to_and_fro
 from wsim.rules.scenes.part import Part, fall_time, tall, tidy
 from wsim.rules.sizes import LARGEST, SMALLEST, bodies, material_of, names, size_of
 
 ROD_LENGTH, ROD_RADIUS = 1.0, 0.008  # [m]
 ANGLE = 20.0  # of a pendulum at the start [deg]
 CLEARANCE = 0.3  # of a pendulum's lowest point above the ground [m]
+LESS = 0.9  # that each half swing goes as far as the one before, of what dies down
 PERIODS = 3.0  # that a pendulum is watched for
 SEESAW_HEIGHT = 0.3  # of the plank's underside above the ground [m]
+BASE_WIDTH = 0.06  # of what carries a seesaw's plank [m]
 HINGE_GAP = 0.005  # between a seesaw's plank and what carries it [m]
 RIDER_SHARE = 0.8  # of the half length, from the hinge to what is on a seesaw
 DROP_HEIGHT = 0.3  # [m]
@@ -57,13 +60,15 @@ def build_pendulum(cast: Cast, taken: set[str]) -> Part:
         material=material_named("aluminium"), pose=at(rod_length / 2), words=thing.rod.words if thing.rod else "",
     )  # fmt: skip
     part.posed += [rod, bob.model_copy(update={"pose": at(length)})]
+    damped = _damped(rod, bob, length, cast, thing) if "die" in thing.does else None
     part.joints = [
-        Joint(name="pivot", kind="hinge", child=rod_name, anchor=(0.0, 0.0, rod_length / 2), axis="Y"),
+        Joint(name="pivot", kind="hinge", child=rod_name, anchor=(0.0, 0.0, rod_length / 2), axis="Y", drive=damped),
         Joint(name="hold", kind="fixed", parent=rod_name, child=bob.name, anchor=(0.0, 0.0, radius)),
     ]
     if angle:
         sentence = f"{bob.name} swings as a pendulum of its length does."
         part.objectives.append(Objective(kind="swings", object=bob.name, sentence=sentence))
+        part.objectives += to_and_fro(thing, bob.name, "x", LESS**2 if "die" in thing.does else 1.0, cast)
     else:
         part.objectives.append(Objective(kind="settles", object=bob.name, sentence=f"{bob.name} hangs still."))
     part.duration = round(PERIODS * 2 * math.pi * math.sqrt(length / GRAVITY), 1)
@@ -71,6 +76,23 @@ def build_pendulum(cast: Cast, taken: set[str]) -> Part:
     x, drop = tidy(length * math.sin(turn)), tidy(length * (1.0 - math.cos(turn)))
     part.goes[bob.name] = [(-x, 0.0, -drop), (-2 * x, 0.0, 0.0)]  # through its lowest point to the other side
     return part
+
+
+def _damped(rod: PlanObject, bob: PlanObject, length: float, cast: Cast, thing: Thing) -> JointDrive:
+    """A hinge that takes energy: of a swing the next half is so much smaller, exp(-c T / 4 I)."""
+    masses = []
+    for item in (rod, bob):
+        radius, *rest = item.size
+        volume = math.pi * radius**2 * rest[0] if rest else 4.0 / 3.0 * math.pi * radius**3
+        masses.append(item.registration.mass or volume * (item.density or 0.0))
+    inertia = masses[0] * rod.size[1] ** 2 / 3.0 + masses[1] * (length**2 + 0.4 * bob.size[0] ** 2)
+    moment = masses[0] * rod.size[1] / 2.0 + masses[1] * length
+    period = 2.0 * math.pi * math.sqrt(inertia / (GRAVITY * moment))
+    damping = round(-4.0 * inertia * math.log(LESS) / period, 5)
+    cast.assume(
+        thing.words, f"its hinge damps it with {damping:g} N m s/rad", f"each half swing {1 - LESS:.0%} smaller"
+    )
+    return JointDrive(velocity=0.0, damping=damping)
 
 
 def _bob(thing: Thing, cast: Cast, taken: set[str]) -> tuple[float, float, PlanObject]:
@@ -126,7 +148,7 @@ def build_seesaw(cast: Cast, taken: set[str]) -> Part:
     base_name = f"{plank.name}_base"
     taken.add(base_name)
     base = PlanObject.proxy(
-        name=base_name, role="background", primitive="box", size=(0.06, width, SEESAW_HEIGHT - HINGE_GAP),
+        name=base_name, role="background", primitive="box", size=(BASE_WIDTH, width, SEESAW_HEIGHT - HINGE_GAP),
         material=material_named("steel"), state="static",
         pose=Pose(position=(0.0, 0.0, tidy((SEESAW_HEIGHT - HINGE_GAP) / 2))), words=seesaw.words,
     )  # fmt: skip
@@ -136,7 +158,9 @@ def build_seesaw(cast: Cast, taken: set[str]) -> Part:
     part.duration = 2.0
     top = centre + thick / 2
     for thing in riders:
-        _ride(thing, plank, (RIDER_SHARE * length / 2, 0.0, top), part, cast, taken)
+        _ride(thing, seesaw, plank, (RIDER_SHARE * length / 2, 0.0, top), part, cast, taken)
+    if not riders and seesaw.angle is not None:
+        raise UserError(f"{seesaw.words!r}: nothing is on it that could tilt it; name what stands or falls on it")
     if not riders:
         part.objectives.append(
             Objective(kind="settles", object=plank.name, sentence=f"{plank.name} stays level and at rest.")
@@ -144,7 +168,7 @@ def build_seesaw(cast: Cast, taken: set[str]) -> Part:
     return part
 
 
-def _ride(thing: Thing, plank: PlanObject, at: Vec3, part: Part, cast: Cast, taken: set[str]) -> None:
+def _ride(thing: Thing, seesaw: Thing, plank: PlanObject, at: Vec3, part: Part, cast: Cast, taken: set[str]) -> None:
     [item] = bodies(thing, cast, taken)
     half = tall(item) / 2
     height = 0.001
@@ -156,4 +180,14 @@ def _ride(thing: Thing, plank: PlanObject, at: Vec3, part: Part, cast: Cast, tak
     part.names[id(thing)] = [item.name]
     sentence = f"{plank.name} goes down where {item.name} is."
     part.objectives.append(Objective(kind="tilts", object=plank.name, ref=item.name, sentence=sentence))
+    if seesaw.angle is not None:
+        part.objectives.append(leans(plank.name, seesaw.angle, _room_to_tilt(plank), seesaw.words))
     part.duration = max(part.duration, round(2.0 + fall_time(height), 1))
+
+
+def _room_to_tilt(plank: PlanObject) -> float:
+    """How far a seesaw tilts until its plank meets the edge of what carries it, or its end the ground [deg]."""
+    half = plank.size[2] / 2
+    a, b = HINGE_GAP + half, BASE_WIDTH / 2  # the edge, seen from the hinge: below it, and beside it
+    edge = math.acos(half / math.hypot(a, b)) - math.atan2(b, a)
+    return math.degrees(min(edge, math.asin(min(1.0, 2.0 * SEESAW_HEIGHT / plank.size[0]))))

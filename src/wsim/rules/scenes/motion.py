@@ -10,6 +10,7 @@ from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
 from wsim.rules.scenes.bounce import returned
+from wsim.rules.scenes.lasting import stops
 from wsim.rules.scenes.part import DIRECTIONS, MOST_SPEED, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
 
@@ -17,6 +18,7 @@ HIT_SPEED = 3.0  # [m/s]
 ROLL_SPEED, SLIDE_SPEED, PUSH_SPEED = 1.0, 2.0, 1.5  # [m/s]
 ROLL_DISTANCE, SLIDE_DISTANCE = 0.6, 0.3  # from what moves to what it hits, at least [m]
 APPROACH = 0.6  # that it takes what rolls to get there [s]
+STOP_ROOM = 1.3  # times the way that theory gives it to its stop, from what slides to what it stops before
 SLIDE_SHARE = 0.6  # of the way to its stop, after which what slides hits
 ROLL_WAY = 3.0  # that a ball rolls while one looks [m]
 MEET_SPEED, MEET_DISTANCE = 1.0, 0.8  # of two that come at each other [m/s], [m]
@@ -130,13 +132,23 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         speed = thing.speed or HIT_SPEED
         if thing.speed is None:
             cast.assume(thing.words, f"starts at {speed:g} m/s along +X", "the prompt gives no speed")
-        distance = _run_up(slides, speed, pair_friction(item, _GROUND, thing.said("friction", None)))
+        friction = pair_friction(item, _GROUND, thing.said("friction", None))
+        if "stop" in thing.does and not friction:
+            raise UserError(f"{thing.words!r}: without friction it never stops; give a friction above 0")
+        distance = _run_up(slides, speed, friction)
+        if "stop" in thing.does:
+            distance = round(STOP_ROOM * stopping_distance(speed, friction), 2)
+            part.duration = max(part.duration, round(1.0 + speed / (friction * GRAVITY), 1))
         item = started(item, (speed, 0.0, 0.0), rolls=not slides)
     cast.assume(thing.words, f"starts {distance:g} m from {target.words}", "the prompt gives no distance")
     rows = [base, Relation(predicate="BACK-OF", ref=first, gap=distance)]
     part.objects.append(item.related(rows + item.relations))
     part.names[id(thing)] = [item.name]
     part.duration = max(part.duration, 4.0 if target.group else 2.0)
+    if "stop" in thing.does:
+        part.goes[item.name] = [(round(distance / STOP_ROOM, 3), 0.0, 0.0)]
+        part.objectives.append(stops(item.name, first))
+        return
     if "throw" not in thing.does:
         aimed = _met(item, [first, *rest], target, part)
         stop = stopping_distance(item.velocity[0], pair_friction(item, _GROUND, thing.said("friction", None)))

@@ -7,9 +7,11 @@ import math
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Pose
+from wsim.plan.schema.formula_fluid import LevelIn
 from wsim.rules.cast import Cast
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import GLASS_LOOK, WATER
+from wsim.rules.scenes.lasting import asked
 from wsim.rules.scenes.part import Part, fall_time, tidy
 from wsim.rules.sizes import bodies
 
@@ -39,7 +41,12 @@ def build_pour(cast: Cast, taken: set[str]) -> Part:
     cast.assume("water", f"falls {height:g} m to the floor of the {vessel.name}", why)
     if not 0.0 < height <= MOST_HEIGHT:
         raise UserError(f"water poured from {height:g} m: give a height above 0 and up to {MOST_HEIGHT:g} m")
-    amount = FILL * x * y * z
+    level = cast.pour.level
+    if level is not None and not 0.0 < level <= FILL * z:
+        raise UserError(
+            f"water poured up to {level:g} m: give a level above 0 and up to {FILL * z:.3g} m, or it splashes"
+        )
+    amount = (FILL * z if level is None else level) * x * y
     spacing = math.ceil((amount / PARTICLES) ** (1 / 3) * 1000) / 1000
     across = [max(2, math.floor(edge / spacing - 2 * MARGIN)) * spacing for edge in (x, y)]
     # A tall column runs up the walls as it collapses, and over the rim.
@@ -63,6 +70,9 @@ def build_pour(cast: Cast, taken: set[str]) -> Part:
     part.objectives.append(
         Objective(kind="fills", object="water", ref=vessel.name, sentence=f"The water ends in {vessel.name}.")
     )
+    if level is not None:
+        sentence = f"The water stands {level:g} m high in {vessel.name}."
+        part.objectives.append(asked("water", sentence, LevelIn(fluid="water", ref=vessel.name, level=level)))
     part.spacing = spacing
     part.duration = round(1.2 + fall_time(height), 1)
     return part

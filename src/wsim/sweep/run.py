@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wsim.progress import Progress, silent
@@ -11,11 +12,14 @@ from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.pool import Lost, Pool
 from wsim.sweep.search import Search
 from wsim.sweep.table import ranked, write
-from wsim.sweep.work import Job, work
+from wsim.sweep.work import Shard, work
 
 if TYPE_CHECKING:
     from wsim.sweep.folder import SweepFolder
     from wsim.sweep.spec import Spec
+
+A_SHARD = 16  # candidates that are built in one process: starting it takes as long as building them
+SHARDS_A_WORKER = 4  # so that none waits long for the last
 
 
 def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) -> list[Outcome]:
@@ -34,9 +38,10 @@ def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) ->
     try:
         for batch in batches(spec, done):
             left = [candidate for candidate in batch if candidate.number not in done]
-            for outcome in run(left, folder, workers):
-                folder.add(outcome)
-                done[outcome.candidate.number] = outcome
+            for outcomes in run(left, folder, workers):
+                for outcome in outcomes:
+                    folder.add(outcome)
+                    done[outcome.candidate.number] = outcome
                 progress("candidates", min(len(done), spec.count), spec.count)
     finally:
         if done:
@@ -69,13 +74,44 @@ def batches(spec: Spec, done: Mapping[int, Outcome]) -> Iterator[list[Candidate]
         first += len(batch)
 
 
-def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) -> Iterator[Outcome]:
-    """Every candidate's outcome, in the order in which they are done."""
-    spec = folder.spec
-    jobs = [Job(candidate, folder.path.resolve(), spec) for candidate in candidates]
-    pool: Pool[Job, Outcome] = Pool(work, workers or len(os.sched_getaffinity(0)), spec.patience)
-    for job, result in pool.run(jobs):
-        if isinstance(result, Lost):
-            yield Outcome(candidate=job.candidate, status="failed", reason=result.reason)
-        else:
+def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) -> Iterator[list[Outcome]]:
+    """Every candidate's outcome, some at a time, in the order in which they are done.
+
+    Who shares a shard with one that kills its worker, or holds it up, is run again by itself.
+    """
+    spec, workers = folder.spec, workers or _workers(folder.spec)
+    shards = [Shard(part, folder.path.resolve(), spec) for part in parts(candidates, spec.together, workers)]
+    left: list[Shard] = []
+    for shard, result in _on_pool(shards, workers):
+        if not isinstance(result, Lost):
             yield result
+        elif len(shard.candidates) > 1:
+            left += [replace(shard, candidates=(candidate,)) for candidate in shard.candidates]
+        else:
+            yield [_lost(shard, result)]
+    for shard, result in _on_pool(left, workers):
+        yield [_lost(shard, result)] if isinstance(result, Lost) else result
+
+
+def parts(candidates: Sequence[Candidate], together: int, workers: int) -> list[tuple[Candidate, ...]]:
+    """Shards of candidates: as many as are simulated at once, or a few, of which each worker has several."""
+    size = together if together > 1 else min(A_SHARD, max(1, len(candidates) // (SHARDS_A_WORKER * workers)))
+    return [tuple(candidates[first : first + size]) for first in range(0, len(candidates), size)]
+
+
+def _workers(spec: Spec) -> int:
+    """One for each core; on a GPU one, which has it for itself."""
+    return 1 if spec.device.startswith("cuda") else len(os.sched_getaffinity(0))
+
+
+def _on_pool(shards: Sequence[Shard], workers: int) -> Iterator[tuple[Shard, list[Outcome] | Lost]]:
+    pool: Pool[Shard, list[Outcome]] = Pool(work, workers, _patience)
+    return pool.run(shards)
+
+
+def _patience(shard: Shard) -> float:
+    return shard.patience
+
+
+def _lost(shard: Shard, lost: Lost) -> Outcome:
+    return Outcome(candidate=shard.candidates[0], status="failed", reason=lost.reason)

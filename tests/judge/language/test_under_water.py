@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.language import Signals, evaluate, parse
-from wsim.judge.objectives.fluid import ObjectiveSubmerged
+from wsim.judge.language import ObjectiveCheck, Signals, evaluate, parse
 from wsim.plan.schema import Objective
 from wsim.scene.world import Joint
 
@@ -24,7 +23,7 @@ def lies(pool, pressed=0.0, density=600.0):
 
 def submerged(case):
     evidence = Evidence(case.recording, case.plan)
-    return ObjectiveSubmerged(Objective(kind="submerged", object="wooden_block", ref="water")).run(evidence)
+    return ObjectiveCheck(Objective(kind="submerged", object="wooden_block", ref="water")).run(evidence)
 
 
 def test_wood_on_the_floor_of_a_tank_lacks_its_lift(pool):

@@ -1,4 +1,4 @@
-"""What the objectives share: one planned objective put to the evidence, and what carries a body."""
+"""What carries a body: the top of it, how far the body is off that, and which way it slopes."""
 
 from __future__ import annotations
 
@@ -7,64 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, rotate, sides_of
+from wsim.geometry.rotations import conjugate, level, rotate, sides_of
 from wsim.geometry.shapes import top_under
-from wsim.judge.checks.check import Check
 from wsim.judge.evidence.contact import distance
+from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.recorded import MissingError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.verdict import Finding
-    from wsim.plan.schema import Objective
     from wsim.scene.world import Fluid, Static
 
     Floats = NDArray[np.float64]
 
-
-@dataclass
-class ObjectiveCheck(Check):
-    """One objective of the plan. A prim that is not there is a failed finding, not an error."""
-
-    objective: Objective
-
-    def run(self, evidence: Evidence) -> list[Finding]:
-        """The findings, each with the objective's sentence and its object's prim and line."""
-        key = self.objective.model_dump_json()
-        if key not in evidence.answers:
-            evidence.answers[key] = self._answers(evidence)
-        return evidence.answers[key]
-
-    def _answers(self, evidence: Evidence) -> list[Finding]:
-        prim = evidence.prim(self.objective.object)
-        try:
-            found = self.evaluate(evidence)
-        except MissingError as error:
-            found = [self.failed(f"{prim}: {error.args[0]}")]
-        except Exception as error:  # noqa: BLE001 - as for every check
-            found = [self.failed(f"{prim}: {self.name} could not be evaluated: {type(error).__name__}: {error}")]
-        for finding in found:
-            finding.objective = self.sentence
-            finding.prim = finding.prim or prim
-            finding.line = finding.line or evidence.line(finding.prim)
-        return found
-
-    @property
-    def sentence(self) -> str:
-        """The objective in words."""
-        given = self.objective
-        return given.sentence or " ".join(word for word in (given.object, given.kind, given.ref) if word)
-
-    def ref(self) -> str:
-        """The other object's name; MissingError."""
-        if self.objective.ref is None:
-            raise MissingError(f'"{self.objective.kind}" needs another object, and the plan names none')
-        return self.objective.ref
-
-
-Objectives = dict[str, type[ObjectiveCheck]]  # by their kind in a plan
+DOWNHILL_LEAST = 0.01  # of a unit: a slope below this has no direction
 
 
 @dataclass
@@ -104,14 +61,17 @@ def height_over(evidence: Evidence, i: int, prim: str, support: Support) -> Floa
     """How far body i is off what carries it (T,) [m]: the gap of their surfaces, where it is above it.
 
     Seen from the support, which may tilt or be a slope: the height of the body's lowest point over it says nothing of
-    that. In a container it is the height over the floor, for the walls may be near; over a mesh, whose distance is not
-    measured, and where it is under the support, it is the difference of their heights.
+    that. In a container it is the height over the floor, for the walls may be near; where it is under the support it is
+    the difference of their heights. Over a static mesh, of which the corners alone are probed, it is what is less.
     """
     heights = evidence.ends(i)[0] - support.top
     if evidence.container(prim) is not None:
         return heights
     gap = distance(evidence, evidence.world.bodies[i].prim, prim)
-    if evidence.static(prim) is not None:
+    static = evidence.static(prim)
+    if static is not None:
+        if any(shape.kind == "mesh" for shape in static.shapes):
+            gap = np.where(np.abs(heights) < np.abs(gap), heights, gap)
         above = evidence.body_q[:, i, :3] @ evidence.up > support.top
     else:
         j = evidence.index(prim)
@@ -142,3 +102,15 @@ def _footprint(evidence: Evidence, j: int) -> tuple[Floats, Floats]:
         lows.append(points.min(axis=1))
         highs.append(points.max(axis=1))
     return np.min(lows, axis=0), np.max(highs, axis=0)
+
+
+def downhill(evidence: Evidence, prim: str, i: int) -> Floats:
+    """The unit vector (3,) down the slope of the static object's face that body i is over; MissingError without one."""
+    static = evidence.static(prim)
+    if static is None or not static.shapes:
+        raise MissingError(f"the world has no static object {prim} to go down")
+    slope = level(-evidence.up, normal_under(static.shapes, evidence.body_q[:, i, :3], evidence.up))
+    steepness = float(np.linalg.norm(slope))
+    if steepness < DOWNHILL_LEAST:
+        raise MissingError(f"{prim} is level: nothing goes down it")
+    return np.asarray(slope / steepness, dtype=np.float64)

@@ -1,0 +1,68 @@
+"""How far what ties pass forces along turns between two frames.
+
+An impulse is taken to act at the mean of its arms at both frames, along the mean of its axes. What a force F at an arm
+r turns in an interval is h (r F) at that mean, less what curves (the trapezoidal rule's r'' h^2 / 12) and what both
+change by together (r' F' h^2 / 12): of F r it is at most the angle by which the arm turns times that by which the force
+does, over 12. A rotor that spins about its own joint turns neither.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import rotate
+from wsim.judge.evidence.joints import AXES, anchors_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Joint
+
+    Floats = NDArray[np.float64]
+
+SHORT = 0.05  # of a body's size: an arm that is shorter counts as so long
+
+
+def turned(evidence: Evidence, size: Floats) -> Floats:
+    """The angle in each interval, the largest of each body's mechanism, (T - 1, B) [rad].
+
+    Args:
+        evidence: T frames of B bodies.
+        size: How far from its centre of mass each body is held, or its radius if that is more, (B,) [m].
+    """
+    motion, world = evidence.motion, evidence.world
+    row = {body.prim: i for i, body in enumerate(world.bodies)}
+    found = np.zeros((len(motion.h), len(motion.mass)))
+    for joint in world.joints:
+        rows = [row[end] for end in (joint.parent, joint.child) if end in row]
+        angle = _of_joint(evidence, joint, rows, size)
+        found[:, rows] = np.maximum(found[:, rows], angle[:, None])
+    rate = np.linalg.norm(motion.w, axis=2)
+    rate = np.maximum(rate[1:], rate[:-1]) * motion.h[:, None]
+    sprung = [row[guide.body] for spring in world.springs for guide in spring.path if guide.body in row]
+    found[:, sprung] = np.maximum(found[:, sprung], rate[:, sprung])
+    for unit in np.unique(motion.unit[motion.jointed]):
+        own = np.flatnonzero(motion.unit == unit)
+        found[:, own] = found[:, own].max(axis=1, keepdims=True)
+    return found
+
+
+def _of_joint(evidence: Evidence, joint: Joint, rows: list[int], size: Floats) -> Floats:
+    """Of one joint's arms on some bodies, and its axis, (T - 1,) [rad]."""
+    motion = evidence.motion
+    if joint.kind == "compound" or joint.child_anchor is None:  # axes of both ends, at points of either
+        rate = np.linalg.norm(motion.w[:, rows], axis=2).max(axis=1)
+        return np.asarray(np.maximum(rate[1:], rate[:-1]) * motion.h)
+    anchors = anchors_of(evidence, joint)
+    angle = np.zeros(len(motion.h))
+    for i in rows:
+        arm = anchors.below - motion.com[:, i]
+        length = np.maximum(np.linalg.norm(arm, axis=1), SHORT * size[i])
+        angle = np.maximum(angle, np.linalg.norm(np.diff(arm, axis=0), axis=1) / np.minimum(length[1:], length[:-1]))
+    if joint.kind in ("revolute", "prismatic"):
+        axis = rotate(anchors.above_turn, np.eye(3)[AXES[joint.axis]][None])
+        angle = np.maximum(angle, np.linalg.norm(np.diff(axis, axis=0), axis=1))
+    return angle

@@ -1,0 +1,321 @@
+"""Where energy goes: what friction, blows, stops, dampers and ropes that come taut may take, by what is recorded.
+
+A loss has something that takes it. Of each recorded impulse the most that it may take is known from its law: friction
+takes its impulse times the slip, a blow with restitution e the share (1 - e) / 2 of its impulse times the approach
+(Newton's law: P (v + v') / 2 with v' = -e v), rolling resistance its torque times the turning, dry friction in a joint
+and a stop their impulses times the joint's speed, a damper c times the square of its own. What of them frames cannot
+tell is taken for the most that it may be. What two bodies do to each other is lost to none but both: the books are
+those of all that hangs together or has touched.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import rotate
+from wsim.judge.books.recorded import RecordedContacts
+from wsim.judge.books.recorded_ties import OWN
+from wsim.judge.evidence.carriers import carriers
+from wsim.judge.evidence.cords import track_of_spring
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.scene.contact import pair_law
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
+
+STRAY = 0.2  # of the way of a step: places that are farther off tell nothing of the steps' order
+WINDOW = 5  # intervals
+STEADY = 2.0  # times what a contact or a rope gives before or after: more than that is a blow
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What may have gone from some bodies since the start, (T,) each [J]."""
+
+    damped: Floats  # by springs' dampers, by their law
+    most: Floats  # by all else, at most
+    unsure: Floats  # of the drives' work and the dampers'
+    driven: Floats  # what drives put in
+    held: float  # what drives hold as springs do, from its least to its most [J]
+
+
+class Losses:
+    """What may take the energy of a world's bodies; of recordings with contacts, and with ties where there are any."""
+
+    def __init__(self, evidence: Evidence, contacts: RecordedContacts) -> None:
+        self._evidence, self._contacts = evidence, contacts
+        self._motion, self._ties = evidence.motion, contacts.ties
+
+    @staticmethod
+    def of(evidence: Evidence) -> Losses | None:
+        """None where what acts is not recorded, or is work that is not known."""
+        recording, world = evidence.recording, evidence.world
+        ties = recording.ties is not None or not (world.joints or world.cords)
+        if recording.contacts is None or not ties or world.fluids or recording.metadata.get("controlled"):
+            return None
+        about = recording.metadata
+        if str(about.get("device", "cpu")) != "cpu" or int(about.get("world_count") or 1) > 1:
+            return None  # what single precision loses was not measured
+        if any(not joint.drive.told or joint.kind not in OWN for joint in world.joints if joint.drive is not None):
+            return None
+        return Losses(evidence, RecordedContacts(evidence, recording.contacts))
+
+    @cached_property
+    def whole(self) -> bool:
+        """Whether the groups are all that moves by itself."""
+        return sum(len(rows) for rows in self.groups) == int((~self._motion.kinematic).sum())
+
+    @cached_property
+    def groups(self) -> list[Rows]:
+        """The bodies that hang together or touch at some time; but not those that something leads, or carries."""
+        motion, unit = self._motion, self._motion.unit.copy()
+        led = {shape.body for shape in carriers(self._evidence)} | set(np.flatnonzero(motion.kinematic).tolist())
+        belts = {shape.shape.prim for shape in carriers(self._evidence) if shape.body < 0}
+        touched = [k for k, shape in enumerate(self._contacts.shapes) if shape.prim in belts]
+        carried = {int(row) for pair, rows in zip(self._contacts.track.pair, self._contacts.body, strict=True)
+                   if np.isin(pair, touched).any() for row in rows}  # fmt: skip
+        for one, two in np.unique(self._contacts.body, axis=0).tolist():
+            if min(one, two) >= 0:
+                unit[unit == unit[two]] = unit[one]
+        found = [np.flatnonzero(unit == each) for each in np.unique(unit)]
+        return [rows for rows in found if not (led | carried) & set(rows.tolist())]
+
+    def of_group(self, rows: Rows) -> Taken:
+        """What may have gone from a group of bodies."""
+        intervals, ours = len(self._motion.h), set(rows.tolist())
+        most, unsure, driven = (np.zeros(intervals) for _ in range(3))
+        inside = np.isin(self._contacts.body, rows).any(axis=1) & (self._contacts.track.frame > 0)
+        most += np.bincount(self._contacts.track.frame[inside] - 1, self._by_contacts(rows)[inside], intervals)
+        damped, off = self._damped(ours)
+        if self._ties is not None:
+            for k, pair in enumerate(self._ties.pairs):
+                if ours & set(pair) and self._ties.joints[k].kind in OWN:
+                    work, doubt, lost = self._of_joint(k)
+                    driven, unsure, most = driven + work, unsure + doubt, most + lost
+            most += self._jerked(ours)
+        damped, most, unsure, driven = (
+            np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, unsure + off, driven)
+        )
+        return Taken(damped, most, unsure, driven, self._held(ours))
+
+    # ---- contacts
+    def _by_contacts(self, rows: Rows) -> Floats:
+        """What each recorded contact may take at most, (n,) [J]."""
+        contacts, motion = self._contacts, self._motion
+        track, frame = contacts.track, np.maximum(contacts.track.frame, 1)
+        pressed = np.maximum(track.pressed.astype(np.float64), 1e-30)
+        normal = track.along.astype(np.float64) / pressed[:, None]
+        closing = np.abs(np.einsum("nei,ni->ne", contacts.slip, normal)).max(axis=1)
+        across = contacts.slip - np.einsum("nei,ni->ne", contacts.slip, normal)[..., None] * normal[:, None]
+        slip = np.linalg.norm(across, axis=2).max(axis=1)
+        h = motion.h[frame - 1]
+        fastest = 2.0 * motion.surface_speed[:, rows].max(axis=1)
+        fastest = np.maximum(fastest[frame], fastest[frame - 1])
+        steady = self._steady
+        hit = pressed > steady
+        many = hit & self._shared  # a blow goes on to others, and frames show nothing of how fast
+        fall = self._evidence.gravity * h
+        approach = np.where(many, fastest, closing) + fall
+        slip = np.where(many, np.maximum(slip, fastest), slip + np.where(hit, fall, 0.0))
+        bounce, rolling = self._laws
+        blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
+        blow += np.where(
+            bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0
+        )  # a slower one does not bounce
+        # What rocks from edge to edge meets at one what it leaves at another, and each slips by itself.
+        rocks, turned = self._turned(pressed, normal, frame, rolling)
+        blow += 0.5 * (1.0 - bounce) * pressed * rocks
+        return np.asarray(blow + contacts.rubbed * (slip + rocks) + turned)
+
+    @cached_property
+    def _steady(self) -> Floats:
+        """What each contact would press with if it went on as it does before and after, twice (n,) [N s]."""
+        track, count = self._contacts.track, len(self._contacts.shapes)
+        key = (track.frame.astype(np.int64) * count + track.pair[:, 0]) * count + track.pair[:, 1]
+        order = np.argsort(key, kind="stable")
+        step, pressed = np.int64(count) ** 2, track.pressed.astype(np.float64)
+
+        def at(other: NDArray[np.int64]) -> Floats:
+            place = np.minimum(np.searchsorted(key[order], other), max(len(key) - 1, 0))
+            return np.where(key[order][place] == other, pressed[order][place], 0.0)
+
+        last = len(self._evidence.time) - 1
+        before, after = at(key - step), at(key + step)
+        after = np.where(track.frame == last, before, after)
+        return STEADY * np.minimum(np.where(track.frame == 1, after, before), after)
+
+    @cached_property
+    def _shared(self) -> NDArray[np.bool_]:
+        """Whether one of a contact's bodies has another in its interval, or hangs on something, (n,)."""
+        body, bodies = self._contacts.body, len(self._motion.mass)
+        key = self._contacts.track.frame[:, None].astype(np.int64) * (bodies + 1) + body
+        counts = np.bincount(np.where(body >= 0, key, 0).ravel(), minlength=1)
+        held = np.append(self._motion.jointed, False)[body]
+        return np.asarray((((counts[np.where(body >= 0, key, 0)] > 1) | held) & (body >= 0)).any(axis=1))
+
+    @cached_property
+    def _laws(self) -> tuple[Floats, Floats]:
+        """Restitution and rolling resistance of each contact's pair, (n,) each."""
+        world, shapes, track = self._evidence.world, self._contacts.shapes, self._contacts.track
+        pairs, which = np.unique(track.pair, axis=0, return_inverse=True)
+        laws = [pair_law(world, shapes[a], shapes[b]) for a, b in pairs.tolist()]
+        values = np.array([(law.restitution, law.rolling) for law in laws], dtype=np.float64).reshape(-1, 2)
+        found = values[which.ravel()]
+        return found[:, 0], found[:, 1]
+
+    def _turned(self, pressed: Floats, normal: Floats, frame: Rows, rolling: Floats) -> tuple[Floats, Floats]:
+        """How fast surfaces rock on each other that are no balls, and what rolling and spinning take, (n,) [m/s], [J].
+
+        What is round about an axis rolls about it, and does not rock.
+        """
+        motion, contacts = self._motion, self._contacts
+        rate, rocking = np.zeros((len(pressed), 2, 3)), np.zeros((len(pressed), 2, 3))
+        for end in (0, 1):
+            for side, sign in ((0, -1.0), (1, 1.0)):
+                own = contacts.body[:, side]
+                spin = motion.w[frame - 1 + end, np.maximum(own, 0)]
+                spin = sign * np.where((own >= 0)[:, None], spin, 0.0)
+                axis = self._round_about(side, frame - 1 + end)
+                rate[:, end] += spin
+                rocking[:, end] += spin - np.einsum("ni,ni->n", spin, axis)[:, None] * axis
+        fastest = np.linalg.norm(rate, axis=2).max(axis=1)
+        about = np.abs(np.einsum("nei,ni->ne", rate, normal)).max(axis=1)
+        size = np.append(motion.radius, np.inf)[contacts.body].min(axis=1)
+        round_ = np.array([shape.kind == "sphere" for shape in contacts.shapes])[contacts.track.pair].any(axis=1)
+        patch = contacts.friction * np.where(round_, 0.0, about) * size
+        rocking -= np.einsum("nei,ni->ne", rocking, normal)[..., None] * normal[:, None]
+        rocks = np.where(round_, 0.0, np.linalg.norm(rocking, axis=2).max(axis=1) * size)
+        return rocks, pressed * (patch + (1.0 + np.pi) * rolling * size * fastest)
+
+    def _round_about(self, side: int, frame: Rows) -> Floats:
+        """The axis about which the first or second shape of each contact is round, (n, 3); zeros where there is none."""
+        contacts, found = self._contacts, np.zeros((len(frame), 3))
+        placed = {(shape.body, shape.shape.prim): shape for shape in self._evidence.placed}
+        for k in np.unique(contacts.track.pair[:, side]):
+            rows = np.flatnonzero(contacts.track.pair[:, side] == k)
+            shape = placed.get((int(contacts.body[rows[0], side]), contacts.shapes[k].prim))
+            if shape is not None and shape.shape.kind in ("cylinder", "capsule"):
+                found[rows] = rotate(shape.rotation[frame[rows]], np.array([[0.0, 0.0, 1.0]]))
+        return found
+
+    # ---- ties
+    def _of_joint(self, k: int) -> tuple[Floats, Floats, Floats]:
+        """A joint's drive's work, how unsure it is, and what its friction and stops may take, (T - 1,) each [J]."""
+        assert self._ties is not None
+        joint, track = self._ties.joints[k], self._ties.track
+        rate = self._ties.laws.speed(joint)
+        friction, stop = (np.asarray(each[1:, k], dtype=np.float64) for each in (track.friction, track.stop))
+        change, fastest = np.abs(np.diff(rate)), np.maximum(np.abs(rate[1:]), np.abs(rate[:-1]))
+        work, doubt = self._driven(k, rate)
+        return work, doubt, np.abs(friction) * fastest + np.abs(stop) * (fastest + change)
+
+    def _driven(self, k: int, rate: Floats) -> tuple[Floats, Floats]:
+        """The work of a joint's drive, and how unsure it is, (T - 1,) each [J]: by its law, or by what is recorded."""
+        assert self._ties is not None
+        joint, h = self._ties.joints[k], self._motion.h
+        stated, held = self._ties.drive(k), self._evidence.joint(joint)
+        at_most = joint.drive is not None and joint.drive.max_effort is not None
+        if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
+            stretch = joint.drive.position - held.position
+            rubs, doubt = joint.drive.damping * np.array(self._integrated(rate * (rate - joint.drive.velocity)))
+            return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
+        drive = np.asarray(self._ties.track.drive[1:, k], dtype=np.float64)
+        mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
+        force = np.gradient(drive / h) if len(drive) > 1 else np.zeros(len(drive))
+        bend = h * force * change / 12.0  # where both change evenly
+        jumps = np.abs(np.diff(change, prepend=change[:1]))
+        return drive * mean + bend, np.abs(bend) + np.abs(drive) * jumps / 6.0
+
+    def ahead(self, rows: Rows) -> tuple[Floats, Floats]:
+        """What steps of the first order show too little of the energy that they keep, and how unsure it is, (T,) [J].
+
+        v += a dt, z += v dt keeps E + m v . g dt / 2, and takes places along their way by dv dt / 2 farther than
+        the mean of both ends' velocities, less h^2 / 12 of the change of accelerations, where velocities change by dv;
+        steps of higher orders do not. Poses tell of a few intervals together which it was.
+        """
+        motion = self._motion
+        v, h = motion.v[:, rows], motion.h[:, None, None]
+        change, mean = np.diff(v, axis=0), 0.5 * (v[1:] + v[:-1])
+        bend = h**2 / 12.0 * np.diff(np.gradient(v, self._evidence.time, axis=0), axis=0)
+        way = mean / np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-12)
+        off = np.einsum("tbi,tbi->tb", np.diff(motion.com[:, rows], axis=0) - mean * h + bend, way)
+        due = 0.5 * min(motion.dt, motion.dt_frames) * np.einsum("tbi,tbi->tb", change, way)
+        window = np.ones(min(WINDOW, len(off)))
+        found, most = (np.convolve(np.sum(each, axis=1), window, "same") for each in (off * due, due**2))
+        rounding = 8.0 * FLOAT32 * np.abs(motion.com[:, rows]).max(initial=0.0)
+        share = found / np.maximum(most, 1e-30)
+        known = (most > (4.0 * rounding) ** 2) & (share > -STRAY) & (share < 1.0 + STRAY)
+        share = np.where(known, np.clip(share, 0.0, 1.0), 0.5)
+        gained = 0.5 * motion.dt * (change @ motion.gravity) @ motion.mass[rows]
+        doubt = np.abs(gained) * np.where(known, 2.0 * share * (1.0 - share), 0.5)
+        correction, unsure = (np.concatenate([[0.0], np.cumsum(each)]) for each in (share * gained, doubt))
+        return correction, unsure
+
+    def give(self, rows: Rows) -> float:
+        """What joints hold by giving way less than poses can tell, under what they bear at most [J]."""
+        found, far = 0.0, float(np.abs(self._motion.com).max(initial=0.0))
+        for k, pair in enumerate(self._ties.pairs if self._ties is not None else []):
+            if not set(pair) & set(rows.tolist()):
+                continue
+            track = self._ties.track.joints[1:, k].astype(np.float64)  # type: ignore[union-attr]
+            force, torque = (np.linalg.norm(part, axis=1) / self._motion.h for part in (track[:, :3], track[:, 9:12]))
+            found += 8.0 * FLOAT32 * float(np.median(force) * far + np.median(torque))
+        return found
+
+    def _held(self, ours: set[int]) -> float:
+        """What drives hold as springs, from its least to its most [J]."""
+        found = 0.0
+        for joint in self._evidence.world.joints:
+            at = self._evidence.joint(joint)
+            if joint.drive is not None and at is not None and self._evidence.index(joint.child) in ours:
+                found += 0.5 * joint.drive.stiffness * float(np.ptp((joint.drive.position - at.position) ** 2))
+        return found
+
+    def _damped(self, ours: set[int]) -> tuple[Floats, Floats]:
+        """What springs' dampers take by their law, and how unsure that is, (T - 1,) each [J]."""
+        found = np.zeros((2, len(self._motion.h)))
+        for spring in self._evidence.world.springs:
+            held = {self._evidence.index(guide.body) for guide in spring.path if guide.body}
+            if spring.damping == 0.0 or not held & ours:
+                continue
+            rate = track_of_spring(self._evidence, spring).rate
+            found += spring.damping * np.array(self._integrated(rate**2))
+        return found[0], found[1]
+
+    def _integrated(self, power: Floats) -> tuple[Floats, Floats]:
+        """A power over each interval, and how unsure that is, (T - 1,) each [J].
+
+        By Euler and Maclaurin, with slopes by differences; where those jump they are no slopes.
+        """
+        h = self._motion.h
+        slope = np.gradient(power, self._evidence.time, edge_order=2 if len(power) > 2 else 1)
+        bend = h**2 / 12.0 * np.diff(slope)
+        jump = np.abs(np.diff(bend, prepend=0.0, append=0.0))
+        return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(
+            np.maximum(jump[1:], jump[:-1]), np.abs(bend)
+        )
+
+    def _jerked(self, ours: set[int]) -> Floats:
+        """What ropes that come taut may take, (T - 1,) [J]."""
+        assert self._ties is not None
+        springs, found = len(self._evidence.world.springs), np.zeros(len(self._motion.h))
+        done: set[int] = set()
+        for n, (cord, row) in enumerate(self._ties.ends):
+            if cord < springs or row not in ours or cord in done:
+                continue
+            done.add(cord)
+            tension = np.maximum(self._ties.track.tension[1:, n].astype(np.float64), 0.0)
+            around = np.concatenate([tension[:1], tension, tension[-1:]])
+            excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
+            rate = np.abs(self._ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
+            found += excess * (np.maximum(rate[1:], rate[:-1]) + self._evidence.gravity * self._motion.h)
+        return found

@@ -1,0 +1,278 @@
+"""What a recording says that joints, springs and ropes gave: to whom, and how it should have been by frames and laws.
+
+Between two frames a reaction's arm and axis turn by the angle t that its bodies turn. An impulse taken at the arm of
+the middle is off by t^2 / 12 of it where both change evenly; where it all comes at one end, as in a blow, by t / 2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.books.laws import RESOLVED, Laws
+from wsim.judge.books.ropes import Ropes
+from wsim.judge.evidence.cords import track_of_spring
+from wsim.judge.evidence.joints import anchors_of, broken
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.recording.ties import cord_ends
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.recording.ties import TieTrack
+    from wsim.scene.world import Joint
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+WORLD = -1
+OWN = ("revolute", "prismatic")  # kinds with one motion of their own
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What a law gives over each interval, (T - 1,) each [N or N m]."""
+
+    mean: Floats
+    unsure: Floats  # by which it may be another, as frames tell it
+    known: Bools
+
+
+class RecordedTies:
+    """The recorded impulses of joints and cords."""
+
+    def __init__(self, evidence: Evidence, track: TieTrack) -> None:
+        self._evidence, self.track = evidence, track
+        self._row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
+        self.ends = cord_ends(evidence.world)
+        self.joints = evidence.world.joints
+        self.pairs = [(self._row.get(joint.parent or "", WORLD), self._row[joint.child]) for joint in self.joints]
+        self.laws = Laws(evidence)
+        self.ropes = Ropes(evidence)
+
+    @property
+    def intervals(self) -> Floats:
+        """Lengths of the intervals between frames, (T - 1,) [s]."""
+        return self._evidence.motion.h
+
+    # ---- sums
+    @cached_property
+    def given(self) -> tuple[Floats, Floats]:
+        """Impulse and angular impulse on each body since the frame before, (T, B, 3) each."""
+        found = np.zeros((2, len(self._evidence.time), len(self._row), 3))
+        for k, pair in enumerate(self.pairs):
+            for side, (row, sign) in enumerate(zip(pair, (-1.0, 1.0), strict=True)):
+                if row >= 0:
+                    found[0][:, row] += sign * self.track.impulse[:, k]
+                    found[1][:, row] += self.track.turn[:, k, side]
+        for k, (_, row) in enumerate(self.ends):
+            found[0][:, row] += self.track.cords[:, k, :3]
+            found[1][:, row] += self.track.cords[:, k, 3:6]
+        return found[0], found[1]
+
+    @cached_property
+    def passed(self) -> Floats:
+        """Sizes of all impulses on each body, of angular ones by its radius, (T, B) [N s]."""
+        radius = np.maximum(self._evidence.motion.radius, 1e-9)
+        found = np.zeros((len(self._evidence.time), len(self._row)))
+        for k, pair in enumerate(self.pairs):
+            for side, row in enumerate(pair):
+                if row >= 0:
+                    found[:, row] += np.linalg.norm(self.track.impulse[:, k], axis=1)
+                    found[:, row] += np.linalg.norm(self.track.turn[:, k, side], axis=1) / radius[row]
+        for k, (_, row) in enumerate(self.ends):
+            found[:, row] += np.linalg.norm(self.track.cords[:, k, :3], axis=1)
+        return found
+
+    def stepped(self, moved: Floats) -> Floats:
+        """What steps of the first order leave of momentum, (T - 1, B) [m/s^2].
+
+        By l dt (2 w w' + w^3 / 2) a body at l from the joint that it turns about (`wsim.judge.books.steps`); l w' and
+        l w^2 are at most what moves it, w is that of the fastest body of its mechanism. The first of the two is the
+        more where w dt is below 1.
+
+        Args:
+            moved: What moves each body, over its mass, (T - 1, B) [m/s^2].
+        """
+        motion, rate = self._evidence.motion, self._turning
+        fastest = np.zeros_like(rate)
+        for unit in np.unique(motion.unit[motion.jointed]):
+            rows = np.flatnonzero(motion.unit == unit)
+            fastest[:, rows] = rate[:, rows].max(axis=1, keepdims=True)
+        found: Floats = 2.0 * np.minimum(motion.dt, motion.h)[:, None] * fastest * moved
+        return found
+
+    @cached_property
+    def _turning(self) -> Floats:
+        """The faster rate at which each body turns at both ends of an interval, (T - 1, B) [rad/s]."""
+        rate = np.linalg.norm(self._evidence.motion.w, axis=2)
+        found: Floats = np.maximum(rate[1:], rate[:-1])
+        return found
+
+    # ---- joints
+    def along(self, k: int) -> tuple[Floats, Floats]:
+        """What joint k passes on along its own motion that no effort gives, and all of it, (T - 1,) [N s or N m s]."""
+        track = self.track
+        efforts = track.joints[1:, k, 13:17].astype(np.float64)
+        all_ = np.abs(efforts).sum(axis=1)
+        if self.joints[k].kind == "spherical":
+            return np.linalg.norm(track.about_anchor[1:, k], axis=1), np.zeros(len(all_))
+        return np.abs(track.along[1:, k] - efforts.sum(axis=1)), all_
+
+    def misplaced(self, k: int) -> tuple[Floats, Floats]:
+        """By how much joint k's angular impulses are not those of its impulse at its anchor, and may be, (T - 1,).
+
+        [N m s]; on both bodies, and about and along its axis.
+        """
+        motion, joint, track = self._evidence.motion, self.joints[k], self.track
+        anchors = anchors_of(self._evidence, joint)
+        push, about = (array[1:, k].astype(np.float64) for array in (track.impulse, track.about_anchor))
+        reach, off = np.linalg.norm(about, axis=1), np.zeros(len(push))
+        for side, (row, sign) in enumerate(zip(self.pairs[k], (-1.0, 1.0), strict=True)):
+            if row < 0:
+                continue
+            arms = anchors.below - motion.com[:, row]
+            arm = 0.5 * (arms[1:] + arms[:-1])
+            expected = sign * (about + np.cross(arm, push))
+            off = np.maximum(off, np.linalg.norm(track.turn[1:, k, side] - expected, axis=1))
+            reach = np.maximum(reach, np.linalg.norm(arms, axis=1).max() * np.linalg.norm(push, axis=1))
+        if joint.kind in OWN:
+            axes = self.laws.axis(joint)
+            axis = axes[1:] + axes[:-1]
+            axis /= np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-12)
+            own = np.einsum("ti,ti->t", push if joint.kind == "prismatic" else about, axis)
+            gap = np.abs(own - track.along[1:, k])
+            off = np.maximum(off, gap * (np.linalg.norm(about, axis=1) + reach) / np.maximum(reach, 1e-30))
+        return off, self._turned(k) * reach
+
+    def _turned(self, k: int) -> Floats:
+        """The share of joint k's impulses that arms taken halfway may miss, (T - 1,)."""
+        motion = self._evidence.motion
+        rows = [row for row in self.pairs[k] if row >= 0]
+        angle = self._turning[:, rows].max(axis=1) * motion.h
+        size = np.linalg.norm(self.track.joints[1:, k, :12].astype(np.float64), axis=1)
+        change = _jump(size) / np.maximum(size, 1e-30)
+        found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0), 2.0)
+        return found
+
+    def drive(self, k: int) -> Stated | None:
+        """What joint k's drive gives by its law; None where it has none, or somebody sets it while the world runs."""
+        joint = self.joints[k]
+        drive = joint.drive
+        laws = self.laws.joints.get(joint.prim, [])
+        if drive is None or joint.kind not in OWN or not laws:
+            return None
+        law, at = laws[0], self._evidence.joint(joint)  # the drive's, before the friction's
+        rate = self.laws.rate(joint)
+        if at is None or not drive.told or self._evidence.recording.metadata.get("controlled"):
+            return None
+        pull = drive.stiffness * (drive.position - at.position) + drive.damping * (drive.velocity - rate)
+        full = np.zeros(len(pull))
+        if drive.max_effort is not None:
+            full = np.where(np.abs(pull) >= drive.max_effort, np.sign(pull), 0.0)
+            pull = np.clip(pull, -drive.max_effort, drive.max_effort)
+        rounding = 8.0 * FLOAT32 * (drive.stiffness * self._extent(k) + drive.damping * np.abs(rate).max())
+        known = (law.error < RESOLVED**2 / 12.0) & (full[1:] == full[:-1]) | (full[1:] * full[:-1] > 0.0)
+        known &= ~broken(self._evidence, joint)[1:]
+        return Stated(0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull) + rounding, known)
+
+    def _extent(self, k: int) -> float:
+        """About how large the numbers are of which joint k's position is made [rad or m]."""
+        places = np.abs(self._evidence.motion.com[:, [row for row in self.pairs[k] if row >= 0]])
+        return float(places.max()) if self.joints[k].kind == "prismatic" else float(np.pi)
+
+    def _by_frames(self, force: Floats) -> Floats:
+        """By how much the mean of a force at both ends of an interval may miss that over it, (T - 1,).
+
+        The trapezoidal rule misses h^2 / 12 of the second derivative, here the larger of those at both ends, twice as a
+        precaution; and a step takes the force at its start, or at its end.
+        """
+        change = np.diff(force)
+        bend = np.abs(np.diff(change, prepend=change[:1], append=change[-1:]))
+        late = np.minimum(self._evidence.motion.dt / self._evidence.motion.h, 1.0) * np.abs(change)
+        found: Floats = np.maximum(bend[1:], bend[:-1]) / 6.0 + late
+        return found
+
+    def rubs(self, k: int) -> tuple[Floats, Bools]:
+        """Joint k's direction of motion, (T - 1,), and where it keeps it all the interval."""
+        rate, joint, h = self.laws.rate(self.joints[k]), self.joints[k], self._evidence.motion.h
+        law = self.laws.joints[joint.prim][-1]  # the friction's
+        return np.sign(rate[1:]), law.known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0)
+
+    def pushed_off(self, k: int, near: float) -> Floats:
+        """Where joint k's stops may not push: 1 upwards, 2 downwards, 3 both, (T - 1,)."""
+        joint, track = self.joints[k], self._evidence.joint(self.joints[k])
+        if track is None:
+            return np.zeros(len(self._evidence.motion.h))
+        at, h = track.position, self._evidence.motion.h
+        reach = near + np.abs(self.laws.rate(joint))[:-1] * h + 2.0 * np.abs(np.diff(at))
+        low = np.inf if joint.low is None else np.minimum(at[1:], at[:-1]) - joint.low
+        high = np.inf if joint.high is None else joint.high - np.maximum(at[1:], at[:-1])
+        found: Floats = 1.0 * (low > reach) + 2.0 * (high > reach)
+        return found
+
+    # ---- cords
+    def cord(self, k: int) -> tuple[Floats, Floats, Floats]:
+        """Of end k of a cord: by how much its wrench is not its tension's along its way, and may be; and its size.
+
+        (T - 1,) each [N s], torques by the arm.
+        """
+        evidence, (cord, row) = self._evidence, self.ends[k]
+        given, tension = self.track.cords[1:, k, :6].astype(np.float64), self.track.tension[1:, k].astype(np.float64)
+        first, last, mean = self._ways(cord, row)
+        arm = max(float(np.linalg.norm(mean[:, 3:], axis=1).max(initial=0.0)), 1e-9)
+        scale = np.repeat([1.0, 1.0 / arm], 3)
+        off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
+        turned = np.linalg.norm((last - first) * scale, axis=1)
+        change = _jump(tension)
+        late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
+        may = (0.5 * np.minimum(change, np.abs(tension)) + (late + turned / 12.0) * np.abs(tension)) * turned
+        return off, may, np.abs(tension)
+
+    def _ways(self, cord: int, row: int) -> tuple[Floats, Floats, Floats]:
+        """What a tension of one gives a body at the start, at the end and as a mean of each interval, (T - 1, 6)."""
+        springs = self._evidence.world.springs
+        if cord >= len(springs):
+            pull = self.ropes.pulls[cord - len(springs)]
+            at = np.flatnonzero(pull.rows == row)
+            if len(at):
+                return pull.first[:, at[0]], pull.last[:, at[0]], pull.mean[:, at[0]]
+            none = np.zeros((len(self._evidence.motion.h), 6))  # a kinematic body, of which nothing is asked
+            return none, none, none
+        along = track_of_spring(self._evidence, springs[cord]).along
+        way = np.zeros((len(along), 6))
+        for guide, sign in zip(springs[cord].path, (1.0, -1.0), strict=True):
+            if self._row.get(guide.body or "", WORLD) == row:
+                arm = self.laws.arm(row, self.laws.end(guide))
+                way += sign * np.concatenate([along, np.cross(arm, along)], axis=1)
+        return way[:-1], way[1:], 0.5 * (way[1:] + way[:-1])
+
+    def spring(self, cord: int) -> Stated:
+        """What a spring pulls by its law."""
+        motion, law = self._evidence.motion, self.laws.springs[cord]
+        spring = self._evidence.world.springs[cord]
+        track = track_of_spring(self._evidence, spring)
+        far, fast = np.abs(motion.com).max(initial=0.0), motion.speed.max(initial=0.0)
+        rounding = 8.0 * FLOAT32 * (spring.stiffness * far + spring.damping * fast)
+        return Stated(0.5 * (track.pull[1:] + track.pull[:-1]), self._by_frames(track.pull) + rounding, law.known)
+
+    def slack(self, cord: int) -> Bools:
+        """Where a rope cannot be taut, (T - 1,)."""
+        return ~self.ropes.pulls[cord - len(self._evidence.world.springs)].taut
+
+    def effective(self, joint: Joint) -> bool:
+        """Whether nothing but what is recorded acts along a joint's own motion."""
+        return joint.armature == 0.0 and joint.kind != "compound"
+
+
+def _jump(values: Floats) -> Floats:
+    """By how much each of some numbers in a row differs from one beside it, at most, (n,)."""
+    if len(values) < 2:
+        return np.abs(values)
+    step = np.abs(np.diff(values))
+    found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
+    return found

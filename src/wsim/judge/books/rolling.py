@@ -1,0 +1,144 @@
+"""What resists rolling: the torque about the line on which a round body rolls, over many frames.
+
+About the points where it touches nothing has an arm but gravity: what its angular momentum lacks there is the torque
+that the pair's rolling resistance C gives, C R N against its turning, R the radius of the gap between both surfaces
+and N the push. Where friction takes a share x of its most, the one cone that both have in wsim leaves sqrt(1 - x^2) of
+it (docs/rigid.md); a pair that states no resistance gives none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import multiply, rotate
+from wsim.judge.books.balance import SOFT, rounding
+from wsim.judge.books.creep import INTERVALS, NEAR
+from wsim.judge.books.forces import STILL, Poses, slip
+from wsim.judge.books.touching import Contacts, Touching
+from wsim.scene.contact import curvature
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.scene.world import Body
+
+    Floats = NDArray[np.float64]
+
+FLAT = 1e-4  # 1 - cosine: what it rolls on turns by less
+LYING = 0.05  # cosine between a cylinder's axis and what it lies on
+PRESSED = 0.1  # of gravity: with less it hardly rolls
+ASIDE = 0.1  # of its rate: what turns aside by less keeps its way
+HALF = 0.5  # of friction's most: what takes more of it may come to slip
+
+
+@dataclass(frozen=True)
+class Rolls:
+    """A body that rolls on one other for some frames."""
+
+    row: int
+    first: int  # frame
+    last: int
+    other: str  # prim of what it rolls on
+    radius: float  # [m]
+    resisted: float  # torque against its turning, over the push [m]
+    stated: float  # by the pair's law [m]
+    least: float  # that friction leaves of it [m]
+    unsure: float  # by rounding [m]
+
+
+def rolls(evidence: Evidence) -> list[Rolls]:
+    """All of a recording, in spans that overlap by a half."""
+    motion, found = evidence.motion, []
+    given, unit = evidence.recording.applied_impulse, max(evidence.gravity, 1.0)
+    force = motion.acceleration - motion.gravity
+    odd = np.linalg.norm(force, axis=2) > SOFT * unit  # something hit it
+    if given is not None:
+        odd |= np.any(given[1:] != 0.0, axis=2)
+    free = ~motion.jointed & ~motion.kinematic & np.array([_round(body) for body in evidence.world.bodies], dtype=bool)
+    turning = np.linalg.norm(motion.w, axis=2) * motion.radius > STILL
+    for first in range(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2):
+        span = slice(first, first + INTERVALS)
+        calm = free & turning[first : first + INTERVALS + 1].all(axis=0) & ~odd[span].any(axis=0)
+        for row in np.flatnonzero(calm):
+            each = _of_span(evidence, int(row), first)
+            found += [each] if each is not None else []
+    return found
+
+
+def _round(body: Body) -> bool:
+    solid = [shape for shape in body.shapes if shape.collides]
+    return len(solid) == 1 and solid[0].kind in ("sphere", "cylinder", "capsule")
+
+
+def _of_span(evidence: Evidence, row: int, first: int) -> Rolls | None:
+    motion, touching, last = evidence.motion, Touching.of(evidence), first + INTERVALS
+    middle = (first + last) // 2
+    each = [_touches(evidence, touching, row, frame) for frame in (middle, first, last)]
+    ends = [contacts for contacts in each if contacts is not None]
+    if len(ends) < len(each):
+        return None
+    met = ends[0]
+    other, sign = _other(met, row)
+    normal = sign * met.normal[0]  # towards the body
+    if any(_other(end, row) != (other, sign) or end.normal[0] @ met.normal[0] < 1.0 - FLAT for end in ends):
+        return None
+    sides = [touching.shapes[int(shape)] for shape in met.shapes[0]]
+    bend = sum(curvature(shape, moves=owner >= 0) for owner, _, shape in sides)
+    axis = _axis(evidence, row, other, normal, first, STILL * bend)
+    mean = slice(first, last)
+    force = (motion.acceleration[mean, row] - motion.gravity).mean(axis=0)
+    push = float(force @ normal)
+    friction, rolling = (float(law[0]) for law in touching.laws(met.shapes[:1]))
+    share = float(np.linalg.norm(force - push * normal)) / max(friction * push, 1e-12)
+    if axis is None or push < PRESSED * max(evidence.gravity, 1.0) or share > HALF:
+        return None
+    torque = motion.torque[mean, row].mean(axis=0) / motion.mass[row]
+    arm = met.point.mean(axis=0) - motion.com[middle, row]
+    resisted = -float((torque - np.cross(arm, force)) @ axis) / push
+    least = max(np.sqrt(1.0 - share**2) - (rolling / max(friction, 1e-12)) ** 2, 0.0)
+    rounds = float(rounding(evidence)[mean, row].mean()) / INTERVALS / push
+    radius, prim = float(motion.radius[row]), sides[0 if sign > 0 else 1][1]
+    return Rolls(row, first, last, prim, radius, resisted, rolling / bend, rolling / bend * least, rounds * radius)
+
+
+def _axis(evidence: Evidence, row: int, other: int, normal: Floats, first: int, slowest: float) -> Floats | None:
+    """About what a body turns over another all of a span, (3,); None where that does not last."""
+    frames = slice(first, first + INTERVALS + 1)
+    w = evidence.motion.w[frames, row] - (evidence.motion.w[frames, other] if other >= 0 else 0.0)
+    w = w - (w @ normal)[:, None] * normal
+    mean = w.mean(axis=0)
+    axis: Floats = mean / max(float(np.linalg.norm(mean)), 1e-12)
+    rate = w @ axis
+    aside = np.linalg.norm(w - rate[:, None] * axis, axis=1).max()
+    lasts = rate.min() > max(slowest, np.abs(np.diff(rate)).max()) and aside < ASIDE * rate.min()
+    return axis if lasts else None
+
+
+def _other(contacts: Contacts, row: int) -> tuple[int, float]:
+    """The row of what touches a body, and whether the contacts' normals point towards the body."""
+    return (int(contacts.one[0]), 1.0) if contacts.two[0] == row else (int(contacts.two[0]), -1.0)
+
+
+def _touches(evidence: Evidence, touching: Touching, row: int, frame: int) -> Contacts | None:
+    """The contacts of a body that rolls on one thing, along one line, without slipping; None where it does not."""
+    motion = evidence.motion
+    poses = Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
+    contacts = touching.at(poses.q, NEAR)
+    contacts = contacts.only((contacts.one == row) | (contacts.two == row))
+    if not len(contacts) or np.any(contacts.shapes != contacts.shapes[0]):
+        return None
+    if np.any(contacts.normal @ contacts.normal[0] < 1.0 - FLAT):
+        return None
+    if np.linalg.norm(slip(touching, contacts, poses), axis=1).max() > STILL:
+        return None
+    body = evidence.world.bodies[row]
+    shape = next(shape for shape in body.shapes if shape.collides)
+    if shape.kind != "sphere":
+        turn = multiply(poses.q[row, 3:], np.array(shape.rotation))
+        if abs(float(rotate(turn, np.array([0.0, 0.0, 1.0])) @ contacts.normal[0])) > LYING:
+            return None
+    return contacts

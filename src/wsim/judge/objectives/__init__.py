@@ -1,1 +1,0 @@
-"""Objectives: what a plan says must happen, a class for each kind."""

@@ -1,0 +1,53 @@
+"""A pair of gears has one inertia, I1 + ratio^2 I2 as its first wheel feels it, and nothing slows it."""
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask, ball, record, times, with_world
+from wsim.judge.checks.forces import CheckForces
+from wsim.scene.world import Gear, Joint, Motor
+
+EFFORT = 0.3  # [N m]
+
+
+def pair(ratio, speed_up, effort=0.0, start=0.0):
+    """Two balls on axles, of which the first comes to turn by `speed_up` [rad/s^2] and the second goes with it."""
+    t = times(1.0, 60.0)
+    first = np.stack([start * t + speed_up * t**2 / 2, start + speed_up * t])
+    angle, rate = np.stack([first, ratio * first], axis=2)
+    none = np.zeros((*angle.shape, 2))
+    motor = Motor(damping=100.0, velocity=1e3, max_effort=effort) if effort else None
+    axles = [
+        Joint(
+            prim=f"/World/axle_{n}", kind="revolute", parent=None, child=f"/World/{name}", axis="Z",
+            parent_anchor=(n, 0, 1), child_anchor=(0, 0, 0), drive=None if n else motor,
+        )
+        for n, name in enumerate(("small", "large"))
+    ]  # fmt: skip
+    place = np.tile([[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], (len(t), 1, 1))
+    made = record(
+        [ball("small", 2.0), ball("large", 8.0)], place, 0.0 * place, t, joints=axles,
+        rotation=np.concatenate([none, np.sin(angle / 2)[..., None], np.cos(angle / 2)[..., None]], axis=2),
+        spin=np.concatenate([none, rate[..., None]], axis=2),
+    )  # fmt: skip
+    return with_world(
+        made, gears=[Gear(prim="/World/gear", first="/World/axle_0", second="/World/axle_1", ratio=ratio)]
+    )
+
+
+def accepted(recording):
+    return all(finding.passed for finding in ask(CheckForces(), recording))
+
+
+@pytest.mark.parametrize("ratio", [-2.0, 0.5])
+def test_a_pair_shares_its_inertia(ratio):
+    moments = [0.4 * mass * 0.1**2 for mass in (2.0, 8.0)]
+    right = EFFORT / (moments[0] + ratio**2 * moments[1])
+    assert accepted(pair(ratio, right, EFFORT))
+    for share in (EFFORT / moments[0] / right, 0.5, 0.9, 1.1):
+        assert not accepted(pair(ratio, share * right, EFFORT))
+
+
+def test_a_free_pair_goes_on():
+    assert accepted(pair(-2.0, 0.0, start=5.0))
+    assert not accepted(pair(-2.0, -0.5, start=5.0))

@@ -1,0 +1,119 @@
+"""What is lost goes to something: real runs of wrong worlds, held against the right ones."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.recording import read
+from wsim.scene import Drive, Scene
+from wsim.scene.describe import describe
+from wsim.sim import Simulation
+
+RATE, SECONDS = 60.0, 1.2
+
+
+@pytest.fixture
+def account(tmp_path):
+    """What the energy budget says of one world's run, taken for another's: the sign of what is wrong, or 0."""
+
+    def stage(build, name, seconds):
+        scene = Scene()
+        scene.simulation(duration=seconds, frame_rate=RATE)
+        build(scene)
+        return scene.save(tmp_path / name)
+
+    def answer(made, stated=None, change=lambda recording: recording, seconds=SECONDS):
+        Simulation(stage(made, "made.usda", seconds), device="cpu").run(tmp_path / "r.rrd")
+        recording = change(read(tmp_path / "r.rrd"))
+        if stated is not None:
+            recording = replace(recording, world=describe(stage(stated, "stated.usda", seconds)))
+        wrong = [finding.message for finding in ask(CheckEnergy(), recording) if not finding.passed]
+        return sum(-1 if "loses" in message else 1 for message in wrong)
+
+    return answer
+
+
+def pendulum(friction=0.0):
+    def build(scene):
+        scene.sphere("bob", radius=0.1, mass=1.0, position=(0.5, 0, 1.0 - np.sqrt(0.75)))
+        scene.joint_revolute("pivot", None, "bob", anchor=(0, 0, 1), axis="Y", friction=friction)
+
+    return build
+
+
+def cradle(restitution):
+    def build(scene):
+        for i, lean in enumerate((-0.6, 0.0, 0.0)):
+            scene.sphere(f"ball_{i}", radius=0.05, mass=1.0, restitution=restitution, friction=0.0,
+                         position=(0.1 * i + 0.5 * np.sin(lean), 0, 1.0 - 0.5 * np.cos(lean)))  # fmt: skip
+            scene.joint_revolute(f"hinge_{i}", None, f"ball_{i}", anchor=(0.1 * i, 0, 1), axis="Y")
+
+    return build
+
+
+def oscillator(damping):
+    def build(scene):
+        scene.box("block", size=(0.2, 0.2, 0.2), mass=1.0, position=(0.6, 0, 0))
+        scene.joint_prismatic("rail", None, "block", axis="X")
+        scene.spring("coil", None, "block", stiffness=100.0, damping=damping, rest_length=0.4,
+                     anchor_a=(0, 0, 0), anchor_b=(-0.1, 0, 0))  # fmt: skip
+
+    return build
+
+
+def driven(damping):
+    def build(scene):
+        scene.box("block", size=(0.2, 0.2, 0.2), mass=1.0)
+        drive = Drive(position=0.2, stiffness=100.0, damping=damping)
+        scene.joint_prismatic("rail", None, "block", axis="X", drive=drive)
+
+    return build
+
+
+def rolling(resistance):
+    def build(scene):
+        scene.ground(friction=0.5)
+        scene.sphere("ball", radius=0.1, mass=1.0, position=(0, 0, 0.1), velocity=(1, 0, 0), friction=0.5,
+                     angular_velocity_deg=(0, np.degrees(10.0), 0), rolling_friction=resistance)  # fmt: skip
+
+    return build
+
+
+def untold(recording):
+    """Without a word of what rubbed in joints."""
+    joints = recording.ties.joints.copy()
+    joints[..., 12:] = 0.0
+    return replace(recording, ties=replace(recording.ties, joints=joints))
+
+
+@pytest.mark.parametrize(
+    "build",
+    [pendulum(), pendulum(0.1), cradle(1.0), cradle(0.5), oscillator(1.0), driven(1.0), rolling(0.0), rolling(0.01)],
+    ids=["pendulum", "rubbing", "cradle", "dull cradle", "oscillator", "driven", "rolling", "resisted"],
+)
+def test_what_sound_worlds_lose_is_taken_by_something(account, build):
+    assert account(build) == 0
+
+
+def test_a_pendulum_that_loses_a_hundredth_a_second(account):
+    """0.01 N m over a radian a second, of 1.31 J."""
+    assert account(pendulum(0.01), pendulum(), untold, seconds=2.0) == -1
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.95])
+def test_elastic_balls_that_touch_and_lose_their_energy(account, restitution):
+    assert account(cradle(restitution), cradle(1.0)) == -1
+
+
+@pytest.mark.parametrize("kind", [oscillator, driven])
+@pytest.mark.parametrize(("by", "wrong"), [(1.15, -1), (0.85, 1)], ids=["more", "less"])
+def test_damping_that_is_another(account, kind, by, wrong):
+    assert account(kind(by), kind(1.0)) == wrong
+
+
+def test_a_ball_that_slows_without_rolling_resistance(account):
+    """By a fifteenth of its speed a second at C = 0.005, of which its world knows nothing."""
+    assert account(rolling(0.005), rolling(0.0)) == -1

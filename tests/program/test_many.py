@@ -1,0 +1,73 @@
+"""Many builds in one process are the builds one by one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from wsim.program.sandbox import available, build, build_many
+
+ISOLATION = [name for name in ("bubblewrap", "landlock") if name in available()] or ["none"]
+BOX = """
+made = []
+
+def build(scene):
+    made.append(1)
+    edge = scene.param("edge", 0.2, low=0.1, high=2.0) * len(made)
+    scene.box("box", size=(edge, edge, edge), position=(0.0, 0.0, edge))
+"""
+WEAK = (
+    BOX
+    + """
+    if edge == 0.5:
+        raise ValueError("not this one")
+    if edge == 0.7:
+        import os
+        os._exit(0)
+    if edge == 0.9:
+        while True:
+            pass
+"""
+)
+
+
+@pytest.mark.parametrize("isolation", ISOLATION)
+def test_each_stage_is_what_it_is_alone(tmp_path: Path, isolation: str) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(BOX)
+    stages = [tmp_path / f"{k}.usda" for k in range(4)]
+    params = [{}, {"edge": 0.3}, {"edge": -1.0}, {"edge": 1.5}]
+    built = list(build_many(program, stages, params, isolation=isolation))
+    assert [result.ok for result in built] == [True, True, False, True]
+    assert "size" in built[2].message
+    assert built[2].line == "program.py:7"
+    assert not stages[2].exists()
+    for stage, values in zip(stages, params, strict=True):
+        alone = tmp_path / "alone.usda"
+        if build(program, alone, values, isolation=isolation).ok:
+            assert stage.read_text() == alone.read_text()
+
+
+def test_one_that_ends_or_holds_up_its_process_costs_the_others_nothing(tmp_path: Path) -> None:
+    from wsim.program.sandbox import Limits
+
+    program = tmp_path / "program.py"
+    program.write_text(WEAK)
+    edges = [0.2, 0.5, 0.7, 0.3, 0.9, 0.4]
+    stages = [tmp_path / f"{k}.usda" for k in range(len(edges))]
+    limits = Limits(wall_seconds=5.0)
+    built = list(build_many(program, stages, [{"edge": edge} for edge in edges], limits))
+    assert [result.kind for result in built] == ["ok", "exception", "crash", "ok", "timeout", "ok"]
+    assert [stage.exists() for stage in stages] == [result.ok for result in built]
+    assert "ended its process" in built[2].message
+
+
+def test_more_than_a_process_takes(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(BOX)
+    count = 70
+    stages = [tmp_path / f"{k}.usda" for k in range(count)]
+    built = list(build_many(program, stages, [{"edge": 0.1 + 0.01 * k} for k in range(count)]))
+    assert all(result.ok for result in built)
+    assert len({stage.read_text() for stage in stages}) == count

@@ -1,0 +1,100 @@
+"""Candidates that are simulated together come out as they do one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from wsim.sweep import Axis, Spec, SweepFolder, sweep
+from wsim.sweep import batch as batched
+from wsim.sweep import run as sweeping
+from wsim.sweep.candidate import Candidate, Outcome
+from wsim.sweep.pool import Lost
+from wsim.sweep.run import parts, run
+from wsim.sweep.work import Shard, work
+
+PROGRAM = """
+def build(scene):
+    scene.simulation(duration=0.5)
+    scene.ground(friction=0.5)
+    edge = scene.param("edge", 0.2, low=0.05, high=0.5)
+    if edge > 0.45:
+        raise ValueError("too large")
+    scene.box("box", size=(edge, edge, edge), position=(0, 0, edge / 2), velocity=(1, 0, 0), density=500.0,
+              friction=scene.param("friction", 0.3, low=0.0, high=1.0))
+    if scene.param("ball", 0.0, low=0.0, high=1.0) > 0.5:
+        scene.sphere("ball", radius=0.1, position=(3, 0, 1), density=500.0)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "program.py").write_text(PROGRAM)
+    return tmp_path
+
+
+def test_together_is_as_one_by_one(folder: Path) -> None:
+    points = [{}, {"edge": 0.1}, {"ball": 1.0}, {"friction": 0.1}, {"edge": 0.5}, {"ball": 1.0, "edge": 0.3}]
+    candidates = tuple(Candidate(number=k, params=point) for k, point in enumerate(points))
+    one_by_one = work(Shard(candidates, folder, Spec()))
+    together = work(Shard(candidates, folder, Spec(worlds=4)))
+    assert [outcome.status for outcome in together] == ["accepted"] * 4 + ["rejected", "accepted"]
+    assert [outcome.status for outcome in together] == [outcome.status for outcome in one_by_one]
+    assert [outcome.candidate for outcome in together] == list(candidates)
+    assert together[4].reason == one_by_one[4].reason
+
+
+def test_what_finds_no_room_is_split_and_not_lost(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes, collect = [], batched.collect
+
+    def tight(simulation: Any) -> Any:
+        sizes.append(simulation.model.world_count)
+        if sizes[-1] > 2:
+            raise RuntimeError("Failed to allocate 123 bytes on device 'cuda:0'")
+        return collect(simulation)
+
+    monkeypatch.setattr(batched, "collect", tight)
+    candidates = tuple(Candidate(number=k, params={"friction": 0.1 * k}) for k in range(3))
+    found = work(Shard(candidates, folder, Spec(worlds=8)))
+    assert [outcome.status for outcome in found] == ["accepted"] * 3
+    assert sizes == [3, 1, 2]
+
+
+def test_who_shares_a_shard_with_a_killer_is_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, ...]] = []
+
+    def pool(shards: Sequence[Shard], workers: int) -> Iterator[tuple[Shard, list[Outcome] | Lost]]:
+        for shard in shards:
+            numbers = tuple(candidate.number for candidate in shard.candidates)
+            asked.append(numbers)
+            if 2 in numbers:
+                yield shard, Lost("its process ended with signal 9")
+            else:
+                yield shard, [Outcome(candidate=candidate, status="accepted") for candidate in shard.candidates]
+
+    monkeypatch.setattr(sweeping, "_on_pool", pool)
+    candidates = [Candidate(number=k) for k in range(6)]
+    made = SweepFolder.create(folder / "runs", "killer", Spec(worlds=4), [folder / "program.py"])
+    found = {outcome.candidate.number: outcome for outcomes in run(candidates, made, 2) for outcome in outcomes}
+    assert asked == [(0, 1, 2, 3), (4, 5), (0,), (1,), (2,), (3,)]
+    assert [found[k].status for k in range(6)] == ["accepted"] * 2 + ["failed"] + ["accepted"] * 3
+
+
+@pytest.mark.parametrize(("count", "together", "workers"), [(0, 1, 2), (5, 1, 2), (1000, 1, 2), (2500, 1024, 1)])
+def test_shards_hold_each_candidate_once(count: int, together: int, workers: int) -> None:
+    candidates = [Candidate(number=k) for k in range(count)]
+    shards = parts(candidates, together, workers)
+    assert [candidate for shard in shards for candidate in shard] == candidates
+    assert all(0 < len(shard) <= max(16, together) for shard in shards)
+    assert len(shards) >= min(count, workers) or together > 1
+
+
+def test_a_whole_sweep_of_batches(folder: Path) -> None:
+    spec = Spec(axes=[Axis.parse("friction=0.05:0.9")], samples=3, worlds=3)
+    made = SweepFolder.create(folder / "runs", "slides", spec, [folder / "program.py"])
+    found = sweep(made, workers=1)
+    assert sorted(outcome.candidate.number for outcome in found) == list(range(4))
+    assert {outcome.status for outcome in found} == {"accepted"}
