@@ -7,6 +7,7 @@ import pytest
 
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.fluid_books import CheckFluidMomentum
+from wsim.judge.checks.lift import CheckLift
 from wsim.judge.checks.motion import CheckFreeTurning
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
@@ -89,6 +90,13 @@ def test_still_water_carries_a_block_with_its_buoyancy(tmp_path):
     assert finding.passed and finding.value < 0.1 * finding.limit
     lighter = replace(recording, applied_impulse=0.99 * recording.applied_impulse)
     assert not CheckFluidMomentum().run(Evidence(lighter))[0].passed
+    assert CheckLift(least=2).run(Evidence(recording))[0].passed
+    # Three quarters of it gone, and said to be in the walls: 1.4 of the draft's 1.8 spacings.
+    gone = 0.75 * recording.applied_impulse
+    hidden = replace(recording, applied_impulse=recording.applied_impulse - gone)
+    hidden = replace(hidden, wall_impulse=recording.wall_impulse + gone.sum(axis=1))
+    assert CheckFluidMomentum().run(Evidence(hidden))[0].passed
+    assert not CheckLift(least=2).run(Evidence(hidden))[0].passed
 
 
 def test_what_nothing_drives_keeps_no_books(tmp_path):

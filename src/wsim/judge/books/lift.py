@@ -45,14 +45,10 @@ AXES = np.eye(3)[:2]
 
 
 def rising(t: Floats) -> tuple[Floats, Floats]:
-    """From 0 at t = 0 to 1 at t = 1, and its slope: a quadratic B-spline on three equal knots."""
+    """From 0 at t = 0 to 1 at t = 1, and its slope: a quadratic B-spline on equal knots, by truncated powers."""
     s = 3.0 * np.clip(t, 0.0, 1.0)
-    u = 3.0 - s
-    value = np.where(
-        s < 1.0, s**3 / 6.0, np.where(u < 1.0, 1.0 - u**3 / 6.0, 0.5 + 0.75 * (s - 1.5) - (s - 1.5) ** 3 / 3.0)
-    )
-    slope = np.where(s < 1.0, s**2 / 2.0, np.where(u < 1.0, u**2 / 2.0, 0.75 - (s - 1.5) ** 2))
-    return value, 3.0 * slope
+    late, later = np.maximum(s - 1.0, 0.0), np.maximum(s - 2.0, 0.0)
+    return (s**3 - 3.0 * late**3 + 3.0 * later**3) / 6.0, 1.5 * (s**2 - 3.0 * late**2 + 3.0 * later**2)
 
 
 @dataclass(frozen=True)
@@ -88,8 +84,12 @@ class Column:
     def at(self, points: Floats) -> tuple[Floats, Floats]:
         """Its weight (N,) and gradient (N, 2) [1/m] at points (N, 2)."""
         off = points - self.middle
-        weight, slope = rising((self.half + self.side - np.abs(off)) / self.side)
-        return weight.prod(axis=1), -np.sign(off) * slope / self.side * weight[:, ::-1]
+        near = np.flatnonzero((np.abs(off) < self.half + self.side).all(axis=1))
+        weight, slope = rising((self.half + self.side - np.abs(off[near])) / self.side)
+        found, gradient = np.zeros(len(points)), np.zeros((len(points), 2))
+        found[near] = weight.prod(axis=1)
+        gradient[near] = -np.sign(off[near]) * slope / self.side * weight[:, ::-1]
+        return found, gradient
 
     def area(self, low: Floats, high: Floats) -> float:
         """The integral of its weight between walls [m^2]."""
@@ -176,10 +176,11 @@ class Surroundings:
     def _parts(
         self, frame: int, columns: Sequence[Column], ramps: Sequence[Ramp], areas: tuple[float, float]
     ) -> list[tuple[float, float, float]] | None:
-        """Of the first column and of the rest, upwards: momentum [N s], what gravity and flow bring, and pressure [N]."""
-        points = self._track.position[frame].astype(np.float64)
-        v = self._track.velocity[frame].astype(np.float64)
-        density = self._track.density[frame].astype(np.float64)
+        """Of the first column and the rest, upwards: momentum [N s], what gravity and flow bring, and pressure [N]."""
+        over = self._track.position[frame, :, 2] > ramps[0].zero  # elsewhere the weights are 0
+        points = self._track.position[frame, over].astype(np.float64)
+        v = self._track.velocity[frame, over].astype(np.float64)
+        density = self._track.density[frame, over].astype(np.float64)
         pressure = self._sound**2 * (density - self._fluid.density)
         weighed, layers = [each.at(points[:, :2]) for each in columns], [ramp.at(points[:, 2]) for ramp in ramps]
         up, rise = np.prod([a for a, _ in layers], axis=0), np.sum([slope for _, slope in layers], axis=0)
