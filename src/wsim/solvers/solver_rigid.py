@@ -303,7 +303,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self._smooth_steps:
             self._smooth_steps.before(model, data)
         if self._ropes:
-            self._ropes.look_ahead(model, data)
+            self._ropes.look_back(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         if self._flight:
