@@ -3,8 +3,8 @@
 A bob that swings by v on a rope of length l goes straight in a step of h, and is then v² h² / 2 l farther out. Left to
 fade, that is a stretch of settle_time v² h / 2 l, 1 % of a rope of 1 cm, and the energy goes with it. A row that knows
 of it asks for a length, not for a speed: the steps are those of the leapfrog under a constraint (Ryckaert, Ciccotti,
-Berendsen 1977), which keep both. The bend is measured a step back, where a rope has been: a step ahead MuJoCo may let go
-of a wheel.
+Berendsen 1977), which keep both. The bend is measured a step back, where a rope has been: a step ahead MuJoCo may let
+go of a wheel.
 """
 
 from __future__ import annotations
@@ -48,7 +48,15 @@ class RopesWarp:
         wp.launch(
             _next_position,
             dim=(data.nworld, model.njnt),
-            inputs=[model.opt.timestep, model.jnt_type, model.jnt_qposadr, model.jnt_dofadr, self._kept, data.qvel, -1.0],
+            inputs=[
+                model.opt.timestep,
+                model.jnt_type,
+                model.jnt_qposadr,
+                model.jnt_dofadr,
+                self._kept,
+                data.qvel,
+                -1.0,
+            ],
             outputs=[data.qpos],
         )
         for work in (self._warp.kinematics, self._warp.com_pos, self._warp.tendon):

@@ -23,20 +23,10 @@ from wsim.solvers.single_precision import soften_contacts_for_single_precision, 
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.yielding import yielding
 
 Array = np.ndarray
 ALWAYS = 2**30  # steps
-
-
-def _yielding(model: Any) -> Array:
-    """What each body yields to a push [1/kg], (bodies,), from which MuJoCo takes how hard its contacts are.
-
-    MuJoCo measures it at the centre of mass, where a seesaw does not yield at all, and its contacts would be hard
-    without bound; away from there it yields, by no less than about a tenth of what its mass would.
-    """
-    moves = model.body_weldid > 0
-    by_mass = np.where(moves, 0.1 / np.maximum(model.body_mass, 1e-12), 0.0)
-    return np.maximum(model.body_invweight0[:, 0], by_mass)
 
 
 class SolverRigid(newton.solvers.SolverMuJoCo):
@@ -84,7 +74,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
-        self.mj_model.body_invweight0[:, 0] = _yielding(self.mj_model)
+        self.mj_model.body_invweight0[:, 0] = yielding(self.mj_model)
         self._harden_constraints(time_step)
         self.breaking = self._breaking(breakable) if breakable else None
         self._touching = touching
@@ -350,7 +340,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         warp.fwd_actuation(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
-        config, efc, contact = self.contact_config, data.efc, data.contact
+        config, efc, contact, flight = self.contact_config, data.efc, data.contact, self._flight
+        assert flight is not None
         h = model.opt.timestep
         self._struck.zero_()
         touching = [data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address]
@@ -369,7 +360,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, self._flight.row, self._flight.exact, *self._jacobian(model, efc),
+                data.qacc_smooth, self._touched_for, flight.row, flight.exact, *self._jacobian(model, efc),
                 config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],

@@ -187,7 +187,7 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
     returns |= speed < SLOW and not _balls(evidence, pair)
-    # A step takes a blow where it finds the body, above the surface or below: what comes back is slower there, or faster.
+    # A step takes a blow where it finds the body, above the surface or below: what comes back is slower there or faster
     back = law.restitution * speed
     there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * lowest, 0.0)))
     unsure = 2.0 * faster + abs(there - back)

@@ -90,7 +90,7 @@ class CheckContinuity(Check):
             most = unsure[start:] - unsure[start - 1] + ends
             more = off * limit[start:] > apart[start:] * most
             apart[start:], limit[start:] = np.where(more, off, apart[start:]), np.where(more, most, limit[start:])
-        source = "what its ends and its blows leave of the trapezoidal rule, and of steps of first order a step of its change"
+        source = "what its ends and its blows leave of the trapezoidal rule, and steps of first order of its change"
         return self._worst(evidence, apart, limit, "m", "has drifted by", source)
 
     @staticmethod
