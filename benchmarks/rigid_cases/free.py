@@ -34,6 +34,28 @@ def projectile(bench: Bench) -> tuple[float, float]:
     return float(x[k] + (x[k + 1] - x[k]) * z[k] / (z[k] - z[k + 1])), 3 * 10 / G
 
 
+@case("m", 1e-3, "steps of second order have it exactly; what is recorded is in single precision")
+def small_fall(bench: Bench) -> tuple[float, float]:
+    """A ball of 1 cm falls by 1 cm in √(2 L / g), 45 ms."""
+    track = bench.run(lambda scene: scene.sphere("ball", radius=0.005, density=600), 0.045, rate=1000.0)
+    bench.show("z [m]", track.time, track.position("ball")[:, 2], -0.5 * G * track.time**2)
+    return -float(track.position("ball")[-1, 2]), 0.5 * G * 0.045**2
+
+
+@case("m", 1e-3, "likewise")
+def small_throw(bench: Bench) -> tuple[float, float]:
+    """A ball of 5 mm thrown up at √(2 g L) rises by L, 5 mm."""
+    up = math.sqrt(2 * G * 0.005)
+
+    def build(scene: Scene) -> None:
+        scene.sphere("ball", radius=0.0025, density=600, velocity=(0, 0, up))
+
+    track = bench.run(build, 0.06, rate=1000.0)
+    z = track.position("ball")[:, 2]
+    bench.show("z [m]", track.time, z, up * track.time - 0.5 * G * track.time**2)
+    return float(z.max()), 0.005
+
+
 def _ball(scene: Scene, velocity: Iterable[float]) -> None:
     scene.sphere("ball", radius=0.1, density=600, velocity=tuple(velocity))
 

@@ -55,6 +55,18 @@ def slide_to_stop(bench: Bench) -> tuple[float, float]:
     return _stop(bench, _box(bench, 0.4, 3.0, 1.5), 3.0, 0.4)
 
 
+@case("m", 2e-3, "steps of second order have it but for the last one")
+def small_slide(bench: Bench) -> tuple[float, float]:
+    """A box of 1 cm at 0.44 m/s, friction 0.4, stops after v² / (2 μ g), 2.5 cm."""
+
+    def build(scene: Scene) -> None:
+        scene.ground(friction=0.4)
+        scene.box("box", size=(0.01, 0.01, 0.0025), position=(0, 0, 0.00125), friction=0.4, velocity=(0.443, 0, 0))
+
+    track = bench.run(build, 0.2)
+    return float(track.position("box")[-1, 0]), 0.443**2 / (2 * 0.4 * G)
+
+
 @case("m", 1e-4, "a rigid box does not leave the ground")
 def slide_stays_down(bench: Bench) -> tuple[float, float]:
     """The same box at 5 m/s rises by 0 while it slides."""

@@ -347,7 +347,7 @@ def stop(
     timestep: wp.array(dtype=float),
     which: wp.array2d(dtype=int),  # stop or tendon
     length: wp.array2d(dtype=float),  # of tendons
-    ahead: wp.array2d(dtype=float),  # the same where a step at the present speeds would take them
+    back: wp.array2d(dtype=float),  # the same where a step at the present speeds would have come from
     settle_time: float,
     settle_speed: float,
     # Data out:
@@ -364,5 +364,5 @@ def stop(
         goal = settling(position[world, row], h, settle_time, settle_speed)
     if what == TAUT:
         k = which[world, row]
-        goal += (ahead[world, k] - length[world, k]) / h + velocity[world, row]
+        goal += (back[world, k] - length[world, k]) / h - velocity[world, row]
     aref[world, row] = (goal - velocity[world, row]) / h

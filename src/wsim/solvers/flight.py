@@ -4,8 +4,8 @@ MuJoCo takes a body's gyroscopic torque at the step's start and makes it implici
 energy, by the square of what it turns in a step. Here the spin of the step's end follows from the free motion over the
 step; contacts see it as a smooth force. Where gravity, and what touches a body without a jolt, are all that acts on it,
 the step goes the way of the mean of its first and last velocities: falls, throws, slides and rolling are exact, where
-v += a h, x += v h would come a t h / 2 too far. Newton's state is in single precision, where a kilometre has steps of 0.06 mm:
-what is true between two steps is kept beside it in double, for as long as nobody else writes the state.
+v += a h, x += v h would come a t h / 2 too far. Newton's state is in single precision, where a kilometre has steps of
+0.06 mm: what is true between two steps is kept beside it in double, for as long as nobody else writes the state.
 """
 
 from __future__ import annotations

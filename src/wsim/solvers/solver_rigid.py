@@ -25,20 +25,10 @@ from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
+from wsim.solvers.yielding import yielding
 
 Array = np.ndarray
 ALWAYS = 2**30  # steps
-
-
-def _yielding(model: Any) -> Array:
-    """What each body yields to a push [1/kg], (bodies,), from which MuJoCo takes how hard its contacts are.
-
-    MuJoCo measures it at the centre of mass, where a seesaw does not yield at all, and its contacts would be hard
-    without bound; away from there it yields, by no less than about a tenth of what its mass would.
-    """
-    moves = model.body_weldid > 0
-    by_mass = np.where(moves, 0.1 / np.maximum(model.body_mass, 1e-12), 0.0)
-    return np.maximum(model.body_invweight0[:, 0], by_mass)
 
 
 class SolverRigid(newton.solvers.SolverMuJoCo):
@@ -88,8 +78,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
-        yielding = [_yielding(host) for host in self._hosts()]
-        self.mj_model.body_invweight0[:, 0] = yielding[0]
+        gives = [yielding(host) for host in self._hosts()]
+        self.mj_model.body_invweight0[:, 0] = gives[0]
         self._harden_constraints(time_step)
         self.breaking = self._breaking(breakable) if breakable and breakable[0] else None
         self._touching = touching
@@ -113,7 +103,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 drives,
             )
         elif may_touch or not smooth:
-            self._prepare_warp(of_geoms, np.array(yielding))
+            self._prepare_warp(of_geoms, np.array(gives))
             with wp.ScopedDevice(model.device):
                 self._drives = DrivesWarp(self._hosts(), driven, self.mjw_data.nworld) if driven else None
         else:  # Runge and Kutta's stages take drives as MuJoCo does
@@ -223,7 +213,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
-    def _prepare_warp(self, surfaces: Surfaces, yielding: Array) -> None:
+    def _prepare_warp(self, surfaces: Surfaces, gives: Array) -> None:
         device, data = self.model.device, self.mjw_data
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
@@ -232,8 +222,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config):
             self.mjw_model.opt.solver = int(self._mujoco.mjtSolver.mjSOL_CG)
         self._tell_warp("geom_solimp")
-        weights = self.mjw_model.body_invweight0.numpy()[: len(yielding)]
-        weights[..., 0] = yielding
+        weights = self.mjw_model.body_invweight0.numpy()[: len(gives)]
+        weights[..., 0] = gives
         self._give_warp("body_invweight0", weights)
         margin = self.mjw_model.geom_margin
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
@@ -329,7 +319,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self._smooth_steps:
             self._smooth_steps.before(model, data)
         if self._ropes:
-            self._ropes.look_ahead(model, data)
+            self._ropes.look_back(model, data)
         warp.fwd_position(model, data)
         warp.fwd_velocity(model, data)
         if self._flight:
@@ -376,7 +366,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         warp.fwd_actuation(model, data)
 
     def _aim(self, model: Any, data: Any) -> None:
-        config, efc, contact = self.contact_config, data.efc, data.contact
+        config, efc, contact, flight = self.contact_config, data.efc, data.contact, self._flight
+        assert flight is not None
         h = model.opt.timestep
         self._struck.zero_()
         touching = [data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address]
@@ -395,7 +386,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
                 model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, self._flight.row, self._flight.exact, *self._jacobian(model, efc),
+                data.qacc_smooth, self._touched_for, flight.row, flight.exact, *self._jacobian(model, efc),
                 config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],

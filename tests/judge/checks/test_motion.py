@@ -317,3 +317,13 @@ def test_what_goes_far_by_hand_rounds_at_each_step():
     assert [f.passed for f in ask(CheckContinuity(), way)] == [True, True, True]
     off = replace(way, body_qd=way.body_qd * np.float32(1.001))
     assert not all(f.passed for f in ask(CheckContinuity(), off))
+
+
+@pytest.mark.parametrize(("order", "passes"), [(1, True), (2, False)])
+def test_places_of_first_order_are_a_step_late_only_where_steps_are(order, passes):
+    """v += g h, x += v h falls g t h / 2 too far: 22 mm in 4 s."""
+    t = times(4.0)
+    zero = np.zeros_like(t)
+    place = np.stack([zero, zero, 100.0 - 0.5 * G * t * (t + STEP)], axis=1)
+    fallen = record([ball()], place, np.stack([zero, zero, -G * t], axis=1), t, metadata={"loose_order": order})
+    assert all(finding.passed for finding in ask(CheckContinuity(), fallen)) == passes

@@ -75,7 +75,7 @@ def _rooms(evidence: Evidence, joint: Joint, laws: Laws) -> Iterator[tuple[Float
     track = track_of(evidence, joint)
     if track is None:
         return
-    rate = laws.speed(joint)
+    rate = laws.rate(joint)
     if joint.low is not None:
         yield track.position - joint.low, -rate
     if joint.high is not None:

@@ -99,7 +99,7 @@ class CheckFreeTurning(Check):
         if not free.any():
             return []
         story = "{prim} touches nothing at {time:.3f} s, and is turned by a torque of {value:.3g} N m"
-        source = f"{self.share:g} m g R, w^2 dt of what it has for steps of first order, and the rounding of recorded velocities"
+        source = f"{self.share:g} m g R, in steps of first order w^2 dt of it, and the rounding of recorded velocities"
         fine, why = "Bodies that touch nothing keep their angular momentum", "something turns it unseen"
         torque = np.where(free, torque, 0.0)
         return [strangest(self, evidence, torque, limit, "N m", story, fine, why, limit_from=source)]
