@@ -87,6 +87,10 @@ class Laws:
                 wrong[:, row] += np.where(law.known[:, None], off, 0.0)
         return total, wrong
 
+    def rate(self, joint: Joint) -> Floats:
+        """The speed of a hinge or a slider, (T,) [rad/s or m/s]."""
+        return self._along(joint).rate
+
     # ---- springs
     def _spring(self, spring: Spring) -> Law:
         track = track_of_spring(self._evidence, spring)
