@@ -41,10 +41,7 @@ def flat_box_bounce(bench: Bench) -> tuple[float, float]:
 
 @case("J/kg")
 def elastic_bounces(bench: Bench) -> tuple[float, float]:
-    """After five elastic bounces a ball has the energy of its fall, g · 1 m, at its apex.
-
-    On its way steps of the first order read g h v / 2 more or less, 0.28 % at most, which is no gain.
-    """
+    """After five elastic bounces a ball has the energy of its fall, g · 1 m, at its apex."""
 
     def build(scene: Scene) -> None:
         scene.ground()

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     Row = tuple[Status, dict[str, tuple[bool, float]]]  # a world's status, and its findings by key
 
-CHUNK = 32  # worlds judged between two reports of progress
+CHUNK = 64  # worlds judged at once, between two reports of progress
 _shared: tuple[Trajectories, Plan | None]  # in a worker: what it was started with
 
 
