@@ -153,11 +153,13 @@ class RecordedTies:
         """The share of joint k's impulses that arms taken halfway may miss, (T - 1,)."""
         motion = self._evidence.motion
         rows = [row for row in self.pairs[k] if row >= 0]
-        angle = self._turning[:, rows].max(axis=1) * motion.h
+        hangs = np.isin(motion.unit, motion.unit[rows])  # what one link does another may pass on between frames
+        rate = np.pad(self._turning[:, hangs].max(axis=1), 1, mode="edge")
+        angle = np.max([rate[:-2], rate[1:-1], rate[2:]], axis=0) * motion.h
         size = np.linalg.norm(self.track.joints[1:, k, :12].astype(np.float64), axis=1)
         change = _jump(size) / np.maximum(size, 1e-30)
         found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0), 2.0)
-        return found
+        return np.where(angle > RESOLVED, 2.0, found)  # they may point anywhere
 
     def drive(self, k: int) -> Stated | None:
         """What joint k's drive gives by its law; None where it has none, or somebody sets it while the world runs."""
@@ -223,7 +225,7 @@ class RecordedTies:
         evidence, (cord, row) = self._evidence, self.ends[k]
         given, tension = self.track.cords[1:, k, :6].astype(np.float64), self.track.tension[1:, k].astype(np.float64)
         first, last, mean = self._ways(cord, row)
-        arm = max(float(np.linalg.norm(mean[:, 3:], axis=1).max(initial=0.0)), 1e-9)
+        arm = max(float(np.linalg.norm(mean[:, 3:], axis=1).max(initial=0.0)), float(evidence.motion.radius[row]), 1e-9)
         scale = np.repeat([1.0, 1.0 / arm], 3)
         off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
         turned = np.linalg.norm((last - first) * scale, axis=1)
