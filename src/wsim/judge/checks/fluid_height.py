@@ -43,7 +43,7 @@ class CheckFluidHeight(Check):
             return found
         for fluid in evidence.world.fluids:
             container = evidence.container_of(fluid)
-            if container is None or not lone_pool(evidence, container):
+            if container is None or not lone_pool(evidence.world, container, evidence.up):
                 continue
             rows = self._within(evidence, container)
             if rows is not None:

@@ -49,7 +49,7 @@ class CheckLift(Check):
         fluid = fluids[0]
         container, track = evidence.container_of(fluid), evidence.track(fluid)
         frames = np.flatnonzero(np.isin(evidence.time, track.time))
-        if container is None or not lone_pool(evidence, container) or len(frames) < len(track.time):
+        if container is None or not lone_pool(evidence.world, container, evidence.up) or len(frames) < len(track.time):
             return []
         if track.density.size == 0 or evidence.outside(fluid).max(initial=0.0) > self.spilled:
             return []

@@ -14,8 +14,7 @@ from wsim.scene.contact import within
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from wsim.judge.evidence.recorded import Recorded
-    from wsim.scene.world import Container
+    from wsim.scene.world import Container, World
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -55,12 +54,12 @@ def local(container: Container, points: Floats) -> Floats:
     return rotate(conjugate(q), shifted)
 
 
-def lone_pool(evidence: Recorded, container: Container) -> bool:
+def lone_pool(world: World, container: Container, up: Floats) -> bool:
     """Whether a container is upright and nothing that stands still is in it."""
-    if rotate(np.array(container.rotation), np.array([0.0, 0.0, 1.0])) @ evidence.up < 1.0 - 1e-6:
+    if rotate(np.array(container.rotation), np.array([0.0, 0.0, 1.0])) @ up < 1.0 - 1e-6:
         return False
     half = np.array(container.inner_size) / 2
-    shapes = [shape for static in evidence.world.statics for shape in static.shapes]
+    shapes = [shape for static in world.statics for shape in static.shapes]
     return not any(
         (np.abs(local(container, np.array(shape.position))) < half + kind_of(shape).radius_about).all()
         for shape in shapes
