@@ -65,7 +65,7 @@ class CheckBlowFriction(Check):
         one, two = blow.prims
         limit, slips = self._limit(blow, rub), rub.after > self._limit(blow, rub)
         time = float(evidence.time[blow.interval + 1])
-        least = rub.most - limit if slips else 0.0
+        least = rub.most - limit if slips else -rub.most - limit
         how = f"though they slip on at {rub.after:.3g} m/s" if slips else "and they slip no more"
         return [
             self.between(
