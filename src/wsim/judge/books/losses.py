@@ -76,11 +76,15 @@ class Losses:
 
     @cached_property
     def groups(self) -> list[Rows]:
-        """The bodies that hang together or touch at some time; but not those that something leads, or carries."""
+        """The bodies that hang together or touch at some time; but not those that something leads, or carries.
+
+        Nor those that touch a mesh's triangles: from facet to facet a step turns the normal, and what of the velocity
+        is along the new one is lost in no blow that frames show.
+        """
         motion, unit = self._motion, self._motion.unit.copy()
         led = {shape.body for shape in carriers(self._evidence)} | set(np.flatnonzero(motion.kinematic).tolist())
         belts = {shape.shape.prim for shape in carriers(self._evidence) if shape.body < 0}
-        touched = [k for k, shape in enumerate(self._contacts.shapes) if shape.prim in belts]
+        touched = [k for k, shape in enumerate(self._contacts.shapes) if shape.prim in belts or shape.exact]
         carried = {int(row) for pair, rows in zip(self._contacts.track.pair, self._contacts.body, strict=True)
                    if np.isin(pair, touched).any() for row in rows}  # fmt: skip
         for one, two in np.unique(self._contacts.body, axis=0).tolist():
