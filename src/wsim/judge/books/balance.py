@@ -126,6 +126,8 @@ class Balance:
         left, turned = again(anew, left, wanted), again(anew, turned)
         angles = [arms.turned(evidence, size) for evidence, size in zip(self._copies, self._sizes, strict=True)]
         turned *= (np.concatenate(angles) ** 2 / 12.0)[..., None]  # of an arm taken halfway
+        halves = zip(self._copies, np.split(turned, len(self._copies)), strict=True)
+        turned = np.concatenate([arms.passed_on(*each) for each in halves])
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
