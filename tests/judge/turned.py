@@ -68,7 +68,17 @@ def turned(recording, q):
         control_impulse=all_of(recording.control_impulse),
         wall_impulse=all_of(recording.wall_impulse),
         contacts=None if recording.contacts is None else _turned_contacts(recording.contacts, all_of),
+        ties=None if recording.ties is None else _turned_ties(recording.ties, all_of),
     )
+
+
+def _turned_ties(track, all_of):
+    """What joints, springs and ropes gave: the vectors among their sums."""
+    joints, cords = track.joints.copy(), track.cords.copy()
+    for sums, firsts in ((joints, (0, 3, 6, 9)), (cords, (0, 3))):
+        for first in firsts:
+            sums[..., first : first + 3] = all_of(sums[..., first : first + 3])
+    return replace(track, joints=joints, cords=cords)
 
 
 def _turned_contacts(track, all_of):

@@ -155,7 +155,7 @@ class Losses:
         last = len(self._evidence.time) - 1
         before, after = at(key - step), at(key + step)
         after = np.where(track.frame == last, before, after)
-        return STEADY * np.minimum(np.where(track.frame == 1, after, before), after)
+        return STEADY * np.minimum(before, after)  # what stands may have been set down from a hair above: a blow
 
     @cached_property
     def _shared(self) -> NDArray[np.bool_]:
