@@ -25,7 +25,8 @@ from wsim.sim.perturb import PLACE
 
 G, SPEED, FRICTION, STEP = 9.81, 1.0, 0.03, 1.25e-3
 # A thin and slippery block, so that its brakes do not tip it over the edge.
-# Velocity first, then position: in steps of dt a block comes to rest v dt / 2 short of v^2 / (2 mu g).
+# What a control pushes goes by steps of the first order, velocity first, then position: in steps of dt a block comes to
+# rest v dt / 2 short of v^2 / (2 mu g).
 STOP = SPEED**2 / (2.0 * FRICTION * G)
 EDGE = STOP - 0.375 * SPEED * STEP  # between where it stops in steps of STEP, and in steps of half of it
 PROGRAM = f"""\
@@ -36,9 +37,14 @@ def build(scene):
     scene.box("block", size=(0.2, 0.2, 0.006), mass=0.12, **wood, position=(0.0, 0.0, 0.003),
               velocity=({SPEED}, 0, 0))
 """
+BREATH = """
+
+def control(world, t):
+    world.apply_force("block", (0.0, 0.0, -1e-5))  # of 1.2 N that it weighs
+"""
 
 
-def slide_plan(edge: float) -> Plan:
+def slide_plan(edge: float, pushed: bool = False) -> Plan:
     wood = {"name": "wood", "density": 500.0, "friction": FRICTION, "color": (0.5, 0.3, 0.1)}
 
     def box(name: str, state: str, size: tuple, position: tuple) -> dict:
@@ -57,6 +63,14 @@ def slide_plan(edge: float) -> Plan:
             "objects": [table, block],
             "objectives": [{"kind": "stays_on", "object": "block", "ref": "table"}],
             "simulation": {"duration": 3.7, "frame_rate": 50.0},
+            "steps": [
+                {
+                    "title": "A breath of air presses on the block",
+                    "objects": ["block"],
+                    "shows": "it slides",
+                    "controls": pushed,
+                }
+            ],
         }
     )
 
@@ -90,9 +104,9 @@ def test_a_sound_world_is_accepted_and_its_variants_are_kept(tmp_path: Path) -> 
 
 def test_a_verdict_that_hangs_on_the_time_step_is_not_accepted(tmp_path: Path) -> None:
     program, run = tmp_path / "slide.py", RunFolder.create(tmp_path / "runs", "slide")
-    program.write_text(PROGRAM % EDGE)
+    program.write_text(PROGRAM % EDGE + BREATH)
     settings = Settings(device="cpu", pictures=False, time_step=STEP, verify=True)
-    verdict = run_in_folder(run, program, slide_plan(EDGE), settings)
+    verdict = run_in_folder(run, program, slide_plan(EDGE, pushed=True), settings)
     assert verdict.status == "rejected"
     assert {failure.check for failure in verdict.failures} == {"CheckConverged"}
     failure = next(failure for failure in verdict.failures if failure.objective is not None)

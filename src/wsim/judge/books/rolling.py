@@ -87,6 +87,8 @@ def _of_span(evidence: Evidence, row: int, first: int) -> Rolls | None:
     if any(np.any(end.shapes[0] != met.shapes[0]) or end.normal[0] @ met.normal[0] < 1.0 - FLAT for end in ends):
         return None  # it came from one thing to another, as from a board to a carpet
     sides = [touching.shapes[int(shape)] for shape in met.shapes[0]]
+    if any(shape.exact for *_, shape in sides):
+        return None  # its triangles stand for what is curved
     bend = sum(curvature(shape, moves=owner >= 0) for owner, _, shape in sides)
     axis = _axis(evidence, row, other, normal, first, STILL * bend)
     mean = slice(first, last)
