@@ -35,6 +35,7 @@ from wsim.judge.checks import (
     rolling,
     run,
     settled,
+    stated,
     water,
 )
 
@@ -43,8 +44,8 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy, contact,
-    rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift,
+    physics, settled, stated, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy,
+    contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift,
     fluid_height, water,
     camera,
 )  # fmt: skip
