@@ -75,17 +75,17 @@ def test_the_force_of_one_particle_is_the_pairs():
 @pytest.mark.parametrize("height", [0.24, 0.02])
 def test_a_push_that_no_particle_feels(height, by):
     """Three hundredths of the lift, up or sideways, of what floats and of what lies on the floor."""
-    finding = only(ask(CheckFluidPush(), agreeing(told(immersed(height, frames=12)), by)))
+    finding = only(ask(CheckFluidPush(), agreeing(told(immersed(height, frames=14)), by)))
     assert not finding.passed and finding.prim == "/World/box0"
 
 
 @pytest.mark.parametrize("by", [(0, 0, 0.0), (0, 0, 0.008), (0.008, 0, 0)])
 def test_what_particles_give_is_let_pass(by):
-    assert only(ask(CheckFluidPush(), agreeing(told(immersed(frames=12)), by))).passed
+    assert only(ask(CheckFluidPush(), agreeing(told(immersed(frames=14)), by))).passed
 
 
 def test_bodies_near_each_other_are_asked_each():
-    beside = told(immersed(at=(-0.2, 0.0), frames=12, others=[np.array([0.0, 0.0, 0.19])]))
+    beside = told(immersed(at=(-0.2, 0.0), frames=14, others=[np.array([0.0, 0.0, 0.19])]))
     sound = agreeing(beside)
     assert [finding.passed for finding in ask(CheckFluidPush(), sound)] == [True, True]
     impulse = sound.applied_impulse.copy()
@@ -137,7 +137,7 @@ def test_shapes_of_a_body_are_filled_each_where_it_is():
 
 def test_not_asked_where_it_cannot_be_told():
     """Without the method's settings, without the fluid's impulses, and of a mesh, whose particles are not known."""
-    recording = agreeing(told(immersed(frames=12)), (0, 0, 0.5))
+    recording = agreeing(told(immersed(frames=14)), (0, 0, 0.5))
     assert ask(CheckFluidPush(), replace(recording, metadata={"time_step": 1e-3})) == []
     assert ask(CheckFluidPush(), replace(recording, applied_impulse=None)) == []
     mesh = Shape(prim="/World/box0/g", kind="mesh", size=EDGES)

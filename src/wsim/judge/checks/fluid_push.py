@@ -42,10 +42,11 @@ class CheckFluidPush(Check):
     a single interval may be anything off; the mean of many is not, and how far it may be follows from how they scatter.
     """
 
-    chance: float = 1e-5  # that the mean of one stretch is farther off by chance, on one side: 5 standard errors of 45
+    # That the mean of one stretch is farther off by chance, on one side: 4.5 standard errors of 22 pairs of intervals.
+    chance: float = 1e-4  # (found in 45 worlds: up to 0.55 of the limit)
     share: float = 0.01  # of the force: single precision, and densities that are of one step before (found: 0.003)
     halvings: int = 3  # stretches: all intervals, and halves, quarters and eighths of them
-    least: int = 8  # intervals of a stretch
+    least: int = 12  # intervals of a stretch
     most: int = 240  # intervals that are looked at, of one body; fewer of many
     block: int = 30  # intervals on end, where not all are looked at
 
@@ -112,20 +113,25 @@ class CheckFluidPush(Check):
     def _spans(self, given: Floats, felt: Floats) -> list[Span]:
         """Stretches of all lengths, each along each axis.
 
-        Neighbouring intervals share a frame: where that is off by chance both are, and the mean of n of them scatters
-        as that of n / 2 would. How far it may be off is Student's t, as their scatter is known from themselves.
+        What sound in the fluid leaves in one interval it takes back in the next, so that pairs of them scatter less.
+        Pairs that follow each other share a frame: where its force is off by chance, by s, their means are by
+        sqrt(3 / 8) s, and the mean of n of them by sqrt(1 / 2 n) s. How far that may go is Student's t, as the scatter
+        is known from the pairs themselves.
         """
         off, found = given - felt, []
         for halving in range(self.halvings + 1):
             for part in np.array_split(np.arange(len(off)), 2**halving):
+                count = len(part) // 2
                 if len(part) < self.least:
                     continue
-                error = off[part].std(axis=0, ddof=1) * math.sqrt(2.0 / len(part))
-                errors = float(stdtrit(len(part) - 1, 1.0 - self.chance))
-                force = float(np.linalg.norm(felt[part], axis=1).mean())
+                rows = part[len(part) - 2 * count :]
+                pairs = off[rows].reshape(count, 2, 3).mean(axis=1)
+                error = pairs.std(axis=0, ddof=1) * math.sqrt(4.0 / 3.0 / count)
+                errors = float(stdtrit(count - 1, 1.0 - self.chance))
+                force = float(np.linalg.norm(felt[rows], axis=1).mean())
                 for axis in range(3):
                     limit = errors * float(error[axis]) + self.share * force
-                    found.append(Span(part, axis, float(off[part, axis].mean()), limit))
+                    found.append(Span(rows, axis, float(pairs[:, axis].mean()), limit))
         return found
 
 
