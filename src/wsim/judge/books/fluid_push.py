@@ -5,10 +5,11 @@ fill the body (Adami, Hu & Adams 2012; docs/sph.md):
 
     F = sum_b V_b sum_f V_f ( (A + K mu) v_bf . x_bf / (r^2 + 1e-4 h^2) - p_b - p_f ) grad W
 
-with p_b and v_b taken from the fluid near b. All that it takes is in a recording: places, velocities and densities of
-the fluid's particles, poses of bodies, and the settings of the method. How particles fill a body follows from its
-shape. So the force that a recording says that a fluid gave can be held against the one that its own particles give, of
-bodies of any size, anywhere, near the floor and near each other, without what SPH and real water differ by.
+with p_b and v_b taken from the fluid near b, A = alpha h c rho_0 between what approaches each other and K mu between
+all. All that it takes is in a recording: places, velocities and densities of the fluid's particles, poses of bodies,
+and the settings of the method. How particles fill a body follows from its shape. So the force that a recording says
+that a fluid gave can be held against the one that its own particles give, of bodies of any size, anywhere, near the
+floor and near each other, without what SPH and real water differ by.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from wsim.geometry.rotations import rotate
 from wsim.judge.books.fluids import particle_mass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 TIE = 1e-6  # share of a length: one that is half a spacing more than so many may round either way
+AT_ONCE = 2000  # particles of a body, whose pairs fit into memory
 COINCIDENT = 1e-4  # of h^2, as the method adds it to r^2
 
 
@@ -115,6 +117,10 @@ class Particles:
     pressure: Floats  # (N,) [Pa]
     volume: Floats  # (N,) [m^3]
 
+    def part(self, rows: NDArray[np.intp]) -> Particles:
+        """Some of them."""
+        return Particles(self.place[rows], self.velocity[rows], self.pressure[rows], self.volume[rows])
+
 
 class FluidPush:
     """What the fluids' particles give to each body."""
@@ -122,6 +128,12 @@ class FluidPush:
     def __init__(self, evidence: Evidence, method: Method) -> None:
         self._evidence, self._method = evidence, method
         self._tracks = [evidence.track(fluid) for fluid in evidence.world.fluids]
+        self._mass = np.concatenate(
+            [
+                np.full(t.position.shape[1], particle_mass(f))
+                for f, t in zip(evidence.world.fluids, self._tracks, strict=True)
+            ]
+        )
         counts = evidence.recording.metadata["sph"]["body_particles"]
         spacing = evidence.world.fluids[0].spacing
         self.filled = [filled(body, spacing, int(counts.get(body.prim, 0))) for body in evidence.world.bodies]
@@ -129,39 +141,34 @@ class FluidPush:
     def at(self, k: int, frame: int, bodies: Sequence[int]) -> Floats:
         """Force on each of some bodies [N], (len(bodies), 3), at the fluids' frame k, the recording's `frame`."""
         fluid = self._particles(k)
-        tree = cKDTree(fluid.place)
-        return np.array([self._on(i, frame, fluid, tree) for i in bodies]).reshape(-1, 3)
+        return np.array([self._on(i, frame, fluid) for i in bodies]).reshape(-1, 3)
 
     def _particles(self, k: int) -> Particles:
-        fluids = self._evidence.world.fluids
-        mass = np.concatenate(
-            [np.full(t.position.shape[1], particle_mass(f)) for f, t in zip(fluids, self._tracks, strict=True)]
-        )
         place, velocity, density = (
             np.concatenate([getattr(track, name)[k] for track in self._tracks]).astype(np.float64)
             for name in ("position", "velocity", "density")
         )
-        return Particles(place, velocity, self._method.sound**2 * (density - self._method.density), mass / density)
+        pressure = self._method.sound**2 * (density - self._method.density)
+        return Particles(place, velocity, pressure, self._mass / density)
 
-    def _on(self, i: int, frame: int, fluid: Particles, tree: Any) -> Floats:
+    def _on(self, i: int, frame: int, fluid: Particles) -> Floats:
         samples = self.filled[i]
         if samples is None:
             return np.full(3, math.nan)
-        body, evidence = self._evidence.world.bodies[i], self._evidence
-        q, qd = evidence.body_q[frame, i].astype(np.float64), evidence.recording.body_qd[frame, i].astype(np.float64)
-        arm = rotate(q[3:], samples.position - np.array(body.com))
+        q = self._evidence.body_q[frame, i].astype(np.float64)
+        qd = self._evidence.recording.body_qd[frame, i].astype(np.float64)
         place = q[:3] + rotate(q[3:], samples.position)
-        total = np.zeros(3)
-        for part in self._parts(place, tree):
-            near = tree.query_ball_point(place[part], 2.0 * self._method.h)
-            total += self._force(fluid, place[part], qd[:3] + np.cross(qd[3:], arm[part]), samples.volume[part], near)
+        arm = rotate(q[3:], samples.position - np.array(self._evidence.world.bodies[i].com))
+        velocity = qd[:3] + np.cross(qd[3:], arm)
+        reach = 2.0 * self._method.h
+        about = (fluid.place >= place.min(axis=0) - reach) & (fluid.place <= place.max(axis=0) + reach)
+        fluid = fluid.part(np.flatnonzero(about.all(axis=1)))
+        tree, total = cKDTree(fluid.place), np.zeros(3)
+        for start in range(0, len(place), AT_ONCE):
+            part = slice(start, start + AT_ONCE)
+            near = tree.query_ball_point(place[part], reach)
+            total += self._force(fluid, place[part], velocity[part], samples.volume[part], near)
         return total
-
-    @staticmethod
-    def _parts(place: Floats, tree: Any) -> Iterator[slice]:
-        """Few enough of a body's particles at a time that their pairs fit into memory."""
-        for start in range(0, len(place), 2000):
-            yield slice(start, start + 2000)
 
     def _force(self, fluid: Particles, place: Floats, velocity: Floats, volume: Floats, near: Any) -> Floats:
         m, count = self._method, np.array([len(each) for each in near])
