@@ -94,6 +94,8 @@ class Balance:
         self._h, self._reach = (
             np.concatenate([getattr(motion, name) for motion in motions]) for name in ("h", "reach")
         )
+        angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
+        self._bent = np.concatenate(angles) ** 2 / 12.0  # (N, B) share that is wrong of what an arm taken halfway gives
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
@@ -117,10 +119,6 @@ class Balance:
         hit = judged & (blow > SOFT * self._unit * h)
         self._struck = [Struck(*each) for each in zip(self._copies, np.split(hit, len(laws)), strict=True)]
         left, turned = self._worked_out(wanted, judged, hit)
-        angles = [arms.turned(evidence, size) for evidence, size in zip(self._copies, self._sizes, strict=True)]
-        turned *= (np.concatenate(angles) ** 2 / 12.0)[..., None]  # of an arm taken halfway
-        halves = zip(self._copies, np.split(turned, len(self._copies)), strict=True)
-        turned = np.concatenate([arms.passed_on(*each) for each in halves])
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
@@ -138,31 +136,31 @@ class Balance:
         return np.asarray(scale[self._copy[ks]])
 
     def _worked_out(self, wanted: Floats, judged: Bools, hit: Bools) -> tuple[Floats, Floats]:
-        """What is left of all changes (N, B, 6), and how much ties passed on, (N, B, 2)."""
-        left, passed = wanted.copy(), np.zeros((*hit.shape, 2))
+        """What is left of all changes (N, B, 6), and what may be missing as bodies turn, (N, B, 2)."""
+        left, turned = wanted.copy(), np.zeros((*hit.shape, 2))
         anew = fresh(self._copies, wanted, hit, self._sizes, self._unit)
         for ks in _parts(np.flatnonzero(anew.any(axis=1)), hit.shape[1]):
             asked = judged[ks] & anew[ks]
-            left[ks], passed[ks] = self._explained(ks, wanted[ks], asked, hit[ks], hit[ks] & anew[ks])
+            left[ks], turned[ks] = self._explained(ks, wanted[ks], asked, hit[ks], hit[ks] & anew[ks])
             much = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & asked
             between = (hit[ks] | much) & anew[ks]
             strange = (much & ~hit[ks]).any(axis=1)
             if strange.any():  # they may have touched between the frames alone
                 some = ks[strange], wanted[ks[strange]], asked[strange], hit[ks[strange]], between[strange]
-                left[some[0]], passed[some[0]] = self._explained(*some)
+                left[some[0]], turned[some[0]] = self._explained(*some)
             struck = (much & hit[ks] & self._jointed).any(axis=1)
             if struck.any():  # and ties may have passed on all that they did as their arms were at one instant
                 some = ks[struck], wanted[ks[struck]], asked[struck], hit[ks[struck]], between[struck]
                 for course in (0, 1):
-                    tried, gave = self._explained(*some, course=course)
+                    tried, missing = self._explained(*some, course=course)
                     less = np.sum(tried**2, axis=(1, 2)) < np.sum(left[some[0]] ** 2, axis=(1, 2))
-                    left[some[0][less]], passed[some[0][less]] = tried[less], gave[less]
-        return again(anew, left, wanted), again(anew, passed)
+                    left[some[0][less]], turned[some[0][less]] = tried[less], missing[less]
+        return again(anew, left, wanted), again(anew, turned)
 
     def _explained(
         self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools, *, course: int | None = None
     ) -> tuple[Floats, Floats]:
-        """What is left of the changes (K, B, 6) of some intervals, and how much ties passed on, (K, B, 2).
+        """What is left of the changes (K, B, 6) of some intervals, and what may be missing of it, (K, B, 2).
 
         Contacts are looked for `between` the frames, too, of some bodies, of which some are `hit`, (K, B). A body in an
         interval is one of K B, so that all intervals are worked out at once. Of what is hit ties have the arms halfway,
@@ -170,7 +168,7 @@ class Balance:
         """
         count, bodies = judged.shape
         rest = np.where(judged[..., None], change, 0.0).reshape(-1, 6)
-        passed = np.zeros((len(rest), 2))
+        missing = np.zeros((len(rest), 2))
         columns = self._pushes(ks, judged, hit, between)
         for n, k in enumerate(ks) if self._ties[0].any else ():
             copy = int(self._copy[k])
@@ -180,8 +178,9 @@ class Balance:
         if columns:
             turned = np.flatnonzero(np.stack([unseen(evidence) for evidence in self._copies])[self._copy[ks]])
             all_ = Columns.of([*columns, turns(turned)] if len(turned) else columns)
-            rest, passed = explain(all_, judged.ravel(), rest, self._scale(ks).reshape(-1, 6), ENOUGH * self._unit)
-        return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
+            scale, enough, bent = self._scale(ks).reshape(-1, 6), ENOUGH * self._unit, self._bent[ks].ravel()
+            rest, missing = explain(all_, judged.ravel(), rest, scale, enough, bent)
+        return rest.reshape(count, bodies, 6), missing.reshape(count, bodies, 2)
 
     # ---- contacts
     def _pushes(self, ks: Rows, asked: Bools, hit: Bools, between: Bools) -> list[Columns]:
