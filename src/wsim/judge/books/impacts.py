@@ -151,7 +151,8 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
     n = int(np.argmin(parting - law.restitution * closing[touches]))
     met, speed = contacts.only(touches[n : n + 1]), float(closing[touches[n]])
     # As bodies fall and turn, and their surfaces do, points that touch a step earlier meet at another speed.
-    faster = _changing(courses, touching, k, when, met, speed)
+    speeds = speed, -float(parting[n])
+    faster = _changing(courses, touching, k, when, met, speeds, 0)
     returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
@@ -159,7 +160,11 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
     back = law.restitution * speed
     there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * lowest, 0.0)))
     # Gravity's pull over the step of the blow is on either side of it, whatever else changes by as much the other way.
-    unsure = 2.0 * max(faster, _fallen(courses, met, pair)) + abs(there - back)
+    either = max(faster, _fallen(courses, met, pair))
+    if max(law.restitution, parting[n] / speed) <= STAYS and not _balls(evidence, pair):
+        # What stays in touch is carried round on it: how fast its point parts changes within a step as well.
+        either = max(either, _changing(courses, touching, k, when, met, speeds, 1))
+    unsure = 2.0 * either + abs(there - back)
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
@@ -190,16 +195,20 @@ def _rub(
 
 
 def _changing(
-    courses: Courses, touching: Touching, k: int, when: float, contact: Contacts, speed: float
+    courses: Courses, touching: Touching, k: int, when: float, contact: Contacts, speeds: tuple[float, float],
+    side: int,
 ) -> float:  # fmt: skip
-    """By how much a contact closes faster or slower than its pair does a step earlier [m/s]."""
-    earlier = courses.at(k, 0, when - courses.dt)
-    contacts = touching.at(earlier.q, 2.0 * abs(speed) * courses.dt + float(abs(contact.gap[0])))
+    """By how much a contact closes faster or slower a step before a blow (side 0), or after it (1) [m/s].
+
+    `speeds` are those with which it closes just before, and just after.
+    """
+    other = courses.at(k, side, when + (2 * side - 1) * courses.dt)
+    contacts = touching.at(other.q, 2.0 * abs(speeds[0]) * courses.dt + float(abs(contact.gap[0])))
     same = np.flatnonzero(np.all(contacts.shapes == contact.shapes[0], axis=1))
     apart = np.linalg.norm(contacts.point[same] - contact.point[0], axis=1)
     if not len(same):
-        return abs(speed)
-    return float(abs(_closing(touching, contacts, earlier)[same[int(np.argmin(apart))]] - speed))
+        return abs(speeds[side])
+    return float(abs(_closing(touching, contacts, other)[same[int(np.argmin(apart))]] - speeds[side]))
 
 
 def _fallen(courses: Courses, contact: Contacts, pair: tuple[int, int]) -> float:
