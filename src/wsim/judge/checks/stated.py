@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -133,7 +134,8 @@ def _angle(a: Floats, b: Floats) -> float:
     """Between two rotations, xyzw [rad]."""
     # The chord, not the cosine, which loses small angles to rounding.
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
-    return float(4.0 * np.arcsin(min(1.0, 0.5 * min(np.linalg.norm(a - b), np.linalg.norm(a + b)))))
+    chord = min(float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b)))
+    return 4.0 * math.asin(min(1.0, 0.5 * chord))
 
 
 CHECKS: Checks = (CheckStart, CheckPath)
