@@ -41,7 +41,7 @@ import warp as wp  # noqa: E402
 from benchmarks.sph_cases.bodies import make_rigid  # noqa: E402
 from benchmarks.sph_cases.bulk import set_particles  # noqa: E402
 from benchmarks.sph_cases.water import make_builder  # noqa: E402
-from wsim.solvers.sampling import box_lattice  # noqa: E402
+from wsim.geometry.filled import box_lattice  # noqa: E402
 from wsim.solvers.shapes import OpenBox  # noqa: E402
 from wsim.solvers.solver_sph import SolverSPH  # noqa: E402
 

@@ -1,4 +1,6 @@
-"""Tests marked `cuda` are skipped where there is no CUDA device, and none hangs on the clock."""
+"""Tests marked `cuda` are skipped where there is no CUDA device, and none hangs on the clock. Long files come first."""
+
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -12,7 +14,20 @@ settings.register_profile("any_machine", deadline=None, suppress_health_check=[H
 settings.load_profile("any_machine")
 
 
+# A worker takes a file at a time (`--dist loadfile`): a long one that is taken last leaves the other cores idle. Left
+# to itself xdist begins with the files of most tests, which are quick ones: `make test` has it keep this order.
+LONG = ("loop/test_transcripts.py", "cli/test_generate.py", "sim/", "mcp/", "cli/", "loop/", "solvers/", "benchmarks/")
+HERE = Path(__file__).parent
+
+
+def place(item: pytest.Item) -> int:
+    """Where a test's file stands in `LONG`; behind them all if it does not."""
+    inside = item.path.relative_to(HERE).as_posix() if item.path.is_relative_to(HERE) else ""
+    return next((k for k, long in enumerate(LONG) if inside.startswith(long)), len(LONG))
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=place)
     marked = [item for item in items if item.get_closest_marker("cuda")]
     if not marked:
         return

@@ -1,9 +1,12 @@
 """The doors of packages: what is behind one is listed before it is loaded."""
 
+import gc
 import subprocess
 import sys
 
 import pytest
+
+from wsim.door import load_module
 
 
 @pytest.mark.parametrize(
@@ -19,3 +22,17 @@ def test_a_door_lists_what_is_behind_it(package: str, names: set[str], unloaded:
     listed, loaded = done.stdout.splitlines()
     assert names | {"__name__", "__getattr__"} <= set(listed.split())
     assert loaded == "False"
+
+
+def test_garbage_is_looked_for_again_after_a_load() -> None:
+    load_module("json.tool")
+    assert gc.isenabled()
+    with pytest.raises(ModuleNotFoundError):
+        load_module("wsim.nothing")
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        load_module("json.scanner")
+        assert not gc.isenabled()  # whoever has stopped it keeps it so
+    finally:
+        gc.enable()

@@ -29,7 +29,7 @@ from wsim.scene.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 CACHE = ROOT / "build" / "judge_faults" / "families"
-FORMAT = 5  # of what is kept: raise it where the simulator records more
+FORMAT = 6  # of what is kept: raise it where the simulator records more
 Array = np.ndarray
 
 

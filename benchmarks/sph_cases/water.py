@@ -9,7 +9,7 @@ import newton
 import numpy as np
 import warp as wp
 
-from wsim.solvers.sampling import box_lattice
+from wsim.geometry.filled import box_lattice
 from wsim.solvers.solver_sph import SolverSPH
 
 

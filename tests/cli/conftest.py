@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from tests import children
 from tests.patience import STUCK
 from wsim.cli import app
 from wsim.errors import UserError
@@ -49,17 +50,18 @@ class Ended:
 
 
 def start(command: list[str], folder: Path) -> subprocess.Popen[str]:
-    """Start a command in a folder, as the first of its own process group."""
+    """Start a command in a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     pipe = subprocess.PIPE
-    return subprocess.Popen(
-        command, cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=pipe, stderr=pipe, text=True
-    )
+    return children.start(command, cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=pipe, stderr=pipe)
 
 
 def end(process: subprocess.Popen[str], folder: Path) -> Ended:
     """Wait for a command, and see what no command may ever do: trace back."""
-    out, err = process.communicate(timeout=STUCK)
+    try:
+        out, err = process.communicate(timeout=STUCK)
+    finally:
+        children.end_group(process)
     assert "Traceback" not in out + err, err
     return Ended(process.returncode, out, err, folder / "runs")
 
@@ -157,7 +159,7 @@ HEAVY = ["--set", "wood_density=2500"]
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
-    """Start `wsim` in an empty folder, and see that it is gone afterwards."""
+    """Start `wsim` in an empty folder, and see that it is gone afterwards, with all that it started."""
     started: list[subprocess.Popen[str]] = []
 
     def one(*arguments: object) -> subprocess.Popen[str]:
@@ -166,5 +168,4 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
 
     yield one
     for process in started:
-        process.kill()
-        process.communicate()
+        children.end_group(process)

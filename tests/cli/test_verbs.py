@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from tests import children
 from tests.patience import STUCK
 from wsim import __version__
 from wsim.judge.verdict import Verdict
@@ -231,5 +232,6 @@ def test_a_ctrl_c_that_comes_while_an_object_is_deleted_is_not_lost(tmp_path: Pa
         "wsim.cli.app.command('work')(work)\n"
         "wsim.cli.main()\n"
     )
-    ended = subprocess.run([sys.executable, "-c", code, "work"], capture_output=True, text=True, timeout=STUCK)
-    assert (ended.returncode, ended.stderr) == (130, "wsim: stopped\n")
+    with children.started([sys.executable, "-c", code, "work"], stderr=subprocess.PIPE) as process:
+        _, err = process.communicate(timeout=STUCK)
+    assert (process.returncode, err) == (130, "wsim: stopped\n")

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from tests import children
 from tests.agents.flies import PROMPT, edit, flies, lasts, opinion
 from tests.agents.kept import Kept, models
 from tests.agents.scripted import Server, call, hang, status, text
@@ -239,12 +240,11 @@ def test_ctrl_c_while_a_model_thinks(server: Server, tmp_path: Path) -> None:
     (tmp_path / "plan.json").write_text(flies().model_dump_json(), encoding="utf-8")
     command = ["generate", "--plan", "plan.json", "--yes", "--device", "cpu", "--no-pictures", "--set", "mass=1"]
     command += ["--coder-model", models(server, "coder").coder]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "wsim.cli", *command], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
-    )
-    until(lambda: server.asked("coder") or process.poll() is not None)
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=STUCK)
+    command = [sys.executable, "-m", "wsim.cli", *command]
+    with children.started(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
+        until(lambda: server.asked("coder") or process.poll() is not None)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=STUCK)
     assert process.returncode == 130, err
     (folder,) = (tmp_path / "runs").iterdir()
     kept = Kept(folder)

@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 from mcp import Client
 
+from tests import children
 from tests.mcp.conftest import server_command
 from tests.patience import STUCK, until
 
@@ -36,7 +37,7 @@ def converse(folder: Path, *requests: dict[str, Any]) -> tuple[list[str], str]:
     pipe = subprocess.PIPE
     command = server_command(folder, loud=True)
     buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, cwd=folder, env=buffered) as server:
+    with children.started(command, stdin=pipe, stdout=pipe, stderr=pipe, cwd=folder, env=buffered) as server:
         assert server.stdin is not None
         assert server.stdout is not None
         lines = []
@@ -66,7 +67,7 @@ def test_a_client_that_leaves_ends_the_server(tmp_path: Path) -> None:
     """Also in the middle of a slow tool, which is stopped."""
     pipe = subprocess.PIPE
     command = server_command(tmp_path, loud=True)
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True, cwd=tmp_path) as server:
+    with children.started(command, stdin=pipe, stdout=pipe, stderr=pipe, cwd=tmp_path) as server:
         assert server.stdin is not None
         assert server.stdout is not None
         for number, request in enumerate((HELLO, call("new_run", title="x"))):
@@ -85,7 +86,7 @@ def test_a_client_that_leaves_ends_the_server(tmp_path: Path) -> None:
 def http_server(folder: Path) -> Iterator[str]:
     """The address of a server that is up."""
     command = server_command(folder, "--http", "--port", "0")
-    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=folder) as server:
+    with children.started(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, cwd=folder) as server:
         assert server.stderr is not None
         try:
             address = re.search(r"http://\S+", server.stderr.readline())

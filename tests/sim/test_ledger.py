@@ -7,6 +7,7 @@ import pytest
 
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.fluid_books import CheckFluidMomentum
+from wsim.judge.checks.fluid_push import CheckFluidPush
 from wsim.judge.checks.lift import CheckLift
 from wsim.judge.checks.motion import CheckFreeTurning
 from wsim.judge.evidence.evidence import Evidence
@@ -97,6 +98,29 @@ def test_still_water_carries_a_block_with_its_buoyancy(tmp_path):
     hidden = replace(hidden, wall_impulse=recording.wall_impulse + gone.sum(axis=1))
     assert CheckFluidMomentum().run(Evidence(hidden))[0].passed
     assert not CheckLift(least=2).run(Evidence(hidden))[0].passed
+
+
+@pytest.mark.parametrize("shape", ["box", "sphere", "cylinder", "capsule"])
+def test_what_water_gives_is_what_its_particles_give(tmp_path, shape):
+    """Bodies three spacings high that bob, tilted: the books' mean is what the particles of 19 frames tell."""
+
+    def build(scene):
+        scene.simulation(duration=0.3, frame_rate=60.0)
+        tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.3))
+        scene.fluid("water", fills=tank, level=0.18, spacing=0.03)
+        size = {"box": {"size": (0.12, 0.105, 0.09)}, "sphere": {"radius": 0.055}}
+        round_one = {"radius": 0.045, "height": 0.09 if shape == "cylinder" else 0.04}
+        add = getattr(scene, shape)
+        add("float", density=600.0, position=(0.01, 0.0, 0.185), rotation_deg=(20, 0, 10), **size.get(shape, round_one))
+
+    recording = run(tmp_path, build)
+    finding = CheckFluidPush().run(Evidence(recording))[0]
+    assert finding.passed
+    weight = recording.world.bodies[0].mass * G
+    assert finding.limit < 0.5 * weight
+    gone = 0.6 * recording.applied_impulse
+    hidden = replace(recording, applied_impulse=recording.applied_impulse - gone)
+    assert not CheckFluidPush().run(Evidence(hidden))[0].passed
 
 
 def test_what_nothing_drives_keeps_no_books(tmp_path):

@@ -7,8 +7,8 @@ import pytest
 import trimesh
 from scipy.spatial import cKDTree
 
-from wsim.solvers.layers import capsule_layers, cylinder_layers, mesh_layers, sphere_layers
-from wsim.solvers.sampling import Samples, box_lattice
+from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
+from wsim.solvers.layers import mesh_layers
 
 DP = 0.02
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from wsim.solvers.sampling import box_lattice, container_walls, plane_patch
+from wsim.geometry.filled import box_lattice
+from wsim.solvers.sampling import container_walls, plane_patch
 
 
 def test_a_boxs_lattice_has_its_volume():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import warp as wp
 
-from wsim.solvers.sampling import box_lattice
+from wsim.geometry.filled import box_lattice
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 

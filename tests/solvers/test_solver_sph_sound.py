@@ -6,7 +6,7 @@ import newton
 import numpy as np
 import pytest
 
-from wsim.solvers.sampling import box_lattice
+from wsim.geometry.filled import box_lattice
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 

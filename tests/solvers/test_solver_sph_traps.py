@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import warp as wp
 
+from wsim.geometry.filled import box_lattice
 from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.sim.fluids import seed
-from wsim.solvers.sampling import box_lattice
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 

@@ -6,11 +6,12 @@ whole loads none of them.
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+
+from wsim.door import load_module
 
 VERBS = {
     "generate": "Plan a world from a sentence, build it, simulate it, judge it, and repair it until it is right.",
@@ -50,5 +51,5 @@ class Verbs(TyperGroup):
 def load(name: str) -> Any:
     """The command of a verb's file."""
     only = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
-    only.command(name)(getattr(import_module(f"wsim.cli.{name}"), name))
+    only.command(name)(getattr(load_module(f"wsim.cli.{name}"), name))
     return typer.main.get_command(only)

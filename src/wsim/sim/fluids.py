@@ -11,11 +11,11 @@ import numpy as np
 from newton import GeoType, ShapeFlags
 
 from wsim.errors import UserError
+from wsim.geometry.filled import box_lattice
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Fluid, Shape, World
 from wsim.solvers.inside import depth_in, solid_of
-from wsim.solvers.sampling import box_lattice
 from wsim.solvers.shapes import OpenBox
 
 Array = np.ndarray

@@ -20,6 +20,7 @@ from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
+from wsim.sim.forward import forward_only
 from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -28,6 +29,8 @@ from wsim.solvers.contact_law import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 from wsim.solvers.surface_contacts import SurfaceParts
+
+forward_only()
 
 LEAST_MOMENT = 1e-15  # [kg m^2]: MuJoCo takes nothing below
 SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)

@@ -296,7 +296,22 @@ class Simulation:
             "particles": self.model.particle_count,
             "controlled": self._controller is not None,
             "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
+            "sph": self._method_of_fluid(),
             "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},
+        }
+
+    def _method_of_fluid(self) -> dict[str, Any] | None:
+        """What, beside the fluids' own numbers, their push on bodies follows from; None without them."""
+        config = self.built.sph
+        if config is None or self.fluid is None:
+            return None
+        counts = np.diff(self.fluid.body_first.numpy())[self.built.bodies].tolist()
+        return {
+            "smoothing_length": config.smoothing_length,
+            "artificial_viscosity": config.artificial_viscosity,
+            "laminar_factor": config.laminar_factor,
+            "background_pressure": config.background_pressure,
+            "body_particles": dict(zip((body.prim for body in self.world.bodies), counts, strict=True)),
         }
 
     def _summary(self) -> str:

@@ -1,85 +1,22 @@
-"""Solids with curved surfaces, filled with particles in layers that follow the surface.
+"""Solids with any closed surface, filled with particles in layers that follow the surface, as round ones are.
 
-A lattice would cut the surface into steps, where a particle's depth is anything from nothing to a spacing. Such a
-surface is rough: it drags along the water that should slip past it, and where it is depends on how the steps fall. The
-outermost layer here lies half a spacing deep, as a fluid particle beside a wall stands half a spacing off it.
+`wsim.geometry.filled` says why.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from wsim.geometry.filled import Samples, box_lattice, lattice_axis
 from wsim.solvers.inside import depth_in, solid_of
-from wsim.solvers.sampling import Samples, box_lattice, lattice_axis
 
 Array = np.ndarray
-GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # [rad]; points that turn by it never line up
 RELAXED = 3  # layers of a mesh, from its surface inward: what the fluid's kernel reaches
 PIECES = 4  # that a lattice cell's edge is cut into, to say what belongs to which particle of a mesh
 SWEEPS = 10
-
-
-def _layers(radius: float, spacing: float) -> Iterator[tuple[float, float, float]]:
-    """Outer and inner radius of each layer, and where its particles stand [m]; the rest is one core."""
-    count = max(1, round(radius / spacing))
-    for k in range(count):
-        outer = radius - k * spacing
-        inner = outer - spacing if k < count - 1 else 0.0
-        yield outer, inner, outer - min(0.5 * spacing, 0.5 * outer)
-
-
-def capsule_layers(radius: float, half_height: float, spacing: float) -> Samples:
-    """Layers of particles in a capsule along Z; the volumes add up to the capsule's.
-
-    Every layer is a spiral of equal steps in height. By Archimedes' hat-box theorem these are equal areas on the caps
-    and on the cylinder alike.
-
-    Args:
-        radius: Of caps and cylinder [m].
-        half_height: Of the cylinder [m]; 0 is a sphere.
-        spacing: Between particles [m].
-    """
-
-    def volume(r: float) -> float:
-        return 2.0 * math.pi * r**2 * half_height + 4.0 / 3.0 * math.pi * r**3
-
-    places, volumes = [], []
-    for outer, inner, r in _layers(radius, spacing):
-        share = volume(outer) - volume(inner)
-        length = half_height + r
-        count = max(1, round(share / spacing**3), round(2.0 * half_height / spacing))
-        k = np.arange(count)
-        z = length * (1.0 - (2.0 * k + 1.0) / count)
-        ring = np.sqrt(np.maximum(r**2 - np.maximum(np.abs(z) - half_height, 0.0) ** 2, 0.0))
-        spiral = np.stack([ring * np.cos(GOLDEN * k), ring * np.sin(GOLDEN * k), z], axis=1)
-        places.append(spiral - spiral.mean(axis=0))  # or the lift would turn the body
-        volumes.append(np.full(count, share / count))
-    return Samples(np.concatenate(places), np.concatenate(volumes))
-
-
-def sphere_layers(radius: float, spacing: float) -> Samples:
-    """Layers of particles in a sphere of `radius` [m]; the volumes add up to the sphere's."""
-    return capsule_layers(radius, 0.0, spacing)
-
-
-def cylinder_layers(radius: float, half_height: float, spacing: float) -> Samples:
-    """Discs of rings of particles in a cylinder along Z [m]; the volumes add up to the cylinder's."""
-    discs, edge = lattice_axis(2.0 * half_height, spacing)
-    places, volumes = [], []
-    for disc in range(discs):
-        z = (disc + 0.5) * edge - half_height
-        for outer, inner, r in _layers(radius, spacing):
-            area = math.pi * (outer**2 - inner**2)
-            count = max(1, round(area / spacing**2))
-            angle = 2.0 * math.pi * np.arange(count) / count + GOLDEN * disc
-            ring = np.stack([r * np.cos(angle), r * np.sin(angle), np.full(count, z)], axis=1)
-            places.append(ring if count > 1 else np.array([[0.0, 0.0, z]]))
-            volumes.append(np.full(count, area * edge / count))
-    return Samples(np.concatenate(places), np.concatenate(volumes))
 
 
 def mesh_layers(vertices: Array, triangles: Array, spacing: float, convex: bool) -> Samples:

@@ -1,39 +1,12 @@
-"""Particles that stand for solids with flat sides: lattices in boxes, behind a container's walls, below a plane."""
+"""Particles that stand for what is flat and stands still: behind a container's walls, below a plane."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from wsim.geometry.filled import Samples, lattice_axis
+
 Array = np.ndarray
-
-
-@dataclass(frozen=True)
-class Samples:
-    """Particles of a solid: positions [m] of shape (n, 3) and volumes [m^3] of shape (n,)."""
-
-    position: Array
-    volume: Array
-
-
-def lattice_axis(length: float, spacing: float) -> tuple[int, float]:
-    """Cells that divide a length [m] evenly at about `spacing` [m], and their exact edge [m]."""
-    count = max(1, round(length / spacing))
-    return count, length / count
-
-
-def box_lattice(size: Array, spacing: float, plane: bool = False) -> Samples:
-    """Cell centres of a box of edge lengths `size` [m] about the origin; the volumes add up to the box's.
-
-    With `plane` there is one cell along y, as deep as the box.
-    """
-    axes = [lattice_axis(float(length), spacing) for length in size]
-    if plane:
-        axes[1] = (1, float(size[1]))
-    ticks = [(np.arange(count) + 0.5) * edge - 0.5 * count * edge for count, edge in axes]
-    position = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
-    return Samples(position, np.full(len(position), np.prod([edge for _, edge in axes])))
 
 
 def container_walls(inner_size: Array, spacing: float, support: float, sides: Array, plane: bool = False) -> Samples:

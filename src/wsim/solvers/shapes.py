@@ -9,14 +9,10 @@ from typing import Any
 import numpy as np
 from newton import GeoType, ShapeFlags
 
+from wsim.geometry.filled import Samples, box_lattice, capsule_layers, cylinder_layers, sphere_layers
 from wsim.geometry.rotations import rotate
-from wsim.solvers.layers import capsule_layers, cylinder_layers, mesh_layers, sphere_layers
-from wsim.solvers.sampling import (
-    Samples,
-    box_lattice,
-    container_walls,
-    plane_patch,
-)
+from wsim.solvers.layers import mesh_layers
+from wsim.solvers.sampling import container_walls, plane_patch
 from wsim.solvers.sph_config import ConfigSPH
 
 Array = np.ndarray

@@ -41,6 +41,25 @@ def test_a_drive_without_bound_holds_anything():
     assert accepted(held(drive=Motor(stiffness=1e5, damping=1e4)))
 
 
+def hung(kind, **strength):
+    """A box below a joint, its centre of mass beside it: it pulls with its weight, and a weld is bent by it, too."""
+    t, off = times(1.0, 60.0), ARM if kind == "fixed" else 0.0
+    joint = Joint(
+        prim="/World/hook", kind=kind, parent=None, child="/World/load", parent_anchor=(0, 0, 2.0),
+        child_anchor=(-off, 0, 0.5), closing=True, **strength,
+    )  # fmt: skip
+    place = np.tile([off, 0.0, 1.5], (len(t), 1))
+    return record([box("load", mass=MASS)], place, np.zeros((len(t), 3)), t, joints=[joint])
+
+
+@pytest.mark.parametrize(("share", "holds"), [(1.02, True), (0.96, False), (0.5, False)])
+def test_what_may_break_bears_no_more_than_its_strength(share, holds):
+    """The load is m g, and m g ARM about the weld's anchor; 0.01 of the strength is the solver's, 0.02 g the books'."""
+    assert accepted(hung("spherical", break_force=share * MASS * G)) == holds
+    assert accepted(hung("fixed", break_force=share * MASS * G)) == holds
+    assert accepted(hung("fixed", break_torque=share * LOAD)) == holds
+
+
 def spun_up(share, target=5.0):
     """A wheel that a motor, far faster than the frames, spins up by `share` of its greatest effort."""
     t = times(1.0, 60.0)

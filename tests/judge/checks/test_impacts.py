@@ -108,3 +108,15 @@ def test_an_edge_parts_as_its_restitution_has_it(real, lean, said):
     assert sound.value == pytest.approx(3.0 * real, rel=0.02)
     if abs(real - said) > 0.1:
         assert not only(ask(CheckRestitution(), stated(weightless, said))).passed
+
+
+@pytest.mark.parametrize("lean", [0.3, 1.15, 1.25, 1.4])
+@pytest.mark.parametrize("real", [0.3, 0.6, 1.0])
+def test_what_spins_off_a_blow_is_asked_as_closely(real, lean):
+    """At up to 40 rad/s; to 0.005 of the approach, where steps change nothing."""
+    weightless = with_world(knocked(real, lean), gravity=(0.0, 0.0, 0.0))
+    sound = only(ask(CheckRestitution(), stated(weightless, real)))
+    assert sound.passed
+    for said in (real - 0.007, real + 0.007):
+        if said <= 1.0:
+            assert not only(ask(CheckRestitution(), stated(weightless, said))).passed

@@ -1,11 +1,13 @@
 """Recorded contacts of real runs: as they are, and with one number of the recording changed."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.judge.theory import ask
+from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.checks.recorded import CheckRecordedForces
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
@@ -115,6 +117,25 @@ def test_a_contact_that_pulls_or_is_elsewhere(recording):
     elsewhere[3, 7:10] += elsewhere[3, 3] * np.array([0.0, 0.0, 0.3])
     assert failed(replace(recording, contacts=replace(track, sums=pulling))) >= {"N", "1"}
     assert failed(replace(recording, contacts=replace(track, sums=elsewhere))) == {"m"}
+
+
+def test_a_place_to_the_bit_on_a_surface_is_there_and_one_that_is_no_number_is_not(recording):
+    """Whichever of a pair's surfaces is asked first, and without a word of what cannot be multiplied."""
+    track = recording.contacts
+    on_ground = [k for k, pair in enumerate(track.pair.tolist()) if len(shapes_of(recording.world)) - 1 in pair]
+    exact = track.sums.copy()
+    exact[on_ground, 9] = 0.0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for pair in (track.pair, track.pair[:, ::-1]):
+            told = RecordedContacts(Evidence(recording), replace(track, sums=exact, pair=pair))
+            gap, limit = told.gap(0.05)
+            assert np.all(gap[on_ground] <= limit[on_ground])
+    for row in (0, on_ground[0], len(track.pair) - 1):
+        for axis in (7, 8, 9):
+            nowhere = track.sums.copy()
+            nowhere[row, axis] = np.nan
+            assert "m" in failed(replace(recording, contacts=replace(track, sums=nowhere)))
 
 
 def test_a_turn_that_nothing_gives(recording):

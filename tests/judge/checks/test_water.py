@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.judge.theory import ask, only
+from tests.judge.theory import ask, only, with_world
 from wsim.judge.checks.fluid_height import CheckFluidHeight
 from wsim.judge.checks.water import CheckDraft, CheckLeak, CheckLevelSurface
 from wsim.recording.recording import FluidTrack, Recording
@@ -77,6 +77,18 @@ def test_water_that_stands_higher_than_its_volume(stretched, sound):
     points[:, 2] = WALL + stretched * (points[:, 2] - WALL)
     weight = only(ask(CheckFluidHeight(), still(points)))
     assert weight.passed is sound and weight.value == pytest.approx(abs(stretched - 1.0) * LEVEL, abs=1e-6)
+
+
+@pytest.mark.parametrize("poured", [True, False])
+@pytest.mark.parametrize(("off", "sound"), [(0.35, True), (1.2, False), (-0.35, False)])
+def test_water_that_was_poured_stands_off_the_floor(off, sound, poured):
+    """As many spacings, which lift the level by twice as many; what filled its tank stands off nothing."""
+    recording = still(lattice() + np.array([0.0, 0.0, off * SPACING]))
+    if poured:
+        fluid = recording.world.fluids[0].model_copy(update={"center": (0.0, 0.0, WALL + LEVEL)})
+        recording = with_world(recording, fluids=[fluid])
+    finding = only(ask(CheckFluidHeight(), recording))
+    assert finding.passed is (sound and poured) and finding.value == pytest.approx(2.0 * abs(off) * SPACING, abs=1e-6)
 
 
 def test_what_still_sloshes_may_be_tilted():

@@ -58,8 +58,15 @@ class Problems:
         return cls(bodies, np.split(by_owner, first[1:])[: len(groups)])
 
 
-def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float) -> tuple[Floats, Floats]:
-    """What is left of changes (N, 6) of N bodies, to within `enough`, and the most that ties passed on, (N, 2).
+def explain(
+    columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float, bent: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """What is left of changes (N, 6) of N bodies, to within `enough`, and what may be missing of both parts, (N, 2).
+
+    What ties pass on is known no better than the arms and axes that they do it with, and what is wrong with one body's
+    ends at any that hangs together with it or touches it: a link that whips about beside a ball pushes it, too. Of none
+    is it more than all of it where it is wrong, counted as what is left: the impulses that acted leave that, and those
+    that leave least no more.
 
     Args:
         columns: Impulses that the world can exert.
@@ -67,8 +74,9 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
         wanted: Changes, (N, 6), already by `scale`.
         scale: (N, 6), what an impulse on a body counts for.
         enough: A rest of a body that is as good as none.
+        bent: Share of what ties give a body that may be wrong, (N,); None: nothing is.
     """
-    rest, passed = wanted.copy(), np.zeros((len(wanted), 2))
+    rest, missing = wanted.copy(), np.zeros((len(wanted), 2))
     problems = Problems.of(columns, judged)
     hard = _easy(columns, problems, rest, scale, enough)
     for bodies, chosen in ((problems.bodies[k], problems.columns[k]) for k in hard):
@@ -81,11 +89,12 @@ def explain(columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enou
         ties = columns.both[chosen][new]
         strength = least(matrix, rest[bodies].ravel(), ties, columns.most[chosen][new])
         rest[bodies] -= (matrix @ strength).reshape(-1, 6)
-        if ties.any():
+        if ties.any() and bent is not None:
             each = (np.abs(matrix[:, ties]) @ np.abs(strength[ties])).reshape(-1, 6) / scale[bodies]
-            most = np.array([each[:, :3].max(), each[:, 3:].max()])  # an error of one body's arm ends at any other
-            passed[bodies] = most * scale[bodies][:, [0, 3]]
-    return rest, passed
+            each *= bent[bodies, None]
+            most = np.array([each[:, :3].max(), each[:, 3:].max()]) * scale[bodies][:, [0, 3]]
+            missing[bodies] = np.minimum(most, np.linalg.norm(each * scale[bodies]))
+    return rest, missing
 
 
 def least(matrix: Floats, wanted: Floats, both: Bools, most: Floats) -> Floats:

@@ -50,27 +50,6 @@ def turned(evidence: Evidence, size: Floats) -> Floats:
     return found
 
 
-def passed_on(evidence: Evidence, unsure: Floats) -> Floats:
-    """What is unsure of forces and torques, and of those that what hangs on joints presses on other bodies with.
-
-    A link that whips about beside a ball pushes it, and by how much is known no better than what moves the link.
-
-    Args:
-        evidence: T frames of B bodies.
-        unsure: By itself, (T - 1, B, 2) [m/s^2].
-    """
-    motion = evidence.motion
-    found, whips = unsure.copy(), np.flatnonzero(motion.jointed & (unsure[..., 0] > 0.0).any(axis=0))
-    for row in np.flatnonzero(~motion.kinematic):
-        others = whips[whips != row]
-        apart = np.linalg.norm(motion.com[:, others] - motion.com[:, [row]], axis=2)
-        bound = motion.radius[others] + motion.radius[row] + motion.reach[:, others] + motion.reach[:, [row]]
-        near = np.minimum(apart[1:], apart[:-1]) < bound
-        force = np.where(near, unsure[:, others, 0] * motion.mass[others], 0.0).sum(axis=1)
-        found[:, row] += (force / motion.mass[row])[:, None]
-    return found
-
-
 def _of_joint(evidence: Evidence, joint: Joint, rows: list[int], size: Floats) -> Floats:
     """Of one joint's arms on some bodies, and its axis, (T - 1,) [rad]."""
     motion = evidence.motion

@@ -23,6 +23,7 @@ from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.steps import step_error
+from wsim.judge.books.struck import Struck
 from wsim.judge.books.ties import Ties
 from wsim.judge.books.touching import Contacts, Touching, together
 from wsim.judge.evidence.motion import FLOAT32
@@ -76,10 +77,12 @@ class Balance:
         self._copies, self._world = copies, copies[0].world
         self._touching = Touching.of(copies[0])
         self._ties = [Ties(evidence) for evidence in copies]
+        self._struck: list[Struck] = []  # of each copy, as soon as it is known what was hit
         motions = [evidence.motion for evidence in copies]
         count = len(motions[0].h)
         self._unit = max(float(np.linalg.norm(motions[0].gravity)), 1.0)  # [m/s^2]
         self._kinematic, self._mechanism = motions[0].kinematic, motions[0].unit  # (B,), of all copies
+        self._jointed = motions[0].jointed
         self._mass = np.stack([motion.mass for motion in motions])  # (W, B)
         held = np.stack([ties.arms for ties in self._ties])
         self._sizes = np.maximum(np.maximum(motions[0].radius, held), 1e-4)  # (W, B)
@@ -91,6 +94,8 @@ class Balance:
         self._h, self._reach = (
             np.concatenate([getattr(motion, name) for motion in motions]) for name in ("h", "reach")
         )
+        angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
+        self._bent = np.concatenate(angles) ** 2 / 12.0  # (N, B) share that is wrong of what an arm taken halfway gives
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
@@ -111,23 +116,9 @@ class Balance:
         given, wrong = (np.concatenate([law[n] for law in laws]) for n in range(2))
         both = np.concatenate([force, torque], axis=2) - given * self._scale(np.arange(len(h)))
         wanted = np.where(judged[..., None], both, 0.0)
-        left, turned = wanted.copy(), np.zeros((*blow.shape, 2))
         hit = judged & (blow > SOFT * self._unit * h)
-        anew = fresh(self._copies, wanted, hit, self._sizes, self._unit)
-        for ks in _parts(np.flatnonzero(anew.any(axis=1)), mass.shape[1]):
-            change, asked = left[ks], judged[ks] & anew[ks]
-            left[ks], turned[ks] = self._explained(ks, change, asked, hit[ks], hit[ks] & anew[ks])
-            odd = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & ~hit[ks] & asked
-            strange = odd.any(axis=1)
-            if strange.any():  # they may have touched between the frames alone
-                some = ks[strange]
-                between = (hit[some] | odd[strange]) & anew[some]
-                left[some], turned[some] = self._explained(some, change[strange], asked[strange], hit[some], between)
-        left, turned = again(anew, left, wanted), again(anew, turned)
-        angles = [arms.turned(evidence, size) for evidence, size in zip(self._copies, self._sizes, strict=True)]
-        turned *= (np.concatenate(angles) ** 2 / 12.0)[..., None]  # of an arm taken halfway
-        halves = zip(self._copies, np.split(turned, len(self._copies)), strict=True)
-        turned = np.concatenate([arms.passed_on(*each) for each in halves])
+        self._struck = [Struck(*each) for each in zip(self._copies, np.split(hit, len(laws)), strict=True)]
+        left, turned = self._worked_out(wanted, judged, hit)
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
@@ -144,25 +135,52 @@ class Balance:
         scale[..., 3:] /= self._sizes[..., None]
         return np.asarray(scale[self._copy[ks]])
 
-    def _explained(self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools) -> tuple[Floats, Floats]:
-        """What is left of the changes (K, B, 6) of some intervals, and how much ties passed on, (K, B, 2).
+    def _worked_out(self, wanted: Floats, judged: Bools, hit: Bools) -> tuple[Floats, Floats]:
+        """What is left of all changes (N, B, 6), and what may be missing as bodies turn, (N, B, 2)."""
+        left, turned = wanted.copy(), np.zeros((*hit.shape, 2))
+        anew = fresh(self._copies, wanted, hit, self._sizes, self._unit)
+        for ks in _parts(np.flatnonzero(anew.any(axis=1)), hit.shape[1]):
+            asked = judged[ks] & anew[ks]
+            left[ks], turned[ks] = self._explained(ks, wanted[ks], asked, hit[ks], hit[ks] & anew[ks])
+            much = (np.linalg.norm(left[ks], axis=2) > AGAIN * self._unit) & asked
+            between = (hit[ks] | much) & anew[ks]
+            strange = (much & ~hit[ks]).any(axis=1)
+            if strange.any():  # they may have touched between the frames alone
+                some = ks[strange], wanted[ks[strange]], asked[strange], hit[ks[strange]], between[strange]
+                left[some[0]], turned[some[0]] = self._explained(*some)
+            struck = (much & hit[ks] & self._jointed).any(axis=1)
+            if struck.any():  # and ties may have passed on all that they did as their arms were at one instant
+                some = ks[struck], wanted[ks[struck]], asked[struck], hit[ks[struck]], between[struck]
+                for course in (0, 1):
+                    tried, missing = self._explained(*some, course=course)
+                    less = np.sum(tried**2, axis=(1, 2)) < np.sum(left[some[0]] ** 2, axis=(1, 2))
+                    left[some[0][less]], turned[some[0][less]] = tried[less], missing[less]
+        return again(anew, left, wanted), again(anew, turned)
+
+    def _explained(
+        self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools, *, course: int | None = None
+    ) -> tuple[Floats, Floats]:
+        """What is left of the changes (K, B, 6) of some intervals, and what may be missing of it, (K, B, 2).
 
         Contacts are looked for `between` the frames, too, of some bodies, of which some are `hit`, (K, B). A body in an
-        interval is one of K B, so that all intervals are worked out at once.
+        interval is one of K B, so that all intervals are worked out at once. Of what is hit ties have the arms halfway,
+        or those of the blow by the `course` to it (0) or from it (1).
         """
         count, bodies = judged.shape
         rest = np.where(judged[..., None], change, 0.0).reshape(-1, 6)
-        passed = np.zeros((len(rest), 2))
+        missing = np.zeros((len(rest), 2))
         columns = self._pushes(ks, judged, hit, between)
         for n, k in enumerate(ks) if self._ties[0].any else ():
             copy = int(self._copy[k])
-            ties = self._ties[copy].columns(int(self._first[k]) - copy * len(self._copies[0].time))
+            frame = int(self._first[k]) - copy * len(self._copies[0].time)
+            ties = self._ties[copy].columns(frame, self._struck[copy].ends(frame, course))
             columns += [each.shifted(n * bodies) for each in ties]
         if columns:
             turned = np.flatnonzero(np.stack([unseen(evidence) for evidence in self._copies])[self._copy[ks]])
             all_ = Columns.of([*columns, turns(turned)] if len(turned) else columns)
-            rest, passed = explain(all_, judged.ravel(), rest, self._scale(ks).reshape(-1, 6), ENOUGH * self._unit)
-        return rest.reshape(count, bodies, 6), passed.reshape(count, bodies, 2)
+            scale, enough, bent = self._scale(ks).reshape(-1, 6), ENOUGH * self._unit, self._bent[ks].ravel()
+            rest, missing = explain(all_, judged.ravel(), rest, scale, enough, bent)
+        return rest.reshape(count, bodies, 6), missing.reshape(count, bodies, 2)
 
     # ---- contacts
     def _pushes(self, ks: Rows, asked: Bools, hit: Bools, between: Bools) -> list[Columns]:

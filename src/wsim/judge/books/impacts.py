@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
+from wsim.geometry.rotations import lengths
+from wsim.judge.books.courses import Courses, step_of
 from wsim.judge.books.forces import Poses, slip
 from wsim.judge.books.touching import Contacts, Touching
 from wsim.judge.evidence.motion import FLOAT32
@@ -31,9 +32,7 @@ if TYPE_CHECKING:
 SLIGHT = 0.003  # of a body's speed: what changes by less is no blow
 SHOWS = 0.1  # of an approach: where it is less sure than that the frames say nothing of the parting
 ACROSS = 0.2  # cosine between the normals of two contacts that do not share a blow
-FINE = 0.1  # of the time between frames: about a step, where nobody says how long one is
 STAYS = 0.05  # of the approach: what was to bounce and parts by less may have done so more than once
-WITHIN = 0.2  # of a step: courses that pass each other by no more of the jump meet
 SURE = 0.02  # of a step: points that come to touch within it do so together,
 APART = 3.0  # and those that do after so many do not
 
@@ -73,7 +72,7 @@ def blows(evidence: Evidence) -> list[Blow]:
     changed = _jumps(evidence) & ~motion.jointed & ~motion.kinematic
     if not changed.any():
         return []
-    touching, courses = Touching.of(evidence), _Courses(evidence, changed)
+    touching, courses = Touching.of(evidence), Courses(evidence, changed)
     ks = np.flatnonzero(changed.any(axis=1))
     near = zip(ks, _near(evidence, touching, ks), strict=True)
     return [blow for k, pairs in near for blow in _of_interval(courses, touching, int(k), pairs)]
@@ -102,77 +101,7 @@ def _jumps(evidence: Evidence) -> Bools:
     return np.asarray(jump > 2.0 * evidence.gravity * step_of(evidence) + SLIGHT * fastest)
 
 
-def step_of(evidence: Evidence) -> float:
-    """The simulator's time step [s]."""
-    known = evidence.recording.metadata.get("time_step") or evidence.world.time_step
-    return float(known or FINE * evidence.motion.dt_frames)
-
-
-class _Courses:
-    """How bodies go on from a frame, or came to it: with what sped them up in the interval before, or after."""
-
-    def __init__(self, evidence: Evidence, changed: Bools) -> None:
-        self.evidence, self.changed, motion = evidence, changed, evidence.motion
-        self.dt = step_of(evidence)
-        falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
-        # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
-        own = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0)], axis=2) / motion.h[:, None, None]
-        fall = np.concatenate([falls, np.zeros_like(falls)], axis=1)[None]
-        known = np.where(changed[..., None], fall, own)
-        # How far its steps take a body from its course in the intervals around.
-        trapezoid = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
-        own = np.where(changed, 0.0, np.linalg.norm(np.diff(motion.com, axis=0) - trapezoid, axis=2))
-        none = np.zeros((1, own.shape[1]))
-        self.strays = np.minimum(np.concatenate([none, own[:-1]]), np.concatenate([own[1:], none]))
-        self.before = np.concatenate([fall, known[:-1]])
-        self.after = np.concatenate([known[1:], fall])
-
-    def at(self, k: int, side: int, when: float) -> Poses:
-        """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
-        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
-        v, com = self._going(k, side, when)
-        w = motion.w[frame] + (self.after if side else self.before)[k, :, 3:] * by
-        angle = 0.5 * (motion.w[frame] + w) * by
-        size = lengths(angle)[:, None]
-        turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
-        q = self.evidence.body_q[frame]
-        place = com + rotate(turn, q[:, :3] - motion.com[frame])
-        return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
-
-    def _going(self, k: int, side: int, when: float) -> tuple[Floats, Floats]:
-        """Velocities and centres of mass, as `at`."""
-        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
-        v = motion.v[frame] + (self.after if side else self.before)[k, :, :3] * by
-        return v, motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
-
-    def _since(self, k: int, side: int, when: float) -> tuple[int, float]:
-        """The frame that a course is told from, and how long after it that is [s]."""
-        return k + side, when - side * float(self.evidence.motion.h[k])
-
-    def meet(self, k: int, rows: list[int]) -> float | None:
-        """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
-        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
-        ends = [[self._going(k, side, when)[1] for side in (0, 1)] for when in (0.0, h)]
-        first, last = (before[rows] - after[rows] for before, after in ends)
-        apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
-        when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
-        when = min(max(when, 0.0), h)
-        before, after = (self.at(k, side, when) for side in (0, 1))
-        far = np.linalg.norm(before.com[rows] - after.com[rows], axis=1)
-        jump = np.linalg.norm(after.v[rows] - before.v[rows], axis=1)
-        rounding = 4.0 * FLOAT32 * np.linalg.norm(motion.com[k, rows], axis=1)
-        if np.any(far > WITHIN * jump * self.dt + 2.0 * self.strays[k, rows] + rounding):
-            return None
-        turn = multiply(after.q[rows, 3:], conjugate(before.q[rows, 3:]))
-        angle = 2.0 * np.linalg.norm(turn[:, :3], axis=1)
-        rate = np.maximum(np.linalg.norm(before.w[rows], axis=1), np.linalg.norm(after.w[rows], axis=1))
-        spun = np.linalg.norm(after.w[rows] - before.w[rows], axis=1)
-        if np.any(angle > spun * self.dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
-            return None
-        return when
-
-
-def _of_interval(courses: _Courses, touching: Touching, k: int, near: set[tuple[int, int]]) -> list[Blow]:
+def _of_interval(courses: Courses, touching: Touching, k: int, near: set[tuple[int, int]]) -> list[Blow]:
     motion, changed = courses.evidence.motion, courses.changed[k]
     found = []
     for pair in sorted(near):
@@ -187,13 +116,13 @@ def _of_interval(courses: _Courses, touching: Touching, k: int, near: set[tuple[
     return found
 
 
-def _straddles(courses: _Courses, k: int, rows: list[int]) -> bool:
+def _straddles(courses: Courses, k: int, rows: list[int]) -> bool:
     """Whether a blow's push goes on in the next interval, or began in the one before: it may take several steps."""
     around = courses.changed[max(k - 1, 0) : k + 2, rows]
     return bool(np.any(around.sum(axis=0) > 1))
 
 
-def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], when: float) -> Blow | None:
+def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], when: float) -> Blow | None:
     evidence, motion, dt = courses.evidence, courses.evidence.motion, courses.dt
     before, after = (courses.at(k, side, when) for side in (0, 1))
     reach = 2.0 * APART * dt * float(motion.surface_speed[k : k + 2].max())
@@ -222,16 +151,20 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
     n = int(np.argmin(parting - law.restitution * closing[touches]))
     met, speed = contacts.only(touches[n : n + 1]), float(closing[touches[n]])
     # As bodies fall and turn, and their surfaces do, points that touch a step earlier meet at another speed.
-    faster = _changing(courses, touching, k, when, met, (speed, -float(parting[n])), 0)
+    speeds = speed, -float(parting[n])
+    faster = _changing(courses, touching, k, when, met, speeds, 0)
     returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(parting[n]) / speed and not _balls(evidence, pair)
     # A step takes a blow where it finds the body, above the surface or below: what comes back is slower or faster.
     back = law.restitution * speed
     there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * lowest, 0.0)))
-    # What spins after the blow carries its point round: how fast that parts changes within a step as well.
-    turning = _changing(courses, touching, k, when, met, (speed, -float(parting[n])), 1)
-    unsure = 2.0 * max(faster, turning) + abs(there - back)
+    # Gravity's pull over the step of the blow is on either side of it, whatever else changes by as much the other way.
+    either = max(faster, _fallen(courses, met, pair))
+    if max(law.restitution, parting[n] / speed) <= STAYS and not _balls(evidence, pair):
+        # What stays in touch is carried round on it: how fast its point parts changes within a step as well.
+        either = max(either, _changing(courses, touching, k, when, met, speeds, 1))
+    unsure = 2.0 * either + abs(there - back)
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
@@ -242,7 +175,7 @@ def _blow(courses: _Courses, touching: Touching, k: int, pair: tuple[int, int], 
 
 
 def _rub(
-    courses: _Courses, touching: Touching, met: Contacts, poses: tuple[Poses, Poses], bounce: float, friction: float,
+    courses: Courses, touching: Touching, met: Contacts, poses: tuple[Poses, Poses], bounce: float, friction: float,
     pair: tuple[int, int],
 ) -> Rub:  # fmt: skip
     """Of one contact of a pair, whose points part by `bounce` [m/s] faster than they met, by the poses around it."""
@@ -262,7 +195,7 @@ def _rub(
 
 
 def _changing(
-    courses: _Courses, touching: Touching, k: int, when: float, contact: Contacts, speeds: tuple[float, float],
+    courses: Courses, touching: Touching, k: int, when: float, contact: Contacts, speeds: tuple[float, float],
     side: int,
 ) -> float:  # fmt: skip
     """By how much a contact closes faster or slower a step before a blow (side 0), or after it (1) [m/s].
@@ -276,6 +209,13 @@ def _changing(
     if not len(same):
         return abs(speeds[side])
     return float(abs(_closing(touching, contacts, other)[same[int(np.argmin(apart))]] - speeds[side]))
+
+
+def _fallen(courses: Courses, contact: Contacts, pair: tuple[int, int]) -> float:
+    """What gravity changes of how fast a contact closes in a step [m/s]: nothing where both bodies fall."""
+    motion = courses.evidence.motion
+    free = sum(row >= 0 and not motion.kinematic[row] for row in pair)
+    return float(abs(motion.gravity @ contact.normal[0])) * courses.dt if free == 1 else 0.0
 
 
 def _balls(evidence: Evidence, pair: tuple[int, int]) -> bool:

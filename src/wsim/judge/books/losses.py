@@ -125,13 +125,15 @@ class Losses:
         fastest = 2.0 * motion.surface_speed[:, rows].max(axis=1)
         fastest = np.maximum(fastest[frame], fastest[frame - 1])
         steady = self._steady
+        lasts = np.where(track.frame == 1, 0.0, steady)  # what stands may have been set down from a hair above: a blow
         hit = pressed > steady
         many = hit & self._shared  # a blow goes on to others, and frames show nothing of how fast
         fall = self._evidence.gravity * h
         approach = np.where(many, fastest, closing) + fall
-        slip = np.where(many, np.maximum(slip, fastest), slip + np.where(hit, fall, 0.0))
+        slip = np.where(many, np.maximum(slip, fastest), slip + np.where(pressed > lasts, fall, 0.0))
         bounce, rolling = self._laws
         blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
+        blow += 0.5 * (1.0 - bounce) * (np.minimum(pressed, steady) - np.minimum(pressed, lasts)) * (closing + fall)
         blow += np.where(
             bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0
         )  # a slower one does not bounce
@@ -155,7 +157,7 @@ class Losses:
         last = len(self._evidence.time) - 1
         before, after = at(key - step), at(key + step)
         after = np.where(track.frame == last, before, after)
-        return STEADY * np.minimum(before, after)  # what stands may have been set down from a hair above: a blow
+        return STEADY * np.minimum(np.where(track.frame == 1, after, before), after)
 
     @cached_property
     def _shared(self) -> NDArray[np.bool_]:

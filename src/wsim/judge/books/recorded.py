@@ -209,7 +209,8 @@ class RecordedContacts:
         before surfaces meet; and a share of the smallest extent of the bodies.
         """
         track, motion = self.track, self._evidence.motion
-        worst, most = np.zeros(len(track.frame)), np.full(len(track.frame), np.inf)
+        worst, most = np.zeros(len(track.frame)), np.ones(len(track.frame))
+        farthest = np.full(len(track.frame), -1.0)  # of what it may be
         placed = {(shape.body, shape.shape.prim): shape for shape in self._evidence.placed}
         point, interval = track.point.astype(np.float64), np.maximum(track.frame - 1, 0)
         small = np.array([self._evidence.solid(i).smallest for i in range(len(motion.mass))] + [np.inf])
@@ -228,7 +229,8 @@ class RecordedContacts:
                     at = rotate(conjugate(shape.rotation[frame]), point[rows] - shape.position[frame])
                     off = np.minimum(off, np.abs(shape.kind.depth(at)))
                 limit = slop[rows] + reach[interval[rows], shape.body]
-                worse = off * most[rows] > worst[rows] * limit
-                worse |= np.isinf(most[rows])
-                worst[rows], most[rows] = np.where(worse, off, worst[rows]), np.where(worse, limit, most[rows])
-        return worst, np.where(np.isinf(most), 1.0, most)
+                ratio = off / limit
+                worse = ~(ratio <= farthest[rows]) & ~np.isnan(farthest[rows])  # what is no number is worst of all
+                taken = rows[worse]
+                worst[taken], most[taken], farthest[taken] = off[worse], limit[worse], ratio[worse]
+        return worst, most

@@ -20,12 +20,14 @@ from wsim.judge.evidence.joints import AXES, anchors_of, broken, track_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.books.struck import Ends
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Guide, Joint, Spring
+    from wsim.scene.world import Joint, Spring
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
 
+TORN = 1.01  # of its strength: what a solver's iterations and single precision may let it bear
 NEAR_STOP = 0.02  # [rad or m]: a stop that is nearer may push
 
 
@@ -97,21 +99,21 @@ class Ties:
                 far[row] = max(far[row], float(np.linalg.norm(np.subtract(place, world.bodies[row].com))))
         return np.maximum(far, self.ropes.arms)
 
-    def columns(self, k: int) -> list[Columns]:
-        """What may act between frames k and k + 1."""
-        found = [columns for joint in self._joints if not joint.gone[k] for columns in self._joint(joint, k)]
+    def columns(self, k: int, ends: Ends) -> list[Columns]:
+        """What may act between frames k and k + 1, as bodies are at two poses."""
+        found = [columns for joint in self._joints if not joint.gone[k] for columns in self._joint(joint, k, ends)]
         springs = zip(self._evidence.world.springs, self.laws.springs, strict=True)
-        found += [self._spring(spring, k) for spring, law in springs if not law.known[k]]
+        found += [self._spring(spring, ends) for spring, law in springs if not law.known[k]]
         return found + self.ropes.columns(k) + self._gears.columns(k)
 
-    def _joint(self, acting: Acting, k: int) -> list[Columns]:
+    def _joint(self, acting: Acting, k: int, ends: Ends) -> list[Columns]:
         joint, acts = acting.joint, bool(acting.free[k])
         one, two = self._row.get(joint.parent or "", WORLD), self._row[joint.child]
-        anchors = [self._place(two, joint.child_anchor or (0.0, 0.0, 0.0), frame) for frame in (k, k + 1)]
-        arms = self._arm(one, anchors, k), self._arm(two, anchors, k)
+        anchors = [_place(ends, two, joint.child_anchor or (0.0, 0.0, 0.0), end) for end in (0, 1)]
+        arms = _arm(ends, one, anchors), _arm(ends, two, anchors)
         if joint.kind == "compound":
             return [self._compound(joint, (one, two), anchors, arms, k)]
-        axes = self._axes(one, joint, k)
+        axes = _axes(ends, one, joint)
         along = AXES[joint.axis]
         across = np.delete(axes, along, axis=0)
         none = np.zeros((0, 3))
@@ -122,7 +124,7 @@ class Ties:
             torques = across
         elif joint.kind == "prismatic":
             forces, torques = across, axes
-        found = [holds(one, two, arms, forces, torques)]
+        found = [replace(holds(one, two, arms, forces, torques), cap=_strength(joint, len(forces), len(torques)))]
         own = (axes[along][None], none) if joint.kind == "prismatic" else (none, axes[along][None])
         if acts and joint.kind in ("revolute", "prismatic"):
             found.append(replace(holds(one, two, arms, *own), cap=acting.most[k : k + 1]))
@@ -157,38 +159,45 @@ class Ties:
         one, two = (np.full(len(held), row, dtype=np.intp) for row in rows_of)
         return Columns(one, two, -on_one, on_two, np.ones(len(held), dtype=bool))
 
-    def _spring(self, spring: Spring, k: int) -> Columns:
-        ends = [[self._guide(guide, frame) for frame in (k, k + 1)] for guide in (spring.path[0], spring.path[-1])]
-        rows = [self._row.get(guide.body or "", WORLD) for guide in (spring.path[0], spring.path[-1])]
-        line = np.mean(ends[1], axis=0) - np.mean(ends[0], axis=0)
+    def _spring(self, spring: Spring, ends: Ends) -> Columns:
+        guides = spring.path[0], spring.path[-1]
+        rows = [self._row.get(guide.body or "", WORLD) for guide in guides]
+        at = [[_place(ends, row, guide.position, end) for end in (0, 1)]
+              for row, guide in zip(rows, guides, strict=True)]  # fmt: skip
+        line = np.mean(at[1], axis=0) - np.mean(at[0], axis=0)
         line /= max(float(np.linalg.norm(line)), 1e-12)
-        arms = self._arm(rows[0], ends[0], k), self._arm(rows[1], ends[1], k)
+        arms = _arm(ends, rows[0], at[0]), _arm(ends, rows[1], at[1])
         return holds(rows[0], rows[1], arms, line[None], np.zeros((0, 3)))
 
-    def _guide(self, guide: Guide, frame: int) -> Floats:
-        return self._place(self._row.get(guide.body or "", WORLD), guide.position, frame)
 
-    def _place(self, row: int, position: tuple[float, float, float], frame: int) -> Floats:
-        if row < 0:
-            return np.array(position)
-        q = self._evidence.body_q[frame, row]
-        place: Floats = q[:3] + rotate(q[3:], np.array(position))
-        return place
+def _strength(joint: Joint, forces: int, torques: int) -> Floats:
+    """The most that it passes on along each of its ways as a mean, (f + t,) [N], [N m]: with more it breaks."""
+    most = [np.inf if each is None else TORN * each for each in (joint.break_force, joint.break_torque)]
+    return np.repeat(most, (forces, torques))
 
-    def _arm(self, row: int, places: list[Floats], k: int) -> Floats:
-        """From a body's centre of mass to a point, halfway between two frames."""
-        if row < 0:
-            return np.zeros(3)
-        com = self._evidence.motion.com
-        arm: Floats = 0.5 * (places[0] - com[k, row] + places[1] - com[k + 1, row])
-        return arm
 
-    def _axes(self, one: int, joint: Joint, k: int) -> Floats:
-        """The parent anchor's axes in the world, halfway, as rows (3, 3)."""
-        own = rotate(np.array(joint.parent_turn), np.eye(3))
-        if one < 0:
-            return np.asarray(own)
-        q = self._evidence.body_q
-        axes = rotate(q[k, one, 3:], own) + rotate(q[k + 1, one, 3:], own)
-        found: Floats = axes / np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
-        return found
+def _place(ends: Ends, row: int, position: tuple[float, float, float], end: int) -> Floats:
+    """Where a point of a body is at one of two poses, (3,) [m]."""
+    if row < 0:
+        return np.array(position)
+    q = ends.q[end, row]
+    place: Floats = q[:3] + rotate(q[3:], np.array(position))
+    return place
+
+
+def _arm(ends: Ends, row: int, places: list[Floats]) -> Floats:
+    """From a body's centre of mass to a point, halfway between two poses."""
+    if row < 0:
+        return np.zeros(3)
+    arm: Floats = 0.5 * (places[0] - ends.com[0, row] + places[1] - ends.com[1, row])
+    return arm
+
+
+def _axes(ends: Ends, one: int, joint: Joint) -> Floats:
+    """The parent anchor's axes in the world, halfway, as rows (3, 3)."""
+    own = rotate(np.array(joint.parent_turn), np.eye(3))
+    if one < 0:
+        return np.asarray(own)
+    axes = rotate(ends.q[0, one, 3:], own) + rotate(ends.q[1, one, 3:], own)
+    found: Floats = axes / np.maximum(np.linalg.norm(axes, axis=1, keepdims=True), 1e-12)
+    return found

@@ -92,6 +92,7 @@ class CheckForces(Check):
                 break
             means, limits = _mean(left, n), pull * _mean(np.maximum(share, least), n) + _mean(slack, n)
             ratio = lengths(means) / limits
+            ratio[np.isnan(ratio)] = np.inf  # what is no number is the worst
             k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))
             worst = max(worst, (float(ratio[k, i]), n, k, i, means[k, i], float(limits[k, i])), key=_ratio)
         _, n, k, i, mean, limit = worst

@@ -17,6 +17,7 @@ from wsim.judge.checks import (
     fluid,
     fluid_books,
     fluid_height,
+    fluid_push,
     forces,
     impacts,
     joint,
@@ -35,6 +36,7 @@ from wsim.judge.checks import (
     rolling,
     run,
     settled,
+    stated,
     water,
 )
 
@@ -43,10 +45,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy, contact,
-    rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books, lift,
-    fluid_height, water,
-    camera,
+    physics, settled, stated, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy,
+    contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books,
+    fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 
 

@@ -1,0 +1,98 @@
+"""How bodies go on from a frame, or came to it: where their courses meet, a blow was.
+
+Between two frames bodies go on as they did before and as they will after, but for the blow itself. Where the course of
+one frame, carried on, meets that of the next, carried back, there was the blow, short beside the frames; and its
+impulses have the arms that bodies had then.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
+from wsim.judge.books.forces import Poses
+from wsim.judge.evidence.motion import FLOAT32
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
+
+FINE = 0.1  # of the time between frames: about a step, where nobody says how long one is
+WITHIN = 0.2  # of a step: courses that pass each other by no more of the jump meet
+
+
+def step_of(evidence: Evidence) -> float:
+    """The simulator's time step [s]."""
+    known = evidence.recording.metadata.get("time_step") or evidence.world.time_step
+    return float(known or FINE * evidence.motion.dt_frames)
+
+
+class Courses:
+    """How bodies go on from a frame, or came to it: with what sped them up in the interval before, or after."""
+
+    def __init__(self, evidence: Evidence, changed: Bools) -> None:
+        self.evidence, self.changed, motion = evidence, changed, evidence.motion
+        self.dt = step_of(evidence)
+        falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
+        # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
+        own = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0)], axis=2) / motion.h[:, None, None]
+        fall = np.concatenate([falls, np.zeros_like(falls)], axis=1)[None]
+        known = np.where(changed[..., None], fall, own)
+        # How far its steps take a body from its course in the intervals around.
+        trapezoid = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
+        own = np.where(changed, 0.0, np.linalg.norm(np.diff(motion.com, axis=0) - trapezoid, axis=2))
+        none = np.zeros((1, own.shape[1]))
+        self.strays = np.minimum(np.concatenate([none, own[:-1]]), np.concatenate([own[1:], none]))
+        self.before = np.concatenate([fall, known[:-1]])
+        self.after = np.concatenate([known[1:], fall])
+
+    def at(self, k: int, side: int, when: float) -> Poses:
+        """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
+        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
+        v, com = self._going(k, side, when)
+        w = motion.w[frame] + (self.after if side else self.before)[k, :, 3:] * by
+        angle = 0.5 * (motion.w[frame] + w) * by
+        size = lengths(angle)[:, None]
+        turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
+        q = self.evidence.body_q[frame]
+        place = com + rotate(turn, q[:, :3] - motion.com[frame])
+        return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
+
+    def _going(self, k: int, side: int, when: float) -> tuple[Floats, Floats]:
+        """Velocities and centres of mass, as `at`."""
+        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
+        v = motion.v[frame] + (self.after if side else self.before)[k, :, :3] * by
+        return v, motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+
+    def _since(self, k: int, side: int, when: float) -> tuple[int, float]:
+        """The frame that a course is told from, and how long after it that is [s]."""
+        return k + side, when - side * float(self.evidence.motion.h[k])
+
+    def meet(self, k: int, rows: list[int]) -> float | None:
+        """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
+        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
+        ends = [[self._going(k, side, when)[1] for side in (0, 1)] for when in (0.0, h)]
+        first, last = (before[rows] - after[rows] for before, after in ends)
+        apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
+        when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
+        when = min(max(when, 0.0), h)
+        before, after = (self.at(k, side, when) for side in (0, 1))
+        far = np.linalg.norm(before.com[rows] - after.com[rows], axis=1)
+        jump = np.linalg.norm(after.v[rows] - before.v[rows], axis=1)
+        rounding = 4.0 * FLOAT32 * np.linalg.norm(motion.com[k, rows], axis=1)
+        if np.any(far > WITHIN * jump * self.dt + 2.0 * self.strays[k, rows] + rounding):
+            return None
+        turn = multiply(after.q[rows, 3:], conjugate(before.q[rows, 3:]))
+        angle = 2.0 * np.linalg.norm(turn[:, :3], axis=1)
+        rate = np.maximum(np.linalg.norm(before.w[rows], axis=1), np.linalg.norm(after.w[rows], axis=1))
+        spun = np.linalg.norm(after.w[rows] - before.w[rows], axis=1)
+        if np.any(angle > spun * self.dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
+            return None
+        return when

@@ -1,0 +1,139 @@
+"""Checks of the motion that the stage itself states: where bodies start, and where what is led goes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.paths import exponential
+from wsim.geometry.rotations import lengths, multiply, rotate
+from wsim.judge.checks.check import Check, Checks, worst
+from wsim.judge.evidence.motion import FLOAT32
+from wsim.scene.usd_motion import curve_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.verdict import Finding
+    from wsim.scene.world import Body
+
+    Floats = NDArray[np.float64]
+
+OURS = "loose_order"  # what wsim's simulator says of itself: another engine's model may start anywhere
+
+
+@dataclass
+class CheckStart(Check):
+    """Each body starts where, turned and moving as the stage states."""
+
+    place: float = 5e-3  # of the body's radius: a seed moves it by 1e-4 of its thickness, joints are closed likewise
+    turn: float = 5e-3  # [rad]: a seed turns a hinge by 1e-4
+    share: float = 5e-3  # of a stated speed; joints may miss it by 1e-3
+    still: float = 1e-4  # [m/s, rad/s]: below, a loose body stands
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """What starts most unlike what is stated, of places, turns and speeds."""
+        if OURS not in evidence.recording.metadata or not len(evidence.motion.mass):
+            return []
+        found = []
+        for k, body in enumerate(evidence.world.bodies):
+            if not body.kinematic:
+                found += self._of(evidence, k, body)
+        return worst([finding for finding in found if not finding.passed] or found) if found else []
+
+    def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
+        motion = evidence.motion
+        start, radius = motion.q[0, k], float(motion.radius[k])
+        rounding = 8.0 * FLOAT32 * float(np.linalg.norm(body.position))
+        aside = float(np.linalg.norm(start[:3] - body.position))
+        turned = _angle(start[3:], np.array(body.rotation))
+        found = [
+            self._measured(body, f"{body.prim} starts {aside:.3g} m from where it stands", aside,
+                           self.place * radius + rounding, "m"),
+            self._measured(body, f"{body.prim} starts turned by {np.degrees(turned):.3g}°", turned, self.turn, "rad"),
+        ]  # fmt: skip
+        for name, unit, has, stated in (
+            ("moves", "m/s", motion.v[0, k], np.array(body.velocity)),
+            ("turns", "rad/s", motion.w[0, k], np.array(body.angular_velocity)),
+        ):
+            if stated.any() or not motion.jointed[k]:  # what joints make of a speed that nobody states is theirs
+                off = float(np.linalg.norm(has - stated))
+                message = f"{body.prim} {name} at the start by {off:.3g} {unit} otherwise than stated"
+                limit = self.share * float(np.linalg.norm(stated)) + self.still
+                found.append(self._measured(body, message, off, limit, unit))
+        return found
+
+    def _measured(self, body: Body, message: str, value: float, limit: float, unit: str) -> Finding:
+        return self.measured(
+            message, value, limit, unit, expected=0.0, prim=body.prim, time=0.0,
+            limit_from="what a seed and the joints' closing change", fine="All starts as it is stated to",
+        )  # fmt: skip
+
+
+@dataclass
+class CheckPath(Check):
+    """What is kinematic goes where its velocity takes it, or along its path."""
+
+    place: float = 1e-3  # of the body's radius
+    turn: float = 1e-3  # [rad]
+    share: float = 1e-3  # of the way gone, by adding up steps in single precision
+
+    def evaluate(self, evidence: Evidence) -> list[Finding]:
+        """The place and the turn that are farthest off, of each kinematic body."""
+        if OURS not in evidence.recording.metadata:
+            return []
+        found: list[Finding] = []
+        for k, body in enumerate(evidence.world.bodies):
+            if body.kinematic:
+                found += self._of(evidence, k, body)
+        return worst(found) if found else []
+
+    def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
+        motion, time = evidence.motion, evidence.time
+        places, turns = _led(body, time)
+        far = lengths(motion.q[:, k, :3] - places)
+        way = np.concatenate([[0.0], np.cumsum(lengths(np.diff(places, axis=0)))])
+        rounding = 8.0 * FLOAT32 * lengths(places)
+        turned = np.array([_angle(has, own) for has, own in zip(motion.q[:, k, 3:], turns, strict=True)])
+        round_ = float(np.linalg.norm(body.angular_velocity)) * (time - time[0])
+        return [
+            self._worst(body, time, far, self.place * motion.radius[k] + self.share * way + rounding, "m", "is"),
+            self._worst(body, time, turned, self.turn + self.share * round_, "rad", "is turned"),
+        ]
+
+    def _worst(self, body: Body, time: Floats, off: Floats, limit: Floats, unit: str, verb: str) -> Finding:
+        limit = np.broadcast_to(limit, off.shape)
+        worst_at = int(np.argmax(np.where(np.isfinite(off), off / limit, np.inf)))
+        by = "path" if body.path is not None else "velocity"
+        message = f"{body.prim} {verb} {off[worst_at]:.3g} {unit} from where its {by} takes it"
+        return self.measured(
+            message, float(off[worst_at]), float(limit[worst_at]), unit, expected=0.0, prim=body.prim,
+            time=float(time[worst_at]), limit_from=f"{self.place:g} of its size, {self.share:g} of its way",
+            fine=f"What is kinematic goes by its {by}",
+        )  # fmt: skip
+
+
+def _led(body: Body, time: Floats) -> tuple[Floats, Floats]:
+    """Where a kinematic body is at each time: places (T, 3) [m] and rotations (T, 4), xyzw."""
+    if body.path is not None:
+        curve = curve_of(body.path)
+        poses = [curve.pose(float(t)) for t in time]
+        return np.array([place for place, _ in poses]), np.array([turn for _, turn in poses])
+    since, start = (time - time[0])[:, None], np.array(body.rotation)
+    turns = multiply(exponential(since * np.array(body.angular_velocity)), np.broadcast_to(start, (len(time), 4)))
+    arm = np.array(body.com)
+    centre = np.array(body.position) + rotate(start, arm) + since * np.array(body.velocity)
+    return centre - rotate(turns, np.broadcast_to(arm, centre.shape)), turns
+
+
+def _angle(a: Floats, b: Floats) -> float:
+    """Between two rotations, xyzw [rad]."""
+    # The chord, not the cosine, which loses small angles to rounding.
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    return float(4.0 * np.arcsin(min(1.0, 0.5 * min(np.linalg.norm(a - b), np.linalg.norm(a + b)))))
+
+
+CHECKS: Checks = (CheckStart, CheckPath)

@@ -1,0 +1,145 @@
+"""What particles give a body by the method's own sum: still water, and a hole in it where a box is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.checks.test_lift import EDGES, SOUND, SPACING, WATER, immersed, lifted
+from tests.judge.theory import G, ask, ball, box, only, with_world
+from wsim.geometry.filled import box_lattice
+from wsim.judge.books.fluid_push import FluidPush, Method, filled
+from wsim.judge.checks.fluid_push import CheckFluidPush
+from wsim.judge.evidence.evidence import Evidence
+from wsim.scene.world import Shape
+
+COUNT = 6 * 4 * 5  # particles that fill a box of EDGES
+H = 1.3 * SPACING
+
+
+def told(recording, **method):
+    """A recording that says what SPH it was made with, as wsim's do."""
+    facts = {"smoothing_length": H, "artificial_viscosity": 0.01, "laminar_factor": 10.0, "background_pressure": 0.0}
+    counts = {body.prim: COUNT for body in recording.world.bodies}
+    return replace(recording, metadata={**recording.metadata, "sph": {**facts, "body_particles": counts, **method}})
+
+
+def pushes(recording, frames):
+    """Forces (frames, B, 3) [N]."""
+    evidence = Evidence(recording)
+    push = FluidPush(evidence, Method.of(evidence))
+    return np.array([push.at(k, k, list(range(len(recording.world.bodies)))) for k in frames])
+
+
+def push_on(recording):
+    return pushes(recording, [3])[0]
+
+
+def agreeing(recording, by=(0.0, 0.0, 0.0)):
+    """A recording of still water that says what its particles give, and `by` more [of the lift]."""
+    impulse = np.zeros_like(recording.applied_impulse)
+    still = pushes(recording, [0])
+    impulse[1:] = (still + np.array(by) * np.abs(still[..., 2:])) / 60.0
+    return replace(recording, applied_impulse=impulse)
+
+
+@pytest.mark.parametrize("height", [0.14, 0.06, 0.04])
+def test_the_sum_over_particles_is_the_lift_of_archimedes(height):
+    """Wholly under water and in step with its lattice: what the sum and its integral differ by is some percent.
+
+    Near the floor, too, where the particles under the box are two layers.
+    """
+    force = push_on(told(immersed(height, at=(0.0, 0.0))))[0]
+    assert force[2] == pytest.approx(lifted(height), rel=0.03)
+    assert np.abs(force[:2]).max() < 1e-3 * force[2]
+
+
+def test_the_force_of_one_particle_is_the_pairs():
+    """One particle of fluid over a box of one cell, by hand: Wendland's slope, both pressures, no velocities."""
+    recording = told(immersed(), body_particles={"/World/box0": 1})
+    small = with_world(recording, bodies=[box("box0", size=(SPACING,) * 3)])
+    water = small.fluids[WATER]
+    at = small.body_q[:, 0, :3] + [0.0, 0.0, 1.2 * SPACING]
+    rho = np.full((len(water.time), 1), 1002.0, dtype=np.float32)
+    one = replace(water, position=at[:, None].astype(np.float32), velocity=0.0 * at[:, None], density=rho)
+    force = push_on(replace(small, fluids={WATER: one}))[0]
+    p = SOUND**2 * 2.0
+    under = p + 1000.0 * G * 1.2 * SPACING  # the box's particle is deeper
+    q = 1.2 * SPACING / H
+    slope = 21.0 / (16.0 * np.pi * H**3) * 5.0 * q * (1.0 - q / 2.0) ** 3 / H  # -dW/dr
+    cell = SPACING**3
+    assert force == pytest.approx([0.0, 0.0, -cell * (1000.0 * cell / 1002.0) * (p + under) * slope], rel=1e-4)
+
+
+@pytest.mark.parametrize("by", [(0, 0, 0.03), (0, 0, -0.03), (0.03, 0, 0), (0, -0.03, 0)])
+@pytest.mark.parametrize("height", [0.24, 0.02])
+def test_a_push_that_no_particle_feels(height, by):
+    """Three hundredths of the lift, up or sideways, of what floats and of what lies on the floor."""
+    finding = only(ask(CheckFluidPush(), agreeing(told(immersed(height, frames=14)), by)))
+    assert not finding.passed and finding.prim == "/World/box0"
+
+
+@pytest.mark.parametrize("by", [(0, 0, 0.0), (0, 0, 0.008), (0.008, 0, 0)])
+def test_what_particles_give_is_let_pass(by):
+    assert only(ask(CheckFluidPush(), agreeing(told(immersed(frames=14)), by))).passed
+
+
+def test_bodies_near_each_other_are_asked_each():
+    beside = told(immersed(at=(-0.2, 0.0), frames=14, others=[np.array([0.0, 0.0, 0.19])]))
+    sound = agreeing(beside)
+    assert [finding.passed for finding in ask(CheckFluidPush(), sound)] == [True, True]
+    impulse = sound.applied_impulse.copy()
+    impulse[:, 0] *= 1.05
+    impulse[:, 1] *= 0.95  # in sum nothing is off
+    assert [f.passed for f in ask(CheckFluidPush(), replace(sound, applied_impulse=impulse))] == [False, False]
+
+
+def test_what_lasts_for_a_while_is_found_among_what_scatters():
+    """A tenth for a quarter of the time, where the first half splashes: its own stretch is quiet."""
+    sound = agreeing(told(immersed(frames=81)))
+    impulse = sound.applied_impulse.copy()
+    impulse[1:41, 0, 2] *= 1.0 + 0.5 * np.random.default_rng(3).standard_normal(40)
+    assert only(ask(CheckFluidPush(), replace(sound, applied_impulse=impulse))).passed
+    impulse[61:, 0, 2] *= 1.1
+    finding = only(ask(CheckFluidPush(), replace(sound, applied_impulse=impulse)))
+    assert not finding.passed and finding.span[0] >= 60.0 / 60.0 - 1e-6
+
+
+def test_few_of_many_intervals_are_looked_at_and_on_end():
+    check = CheckFluidPush(most=120)
+    rows = check._rows(2000, 1)
+    assert len(rows) == 120 and rows[0] == 0 and rows[-1] == 1999
+    assert np.count_nonzero(np.diff(rows) == 1) == 116
+    assert len(check._rows(2000, 50)) == 60 and len(check._rows(100, 1)) == 100
+
+
+def test_what_is_half_a_spacing_more_is_filled_as_the_simulator_did():
+    """3.5 spacings: three cells or four, by the last digit; the count says which."""
+    odd = box(size=(0.35, 0.35, 0.3))
+    for cells in (3, 4):
+        samples = filled(odd, 0.1, cells * cells * 3)
+        assert len(samples.volume) == cells * cells * 3
+        assert samples.volume.sum() == pytest.approx(0.35 * 0.35 * 0.3, rel=1e-4)
+    assert filled(odd, 0.1, 50) is None
+
+
+def test_shapes_of_a_body_are_filled_each_where_it_is():
+    def moved(kind, size, x):
+        return Shape(prim=f"/World/b/{kind}", kind=kind, size=size, position=(x, 0.0, 0.0))
+
+    shapes = [moved("box", (0.2, 0.2, 0.2), -0.5), moved("cylinder", (0.1, 0.2), 0.5)]
+    lattice = len(box_lattice(np.array([0.2, 0.2, 0.2]), 0.05).volume)
+    body = ball().model_copy(update={"shapes": shapes})
+    samples = next(found for n in range(200) if (found := filled(body, 0.05, n)) is not None)
+    assert np.count_nonzero(samples.position[:, 0] < 0.0) == lattice
+    assert samples.volume.sum() == pytest.approx(0.2**3 + np.pi * 0.1**2 * 0.2, rel=1e-6)
+
+
+def test_not_asked_where_it_cannot_be_told():
+    """Without the method's settings, without the fluid's impulses, and of a mesh, whose particles are not known."""
+    recording = agreeing(told(immersed(frames=14)), (0, 0, 0.5))
+    assert ask(CheckFluidPush(), replace(recording, metadata={"time_step": 1e-3})) == []
+    assert ask(CheckFluidPush(), replace(recording, applied_impulse=None)) == []
+    mesh = Shape(prim="/World/box0/g", kind="mesh", size=EDGES)
+    body = recording.world.bodies[0].model_copy(update={"shapes": [mesh]})
+    assert ask(CheckFluidPush(), with_world(recording, bodies=[body])) == []

@@ -1,0 +1,91 @@
+"""What the stage states of starts and of what is led, held against recordings of other starts and other ways."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import pytest
+
+from wsim.judge.checks.stated import CheckPath, CheckStart
+from wsim.judge.evidence.evidence import Evidence
+from wsim.scene import Scene
+from wsim.sim import Simulation
+from wsim.sim.collect import collect
+
+
+def thrown(scene, speed=3.0, spin=100.0, aside=0.0, tilt=0.0, swing=40.0):
+    scene.simulation(duration=0.2, frame_rate=30)
+    scene.box(
+        "brick", size=(0.2, 0.3, 0.1), position=(aside, 0, 1), velocity=(speed, 0, 2), mass=1,
+        angular_velocity_deg=(0, 0, spin), rotation_deg=(0, tilt, 0),
+    )  # fmt: skip
+    scene.box("still", size=(0.2, 0.2, 0.2), position=(0, 5, 1), mass=1)
+    scene.box("bob", size=(0.4, 0.05, 0.05), mass=1, position=(0.2, 9, 2), angular_velocity_deg=(0, swing, 0))
+    scene.joint_revolute("hinge", None, "bob", anchor=(0, 9, 2), axis="Y")
+
+
+def led(scene, top=1.5, speed=0.3, spin=60.0):
+    scene.simulation(duration=1.0, frame_rate=30)
+    scene.box("lift", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+    scene.path("lift", times=[0, 1], positions=[(0, 0, 0.5), (0, 0, top)])
+    scene.box("belt", size=(1, 1, 0.1), position=(0, 3, 0.5), kinematic=True, velocity=(speed, 0, 0))
+    scene.cylinder(
+        "table", radius=0.5, height=0.1, position=(0, 6, 0.5), kinematic=True, angular_velocity_deg=(0, 0, spin)
+    )
+
+
+def evidence(tmp_path, build, seed=0, **values):
+    """What happens with those values, told as the world without them."""
+    made = []
+    for k, numbers in enumerate([{}, values]):
+        scene, path = Scene(), tmp_path / f"{build.__name__}_{k}.usda"
+        build(scene, **numbers)
+        scene.save(path)
+        made.append(collect(Simulation(path, "cpu", seeds=[seed])))
+    return Evidence(dataclasses.replace(made[1], world=made[0].world).recording(0))
+
+
+@pytest.mark.parametrize("seed", [0, 7])
+def test_as_stated_all_passes(tmp_path, seed):
+    for build, check in ((thrown, CheckStart()), (led, CheckPath())):
+        found = check.run(evidence(tmp_path, build, seed))
+        assert found and all(finding.passed for finding in found), found
+
+
+@pytest.mark.parametrize(
+    ("values", "prim", "value"),
+    [
+        ({"speed": 3.3}, "brick", 0.3),
+        ({"spin": 110.0}, "brick", math.radians(10)),
+        ({"aside": 0.02}, "brick", 0.02),
+        ({"tilt": 5.0}, "brick", math.radians(5)),
+        ({"swing": 44.0}, "bob", math.radians(4)),
+    ],
+)
+def test_another_start_is_found_at_its_size(tmp_path, values, prim, value):
+    failed = [finding for finding in CheckStart().run(evidence(tmp_path, thrown, **values)) if not finding.passed]
+    assert [finding.prim for finding in failed][0] == f"/World/{prim}"
+    assert failed[0].value == pytest.approx(value, rel=1e-3) or failed[1].value == pytest.approx(value, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("values", "prim", "value"),
+    [
+        ({"top": 1.65}, "lift", 0.15),
+        ({"top": 0.5}, "lift", 1.0),
+        ({"speed": 0.33}, "belt", 0.03),
+        ({"spin": 66.0}, "table", math.radians(6)),
+        ({"spin": -60.0}, "table", math.radians(120)),
+    ],
+)
+def test_another_way_is_found_at_its_size(tmp_path, values, prim, value):
+    failed = [finding for finding in CheckPath().run(evidence(tmp_path, led, **values)) if not finding.passed]
+    assert [(finding.prim, finding.time) for finding in failed] == [(f"/World/{prim}", pytest.approx(1.0))]
+    assert failed[0].value == pytest.approx(value, rel=1e-3)
+
+
+def test_another_engine_s_model_may_start_anywhere(tmp_path):
+    told = evidence(tmp_path, thrown, speed=6.0)
+    told.recording.metadata.pop("loose_order")
+    assert CheckStart().run(told) == []
