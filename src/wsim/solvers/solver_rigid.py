@@ -20,7 +20,11 @@ from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
 from wsim.solvers.host_models import host_models
 from wsim.solvers.ropes import RopesWarp
-from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
+from wsim.solvers.single_precision import (
+    last_tolerance,
+    soften_contacts_for_single_precision,
+    soften_for_single_precision,
+)
 from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
@@ -240,6 +244,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._remaining = wp.zeros(data.naconmax, dtype=float)
             self._sums = wp.zeros((data.nworld, self.mj_model.nbody), dtype=wp.vec2)
             self._bow = wp.zeros(data.naconmax, dtype=float)
+            self._last_tolerance = wp.array(
+                [last_tolerance(self._mujoco, self.mj_model, self.contact_config)], dtype=float
+            )
         self.mjw_model.callback.contactfilter = self._mend_contacts
 
     def _mend_contacts(self, model: Any, data: Any) -> None:
@@ -331,13 +338,13 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._aim(model, data)
         if self._drives:
             self._drives.aim(model, data)
-        for k in range(self.contact_config.solutions_warp):
-            if k:
-                self._aim_again(model, data)
+        for _ in range(self.contact_config.solutions_warp - 1):
             warp.solve(model, data)
+            self._aim_again(model, data)
         if self.breaking is not None:
-            self.breaking.give_way(model, data)
             warp.solve(model, data)
+            self.breaking.give_way(model, data)
+        self._solve_last(model, data)
         if isinstance(self.impulses, ContactImpulsesWarp):
             self.impulses.add(data, self._dt)
         self._implicit(model, data)
@@ -348,6 +355,14 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
         if model.nu:
             self._tell_efforts(model, data)
+
+    def _solve_last(self, model: Any, data: Any) -> None:
+        """The solution whose forces move the bodies, and are recorded."""
+        option = model.opt
+        usual = option.tolerance, option.iterations
+        option.tolerance, option.iterations = self._last_tolerance, self.contact_config.last_turns
+        self._mujoco_warp.solve(model, data)
+        option.tolerance, option.iterations = usual
 
     def _implicit(self, model: Any, data: Any) -> None:
         """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
