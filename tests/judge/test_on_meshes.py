@@ -29,6 +29,7 @@ def test_a_ball_beside_its_track_is_carried_by_nothing(tmp_path):
     assert failing(edited(sound, "body_q", (slice(None), 0, 1), 0.3)) == {
         "CheckForces",
         "CheckRecordedForces",
+        "CheckStart",
         "CheckSupport",
     }
 
@@ -39,6 +40,7 @@ def test_a_crate_that_hovers_or_slides_up_a_height_field_is_found(tmp_path):
     assert failing(edited(sound, "body_q", (slice(None), 0, 2), 0.1)) == {
         "CheckForces",
         "CheckRecordedForces",
+        "CheckStart",
         "CheckSupport",
     }
     q, qd = sound.body_q.copy(), sound.body_qd.copy()
