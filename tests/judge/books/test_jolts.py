@@ -7,7 +7,12 @@ import pytest
 
 from tests.judge.theory import ask
 from wsim.judge.books import jolts
+from wsim.judge.books.laws import Laws
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.forces import CheckForces
 from wsim.judge.checks.recorded_ties import SAYS, CheckRecordedTies
+from wsim.judge.evidence.cords import track_of_spring
+from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Scene
 from wsim.sim import Simulation
@@ -157,6 +162,29 @@ def stated(recording, **scaled):
 @pytest.mark.parametrize("name", ["plate", "cart", "adrift", "seesaw"])
 def test_what_blows_do_to_ties_is_as_it_should_be(runs, name):
     assert not wrong(runs[name])
+
+
+@pytest.mark.parametrize("name", ["plate", "cart", "adrift"])
+def test_the_books_of_forces_and_of_energy_close(runs, name):
+    assert all(finding.passed for check in (CheckForces(), CheckEnergy()) for finding in ask(check, runs[name]))
+
+
+def test_forces_tell_how_a_push_changes_while_its_way_turns(runs):
+    """Where a spring goes from push to pull that is nearly all that the mean of both ends leaves of a torque."""
+    evidence = Evidence(runs["adrift"])
+    laws, motion = Laws(evidence), evidence.motion
+    first, third = laws.springs[0], laws.springs[2]  # at its first end, and at its second, the centre of mass
+    plain = 0.5 * (first.back[1:, 3:] + first.back[:-1, 3:] + third.wrench[1:, 3:] + third.wrench[:-1, 3:])
+    pull = track_of_spring(evidence, evidence.world.springs[0]).pull
+    turns = pull[1:] * pull[:-1] < 0.0
+    off, was = (np.linalg.norm(motion.torque[:, 0] - each, axis=1) for each in (laws.given()[0][:, 0, 3:], plain))
+    assert turns.sum() >= 4
+    assert off[turns].mean() < 0.4 * was[turns].mean()
+
+
+@pytest.mark.parametrize("by", [0.85, 1.15])
+def test_energy_tells_another_damping(runs, by):
+    assert not all(finding.passed for finding in ask(CheckEnergy(), stated(runs["plate"], damping=by)))
 
 
 @pytest.mark.parametrize("name", ["plate", "cart", "adrift"])
