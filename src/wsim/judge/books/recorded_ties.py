@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.books import jolts
 from wsim.judge.books.laws import RESOLVED, Laws
 from wsim.judge.books.ropes import Ropes
 from wsim.judge.evidence.cords import track_of_spring
@@ -198,11 +199,20 @@ class RecordedTies:
         found: Floats = np.maximum(bend[1:], bend[:-1]) / 6.0 + late
         return found
 
-    def rubs(self, k: int) -> tuple[Floats, Bools]:
-        """Joint k's direction of motion, (T - 1,), and where it keeps it all the interval."""
+    @cached_property
+    def struck(self) -> Bools:
+        """Where the speeds of each body's mechanism may jump, (T - 1, B)."""
+        return jolts.struck(self._evidence, self)
+
+    def rubs(self, k: int) -> tuple[Floats, Bools, Floats]:
+        """Joint k's direction of motion, (T - 1,), where it has it at both ends of an interval, and the most of it
+        for which a blow may have turned it back, a share.
+        """
         rate, joint, h = self.laws.rate(self.joints[k]), self.joints[k], self._evidence.motion.h
         known = np.all([law.known for law in self.laws.joints[joint.prim]], axis=0)
-        return np.sign(rate[1:]), known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0)
+        lasts, at = known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0), self._evidence.joint(joint)
+        back = np.zeros(len(h)) if at is None else jolts.reversed_share(at.position, rate, h, self._evidence.motion.dt)
+        return np.sign(rate[1:]), lasts, np.where(self.struck[:, self.pairs[k][1]], back, 0.0)
 
     def pushed_off(self, k: int, near: float) -> Floats:
         """Where joint k's stops may not push: 1 upwards, 2 downwards, 3 both, (T - 1,)."""
@@ -231,8 +241,20 @@ class RecordedTies:
         turned = np.linalg.norm((last - first) * scale, axis=1)
         change = _jump(tension)
         late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
-        may = (0.5 * np.minimum(change, np.abs(tension)) + (late + turned / 12.0) * np.abs(tension)) * turned
+        # One that goes from push to pull is next to nothing on the whole, and yet gives by how far its way turns: at
+        # most an eighth of its change, where that comes at once halfway, and a twelfth where it comes evenly.
+        uneven = np.maximum(0.5 * np.minimum(change, np.abs(tension)), self._swings(cord) / 8.0)
+        may = (uneven + (late + turned / 12.0) * np.abs(tension)) * turned
         return off, may, np.abs(tension)
+
+    def _swings(self, cord: int) -> Floats:
+        """By how much the impulse of a spring's law changes where it turns from push to pull, or back, (T - 1,)."""
+        springs, h = self._evidence.world.springs, self._evidence.motion.h
+        if cord >= len(springs):
+            return np.zeros(len(h))
+        pull = track_of_spring(self._evidence, springs[cord]).pull
+        found: Floats = np.where(pull[1:] * pull[:-1] < 0.0, np.abs(np.diff(pull)) * h, 0.0)
+        return found
 
     def _ways(self, cord: int, row: int) -> tuple[Floats, Floats, Floats]:
         """What a tension of one gives a body at the start, at the end and as a mean of each interval, (T - 1, 6)."""
@@ -259,7 +281,15 @@ class RecordedTies:
         track = track_of_spring(self._evidence, spring)
         far, fast = np.abs(motion.com).max(initial=0.0), motion.speed.max(initial=0.0)
         rounding = 8.0 * FLOAT32 * (spring.stiffness * far + spring.damping * fast)
-        return Stated(0.5 * (track.pull[1:] + track.pull[:-1]), self._by_frames(track.pull) + rounding, law.known)
+        mean, unsure = 0.5 * (track.pull[1:] + track.pull[:-1]), self._by_frames(track.pull)
+        rows = [row for end, row in self.ends if end == cord]
+        hit = self.struck[:, rows].any(axis=1)
+        if hit.any():
+            gains, stretch = (spring.stiffness, spring.damping), track.length - spring.rest_length
+            jolted, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.dt)
+            may = may + 8.0 * FLOAT32 * spring.damping * far / motion.h
+            mean, unsure = np.where(hit, jolted, mean), np.where(hit, may, unsure)
+        return Stated(mean, unsure + rounding, law.known)
 
     def slack(self, cord: int) -> Bools:
         """Where a rope cannot be taut, (T - 1,)."""

@@ -148,8 +148,9 @@ class CheckRecordedTies(Check):
         given, limit = ties.track.friction[1:, k].astype(np.float64), self.exact * (least + joint.friction * h)
         off, what = np.abs(given) - joint.friction * h, "rubs more than its dry friction is"
         if joint.friction > 0.0:
-            way, lasts = ties.rubs(k)
-            off = np.maximum(off, np.where(lasts, np.abs(given + way * joint.friction * h), 0.0))
+            way, lasts, back = ties.rubs(k)
+            lacks = np.abs(given + way * joint.friction * h) - 2.0 * back * joint.friction * h
+            off = np.maximum(off, np.where(lasts, lacks, 0.0))
             limit, what = limit + self.law * joint.friction * h, "rubs otherwise than its dry friction does"
         yield Asked("friction", joint.prim, joint.child, what, off, limit, unit)
 
