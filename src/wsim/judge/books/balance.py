@@ -22,6 +22,7 @@ from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.repeats import again, fresh
+from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
 from wsim.judge.books.struck import Struck
 from wsim.judge.books.ties import Ties
@@ -246,17 +247,20 @@ class Balance:
     def _lasting(
         self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, copy: Rows
     ) -> list[Floats]:
-        """The unit ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
+        """The ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
 
-        Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end.
+        Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end; as long as the
+        share of friction's most that acts against it, which is all where nothing resists rolling.
         """
         flat: list[Floats] = []
         later: list[Floats] = []
+        shares: list[Floats] = []
         for contacts, _, end in found:
             carried = _carried(contacts, ends[end], ends[1 - end])
             for kept, touching, poses in ((flat, contacts, ends[end]), (later, carried, ends[1 - end])):
                 u = slip(self._touching, touching, poses)
                 kept.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
+                shares.append(of_contacts(self._touching, touching, poses, kept[-1]))
         every, own, then = together([contacts for contacts, _, _ in found]), np.concatenate(flat), np.concatenate(later)
         side = np.repeat([end for _, _, end in found], [len(contacts) for contacts, _, _ in found])
         rows = len(ends[0].v) + 1
@@ -274,9 +278,12 @@ class Balance:
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
+        both = np.stack([np.concatenate(shares[0::2]), np.concatenate(shares[1::2])])
         if self._world.cone == "pyramid":  # its edges are up to 45 degrees off the slip, its sides nearer
             across = np.cross(every.normal, ways)
             ways = np.concatenate([ways, *((ways + side * across) * np.sqrt(0.5) for side in (-1.0, 0.0, 1.0))])
+        else:
+            ways *= np.stack([both[0], both.mean(axis=0)])[..., None]
         along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 
