@@ -21,6 +21,7 @@ from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
+from wsim.judge.books.landing import keeps_way, landing
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
@@ -208,7 +209,7 @@ class Balance:
                 found.append((contacts, moved, side))
         if not found:
             return []
-        lasting = self._lasting(found, ends, hit, self._copy[ks])
+        lasting = self._lasting(found, ends, hit, ks)
         columns = []
         for (contacts, moved, _), along in zip(found, lasting, strict=True):
             friction, rolling = self._touching.laws(contacts.shapes)
@@ -245,17 +246,22 @@ class Balance:
         return np.asarray(close & (_any(between, contacts) | (share == 0.0)))
 
     def _lasting(
-        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, copy: Rows
+        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, ks: Rows
     ) -> list[Floats]:
         """The ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
 
         Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end; as long as the
         share of friction's most that acts against it, which is all where nothing resists rolling.
         """
+        copy, masses = self._copy[ks], self._mass[self._copy[ks]].ravel()
+        landed = np.zeros(len(masses))
         flat: list[Floats] = []
         later: list[Floats] = []
         shares: list[Floats] = []
-        for contacts, _, end in found:
+        for contacts, there, end in found:
+            if end == 0:
+                lands = landing(self._touching, contacts, there, np.repeat(self._h[ks], hit.shape[1]), masses)
+                landed = np.maximum(landed, lands)
             carried = _carried(contacts, ends[end], ends[1 - end])
             for kept, touching, poses in ((flat, contacts, ends[end]), (later, carried, ends[1 - end])):
                 u = slip(self._touching, touching, poses)
@@ -274,7 +280,7 @@ class Balance:
         lasts = (slowest > np.maximum(self._creep(every, copy), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
-        lasts &= ~_any(hit, every)
+        lasts &= ~_any(hit, every) & keeps_way(every, slowest, landed)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)

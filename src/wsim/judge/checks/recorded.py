@@ -108,7 +108,10 @@ class CheckRecordedForces(Check):
         across = slip - np.einsum("nei,ni->ne", slip, normal)[..., None] * normal[:, None]
         speed = np.linalg.norm(across, axis=2)
         cosine = np.einsum("ni,ni->n", across[:, 0], across[:, 1]) / np.maximum(speed.prod(axis=1), 1e-30)
-        lasts = contacts.loose & contacts.lasting & (speed.min(axis=1) > STILL + contacts.rolled) & (cosine > ONE_WAY)
+        # As in the books, it lasts where it would have a frame longer: else it may have stuck, or turned and come back.
+        change, slowest = np.linalg.norm(across[:, 1] - across[:, 0], axis=1), speed.min(axis=1)
+        lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
+        lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         if not len(rows):
             return []
