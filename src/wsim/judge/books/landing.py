@@ -1,8 +1,8 @@
 """Points that come to touch within an interval: too softly for a blow, but what they change no frame shows.
 
-A box that rocks as it slides lands on one corner after another. Each landing takes the speed at which the point met, and
-shares it out to all of the body's motion: how its other points slip changes with it, and back again with the next, all
-between two frames. By the reduced mass of both an impulse of M u changes a body's velocities by about M u / m.
+A box that rocks as it slides lands on one corner after another. Each landing takes the speed at which the point met,
+and shares it out to all of the body's motion: how its other points slip changes with it, and back again with the next,
+all between two frames. By the reduced mass M of both an impulse of M u changes a body's velocities by about M u / m.
 """
 
 from __future__ import annotations
