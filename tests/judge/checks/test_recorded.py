@@ -110,6 +110,36 @@ def test_contacts_that_rub_more_or_less_than_their_surfaces(recording, friction,
     assert inside.passed is (said == "edge")
 
 
+def test_a_slip_that_blows_stop_and_start_again_does_not_last(tmp_path):
+    """Two plates under a roof knock each other about: each time the frames show one way, and a stop lies between.
+
+    A friction that is not the stated one is found all the same.
+    """
+    scene = Scene()
+    scene.simulation(duration=0.4, frame_rate=60)
+    scene.ground(friction=FRICTION)
+    for i in range(2):
+        scene.box(
+            f"w{i}", size=(0.04, 0.4, 0.5), position=(-0.2 + 0.4 * i, 0, 0.25), mass=1, friction=FRICTION,
+            restitution=0.4,
+        )  # fmt: skip
+    scene.box("roof", size=(0.8, 0.5, 0.04), position=(0, 0, 0.52), mass=2, friction=FRICTION, restitution=0.4)
+    scene.sphere(
+        "ball", radius=0.08, position=(-1.2, 0, 0.3), velocity=(5, 0, 0.5), mass=1, friction=FRICTION, restitution=0.4
+    )
+    Simulation(scene.save(tmp_path / "stage.usda"), device="cpu").run(tmp_path / "r.rrd")
+    found = read(tmp_path / "r.rrd")
+    assert not failed(found)
+    shapes = [shape.model_copy(update={"friction": 1.1 * FRICTION}) for shape in found.world.statics[0].shapes]
+    bodies = [
+        body.model_copy(update={"shapes": [s.model_copy(update={"friction": 1.1 * FRICTION}) for s in body.shapes]})
+        for body in found.world.bodies
+    ]
+    ground = found.world.statics[0].model_copy(update={"shapes": shapes})
+    other = found.world.model_copy(update={"bodies": bodies, "statics": [ground]})
+    assert failed(replace(found, world=other)) == {"1"}
+
+
 def test_a_contact_that_pulls_or_is_elsewhere(recording):
     track = recording.contacts
     pulling, elsewhere = track.sums.copy(), track.sums.copy()

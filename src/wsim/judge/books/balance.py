@@ -21,7 +21,9 @@ from wsim.judge.books import arms
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
+from wsim.judge.books.landing import keeps_way, landing
 from wsim.judge.books.repeats import again, fresh
+from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
 from wsim.judge.books.struck import Struck
 from wsim.judge.books.ties import Ties
@@ -207,7 +209,7 @@ class Balance:
                 found.append((contacts, moved, side))
         if not found:
             return []
-        lasting = self._lasting(found, ends, hit, self._copy[ks])
+        lasting = self._lasting(found, ends, hit, ks)
         columns = []
         for (contacts, moved, _), along in zip(found, lasting, strict=True):
             friction, rolling = self._touching.laws(contacts.shapes)
@@ -244,19 +246,27 @@ class Balance:
         return np.asarray(close & (_any(between, contacts) | (share == 0.0)))
 
     def _lasting(
-        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, copy: Rows
+        self, found: list[tuple[Contacts, Poses, int]], ends: tuple[Poses, Poses], hit: Bools, ks: Rows
     ) -> list[Floats]:
-        """The unit ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
+        """The ways of each contact's slip where its pair slips one way from one frame to the next, else 0.
 
-        Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end.
+        Of each contact two, (n, 2, 3): at its end of the interval, and halfway to that of the other end; as long as the
+        share of friction's most that acts against it, which is all where nothing resists rolling.
         """
+        copy, masses = self._copy[ks], self._mass[self._copy[ks]].ravel()
+        landed = np.zeros(len(masses))
         flat: list[Floats] = []
         later: list[Floats] = []
-        for contacts, _, end in found:
+        shares: list[Floats] = []
+        for contacts, there, end in found:
+            if end == 0:
+                lands = landing(self._touching, contacts, there, np.repeat(self._h[ks], hit.shape[1]), masses)
+                landed = np.maximum(landed, lands)
             carried = _carried(contacts, ends[end], ends[1 - end])
             for kept, touching, poses in ((flat, contacts, ends[end]), (later, carried, ends[1 - end])):
                 u = slip(self._touching, touching, poses)
                 kept.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
+                shares.append(of_contacts(self._touching, touching, poses, kept[-1]))
         every, own, then = together([contacts for contacts, _, _ in found]), np.concatenate(flat), np.concatenate(later)
         side = np.repeat([end for _, _, end in found], [len(contacts) for contacts, _, _ in found])
         rows = len(ends[0].v) + 1
@@ -270,13 +280,16 @@ class Balance:
         lasts = (slowest > np.maximum(self._creep(every, copy), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
-        lasts &= ~_any(hit, every)
+        lasts &= ~_any(hit, every) & keeps_way(every, slowest, landed)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
+        both = np.stack([np.concatenate(shares[0::2]), np.concatenate(shares[1::2])])
         if self._world.cone == "pyramid":  # its edges are up to 45 degrees off the slip, its sides nearer
             across = np.cross(every.normal, ways)
             ways = np.concatenate([ways, *((ways + side * across) * np.sqrt(0.5) for side in (-1.0, 0.0, 1.0))])
+        else:
+            ways *= np.stack([both[0], both.mean(axis=0)])[..., None]
         along = np.where(lasts[:, None, None], ways.transpose(1, 0, 2), 0.0)
         return np.split(along, np.cumsum([len(contacts) for contacts, _, _ in found])[:-1])
 

@@ -52,6 +52,8 @@ class Courses:
         self.strays = np.minimum(np.concatenate([none, own[:-1]]), np.concatenate([own[1:], none]))
         self.before = np.concatenate([fall, known[:-1]])
         self.after = np.concatenate([known[1:], fall])
+        # How what speeds bodies up changes from one interval to the next, where neither has a blow, (T - 2, B, 6).
+        self._changes = np.where((changed[1:] | changed[:-1])[..., None], 0.0, np.diff(known, axis=0))
 
     def at(self, k: int, side: int, when: float) -> Poses:
         """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
@@ -64,6 +66,18 @@ class Courses:
         q = self.evidence.body_q[frame]
         place = com + rotate(turn, q[:, :3] - motion.com[frame])
         return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
+
+    def off(self, k: int, side: int, when: float) -> Floats:
+        """By how much velocities and rates at `when` may be off, as what speeds bodies up changes, (B, 6) [m/s, rad/s].
+
+        A course has what sped its body up in the interval next to it, on the whole as in the middle of that; what spins
+        about another axis than its own, as a coin on its rim, has its torque and its rates go round meanwhile.
+        """
+        at, by, h = (k + 1 if side else k - 2), abs(self._since(k, side, when)[1]), float(self.evidence.motion.h[k])
+        if not 0 <= at < len(self._changes):
+            return np.zeros((len(self.evidence.motion.mass), 6))
+        found: Floats = self._changes[at] / h * 0.5 * (h + by) * by
+        return found
 
     def _going(self, k: int, side: int, when: float) -> tuple[Floats, Floats]:
         """Velocities and centres of mass, as `at`."""

@@ -93,7 +93,8 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
         contacts: n of them, at the
         poses: that their arms are taken from.
         friction: (n,).
-        along: Unit ways of the lasting slip of the second body over the first, (n, 2, 3); 0 where there is none.
+        along: Ways of the lasting slip of the second body over the first, (n, 2, 3), as long as the share of friction
+            that is against it: 1 but where rolling is resisted, too; 0 where there is none.
         rolling: Torque that resists turning, for a push of one, (n,) [m].
     """
     n, lasting = contacts.normal, np.any(along != 0.0, axis=(1, 2))

@@ -164,7 +164,7 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
     if max(law.restitution, parting[n] / speed) <= STAYS and not _balls(evidence, pair):
         # What stays in touch is carried round on it: how fast its point parts changes within a step as well.
         either = max(either, _changing(courses, touching, k, when, met, speeds, 1))
-    unsure = 2.0 * either + abs(there - back)
+    unsure = 2.0 * either + abs(there - back) + sum(_off(courses, k, when, met, side) for side in (0, 1))
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
@@ -209,6 +209,15 @@ def _changing(
     if not len(same):
         return abs(speeds[side])
     return float(abs(_closing(touching, contacts, other)[same[int(np.argmin(apart))]] - speeds[side]))
+
+
+def _off(courses: Courses, k: int, when: float, contact: Contacts, side: int) -> float:
+    """By how much the course before a blow (side 0), or after it (1), may err in how fast a contact closes [m/s]."""
+    off, com, total = courses.off(k, side, when), courses.at(k, side, when).com, np.zeros(3)
+    for row, sign, end in ((int(contact.one[0]), -1.0, 0), (int(contact.two[0]), 1.0, 1)):
+        if row >= 0:
+            total += sign * (off[row, :3] + np.cross(off[row, 3:], contact.surface(end)[0] - com[row]))
+    return abs(float(total @ contact.normal[0]))
 
 
 def _fallen(courses: Courses, contact: Contacts, pair: tuple[int, int]) -> float:

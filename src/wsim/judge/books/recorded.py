@@ -15,6 +15,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.books.recorded_ties import RecordedTies
+from wsim.judge.books.sharing import UPRIGHT, bend, lever, share
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.recording.contacts import shapes_of
 from wsim.scene.contact import pair_law
@@ -107,13 +108,48 @@ class RecordedContacts:
         found: Floats = length * dt * (2.0 * fastest * change / motion.h[:, None] + 0.5 * fastest**3)
         return found
 
-    @cached_property
+    @property
     def friction(self) -> Floats:
         """The coefficient of each row's pair, (n,)."""
+        return self._law[0]
+
+    @cached_property
+    def _law(self) -> Floats:
+        """Friction and rolling resistance of each row's pair, (2, n)."""
         world = self._evidence.world
         pairs, which = np.unique(self.track.pair, axis=0, return_inverse=True)
-        laws = [pair_law(world, self.shapes[a], self.shapes[b]).friction for a, b in pairs.tolist()]
-        return np.array(laws, dtype=np.float64)[which.ravel()] if len(laws) else np.zeros(0)
+        laws = [pair_law(world, self.shapes[a], self.shapes[b]) for a, b in pairs.tolist()]
+        each = np.array([(law.friction, law.rolling) for law in laws], dtype=np.float64).reshape(-1, 2)
+        return np.asarray(each[which.ravel()].T)
+
+    def rubs(self, normal: Floats, speed: Floats) -> Floats:
+        """The least and the most that friction is of each row's push, as its slip and its turning share it, (2, n).
+
+        Args:
+            normal: Of each row, (n, 3).
+            speed: Of its slip at both ends, (n, 2) [m/s], known to within `rolled`.
+        """
+        friction, rolling = self._law
+        if not rolling.any():
+            return np.stack([friction, friction])
+        found = [self._shares(normal, speed[:, end], end, rolling) for end in (0, 1)]
+        each = np.concatenate(found)
+        return np.asarray(friction * np.stack([each.min(axis=0), each.max(axis=0)]))
+
+    def _shares(self, normal: Floats, speed: Floats, end: int, rolling: Floats) -> Floats:
+        """The shares of friction at one end of the interval, by the least and the most that the slip may be, (2, n)."""
+        motion, frame = self._evidence.motion, np.maximum(self.track.frame - 1 + end, 0)
+        turning, bends = np.zeros_like(normal), np.zeros(len(normal))
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            moves, rows = self.body[:, side] >= 0, np.maximum(self.body[:, side], 0)
+            turning += sign * np.where(moves[:, None], motion.w[frame, rows], 0.0)
+            turn = np.where(moves[:, None], self._evidence.body_q[frame, rows, 3:], UPRIGHT)
+            for k in np.unique(self.track.pair[:, side]):
+                ours = np.flatnonzero(self.track.pair[:, side] == k)
+                bends[ours] += bend(self.shapes[k], turn[ours], normal[ours], moves=bool(self._owner[k] >= 0))
+        levers, off = lever(rolling, bends), self.rolled
+        slips = np.maximum(speed - off, 0.0), speed + off
+        return np.stack([share(self.friction, levers, slip, turning, normal) for slip in slips])
 
     @cached_property
     def rubbed(self) -> Floats:

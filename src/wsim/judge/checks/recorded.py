@@ -101,29 +101,34 @@ class CheckRecordedForces(Check):
         )  # fmt: skip
 
     def _against(self, evidence: Evidence, contacts: RecordedContacts) -> list[Finding]:
-        """Where a slip lasts, they rub against it with all their friction."""
+        """Where a slip lasts, they rub against it with all their friction, or what resisted rolling leaves of it."""
         track, slip = contacts.track, contacts.slip
         pressed = np.maximum(track.pressed.astype(np.float64), 1e-30)
         normal = track.along.astype(np.float64) / pressed[:, None]
         across = slip - np.einsum("nei,ni->ne", slip, normal)[..., None] * normal[:, None]
         speed = np.linalg.norm(across, axis=2)
         cosine = np.einsum("ni,ni->n", across[:, 0], across[:, 1]) / np.maximum(speed.prod(axis=1), 1e-30)
-        lasts = contacts.loose & contacts.lasting & (speed.min(axis=1) > STILL + contacts.rolled) & (cosine > ONE_WAY)
+        # As in the books, it lasts where it would have a frame longer: else it may have stuck, or turned and come back.
+        change, slowest = np.linalg.norm(across[:, 1] - across[:, 0], axis=1), speed.min(axis=1)
+        lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
+        lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         if not len(rows):
             return []
         mean = across[rows].mean(axis=1)
         way = mean / np.linalg.norm(mean, axis=1, keepdims=True)
         rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
-        friction = contacts.friction[rows]
+        friction, (least, most) = contacts.friction[rows], contacts.rubs(normal, speed)[:, rows]
         turned = contacts.swing(normal, speed.min(axis=1))[rows]
         slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2) * friction + self.cone
-        worst = int(np.argmax(np.abs(rubs - friction) / slack))
-        k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(friction[worst]), float(slack[worst])
+        given = np.clip(rubs, least, most)
+        worst = int(np.argmax(np.abs(rubs - given) / slack))
+        k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(given[worst]), float(slack[worst])
+        resisted = ", with what resists rolling," if least[worst] < friction[worst] else ""
         return [
             self._of_row(
-                evidence, contacts, k, f"slip, and rub with {value:.3g} of what they press; their friction is "
-                f"{expected:.3g}", abs(value - expected), limit, "1",
+                evidence, contacts, k, f"slip, and rub with {value:.3g} of what they press; their friction is"
+                f"{resisted} {expected:.3g}", abs(value - expected), limit, "1",
                 "What slips rubs with all its friction", f"{self.edge:g} of the friction, and how far slips turn",
             )
         ]  # fmt: skip
