@@ -169,6 +169,15 @@ def test_the_books_of_forces_and_of_energy_close(runs, name):
     assert all(finding.passed for check in (CheckForces(), CheckEnergy()) for finding in ask(check, runs[name]))
 
 
+def test_where_the_time_step_is_not_known_none_is_taken_off_the_damper(runs):
+    """Poses and velocities alone: half a frame's c dv would be 5 N of what the damper gives at the blow."""
+    told = runs["plate"]
+    world = told.world.model_copy(update={"time_step": 0.0})
+    bare = replace(told, world=world, metadata={"complete": True}, contacts=None, ties=None)
+    assert Evidence(bare).motion.step == 0.0
+    assert all(finding.passed for finding in ask(CheckForces(), bare))
+
+
 def test_forces_tell_how_a_push_changes_while_its_way_turns(runs):
     """Where a spring goes from push to pull that is nearly all that the mean of both ends leaves of a torque."""
     evidence = Evidence(runs["adrift"])

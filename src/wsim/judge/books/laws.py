@@ -101,7 +101,7 @@ class Laws:
         more, unsure = np.zeros(len(motion.h)), np.zeros(len(motion.h))
         if hit.any():
             gains, stretch = (spring.stiffness, spring.damping), track.length - spring.rest_length
-            mean, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.dt)
+            mean, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.step)
             more = np.where(hit, mean - 0.5 * (track.pull[1:] + track.pull[:-1]), 0.0)
             unsure = np.where(hit, may, 0.0)
         change = np.where(law.known, np.diff(track.pull), 0.0)

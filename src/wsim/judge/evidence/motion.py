@@ -99,10 +99,14 @@ class Motion:
         return np.array(found)
 
     @cached_property
+    def step(self) -> float:
+        """The simulator's time step, or 0 where it is not known [s]."""
+        return float(self._recorded.recording.metadata.get("time_step") or self._recorded.world.time_step or 0.0)
+
+    @cached_property
     def dt(self) -> float:
         """The simulator's time step, or where it is not known the time between frames [s]."""
-        known = self._recorded.recording.metadata.get("time_step") or self._recorded.world.time_step
-        return float(known or (np.median(self.h) if len(self.h) else 1.0))
+        return float(self.step or (np.median(self.h) if len(self.h) else 1.0))
 
     @cached_property
     def late(self) -> Floats:
