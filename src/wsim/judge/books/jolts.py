@@ -13,26 +13,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
-    from wsim.judge.books.recorded_ties import RecordedTies
     from wsim.judge.evidence.evidence import Evidence
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
 
 
-def struck(evidence: Evidence, ties: RecordedTies) -> Bools:
-    """Where the speeds of each body's mechanism may jump: at contacts, stops and ropes, (T - 1, B)."""
+def struck(evidence: Evidence, jerks: Iterable[tuple[Iterable[int], Bools]]) -> Bools:
+    """Where the speeds of each body's mechanism may jump: at contacts, stops and ropes, (T - 1, B).
+
+    Args:
+        evidence: Of the run.
+        jerks: Rows of bodies, and when a stop or a rope may jerk them, (T - 1,); a row below 0 stands still.
+    """
     motion = evidence.motion
     hit = _touched(evidence)
-    for k, (one, two) in enumerate(ties.pairs):
-        stopped = ties.track.stop[1:, k] != 0.0
-        for row in (one, two):
+    for rows, when in jerks:
+        for row in rows:
             if row >= 0:
-                hit[:, row] |= stopped
-    for pull in ties.ropes.pulls:
-        hit[:, pull.rows] |= pull.jerks[:, None]
+                hit[:, row] |= when
     for unit in np.unique(motion.unit):
         rows = np.flatnonzero(motion.unit == unit)
         hit[:, rows] = hit[:, rows].any(axis=1, keepdims=True)

@@ -202,7 +202,8 @@ class RecordedTies:
     @cached_property
     def struck(self) -> Bools:
         """Where the speeds of each body's mechanism may jump, (T - 1, B)."""
-        return jolts.struck(self._evidence, self)
+        stops = [(pair, self.track.stop[1:, k] != 0.0) for k, pair in enumerate(self.pairs)]
+        return jolts.struck(self._evidence, [*stops, *((pull.rows, pull.jerks) for pull in self.ropes.pulls)])
 
     def rubs(self, k: int) -> tuple[Floats, Bools, Floats]:
         """Joint k's direction of motion, (T - 1,), where it has it at both ends of an interval, and the most of it
