@@ -43,7 +43,7 @@ class CheckStart(Check):
         for k, body in enumerate(evidence.world.bodies):
             if not body.kinematic:
                 found += self._of(evidence, k, body)
-        return worst([finding for finding in found if not finding.passed] or found) if found else []
+        return worst(found)
 
     def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
         motion = evidence.motion
@@ -90,7 +90,7 @@ class CheckPath(Check):
         for k, body in enumerate(evidence.world.bodies):
             if body.kinematic:
                 found += self._of(evidence, k, body)
-        return worst(found) if found else []
+        return worst(found)
 
     def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
         motion, time = evidence.motion, evidence.time
