@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections import Counter
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,6 +12,7 @@ import numpy as np
 
 from wsim.judge.decide import judge, judge_copies
 from wsim.judge.evidence.evidence import Evidence
+from wsim.forks import shared_out
 from wsim.judge.language import Signals, evaluate
 from wsim.progress import Progress, silent
 
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     Row = tuple[Status, dict[str, tuple[bool, float]]]  # a world's status, and its findings by key
 
 CHUNK = 64  # worlds judged at once, between two reports of progress
-_shared: tuple[Trajectories, Plan | None]  # in a worker: what it was started with
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +57,8 @@ def judge_worlds(
 ) -> WorldVerdicts:
     """Judge every world by the checks that always run, and by a plan's objectives, without a recording on disk.
 
-    Worlds are independent: they are shared out to processes that see the arrays where they are, uncopied; each works
-    some out at once (`wsim.judge.decide.judge_copies`). One process, or a system that cannot fork, takes them in turn.
+    Worlds are independent: they are shared out to processes (`wsim.forks`), each of which works some out at once
+    (`wsim.judge.decide.judge_copies`).
 
     Args:
         worlds: The copies.
@@ -70,8 +68,8 @@ def judge_worlds(
     """
     count = worlds.world_count
     rows: list[Row] = []
-    for part in _parts(worlds, plan, processes or len(os.sched_getaffinity(0))):
-        rows += part
+    for part in _judged(worlds, plan, processes or len(os.sched_getaffinity(0))):
+        rows += map(_row, part)
         progress("judging", len(rows), count)
     keys = list(dict.fromkeys(key for _, found in rows for key in found))
     none = (True, np.nan)
@@ -89,36 +87,30 @@ def weigh(worlds: Trajectories, formula: Formula) -> Outcome:
     return evaluate(formula, Signals(worlds.world, worlds.time, *arrays, mass=worlds.mass))
 
 
-def verdict_of(worlds: Trajectories, plan: Plan | None, k: int) -> Verdict:
-    """World k's verdict in full."""
-    return judge(worlds.recording(k), plan)
+def verdicts_of(worlds: Trajectories, plan: Plan | None = None, processes: int = 1) -> list[Verdict]:
+    """Each world's verdict in full.
+
+    Args:
+        worlds: The copies.
+        plan: What they are held against.
+        processes: To which they are shared out.
+    """
+    return [verdict for part in _judged(worlds, plan, processes) for verdict in part]
 
 
-def _parts(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator[list[Row]]:
-    """The rows of all worlds in order, some at a time."""
-    chunks = [range(k, min(k + CHUNK, worlds.world_count)) for k in range(0, worlds.world_count, CHUNK)]
-    if min(processes, len(chunks)) < 2 or "fork" not in multiprocessing.get_all_start_methods():
-        yield from (_judged(worlds, plan, chunk) for chunk in chunks)
-        return
-    # A forked child has the arrays already. It does no more than NumPy and the judge: it never touches a device.
-    fork = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(processes, fork, initializer=_take, initargs=(worlds, plan)) as pool:
-        yield from pool.map(_rows, chunks)
+def _judged(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator[list[Verdict]]:
+    """The verdicts on all worlds in order, some at a time. Children have the arrays already, and need no device."""
+    count = worlds.world_count
+    size = CHUNK if not worlds.worlds else max(1, min(CHUNK, -(-count // processes)))
+    chunks = [range(k, min(k + size, count)) for k in range(0, count, size)]
 
+    def judged(chunk: range) -> list[Verdict]:
+        copies = [Evidence(worlds.recording(k), plan) for k in chunk]
+        # Each of its own shapes, or all of the same.
+        together = [[each] for each in copies] if worlds.worlds else [copies]
+        return [verdict for some in together for verdict in judge_copies(some)]
 
-def _take(worlds: Trajectories, plan: Plan | None) -> None:
-    global _shared
-    _shared = (worlds, plan)
-
-
-def _rows(chunk: range) -> list[Row]:
-    return _judged(*_shared, chunk)
-
-
-def _judged(worlds: Trajectories, plan: Plan | None, chunk: range) -> list[Row]:
-    copies = [Evidence(worlds.recording(k), plan) for k in chunk]
-    together = [[each] for each in copies] if worlds.worlds else [copies]  # each of its own shapes, or all of the same
-    return [_row(verdict) for some in together for verdict in judge_copies(some)]
+    yield from shared_out(judged, chunks, processes)
 
 
 def _row(verdict: Verdict) -> Row:

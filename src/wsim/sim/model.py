@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,8 @@ import newton
 import numpy as np
 
 from wsim.errors import UserError
+from wsim.forks import shared_out
+from wsim.scene.usd_threads import forks
 from wsim.scene.world import World
 from wsim.sim.alike import check_alike
 from wsim.sim.articulations import complete_articulations, importable
@@ -21,6 +23,7 @@ from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.forward import forward_only
+from wsim.sim.numbers import OtherThanNumbers, differences, with_numbers
 from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -97,7 +100,13 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     return _finalized(builder, [one], config, step, device)
 
 
-def build_batch(stages: Sequence[Path], worlds: Sequence[World], device: Any, time_step: float | None = None) -> Built:
+def build_batch(
+    stages: Sequence[Path],
+    worlds: Sequence[World],
+    device: Any,
+    time_step: float | None = None,
+    processes: int = 1,
+) -> Built:
     """Import checked stages of one topology (`wsim.sim.alike`) into one Newton model, a world each, without fluid.
 
     Args:
@@ -105,6 +114,7 @@ def build_batch(stages: Sequence[Path], worlds: Sequence[World], device: Any, ti
         worlds: What `wsim.scene.describe` read from them.
         device: Warp device, or its name.
         time_step: Upper bound for the time step of all worlds [s]; by default the shortest that one of them needs.
+        processes: That stages are read in, side by side (`wsim.scene.usd_threads`).
 
     Raises:
         UserError: If a stage holds what the solvers cannot simulate, or a fluid.
@@ -113,7 +123,7 @@ def build_batch(stages: Sequence[Path], worlds: Sequence[World], device: Any, ti
     check_alike(stages, worlds)
     if worlds[0].fluids:
         raise UserError(f"{worlds[0].fluids[0].prim}: worlds with fluid are not batched; simulate them one by one")
-    ones = [_import(stage, world, None) for stage, world in zip(stages, worlds, strict=True)]
+    ones = list(_imports(stages, worlds, processes))  # first: a builder that was added somewhere has notes of it
     builder = _builder(worlds[0])
     for one in ones:
         builder.add_world(one.builder)
@@ -139,6 +149,34 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     add_cords(single, world, ContactConfig())
     add_drives(single, world)
     return _One(single, world, fluids, breakable, surfaces)
+
+
+def _imports(stages: Sequence[Path], worlds: Sequence[World], processes: int) -> Iterator[_One]:
+    """Each world by itself; of all but the first, forks read the numbers (`wsim.sim.numbers`).
+
+    Meshes are read here: Newton may work on them on a device, which a fork does not have.
+    """
+    first = _import(stages[0], worlds[0], None)
+    yield first
+    meshes = any(shape.kind == "mesh" for solid in (*worlds[0].bodies, *worlds[0].statics) for shape in solid.shapes)
+
+    def numbers(k: int) -> tuple[dict[str, Any], World, list[Breakable]] | None:
+        one = _import(stages[k], worlds[k], None)
+        try:
+            return differences(one.builder, first.builder), one.world, one.breakable
+        except OtherThanNumbers:
+            return None
+
+    rest, count = range(1, len(stages)), 1 if meshes else forks(processes)
+    if count < 2:
+        yield from (_import(stages[k], worlds[k], None) for k in rest)
+        return
+    for k, found in zip(rest, shared_out(numbers, rest, count), strict=True):
+        if found is None:
+            yield _import(stages[k], worlds[k], None)
+        else:
+            told, world, breakable = found
+            yield replace(first, builder=with_numbers(first.builder, told), world=world, breakable=breakable)
 
 
 def _time_step(worlds: Sequence[World], config: Any | None, given: float | None) -> TimeStep:

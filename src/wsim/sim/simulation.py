@@ -65,6 +65,8 @@ class Simulation:
         progress: Told about compilation.
         seeds: One for each world, which then starts a little off what the stage states (`wsim.sim.perturb`); 0 does
             not. By default none does.
+        worlds: What `wsim.scene.describe` read from several stages, where that was done already.
+        processes: That several stages are read in.
 
     Attributes:
         world: What the stage states, the first one of several.
@@ -84,6 +86,8 @@ class Simulation:
         control_interval: float = 0.01,
         progress: Progress = silent,
         seeds: Sequence[int] = (),
+        worlds: Sequence[World] = (),
+        processes: int = 1,
     ) -> None:
         stages = [Path(stage)] if isinstance(stage, str | Path) else [Path(each) for each in stage]
         if len(stages) > 1 and world_count != 1:
@@ -95,7 +99,8 @@ class Simulation:
         self.stage = stages[0]
         self.device = wp.get_device(pick_device(device))
         if len(stages) > 1:
-            self.built = build_batch(stages, [describe(each) for each in stages], self.device, time_step)
+            described = worlds or [describe(each) for each in stages]
+            self.built = build_batch(stages, described, self.device, time_step, processes)
         else:
             self.built = build_model(self.stage, describe(self.stage), self.device, world_count, time_step)
         self.world: World = self.built.world

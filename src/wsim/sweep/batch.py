@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from wsim.judge.worlds import verdict_of
+from wsim.forks import shared_out
+from wsim.judge.worlds import verdicts_of
 from wsim.runs.simulation import is_controlled
 from wsim.scene.describe import describe
+from wsim.scene.usd_threads import forks
 from wsim.sim import Simulation
 from wsim.sim.alike import alike
 from wsim.sim.collect import collect
@@ -16,49 +19,71 @@ if TYPE_CHECKING:
     from wsim.judge.verdict import Verdict
     from wsim.plan.schema import Plan
     from wsim.runs.iteration import Iteration
+    from wsim.scene.world import World
     from wsim.sweep.candidate import Candidate
-
-    Member = tuple[Candidate, Iteration]  # whose stage is built
 
 NO_ROOM = ("out of memory", "failed to allocate", "memory allocation")
 
 
-def batches(members: Sequence[Member], most: int) -> list[list[Member]]:
+@dataclass(frozen=True)
+class Member:
+    """A candidate whose stage is built, and what that states."""
+
+    candidate: Candidate
+    iteration: Iteration
+    world: World
+
+
+def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: int = 1) -> list[list[Member]]:
     """Those that can be simulated together, at most so many at a time; who must go alone is in none.
 
     A program with a `control` is asked world by world, and worlds with fluid are not batched.
+
+    Args:
+        built: Candidates that have a stage.
+        most: Worlds of a batch.
+        processes: That stages are read in, side by side.
     """
-    free = [member for member in members if not is_controlled(member[1].program)]
-    worlds = [describe(iteration.stage) for _, iteration in free]
-    dry = [k for k, world in enumerate(worlds) if not world.fluids and world.bodies]
+    controlled = {program: is_controlled(program) for program in {iteration.program for _, iteration in built}}
+    free = [each for each in built if not controlled[each[1].program]]
+    worlds = shared_out(describe, [iteration.stage for _, iteration in free], forks(processes))
+    members = [Member(*each, world) for each, world in zip(free, worlds, strict=True)]
+    dry = [member for member in members if not member.world.fluids and member.world.bodies]
     found = []
-    for group in alike([worlds[k] for k in dry]):
-        own = [free[dry[k]] for k in group]
+    for group in alike([member.world for member in dry]):
+        own = [dry[k] for k in group]
         found += [own[first : first + most] for first in range(0, len(own), most)]
     return [batch for batch in found if len(batch) > 1]
 
 
-def verdicts(batch: Sequence[Member], plan: Plan | None) -> list[Verdict]:
+def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> list[Verdict]:
     """Each member's verdict. A batch that does not fit into memory is simulated in halves.
+
+    Args:
+        batch: One of `batches`.
+        plan: What its worlds are held against.
+        processes: That it is set up and judged in; it is simulated in this one.
 
     Raises:
         UserError, ValueError, RuntimeError: If a member cannot be simulated with the others.
     """
-    settings = batch[0][1].settings
+    settings = batch[0].iteration.settings
     try:
         simulation = Simulation(
-            [iteration.stage for _, iteration in batch],
+            [member.iteration.stage for member in batch],
             device=settings.device,
             time_step=settings.time_step,
-            seeds=[candidate.seed for candidate, _ in batch],
+            seeds=[member.candidate.seed for member in batch],
+            worlds=[member.world for member in batch],
+            processes=processes,
         )
         worlds = collect(simulation)
     except (MemoryError, RuntimeError) as error:
         if len(batch) < 2 or not _is_no_room(error):
             raise
         half = len(batch) // 2
-        return verdicts(batch[:half], plan) + verdicts(batch[half:], plan)
-    return [verdict_of(worlds, plan, k) for k in range(len(batch))]
+        return verdicts(batch[:half], plan, processes) + verdicts(batch[half:], plan, processes)
+    return verdicts_of(worlds, plan, processes)
 
 
 def _is_no_room(error: Exception) -> bool:

@@ -12,11 +12,14 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
 
+from wsim.scene.usd_threads import LIMIT
+
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 TRIES = 2  # a worker may be killed for what another one uses; who kills two is to blame
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # as many processes as cores
+# As many processes as cores, and they may be forked.
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", LIMIT: "1"}
 
 
 @dataclass(frozen=True)

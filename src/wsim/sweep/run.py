@@ -80,7 +80,9 @@ def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) 
     Who shares a shard with one that kills its worker, or holds it up, is run again by itself.
     """
     spec, workers = folder.spec, workers or _workers(folder.spec)
-    shards = [Shard(part, folder.path.resolve(), spec) for part in parts(candidates, spec.together, workers)]
+    shared = parts(candidates, spec.together, workers)
+    cores = max(1, len(os.sched_getaffinity(0)) // max(1, min(workers, len(shared))))
+    shards = [Shard(part, folder.path.resolve(), spec, cores) for part in shared]
     left: list[Shard] = []
     for shard, result in _on_pool(shards, workers):
         if not isinstance(result, Lost):

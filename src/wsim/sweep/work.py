@@ -16,7 +16,7 @@ from wsim.plan.store import load
 from wsim.program import sandbox
 from wsim.runs.iteration import Iteration, no_world
 from wsim.runs.settings import Settings
-from wsim.sweep.batch import batches, verdicts
+from wsim.sweep.batch import Member, batches, verdicts
 from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.spec import Spec
 
@@ -44,11 +44,13 @@ class Shard:
         candidates: They.
         folder: The sweep's, with its programs and perhaps plan.json.
         spec: The sweep's.
+        cores: That the worker may keep busy.
     """
 
     candidates: tuple[Candidate, ...]
     folder: Path
     spec: Spec
+    cores: int = 1
 
     @property
     def patience(self) -> float:
@@ -75,13 +77,13 @@ def work(shard: Shard) -> list[Outcome]:
     with tempfile.TemporaryDirectory(prefix="wsim-candidates-") as scratch:
         made = [
             (candidate, *each)
-            for candidate, each in zip(shard.candidates, _build(shard, Path(scratch), plan), strict=True)
+            for candidate, each in zip(shard.candidates, build(shard, Path(scratch), plan), strict=True)
         ]
         found: dict[int, Outcome] = {}
         if shard.spec.together > 1:
             runnable = [(candidate, iteration) for candidate, iteration, built in made if built.ok]
-            for batch in batches(runnable, shard.spec.together):
-                found |= _together(batch, plan)
+            for batch in batches(runnable, shard.spec.together, shard.cores):
+                found |= _together(batch, plan, shard.cores)
         return [
             found[candidate.number] if candidate.number in found else _alone(candidate, iteration, built)
             for candidate, iteration, built in made
@@ -99,8 +101,8 @@ def as_varied(verdict: Verdict) -> Verdict:
     return verdict.model_copy(update={"status": "accepted", "summary": summary, "findings": kept})
 
 
-def _build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteration, BuildResult]]:
-    """Each candidate's folder and stage; those of one program are built in one process."""
+def build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteration, BuildResult]]:
+    """Each candidate's folder and stage; those of one program are built some dozens to a process."""
     made: dict[int, tuple[Iteration, BuildResult]] = {}
     for name in dict.fromkeys(candidate.program for candidate in shard.candidates):
         program, own = shard.folder / name, [each for each in shard.candidates if each.program == name]
@@ -116,6 +118,7 @@ def _build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iterati
             iterations[0].settings.limits(),
             shard.spec.isolation,
             readable=[assets_folder()],
+            processes=shard.cores,
         )
         made |= {
             candidate.number: each for candidate, each in zip(own, zip(iterations, built, strict=True), strict=True)
@@ -131,17 +134,17 @@ def _alone(candidate: Candidate, iteration: Iteration, built: BuildResult) -> Ou
     return _outcome(candidate, run, lambda: built.seconds + time.perf_counter() - started)
 
 
-def _together(batch: Sequence[tuple[Candidate, Iteration]], plan: Plan | None) -> dict[int, Outcome]:
+def _together(batch: Sequence[Member], plan: Plan | None, cores: int) -> dict[int, Outcome]:
     """The outcomes of a batch, by candidate; none where it cannot be simulated as one: each is run alone then."""
     started = time.perf_counter()
     try:
-        found = verdicts(batch, plan)
+        found = verdicts(batch, plan, cores)
     except FAILURES:
         return {}
     seconds = (time.perf_counter() - started) / len(batch)
     return {
-        candidate.number: _outcome(candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
-        for (candidate, _), verdict in zip(batch, found, strict=True)
+        member.candidate.number: _outcome(member.candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
+        for member, verdict in zip(batch, found, strict=True)
     }
 
 

@@ -1,0 +1,135 @@
+"""What a sweep of many candidates costs beside its simulation, by phase: built, grouped, set up, simulated, judged.
+
+    .venv/bin/python benchmarks/sweep_setup.py --count 64
+    .venv/bin/python benchmarks/sweep_setup.py --count 1024 --device cuda:0 --json build/sweep_setup.json
+    .venv/bin/python benchmarks/sweep_setup.py --program my_program.py --vary edge=0.1:0.3 --count 256
+
+By default five boxes and a ball on the ground, whose sizes, masses, friction and speeds are drawn. A small batch of
+the same program is set up first, so that kernels are warm: what is measured is what each further batch takes. The
+digests are of all trajectories and of all verdicts; two versions of wsim that do the same print the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import cProfile
+import hashlib
+import json
+import os
+import platform
+import pstats
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pxr import Work
+
+from wsim.judge.worlds import verdicts_of
+from wsim.plan.store import load
+from wsim.sim import Simulation
+from wsim.sim.collect import collect
+from wsim.sweep import Axis, Spec
+from wsim.sweep.batch import batches
+from wsim.sweep.candidate import Candidate
+from wsim.sweep.sampling import sample
+from wsim.sweep.work import Shard, build
+
+PROGRAM = """
+def build(scene):
+    scene.simulation(duration=SECONDS)
+    scene.ground(friction=scene.param("ground", 0.5, low=0.0, high=1.0))
+    edge = scene.param("edge", 0.2, low=0.1, high=0.3)
+    density = scene.param("density", 600.0, low=100.0, high=2000.0)
+    speed = scene.param("speed", 1.0, low=0.1, high=3.0)
+    for k in range(3):
+        scene.box(f"stacked_{k}", size=(edge, edge, edge), position=(0, 0, edge * (k + 0.5)), density=density)
+    for k in range(2):
+        scene.box(f"sliding_{k}", size=(edge, edge, 0.1), position=(2 + k, 0, 0.05), density=density,
+                  velocity=(0, speed, 0), friction=0.4)
+    scene.sphere("ball", radius=0.1, position=(-2, 0, scene.param("height", 1.0, low=0.2, high=3.0)),
+                 density=density, restitution=scene.param("bounce", 0.3, low=0.0, high=0.8))
+"""
+AXES = ("ground=0.2:0.9", "edge=0.1:0.3", "density=200:1500", "speed=0.2:2", "height=0.3:2", "bounce=0:0.6")
+WARM = 2  # candidates of the batch that compiles the kernels
+Value = TypeVar("Value")
+
+
+def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
+    """Every phase in seconds, and the digests."""
+    plan = load(args.plan) if args.plan else None
+    axes = [Axis.parse(text) for text in args.vary]
+    points = sample(axes, "sobol", args.count, 0)
+    candidates = tuple(Candidate(number=k, params=point) for k, point in enumerate(points))
+    text = args.program.read_text() if args.program else f"SECONDS = {args.seconds}\n{PROGRAM}"
+    (folder / "program.py").write_text(text)
+    spec = Spec(axes=axes, device=args.device, worlds=max(2, args.together))
+    seconds: dict[str, float] = {}
+
+    def timed(name: str, call: Callable[[], Value]) -> Value:
+        started = time.perf_counter()
+        value = call()
+        seconds[name] = seconds.get(name, 0.0) + time.perf_counter() - started
+        return value
+
+    def run(some: tuple[Candidate, ...], scratch: Path) -> tuple[str, str]:
+        scratch.mkdir()
+        made = timed("built", lambda: build(Shard(some, folder, spec, args.cores), scratch, plan))
+        members = [(each, iteration) for each, (iteration, built) in zip(some, made, strict=True) if built.ok]
+        moved, said = hashlib.sha256(), hashlib.sha256()
+        for batch in timed("grouped", lambda: batches(members, spec.together, args.cores)):
+            worlds = [member.world for member in batch]
+            stages = [member.iteration.stage for member in batch]
+            simulation = timed("set up", lambda: Simulation(stages, device=args.device, worlds=worlds, processes=args.cores))
+            found = timed("simulated", lambda: collect(simulation))
+            for array in (found.body_q, found.body_qd, found.contact_force, found.penetration):
+                moved.update(array.tobytes())
+            for verdict in timed("judged", lambda: verdicts_of(found, plan, args.cores)):
+                said.update(verdict.model_dump_json().encode())
+        return moved.hexdigest()[:16], said.hexdigest()[:16]
+
+    run(candidates[:WARM], folder / "warm")
+    seconds.clear()
+    profile = cProfile.Profile()
+    if args.profile:
+        profile.enable()
+    digests = run(candidates, folder / "measured")
+    if args.profile:
+        profile.disable()
+        profile.dump_stats(args.profile)
+        pstats.Stats(profile).sort_stats("cumulative").print_stats(60)
+    return {"seconds": seconds, "trajectories": digests[0], "verdicts": digests[1]}
+
+
+def main() -> None:
+    """Measure, print the table, write it."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, help="with scene.param; by default five boxes and a ball")
+    parser.add_argument("--vary", action="append", help="as of wsim sweep; needed with --program")
+    parser.add_argument("--plan", type=Path, help="what the worlds are held to besides")
+    parser.add_argument("--count", type=int, default=32, help="candidates")
+    parser.add_argument("--seconds", type=float, default=1.0, help="simulated, of the default program [s]")
+    parser.add_argument("--together", type=int, default=1024, help="worlds of a batch")
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), help="that are kept busy")
+    parser.add_argument("--profile", help="write a profile of the parent process here, and print its head")
+    parser.add_argument("--json", type=Path)
+    args = parser.parse_args()
+    args.vary = args.vary or list(AXES)
+    Work.SetConcurrencyLimit(1)  # as in a sweep's worker, which is forked
+    with tempfile.TemporaryDirectory(prefix="wsim-sweep-setup-") as folder:
+        found = measured(args, Path(folder))
+    found |= {"count": args.count, "device": args.device, "cores": args.cores}
+    print(f"{args.count} candidates, {args.device}, {found['cores']} cores, {platform.processor() or platform.machine()}")
+    print("phase          seconds   ms a candidate")
+    for name, value in found["seconds"].items():
+        print(f"{name:12}  {value:8.2f}  {1e3 * value / args.count:15.2f}")
+    print(f"trajectories {found['trajectories']}, verdicts {found['verdicts']}")
+    if args.json:
+        args.json.parent.mkdir(parents=True, exist_ok=True)
+        args.json.write_text(json.dumps(found, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
