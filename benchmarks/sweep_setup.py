@@ -5,8 +5,10 @@
     .venv/bin/python benchmarks/sweep_setup.py --program my_program.py --vary edge=0.1:0.3 --count 256
 
 By default five boxes and a ball on the ground, whose sizes, masses, friction and speeds are drawn. A small batch of
-the same program is set up first, so that kernels are warm: what is measured is what each further batch takes. The
-digests are of all trajectories and of all verdicts; two versions of wsim that do the same print the same.
+the same program is set up first, so that kernels are warm: what is measured is what each further batch takes. Beside
+the time that passes stands that of the CPU on all cores (what runs in sandboxes is not seen), which other jobs on
+the machine change less. The digests
+are of all trajectories and of all verdicts; two versions of wsim that do the same print the same.
 """
 
 from __future__ import annotations
@@ -56,8 +58,13 @@ WARM = 2  # candidates of the batch that compiles the kernels
 Value = TypeVar("Value")
 
 
+def cpu_seconds() -> float:
+    """Of this process and of all its children that have ended [s]."""
+    return sum(os.times()[:4])
+
+
 def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
-    """Every phase in seconds, and the digests."""
+    """Every phase in seconds, that passed and of the CPU; and the digests."""
     plan = load(args.plan) if args.plan else None
     axes = [Axis.parse(text) for text in args.vary]
     points = sample(axes, "sobol", args.count, 0)
@@ -65,27 +72,29 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
     text = args.program.read_text() if args.program else f"SECONDS = {args.seconds}\n{PROGRAM}"
     (folder / "program.py").write_text(text)
     spec = Spec(axes=axes, device=args.device, worlds=max(2, args.together))
-    seconds: dict[str, float] = {}
+    seconds: dict[str, list[float]] = {}
 
-    def timed(name: str, call: Callable[[], Value]) -> Value:
-        started = time.perf_counter()
-        value = call()
-        seconds[name] = seconds.get(name, 0.0) + time.perf_counter() - started
+    def timed(name: str, call: Callable[..., Value], *given: Any, **named: Any) -> Value:
+        wall, busy = time.perf_counter(), cpu_seconds()
+        value = call(*given, **named)
+        taken = seconds.setdefault(name, [0.0, 0.0])
+        taken[0] += time.perf_counter() - wall
+        taken[1] += cpu_seconds() - busy
         return value
 
     def run(some: tuple[Candidate, ...], scratch: Path) -> tuple[str, str]:
         scratch.mkdir()
-        made = timed("built", lambda: build(Shard(some, folder, spec, args.cores), scratch, plan))
+        made = timed("built", build, Shard(some, folder, spec, args.cores), scratch, plan)
         members = [(each, iteration) for each, (iteration, built) in zip(some, made, strict=True) if built.ok]
         moved, said = hashlib.sha256(), hashlib.sha256()
-        for batch in timed("grouped", lambda: batches(members, spec.together, args.cores)):
+        for batch in timed("grouped", batches, members, spec.together, args.cores):
             worlds = [member.world for member in batch]
             stages = [member.iteration.stage for member in batch]
-            simulation = timed("set up", lambda: Simulation(stages, device=args.device, worlds=worlds, processes=args.cores))
-            found = timed("simulated", lambda: collect(simulation))
+            simulation = timed("set up", Simulation, stages, device=args.device, worlds=worlds, processes=args.cores)
+            found = timed("simulated", collect, simulation)
             for array in (found.body_q, found.body_qd, found.contact_force, found.penetration):
                 moved.update(array.tobytes())
-            for verdict in timed("judged", lambda: verdicts_of(found, plan, args.cores)):
+            for verdict in timed("judged", verdicts_of, found, plan, args.cores):
                 said.update(verdict.model_dump_json().encode())
         return moved.hexdigest()[:16], said.hexdigest()[:16]
 
@@ -121,10 +130,12 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="wsim-sweep-setup-") as folder:
         found = measured(args, Path(folder))
     found |= {"count": args.count, "device": args.device, "cores": args.cores}
-    print(f"{args.count} candidates, {args.device}, {found['cores']} cores, {platform.processor() or platform.machine()}")
-    print("phase          seconds   ms a candidate")
-    for name, value in found["seconds"].items():
-        print(f"{name:12}  {value:8.2f}  {1e3 * value / args.count:15.2f}")
+    print(
+        f"{args.count} candidates, {args.device}, {found['cores']} cores, {platform.processor() or platform.machine()}"
+    )
+    print("phase          seconds   ms a candidate   CPU ms a candidate")
+    for name, (wall, busy) in found["seconds"].items():
+        print(f"{name:12}  {wall:8.2f}  {1e3 * wall / args.count:15.2f}  {1e3 * busy / args.count:19.2f}")
     print(f"trajectories {found['trajectories']}, verdicts {found['verdicts']}")
     if args.json:
         args.json.parent.mkdir(parents=True, exist_ok=True)

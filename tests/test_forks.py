@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection
 import pytest
 
 from wsim.errors import UserError
-from wsim.forks import LostFork, shared_out
+from wsim.forks import LostForkError, shared_out
 
 
 @pytest.mark.parametrize("processes", [1, 2, 5, 40])
@@ -47,13 +47,13 @@ def test_who_is_killed_is_told_of() -> None:
             os.kill(os.getpid(), signal.SIGKILL)
         return k
 
-    with pytest.raises(LostFork):
+    with pytest.raises(LostForkError):
         list(shared_out(call, range(6), 3))
 
 
 def test_what_cannot_be_sent_is_told_of() -> None:
-    with pytest.raises(LostFork):
-        list(shared_out(lambda k: (lambda: k), range(4), 2))
+    with pytest.raises(LostForkError):
+        list(shared_out(lambda k: lambda: k, range(4), 2))
 
 
 def test_who_asks_for_no_more_leaves_nobody_behind() -> None:

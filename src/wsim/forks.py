@@ -18,7 +18,7 @@ _PR_SET_PDEATHSIG = 1  # of prctl(2)
 _LIBC = ctypes.CDLL(None)
 
 
-class LostFork(RuntimeError):
+class LostForkError(RuntimeError):
     """A forked process ended before it had sent what it was to."""
 
 
@@ -35,7 +35,7 @@ def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: 
         processes: How many; with one, or where a system cannot fork, all is done here.
 
     Raises:
-        LostFork: If a child dies.
+        LostForkError: If a child dies.
     """
     count = min(processes, len(items))
     if count < 2 or not hasattr(os, "fork"):
@@ -59,7 +59,7 @@ def _taken(pipe: Connection) -> Any:
     try:
         done, value = pipe.recv()
     except (EOFError, OSError) as error:
-        raise LostFork("a forked process ended before its work was done") from error
+        raise LostForkError("a forked process ended before its work was done") from error
     if not done:
         raise value
     return value

@@ -16,7 +16,7 @@ from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.sim import model
 from wsim.sim.model import build_batch
-from wsim.sim.numbers import OtherThanNumbers, differences, with_numbers
+from wsim.sim.numbers import OtherThanNumbersError, differences, with_numbers
 
 
 def _stages(folder: Path, build: Build, count: int) -> list[Path]:
@@ -30,9 +30,7 @@ def _stages(folder: Path, build: Build, count: int) -> list[Path]:
 
 
 @pytest.mark.parametrize("build", [loose, held])
-def test_a_batch_of_sent_numbers_is_the_batch(
-    tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_batch_of_sent_numbers_is_the_batch(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
     stages = _stages(tmp_path, build, 4)
     worlds = [describe(stage) for stage in stages]
     made = build_batch(stages, worlds, "cpu")
@@ -42,12 +40,12 @@ def test_a_batch_of_sent_numbers_is_the_batch(
         assert processes == 2
         for item in items:
             sent.append(pickle.dumps(call(item)))
-            yield pickle.loads(sent[-1])  # noqa: S301 - our own
+            yield pickle.loads(sent[-1])
 
     monkeypatch.setattr(model, "forks", lambda processes: processes)
     monkeypatch.setattr(model, "shared_out", as_sent)
     again = build_batch(stages, worlds, "cpu", processes=2)
-    assert [pickle.loads(each) is not None for each in sent] == [True] * 3  # noqa: S301
+    assert [pickle.loads(each) is not None for each in sent] == [True] * 3
     assert _arrays(again.model) == _arrays(made.model)
     assert again.worlds == made.worlds
     assert again.breakable == made.breakable
@@ -58,7 +56,7 @@ def test_what_is_no_number_is_refused() -> None:
     for builder, boxes in ((one, 1), (other, 2)):
         for k in range(boxes):
             builder.add_shape_box(builder.add_body(label=f"b{k}"), hx=0.1, hy=0.1, hz=0.1)
-    with pytest.raises(OtherThanNumbers):
+    with pytest.raises(OtherThanNumbersError):
         differences(other, one)
     assert differences(one, one) == {}
 

@@ -12,7 +12,7 @@ from wsim.sweep import Axis, Spec, SweepFolder, sweep
 from wsim.sweep import batch as batched
 from wsim.sweep import run as sweeping
 from wsim.sweep.candidate import Candidate, Outcome
-from wsim.sweep.pool import Lost
+from wsim.sweep.pool import Lost, Pool
 from wsim.sweep.run import parts, run
 from wsim.sweep.work import Shard, work
 
@@ -45,6 +45,16 @@ def test_together_is_as_one_by_one(folder: Path) -> None:
     assert [outcome.status for outcome in together] == [outcome.status for outcome in one_by_one]
     assert [outcome.candidate for outcome in together] == list(candidates)
     assert together[4].reason == one_by_one[4].reason
+
+
+def test_cores_change_nothing_but_the_time(folder: Path) -> None:
+    points = [{}, {"edge": 0.1}, {"friction": 0.1}, {"edge": 0.5}, {"edge": 0.3, "friction": 0.7}]
+    candidates = tuple(Candidate(number=k, params=point, seed=k % 2) for k, point in enumerate(points))
+    shards = [Shard(candidates, folder, Spec(worlds=8), cores) for cores in (1, 3)]
+    found = {shard.cores: told for shard, told in Pool(work, 1, lambda shard: shard.patience).run(shards)}
+    one, several = ([each.model_copy(update={"seconds": 0.0}) for each in found[cores]] for cores in (1, 3))
+    assert [outcome.status for outcome in one] == ["accepted"] * 3 + ["rejected", "accepted"]
+    assert several == one
 
 
 def test_what_finds_no_room_is_split_and_not_lost(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.decide import judge, judge_copies
-from wsim.judge.evidence.evidence import Evidence
 from wsim.forks import shared_out
+from wsim.judge.decide import judge_copies
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import Signals, evaluate
 from wsim.progress import Progress, silent
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,7 +24,7 @@ from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.forward import forward_only
-from wsim.sim.numbers import OtherThanNumbers, differences, with_numbers
+from wsim.sim.numbers import differences, with_numbers
 from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -158,14 +159,14 @@ def _imports(stages: Sequence[Path], worlds: Sequence[World], processes: int) ->
     """
     first = _import(stages[0], worlds[0], None)
     yield first
-    meshes = any(shape.kind == "mesh" for solid in (*worlds[0].bodies, *worlds[0].statics) for shape in solid.shapes)
+    solids = [*(body.shapes for body in worlds[0].bodies), *(static.shapes for static in worlds[0].statics)]
+    meshes = any(shape.kind == "mesh" for shapes in solids for shape in shapes)
 
     def numbers(k: int) -> tuple[dict[str, Any], World, list[Breakable]] | None:
-        one = _import(stages[k], worlds[k], None)
-        try:
+        with contextlib.suppress(Exception):  # what cannot be read there is read here, which says why
+            one = _import(stages[k], worlds[k], None)
             return differences(one.builder, first.builder), one.world, one.breakable
-        except OtherThanNumbers:
-            return None
+        return None
 
     rest, count = range(1, len(stages)), 1 if meshes else forks(processes)
     if count < 2:

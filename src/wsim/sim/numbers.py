@@ -16,7 +16,7 @@ import numpy as np
 CUSTOM = "custom_attributes"
 
 
-class OtherThanNumbers(ValueError):
+class OtherThanNumbersError(ValueError):
     """Builders differ in what is not sent."""
 
 
@@ -24,18 +24,18 @@ def differences(own: Any, first: Any) -> dict[str, Any]:
     """What `with_numbers` makes a copy of one `newton.ModelBuilder` of, from another.
 
     Raises:
-        OtherThanNumbers: If it would not be the same to the last bit.
+        OtherThanNumbersError: If it would not be the same to the last bit.
     """
     theirs, mine = _values(first), _values(own)
     if theirs.keys() != mine.keys():
-        raise OtherThanNumbers(f"attributes {sorted(theirs.keys() ^ mine.keys())}")
+        raise OtherThanNumbersError(f"attributes {sorted(theirs.keys() ^ mine.keys())}")
     found = {}
     for name, value in mine.items():
         told = _plain(value)
         if repr(told) != repr(_plain(theirs[name])):  # tells -0 from 0, and takes NaN for itself
             found[name] = told
             if repr(_plain(_like(theirs[name], told, name))) != repr(told):
-                raise OtherThanNumbers(name)
+                raise OtherThanNumbersError(name)
     return found
 
 
@@ -93,4 +93,4 @@ def _like(first: Any, told: Any, name: str) -> Any:
         return {key: _like(one, told[key], name) for key, one in first.items()}
     if type(first) is type(told) and isinstance(told, bool | int | float | str | None):
         return told
-    raise OtherThanNumbers(name)
+    raise OtherThanNumbersError(name)
