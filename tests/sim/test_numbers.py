@@ -16,7 +16,7 @@ from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.sim import model
 from wsim.sim.model import build_batch
-from wsim.sim.numbers import OtherThanNumbersError, differences, with_numbers
+from wsim.sim.numbers import OtherThanNumbersError, differences, texts, with_numbers
 
 
 def _stages(folder: Path, build: Build, count: int) -> list[Path]:
@@ -57,15 +57,15 @@ def test_what_is_no_number_is_refused() -> None:
         for k in range(boxes):
             builder.add_shape_box(builder.add_body(label=f"b{k}"), hx=0.1, hy=0.1, hz=0.1)
     with pytest.raises(OtherThanNumbersError):
-        differences(other, one)
-    assert differences(one, one) == {}
+        differences(other, one, texts(one))
+    assert differences(one, one, texts(one)) == {}
 
 
 def test_signs_of_zero_and_nan_are_kept() -> None:
     one, other = newton.ModelBuilder(), newton.ModelBuilder()
     one.body_mass, other.body_mass = [0.0, 1.0, float("nan")], [-0.0, 1.0, float("nan")]
-    assert list(differences(other, one)) == ["body_mass"]
-    assert repr(with_numbers(one, differences(other, one)).body_mass) == "[-0.0, 1.0, nan]"
+    assert list(differences(other, one, texts(one))) == ["body_mass"]
+    assert repr(with_numbers(one, differences(other, one, texts(one))).body_mass) == "[-0.0, 1.0, nan]"
     assert repr(one.body_mass) == "[0.0, 1.0, nan]"
 
 

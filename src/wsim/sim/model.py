@@ -24,7 +24,7 @@ from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
 from wsim.sim.forward import forward_only
-from wsim.sim.numbers import differences, with_numbers
+from wsim.sim.numbers import differences, texts, with_numbers
 from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -165,13 +165,14 @@ def _imports(stages: Sequence[Path], worlds: Sequence[World], processes: int) ->
     def numbers(k: int) -> tuple[dict[str, Any], World, list[Breakable]] | None:
         with contextlib.suppress(Exception):  # what cannot be read there is read here, which says why
             one = _import(stages[k], worlds[k], None)
-            return differences(one.builder, first.builder), one.world, one.breakable
+            return differences(one.builder, first.builder, known), one.world, one.breakable
         return None
 
     rest, count = range(1, len(stages)), 1 if meshes else forks(processes)
     if count < 2:
         yield from (_import(stages[k], worlds[k], None) for k in rest)
         return
+    known = texts(first.builder)
     for k, found in zip(rest, shared_out(numbers, rest, count), strict=True):
         if found is None:
             yield _import(stages[k], worlds[k], None)

@@ -20,8 +20,18 @@ class OtherThanNumbersError(ValueError):
     """Builders differ in what is not sent."""
 
 
-def differences(own: Any, first: Any) -> dict[str, Any]:
+def texts(builder: Any) -> dict[str, str]:
+    """All that a builder holds as text, which tells -0 from 0 and takes NaN for itself."""
+    return {name: repr(_plain(value)) for name, value in _values(builder).items()}
+
+
+def differences(own: Any, first: Any, known: Mapping[str, str]) -> dict[str, Any]:
     """What `with_numbers` makes a copy of one `newton.ModelBuilder` of, from another.
+
+    Args:
+        own: The one.
+        first: The other.
+        known: Its `texts`, which many are held against.
 
     Raises:
         OtherThanNumbersError: If it would not be the same to the last bit.
@@ -32,9 +42,10 @@ def differences(own: Any, first: Any) -> dict[str, Any]:
     found = {}
     for name, value in mine.items():
         told = _plain(value)
-        if repr(told) != repr(_plain(theirs[name])):  # tells -0 from 0, and takes NaN for itself
+        text = repr(told)
+        if text != known[name]:
             found[name] = told
-            if repr(_plain(_like(theirs[name], told, name))) != repr(told):
+            if repr(_plain(_like(theirs[name], told, name))) != text:
                 raise OtherThanNumbersError(name)
     return found
 
