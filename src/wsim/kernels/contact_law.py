@@ -16,6 +16,7 @@ ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law h
 SMALL_CHANGE = wp.constant(1.0e-5)  # [m/s], and
 MOST_SHARE = wp.constant(19.0)  # of the solution before, as wsim.solvers.contact_law has them
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
+NEVER = wp.constant(2**30)  # steps
 vec5 = wp.types.vector(length=5, dtype=float)
 
 
@@ -96,11 +97,11 @@ def waiting(goal: float, distance: float, speed: float, touched: bool, threshold
 
 
 @wp.func
-def went_exactly(exact: wp.array2d(dtype=int), world: int, loose: int) -> bool:
-    """Whether a body of a row among the loose ones did in the step before; -1 goes as stated."""
+def since_exact(since: wp.array2d(dtype=int), world: int, loose: int) -> int:
+    """Steps of the first order since a body of a row among the loose ones went exactly; -1 goes as stated."""
     if loose >= 0:
-        return exact[world, loose] != 0
-    return loose == -1
+        return since[world, loose]
+    return wp.where(loose == -1, 0, NEVER)
 
 
 @wp.func
@@ -173,7 +174,7 @@ def aim(
     free: wp.array2d(dtype=float),  # acceleration without constraints
     touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
     loose: wp.array(dtype=int),  # which of the loose bodies a body is; -1 goes as stated
-    exact: wp.array2d(dtype=int),  # whether a loose body went exactly in the step before
+    since: wp.array2d(dtype=int),  # a loose body's steps of the first order since its last exact one
     sparse: bool,
     nv: int,
     jacobian: wp.array3d(dtype=float),
@@ -211,9 +212,9 @@ def aim(
         touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
-            smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
             one, two = loose[geom_body[geom[0]]], loose[geom_body[geom[1]]]
-            smooth = smooth or (went_exactly(exact, world, one) and went_exactly(exact, world, two))
+            rough = wp.min(touched_for[world], wp.max(since_exact(since, world, one), since_exact(since, world, two)))
+            smooth = float(rough) * wp.abs(pull) * h < wp.abs(speed)
             goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         else:

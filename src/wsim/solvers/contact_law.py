@@ -333,8 +333,10 @@ class ContactLawC:
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
         speed, bow = data.efc_vel[normal], self._bow[chosen]
         free, bodies = image[normal], model.geom_bodyid[geoms]
-        smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
-        smooth |= self.flight.smooth(bodies)
+        since = self.flight.since_exact(bodies)
+        if self.smooth:
+            since = np.minimum(since, self.touched)
+        smooth = since * np.abs(free) * h < np.abs(speed)  # not by the first order all the fall
         goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], bodies, h, config, smooth)
         goal = goal + bow
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
