@@ -14,10 +14,12 @@ from wsim.geometry.rotations import conjugate, rotate
 from wsim.kernels.contact_law import aim, aim_again, stop, strike, weigh
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
+from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
-from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.contact_law import ContactLawC
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
+from wsim.solvers.groups import tied_groups
 from wsim.solvers.host_models import host_models
 from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import (
@@ -235,7 +237,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._geom_class = wp.array(surfaces.classes, dtype=int)
             self._law = wp.array(surfaces.law, dtype=wp.vec3)
             self._curvature = wp.array(surfaces.curvature, dtype=float)
-            self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
+            groups = tied_groups(self._mujoco, self.mj_model)
+            self._geom_group = wp.array(groups[self.mj_model.geom_bodyid], dtype=int)
+            self._struck = wp.zeros((data.nworld, int(groups.max()) + 1), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._blow = wp.zeros(data.naconmax, dtype=float)
             self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
@@ -390,7 +394,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             strike,
             dim=data.naconmax,
             inputs=[
-                *touching, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
+                *touching, efc.vel, h, self._bow, self._geom_class, self._geom_group, self._law,
                 config.threshold,
             ],
             outputs=[self._struck],
@@ -399,10 +403,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
-                model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, flight.row, flight.since, *self._jacobian(model, efc),
-                config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
+                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid,
+                self._geom_group, self._law, model.geom_type, self._curvature, data.geom_xmat, contact.frame,
+                self._struck, data.qacc_smooth, self._touched_for, flight.row, flight.since,
+                *self._jacobian(model, efc), config.threshold, config.settle_time, config.settle_speed,
+                config.smallest_friction,
             ],
             outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
         )  # fmt: skip
@@ -426,7 +431,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             dim=data.naconmax,
             inputs=[
                 *touching, contact.dim, contact.friction, efc.vel, h, model.geom_bodyid, data.qacc,
-                *self._jacobian(model, efc), self._slip, self._before,
+                *self._jacobian(model, efc), efc.force, self._target, self._blow, self._slip, self._before,
             ],
             outputs=[self._remaining, self._sums],
         )  # fmt: skip
