@@ -70,8 +70,9 @@ def targets(
     struck = np.zeros(int(groups.max()) + 1, dtype=bool)
     struck[groups[meets]] = True
     struck[0] = False
-    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
-    light = distance > -config.threshold * h * h
+    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
+    # what was parting is hit anew in the step after, and bounces.
+    light = (distance > -config.threshold * h * h) | (speed > config.threshold * h)
     later = bouncy & (waits | (~fast & light)) & struck[groups].any(axis=1)
     goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
     return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
