@@ -60,8 +60,10 @@ def test_a_load_that_no_step_can_follow_is_refused(limits):
 
 @pytest.mark.parametrize("touching", [False, True])
 def test_a_chain_under_a_thousand_newtons_holds(tmp_path, touching):
-    """20,000 times the mass of a link, let go at 50 degrees: it is no longer than it was, and keeps its energy; where anything
-    in the world touches, steps are of the first order, and its energy swings by about h v g of the load's."""
+    """20,000 times the mass of a link, let go at 50 degrees: it is no longer than it was, and keeps its energy.
+
+    Where anything in the world touches, steps are of the first order, and its energy swings by about h v g.
+    """
 
     def build(scene):
         hang(scene, 100.0, math.radians(50.0))
