@@ -93,7 +93,8 @@ def works(seed: int) -> Array:
     for _ in range(round(100 * SECONDS)):
         simulation.advance_frame()
     if problems := simulation.problems():
-        raise RuntimeError("; ".join(problems))
+        print(f"  world {seed} is left out: {'; '.join(problems)}")
+        return np.zeros((0, 2))
     return np.array(found).reshape(-1, 2)
 
 
