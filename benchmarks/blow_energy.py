@@ -183,7 +183,7 @@ def single() -> None:
 def main(arguments: list[str] | None = None) -> int:
     """Run both."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--worlds", type=int, default=240, help="how many are thrown together; half a second each")
+    parser.add_argument("--worlds", type=int, default=240, help="how many are thrown together; some seconds each")
     parser.add_argument("--newton", action="store_true", help="friction pays nothing")
     args = parser.parse_args(arguments)
     if args.newton:
