@@ -212,7 +212,7 @@ def fly(
     tied: wp.array(dtype=int),  # whether a rope or a loop may hold it
     steady: wp.array2d(dtype=int),  # whether its contacts leave it no jolt
     # Data out:
-    exact: wp.array2d(dtype=int),
+    since: wp.array2d(dtype=int),  # the last exact step: steps of the first order
     true_q: wp.array2d(dtype=wp.float64),
     true_qd: wp.array2d(dtype=wp.float64),
     qpos: wp.array2d(dtype=Any),
@@ -240,7 +240,7 @@ def fly(
     late = wp.float64(0.0)  # how much of the step's change of velocity its way lacks
     if alone and (free or (tied[k] == 0 and steady[world, k] != 0)):
         late = wp.float64(0.5) * h
-    exact[world, k] = wp.where(late > wp.float64(0.0), 1, 0)
+    since[world, k] = wp.where(late > wp.float64(0.0), 0, since[world, k] + 1)
     kick = twist - change[world, k]
     kicked = w + h * kick
     turn = free_turn(axes, inertia, kicked - late * kick, h)
@@ -264,3 +264,13 @@ def fly(
         qpos[world, p + i] = qpos.dtype(true_q[world, p + i])
     for i in range(6):
         qvel[world, f + i] = qvel.dtype(true_qd[world, f + i])
+
+
+# MuJoCo's numbers are double in C and single in Warp. Each kernel is made for both at once: Warp compiles a module anew
+# whenever a kernel of it is launched with a type that it has not had, three to six times in a first run.
+for _number in (float, wp.float64):
+    _rows: Any = wp.array2d(dtype=_number)
+    wp.overload(recall, {"qpos": _rows, "qvel": _rows})
+    wp.overload(keep, {"values": _rows})
+    wp.overload(tumble, {"bias": _rows})
+    wp.overload(fly, dict.fromkeys(("qacc", "held", "pushed", "bias", "qpos", "qvel"), _rows))
