@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 TURNS = 0.04  # [rad]: friction of 0.5 that is as far off its way leaves 0.02 of the push: what an interval may lack
 
 
-def landing(touching: Touching, contacts: Contacts, poses: Poses, h: Floats, mass: Floats) -> Floats:
+def landing(
+    touching: Touching, contacts: Contacts, poses: Poses, h: Floats, mass: Floats, end: int = 0
+) -> Floats:
     """By how much landings may change the velocities of bodies in an interval, (B,) [m/s].
 
     Args:
@@ -38,13 +40,17 @@ def landing(touching: Touching, contacts: Contacts, poses: Poses, h: Floats, mas
     if not len(contacts):
         return found
     closing = -np.einsum("ni,ni->n", slip(touching, contacts, poses), contacts.normal)
+    bounce = touching.bounces(contacts.shapes)
+    if end:  # what parts has bounced: it met at its speed over the restitution
+        closing = np.where(bounce > 0.0, -closing, 0.0)
     rows = np.stack([contacts.one, contacts.two])
     moves, at = rows >= 0, np.maximum(rows, 0)
     lands = (closing > 0.0) & (contacts.gap <= closing * h[at.max(axis=0)])
+    met = closing * (1.0 + (1.0 / np.maximum(bounce, 1e-9) if end else bounce))
     light = np.where(moves, 1.0 / mass[at], 0.0)
     for side in (0, 1):
         ours = lands & moves[side]
-        np.maximum.at(found, at[side][ours], (closing * light[side] / light.sum(axis=0))[ours])
+        np.maximum.at(found, at[side][ours], (met * light[side] / light.sum(axis=0))[ours])
     return found
 
 

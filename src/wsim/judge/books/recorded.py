@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
+from wsim.judge.books.landing import TURNS
 from wsim.judge.books.recorded_ties import RecordedTies
 from wsim.judge.books.sharing import UPRIGHT, bend, lever, share
 from wsim.judge.evidence.motion import FLOAT32
@@ -23,6 +24,7 @@ from wsim.scene.contact import pair_law
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.books.balance import Books
     from wsim.judge.evidence.evidence import Evidence
     from wsim.recording.contacts import ContactTrack
 
@@ -169,6 +171,15 @@ class RecordedContacts:
         key = self.track.frame * np.int64(len(self.shapes)) ** 2 + pair[:, 0] * len(self.shapes) + pair[:, 1]
         step = np.int64(len(self.shapes)) ** 2
         return np.asarray(np.isin(key - step, key) & np.isin(key + step, key))
+
+    def keeps_way(self, books: Books, speed: Floats) -> Bools:
+        """Whether the slip of each row, at a speed (n,) [m/s], keeps its way with what may land in its interval."""
+        interval, changes = np.maximum(self.track.frame - 1, 0), np.zeros(len(speed))
+        for side in (0, 1):
+            rows = self.body[:, side]
+            hidden = np.where(books.hit, np.inf, books.landed)[interval, np.maximum(rows, 0)]
+            changes += np.where(rows >= 0, hidden, 0.0)
+        return np.asarray(changes <= TURNS * speed)
 
     @cached_property
     def slip(self) -> Floats:

@@ -206,6 +206,12 @@ class Touching:
         both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which]
         return both[:, 0], both[:, 1]
 
+    def bounces(self, shapes: Rows) -> Floats:
+        """Restitution of pairs of shapes (n, 2), (n,)."""
+        pairs, which = np.unique(shapes, axis=0, return_inverse=True)
+        found = np.array([self._law(one, two).restitution for one, two in pairs.tolist()], dtype=np.float64)
+        return found[which.ravel()]
+
     def _law(self, one: int, two: int) -> Pair:
         if (one, two) not in self._laws:
             self._laws[one, two] = pair_law(self.world, self.shapes[one][2], self.shapes[two][2])

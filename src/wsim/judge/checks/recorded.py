@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import ONE_WAY, STILL
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.checks.check import Check, Checks, listed
@@ -112,6 +113,7 @@ class CheckRecordedForces(Check):
         change, slowest = np.linalg.norm(across[:, 1] - across[:, 0], axis=1), speed.min(axis=1)
         lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
         lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
+        lasts &= contacts.keeps_way(Books.of(evidence), slowest)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         if not len(rows):
             return []
