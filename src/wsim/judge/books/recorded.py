@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.judge.books.landing import TURNS
 from wsim.judge.books.recorded_ties import RecordedTies
 from wsim.judge.books.sharing import UPRIGHT, bend, lever, share
 from wsim.judge.evidence.motion import FLOAT32
@@ -172,14 +171,13 @@ class RecordedContacts:
         step = np.int64(len(self.shapes)) ** 2
         return np.asarray(np.isin(key - step, key) & np.isin(key + step, key))
 
-    def keeps_way(self, books: Books, speed: Floats) -> Bools:
-        """Whether the slip of each row, at a speed (n,) [m/s], keeps its way with what may land in its interval."""
-        interval, changes = np.maximum(self.track.frame - 1, 0), np.zeros(len(speed))
+    def landed(self, books: Books) -> Floats:
+        """By how much the slip of each row may change, and back, as points land in its interval, (n,) [m/s]."""
+        interval, changes = np.maximum(self.track.frame - 1, 0), np.zeros(len(self.track.frame))
         for side in (0, 1):
             rows = self.body[:, side]
-            hidden = np.where(books.hit, np.inf, books.landed)[interval, np.maximum(rows, 0)]
-            changes += np.where(rows >= 0, hidden, 0.0)
-        return np.asarray(changes <= TURNS * speed)
+            changes += np.where(rows >= 0, books.landed[interval, np.maximum(rows, 0)], 0.0)
+        return changes
 
     @cached_property
     def slip(self) -> Floats:
