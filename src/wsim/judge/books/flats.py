@@ -77,7 +77,8 @@ def _shared(cylinder: tuple[Shape, Floats], other: tuple[Shape, Floats], outward
     found = []
     if upright:
         found.append(_on_disc(shape, pose, np.sign(axis @ outwards) * axis, _facing(against, there, -outwards)))
-    if lies and against.kind != "box":
+    rounded = against.kind in ("sphere", "capsule") or abs(rotate(there[3:], Z) @ outwards) <= np.sin(LEANS)
+    if lies and against.kind != "box" and rounded:  # a cylinder's end is no ball's
         found.append(_on_side(shape, pose, *_round(against, there)))
     if (upright or lies) and against.kind == "box":
         found.append(_on_face(_facing(shape, pose, outwards), against, there, outwards))
