@@ -66,7 +66,7 @@ def flats(pairs: Rows, normal: Floats, shapes: Sequence[Shape], placed: Callable
                 points.append(point)
                 ways.append(sign * way)
                 gaps.append(gap)
-    return Further(*(np.concatenate(each) for each in (rows, points, ways, gaps)))
+    return Further(np.concatenate(rows), np.concatenate(points), np.concatenate(ways), np.concatenate(gaps))
 
 
 def _shared(cylinder: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Floats) -> list[Points]:
@@ -139,7 +139,7 @@ def _facing(shape: Shape, pose: Floats, way: Floats) -> Floats:
 
 
 def _round(shape: Shape, pose: Floats) -> tuple[Floats, float]:
-    """The centres (n, 3) of the balls that a sphere, a capsule or a cylinder's side is made of, and their radius [m]."""
+    """The centres (n, 3) of the balls that make up a sphere, a capsule or a cylinder's side, and their radius [m]."""
     length = 0.0 if shape.kind == "sphere" else shape.size[1]
     share = np.linspace(-0.5, 0.5, ALONG) if length > 0.0 else np.zeros(1)
     return np.asarray(pose[:3] + (share * length)[:, None] * rotate(pose[3:], Z)), float(shape.size[0])
