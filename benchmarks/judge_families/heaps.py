@@ -1,4 +1,8 @@
-"""Sound worlds of heaps that are struck: stacks, piles and rows that a ball runs into."""
+"""Sound worlds of heaps that are struck: stacks, piles and rows that a ball runs into.
+
+What stands on several points does not bounce: where many points bounce at once the simulator's own energy rises, and
+the judge is right to reject that.
+"""
 
 from __future__ import annotations
 

@@ -1,9 +1,10 @@
-"""Cylinders that stand or lie on what is round or flat: where they touch follows from geometry."""
+"""Cylinders that stand or lie on what is round or flat, and boxes' faces: where they touch follows from geometry."""
 
 import numpy as np
 import pytest
 
 from tests.judge.theory import box, record, times
+from wsim.judge.books.flats import flats
 from wsim.judge.books.touching import Touching
 from wsim.judge.evidence.evidence import Evidence
 
@@ -56,3 +57,17 @@ def test_it_bears_on_nothing_beside_the_edge():
     table, roller = solid("box", (0.2, 0.2, 0.1), "table"), solid("cylinder", (R, H), "roller")
     found = touching(table, roller, [(0, 0, 0), (0.1, 0, 0.05 + H / 2)], UPRIGHT)
     assert len(found) and found.point[:, 0].max() <= 0.1 + 1e-6
+
+
+@pytest.mark.parametrize("apart", [0.0, 5e-5])
+def test_a_face_on_a_face_bears_at_its_corners(apart):
+    """Whatever a search finds of it, here one point in the middle."""
+    below, above = solid("box", (0.2, 0.2, 0.1), "below"), solid("box", (0.1, 0.1, 0.02), "above")
+    places = [np.array((0.0, 0.0, 0.0, *UPRIGHT)), np.array((0.02, 0.0, 0.06 + apart, *UPRIGHT))]
+    shapes = [below.shapes[0], above.shapes[0]]
+    found = flats(np.array([[0, 1]]), np.array([[0.0, 0.0, 1.0]]), shapes, places.__getitem__)
+    touch = found.gap < REACH
+    corners = {tuple(point) for point in found.point[touch][:, :2].round(6)}
+    assert corners == {(x, y) for x in (-0.03, 0.07) for y in (-0.05, 0.05)}
+    assert found.gap[touch] == pytest.approx(apart, abs=1e-9)
+    assert found.normal[touch] == pytest.approx(np.tile([0.0, 0.0, 1.0], (touch.sum(), 1)))

@@ -11,8 +11,8 @@ from wsim.recording import read
 from wsim.sim import Simulation
 
 # A card that a ball bounces off slips on as it is knocked; the lowest box of a stack slips and stands again between two
-# frames; a box on a roller across a dome.
-WORLDS = [("struck row", 3), ("struck stack", 10), ("struck pile", 46)]
+# frames; a box on a roller across a dome; cards that lie on each other's faces.
+WORLDS = [("struck row", 3), ("struck stack", 10), ("struck pile", 46), ("struck row", 41)]
 
 
 @pytest.fixture(scope="module", params=WORLDS, ids=[f"{name} {k}" for name, k in WORLDS])

@@ -1,9 +1,12 @@
-"""Where cylinders touch with an end or along a side: all over what both share, of which MuJoCo tells a point or two.
+"""Where cylinders touch with an end or along a side, and boxes with faces: all over what both share.
+
+MuJoCo tells a point or two of it.
 
 Of what stands flat, or lies along a line, any point may bear, and which one a search for the nearest finds is chance:
 of a roller across a dome it may be the roller's end. Here an end's disc is held against the points of the other shape
 that come nearest to it, a box's face against points of the cylinder's rim or side, and a side against what is round;
-each point with its own gap.
+and where boxes' faces lie on each other with fewer points than a face has, each is held against the other's corners.
+Each point has its own gap.
 """
 
 from __future__ import annotations
@@ -24,13 +27,14 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Rows = NDArray[np.intp]
-    Points = tuple[Floats, Floats, Floats]  # halfway (n, 3), normals from the cylinder (n, 3), gaps (n,)
+    Points = tuple[Floats, Floats, Floats]  # halfway (n, 3), normals from the first shape (n, 3), gaps (n,)
 
 LEANS = 0.1  # [rad]: an end, a side or a face that leans by more touches with one point, which the search finds
 RIM = 16  # points of a rim,
 ALONG = 9  # and of a line
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
-AGAINST = ("sphere", "capsule", "box", "cylinder")
+BOXES, FACE = ("box", "box"), 4  # corners
+KINDS = {BOXES, *(("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder"))}
 Z = np.array([0.0, 0.0, 1.0])
 _NONE, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
 
@@ -46,7 +50,7 @@ class Further:
 
 
 def flats(pairs: Rows, normal: Floats, shapes: Sequence[Shape], placed: Callable[[int], Floats]) -> Further:
-    """Further points of the contacts that cylinders take part in.
+    """Further points of the contacts that cylinders take part in, and of boxes.
 
     Args:
         pairs: Of the shapes of each contact at one pose of all bodies, (n, 2).
@@ -55,10 +59,11 @@ def flats(pairs: Rows, normal: Floats, shapes: Sequence[Shape], placed: Callable
         placed: Where a shape is in the world, (7,) [m; xyzw].
     """
     rows, points, ways, gaps = [_NONE], [_POINTS], [_POINTS], [np.zeros(0)]
-    for n in np.unique(pairs, axis=0, return_index=True)[1]:
+    for n, count in zip(*np.unique(pairs, axis=0, return_index=True, return_counts=True)[1:], strict=True):
         for side, sign in ((0, 1.0), (1, -1.0)):
             own, other = pairs[n, side], pairs[n, 1 - side]
-            if shapes[own].kind != "cylinder" or shapes[other].kind not in AGAINST:
+            kinds = shapes[own].kind, shapes[other].kind
+            if kinds not in KINDS or (kinds == BOXES and count >= FACE):
                 continue
             ends = (shapes[own], placed(own)), (shapes[other], placed(other))
             for point, way, gap in _shared(*ends, sign * normal[n]):
@@ -69,9 +74,11 @@ def flats(pairs: Rows, normal: Floats, shapes: Sequence[Shape], placed: Callable
     return Further(np.concatenate(rows), np.concatenate(points), np.concatenate(ways), np.concatenate(gaps))
 
 
-def _shared(cylinder: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Floats) -> list[Points]:
-    """What an end or a side of a cylinder that faces another shape shares with it."""
-    (shape, pose), (against, there) = cylinder, other
+def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Floats) -> list[Points]:
+    """What an end or a side of a cylinder that faces another shape shares with it, or a box with another's face."""
+    (shape, pose), (against, there) = own, other
+    if shape.kind == "box":
+        return [_on_face(_facing(shape, pose, outwards), against, there, outwards)]
     axis = rotate(pose[3:], Z)
     upright, lies = abs(axis @ outwards) >= np.cos(LEANS), abs(axis @ outwards) <= np.sin(LEANS)
     found = []
@@ -106,18 +113,20 @@ def _on_side(shape: Shape, pose: Floats, centres: Floats, radius: float) -> Poin
 
 
 def _on_face(points: Floats, box: Shape, pose: Floats, outwards: Floats) -> Points:
-    """Of some points of a cylinder those over the face of a box that is turned to it."""
-    own, way = rotate(conjugate(pose[3:]), points - pose[:3]), rotate(conjugate(pose[3:]), -outwards)
+    """Of some points of a shape those over the face of a box that is turned to it."""
+    way = rotate(conjugate(pose[3:]), -outwards)
     k, edges = int(np.argmax(np.abs(way))), 0.5 * np.asarray(box.size)
-    sign = float(np.sign(way[k]))
+    if abs(way[k]) < np.cos(LEANS):
+        return _POINTS, _POINTS, np.zeros(0)
+    own, sign = rotate(conjugate(pose[3:]), points - pose[:3]), float(np.sign(way[k]))
     normal = -rotate(pose[3:], sign * np.eye(3)[k])
     gap = sign * own[:, k] - edges[k]
-    inside = np.all((np.abs(own) <= edges) | (np.arange(3) == k), axis=1) & (abs(way[k]) >= np.cos(LEANS))
+    inside = np.all((np.abs(own) <= edges) | (np.arange(3) == k), axis=1)
     return _halfway(points, np.tile(normal, (len(points), 1)), gap, inside)
 
 
 def _halfway(surface: Floats, way: Floats, gap: Floats, which: NDArray[np.bool_]) -> Points:
-    """Some contacts, by their points on the cylinder's surface."""
+    """Some contacts, by their points on the first shape's surface."""
     return (surface + 0.5 * gap[:, None] * way)[which], way[which], gap[which]
 
 

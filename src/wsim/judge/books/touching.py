@@ -143,7 +143,7 @@ class Touching:
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
-            if self._meshes or self._discs:
+            if self._meshes or self._flat:
                 others.append(together([*self._on_meshes(poses[k], float(far)), *self._flats(poses[k], float(far))]))
         geom = np.concatenate([NONE.shapes, *geoms])
         shapes = self._shape_of_geom[geom]
@@ -171,13 +171,15 @@ class Touching:
         return np.array(meet, dtype=bool).reshape(len(named), len(named))
 
     @cached_property
-    def _discs(self) -> bool:
-        """Whether there are cylinders, whose ends are flat, beside other solids."""
-        return len(self.shapes) > 1 and any(shape.kind == "cylinder" for _, _, shape in self.shapes)
+    def _flat(self) -> bool:
+        """Whether there are solids with flat sides beside others."""
+        return sum(shape.kind in ("box", "cylinder") for _, _, shape in self.shapes) > 1 or any(
+            shape.kind == "cylinder" for _, _, shape in self.shapes
+        )
 
     def _flats(self, pose: Floats, reach: float) -> list[Contacts]:
-        """Further points of flat ends among what MuJoCo has found last, at one pose of all bodies."""
-        if not self._discs:
+        """Further points of what is flat among what MuJoCo has found last, at one pose of all bodies."""
+        if not self._flat:
             return []
         found = self._data.contact
         pairs = self._shape_of_geom[np.array(found.geom).reshape(-1, 2)]
