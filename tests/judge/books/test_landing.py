@@ -86,3 +86,17 @@ def test_only_what_meets_within_the_interval_lands(gap, down, expected):
     landed = landing(touching, contacts, poses, np.array([0.02]), motion.mass)
     assert landed == pytest.approx([expected], abs=1e-6)
     assert keeps_way(contacts, np.array([3.0]), landed) == (expected == 0.0)
+
+
+@pytest.mark.parametrize(("bounce", "expected"), [(0.5, 0.3 * 3.0), (0.25, 0.3 * 5.0), (None, 0.0)])
+def test_what_parts_has_landed_as_fast_as_its_bounce_has_it(bounce, expected):
+    """It met at v / e and parts at v: changed by (1 + 1 / e) v on the ground; what does not bounce parts unpushed."""
+    t = times(0.1)
+    body = ball()
+    shapes = [body.shapes[0].model_copy(update={"restitution": bounce})]
+    place, speed = (np.tile(each, (len(t), 1)) for each in ((0.0, 0.0, RADIUS + 1e-3), (0.0, 0.0, 0.3)))
+    evidence = Evidence(record([body.model_copy(update={"shapes": shapes})], place, speed, t, statics=[ground()]))
+    touching, motion = Touching.of(evidence), evidence.motion
+    poses = Poses(evidence.body_q[1], motion.com[1], motion.v[1], motion.w[1])
+    landed = landing(touching, touching.at(poses.q, 0.05), poses, np.array([0.02]), motion.mass, 1)
+    assert landed == pytest.approx([expected], rel=1e-5)

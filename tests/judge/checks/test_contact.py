@@ -85,6 +85,22 @@ def test_two_bodies_that_pass_through_each_other_are_found():
     assert only(ask(CheckTunnelling(), missed)).passed
 
 
+@pytest.mark.parametrize(("beside", "passes"), [(0.25, False), (0.0, True)])
+def test_what_stands_beside_a_ball_that_spins_does_not_go_through_it(beside, passes):
+    """Seen from a ball that turns by 2.6 rad a frame it goes round it, and the chord of that goes through the ball."""
+    t, rate = times(0.5), 2.6 * RATE
+    none, along = 0.0 * t, 8.0 * t
+    spins = np.stack([along, none, none], 1)
+    still = np.stack([along + beside if beside else none + 20.0 / RATE, none, none], 1)
+    angle = 0.5 * rate * t
+    turn = np.stack([np.stack([none, np.sin(angle), none, np.cos(angle)], 1),
+                     np.tile([0.0, 0.0, 0.0, 1.0], (len(t), 1))], 1)  # fmt: skip
+    place = np.stack([spins, still], 1)
+    velocity = np.gradient(place, t, axis=0)
+    found = record([ball(), ball("other")], place, velocity, t, rotation=turn)
+    assert any(not finding.passed for finding in ask(CheckTunnelling(), found)) == passes
+
+
 # ---- friction
 @pytest.mark.parametrize("pull", [0.28, 0.02, 0.36, 0.48, 0.52, 0.6, 0.65, 1.0])
 def test_a_box_that_slides_is_slowed_as_its_friction_has_it(pull):

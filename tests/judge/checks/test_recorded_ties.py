@@ -189,3 +189,36 @@ def test_of_recordings_of_before_nothing_is_asked(smooth):
     before = replace(smooth, ties=None)
     assert not ask(CheckRecordedTies(), before)
     assert not unbalanced(before)
+
+
+# ---- blows
+def cradle(scene):
+    """Three balls in a row, each welded to a rod on a hinge, 1 mm apart; the first swings at the others."""
+    for k, angle in enumerate((20.0, 0.0, 0.0)):
+        turn, x, height = np.radians(angle), 0.101 * k, 0.8
+        down, rod, bob = np.array([-np.sin(turn), 0.0, -np.cos(turn)]), 0.25, 0.3
+        place = [tuple(np.array([x, 0.0, height]) + far * down) for far in (rod / 2, bob)]
+        scene.cylinder(f"rod_{k}", radius=0.005, height=rod, mass=0.1, position=place[0], rotation_deg=(0, angle, 0))
+        scene.sphere(f"ball_{k}", radius=0.05, mass=4.0, position=place[1], restitution=0.9)
+        scene.joint_revolute(f"pivot_{k}", None, f"rod_{k}", anchor=(x, 0, height), axis="Y")
+        joint = tuple(np.array([x, 0.0, height]) + rod * down)
+        scene.joint_fixed(f"hold_{k}", f"rod_{k}", f"ball_{k}", anchor=joint)
+
+
+@pytest.fixture(scope="module")
+def hit(tmp_path_factory):
+    return run(tmp_path_factory.mktemp("cradle"), cradle)
+
+
+def test_blows_within_a_frame_act_with_the_arms_of_their_instants(hit):
+    """The second ball is hit and hits the third one in one interval; what its rod holds it with comes and goes."""
+    evidence = Evidence(hit)
+    ties = RecordedContacts(evidence, hit.contacts).ties
+    row = evidence.index("/World/ball_1")
+    taken = ties._taken_back[:, row]
+    assert taken.max() > 2.0  # of 4 kg at 0.6 m/s
+    assert all(finding.passed for finding in ask(CheckRecordedTies(), hit))
+    k, hold = int(np.argmax(taken)), joint(hit, "hold_1")
+    joints = hit.ties.joints.copy()
+    joints[k + 1, hold, 3:9] *= 1.5  # both angular impulses, of neither arm
+    assert not all(f.passed for f in ask(CheckRecordedTies(), replace(hit, ties=replace(hit.ties, joints=joints))))

@@ -60,6 +60,7 @@ class Books:
     judged: Bools  # (T - 1, B)
     hit: Bools  # (T - 1, B), whether it is so much that something hit the body
     wanted: Floats  # (T - 1, B, 6), what contacts and ties were asked for, as what is left over
+    landed: Floats  # (T - 1, B), by how much landings may change its velocity in between [m/s]
     size: Floats  # (B,) [m], that torques are counted by
 
     @staticmethod
@@ -120,13 +121,14 @@ class Balance:
         wanted = np.where(judged[..., None], both, 0.0)
         hit = judged & (blow > SOFT * self._unit * h)
         self._struck = [Struck(*each) for each in zip(self._copies, np.split(hit, len(laws)), strict=True)]
+        self._landed = np.zeros(hit.shape)
         left, turned = self._worked_out(wanted, judged, hit)
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
         changes = np.split(both, len(self._copies))
         turned += np.concatenate([unknown(*each) for each in zip(self._copies, changes, strict=True)])
-        found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted
+        found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted, self._landed
         count = len(self._copies)
         parts = zip(*(np.split(array, count) for array in found), self._sizes, strict=True)
         return [Books(*part) for part in parts]
@@ -157,6 +159,7 @@ class Balance:
                     tried, missing = self._explained(*some, course=course)
                     less = np.sum(tried**2, axis=(1, 2)) < np.sum(left[some[0]] ** 2, axis=(1, 2))
                     left[some[0][less]], turned[some[0][less]] = tried[less], missing[less]
+        self._landed = again(anew, self._landed)
         return again(anew, left, wanted), again(anew, turned)
 
     def _explained(
@@ -259,14 +262,14 @@ class Balance:
         later: list[Floats] = []
         shares: list[Floats] = []
         for contacts, there, end in found:
-            if end == 0:
-                lands = landing(self._touching, contacts, there, np.repeat(self._h[ks], hit.shape[1]), masses)
-                landed = np.maximum(landed, lands)
+            lands = landing(self._touching, contacts, there, np.repeat(self._h[ks], hit.shape[1]), masses, end)
+            landed = np.maximum(landed, lands)
             carried = _carried(contacts, ends[end], ends[1 - end])
             for kept, touching, poses in ((flat, contacts, ends[end]), (later, carried, ends[1 - end])):
                 u = slip(self._touching, touching, poses)
                 kept.append(u - np.einsum("ni,ni->n", u, contacts.normal)[:, None] * contacts.normal)
                 shares.append(of_contacts(self._touching, touching, poses, kept[-1]))
+        self._landed[ks] = np.maximum(self._landed[ks], landed.reshape(hit.shape))
         every, own, then = together([contacts for contacts, _, _ in found]), np.concatenate(flat), np.concatenate(later)
         side = np.repeat([end for _, _, end in found], [len(contacts) for contacts, _, _ in found])
         rows = len(ends[0].v) + 1

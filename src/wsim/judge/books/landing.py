@@ -2,7 +2,8 @@
 
 A box that rocks as it slides lands on one corner after another. Each landing takes the speed at which the point met,
 and shares it out to all of the body's motion: how its other points slip changes with it, and back again with the next,
-all between two frames. By the reduced mass M of both an impulse of M u changes a body's velocities by about M u / m.
+all between two frames. By the reduced mass M of both an impulse of (1 + e) M u changes a body's velocities by about
+(1 + e) M u / m, where the pair bounces with e. What parts at v from what it bounces off has met it at v / e.
 """
 
 from __future__ import annotations
@@ -24,27 +25,32 @@ if TYPE_CHECKING:
 TURNS = 0.04  # [rad]: friction of 0.5 that is as far off its way leaves 0.02 of the push: what an interval may lack
 
 
-def landing(touching: Touching, contacts: Contacts, poses: Poses, h: Floats, mass: Floats) -> Floats:
+def landing(touching: Touching, contacts: Contacts, poses: Poses, h: Floats, mass: Floats, end: int = 0) -> Floats:
     """By how much landings may change the velocities of bodies in an interval, (B,) [m/s].
 
     Args:
         touching: The shapes.
         contacts: Points that are near each other at
-        poses: of the bodies as the interval begins, or as they would go on from there.
+        poses: of the bodies as the interval begins or ends, or as they would go on from there, or came to it.
         h: Length of the interval of each body, (B,) [s].
         mass: (B,) [kg].
+        end: 0 where the poses are told from the interval's beginning, 1 where they are from its end.
     """
     found = np.zeros(len(mass))
     if not len(contacts):
         return found
     closing = -np.einsum("ni,ni->n", slip(touching, contacts, poses), contacts.normal)
+    bounce = touching.bounces(contacts.shapes)
+    if end:  # what parts has bounced: it met at its speed over the restitution
+        closing = np.where(bounce > 0.0, -closing, 0.0)
     rows = np.stack([contacts.one, contacts.two])
     moves, at = rows >= 0, np.maximum(rows, 0)
     lands = (closing > 0.0) & (contacts.gap <= closing * h[at.max(axis=0)])
+    met = closing * (1.0 + (1.0 / np.maximum(bounce, 1e-9) if end else bounce))
     light = np.where(moves, 1.0 / mass[at], 0.0)
     for side in (0, 1):
         ours = lands & moves[side]
-        np.maximum.at(found, at[side][ours], (closing * light[side] / light.sum(axis=0))[ours])
+        np.maximum.at(found, at[side][ours], (met * light[side] / light.sum(axis=0))[ours])
     return found
 
 

@@ -23,6 +23,7 @@ from wsim.scene.contact import pair_law
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.books.balance import Books
     from wsim.judge.evidence.evidence import Evidence
     from wsim.recording.contacts import ContactTrack
 
@@ -169,6 +170,14 @@ class RecordedContacts:
         key = self.track.frame * np.int64(len(self.shapes)) ** 2 + pair[:, 0] * len(self.shapes) + pair[:, 1]
         step = np.int64(len(self.shapes)) ** 2
         return np.asarray(np.isin(key - step, key) & np.isin(key + step, key))
+
+    def landed(self, books: Books) -> Floats:
+        """By how much the slip of each row may change, and back, as points land in its interval, (n,) [m/s]."""
+        interval, changes = np.maximum(self.track.frame - 1, 0), np.zeros(len(self.track.frame))
+        for side in (0, 1):
+            rows = self.body[:, side]
+            changes += np.where(rows >= 0, books.landed[interval, np.maximum(rows, 0)], 0.0)
+        return changes
 
     @cached_property
     def slip(self) -> Floats:

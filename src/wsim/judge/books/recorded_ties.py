@@ -127,12 +127,13 @@ class RecordedTies:
     def misplaced(self, k: int) -> tuple[Floats, Floats]:
         """By how much joint k's angular impulses are not those of its impulse at its anchor, and may be, (T - 1,).
 
-        [N m s]; on both bodies, and about and along its axis.
+        [N m s]; on both bodies, and about and along its axis. What a push is more or less than before or after may have
+        come all at one end of the interval, as a blow does.
         """
         motion, joint, track = self._evidence.motion, self.joints[k], self.track
         anchors = anchors_of(self._evidence, joint)
         push, about = (array[1:, k].astype(np.float64) for array in (track.impulse, track.about_anchor))
-        reach, off = np.linalg.norm(about, axis=1), np.zeros(len(push))
+        reach, off, moved = np.linalg.norm(about, axis=1), np.zeros(len(push)), np.zeros(len(push))
         for side, (row, sign) in enumerate(zip(self.pairs[k], (-1.0, 1.0), strict=True)):
             if row < 0:
                 continue
@@ -140,6 +141,8 @@ class RecordedTies:
             arm = 0.5 * (arms[1:] + arms[:-1])
             expected = sign * (about + np.cross(arm, push))
             off = np.maximum(off, np.linalg.norm(track.turn[1:, k, side] - expected, axis=1))
+            uneven = self._taken_back[:, row] + 0.5 * _turn(push)
+            moved = np.maximum(moved, np.linalg.norm(np.diff(arms, axis=0), axis=1) * uneven)
             reach = np.maximum(reach, np.linalg.norm(arms, axis=1).max() * np.linalg.norm(push, axis=1))
         if joint.kind in OWN:
             axes = self.laws.axis(joint)
@@ -148,7 +151,32 @@ class RecordedTies:
             own = np.einsum("ti,ti->t", push if joint.kind == "prismatic" else about, axis)
             gap = np.abs(own - track.along[1:, k])
             off = np.maximum(off, gap * (np.linalg.norm(about, axis=1) + reach) / np.maximum(reach, 1e-30))
-        return off, self._turned(k) * reach
+        return off, self._turned(k) * reach + moved
+
+    @cached_property
+    def _taken_back(self) -> Floats:
+        """What contacts gave each body's mechanism and took again in an interval, (T - 1, B) [N s].
+
+        A ball that is hit and hits the next one shows next to nothing of either blow on the whole, and each passed
+        through its joints with the arms of its own instant. Of impulses whose sizes add up to s and whose sum is p,
+        no part is more than (s + p) / 2, and (s - p) / 2 of it is taken back.
+        """
+        motion, contacts = self._evidence.motion, self._evidence.recording.contacts
+        sums, sizes = np.zeros((len(motion.h), len(motion.mass), 3)), np.zeros((len(motion.h), len(motion.mass)))
+        if contacts is None:
+            return sizes
+        owner = np.array([i for i, body in enumerate(self._evidence.world.bodies) for _ in body.shapes], dtype=np.intp)
+        impulse = contacts.impulse.astype(np.float64)
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            ours = np.flatnonzero((contacts.pair[:, side] < len(owner)) & (contacts.frame > 0))
+            at = contacts.frame[ours] - 1, owner[contacts.pair[ours, side]]
+            np.add.at(sums, at, sign * impulse[ours])
+            np.add.at(sizes, at, np.linalg.norm(impulse[ours], axis=1))
+        for unit in np.unique(motion.unit):
+            rows = np.flatnonzero(motion.unit == unit)
+            whole = np.linalg.norm(sums[:, rows].sum(axis=1), axis=1)
+            sizes[:, rows] = 0.5 * (sizes[:, rows].sum(axis=1) - whole)[:, None]
+        return sizes
 
     def _turned(self, k: int) -> Floats:
         """The share of joint k's impulses that arms taken halfway may miss, (T - 1,)."""
@@ -306,5 +334,14 @@ def _jump(values: Floats) -> Floats:
     if len(values) < 2:
         return np.abs(values)
     step = np.abs(np.diff(values))
+    found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
+    return found
+
+
+def _turn(vectors: Floats) -> Floats:
+    """By how much each of some vectors in a row differs from one beside it, at most, (n,); (n, 3) of them."""
+    if len(vectors) < 2:
+        return np.asarray(np.linalg.norm(vectors, axis=1))
+    step = np.linalg.norm(np.diff(vectors, axis=0), axis=1)
     found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
     return found

@@ -77,10 +77,15 @@ def _round(body: Body) -> bool:
 def _of_span(evidence: Evidence, row: int, first: int) -> Rolls | None:
     motion, touching, last = evidence.motion, Touching.of(evidence), first + INTERVALS
     middle = (first + last) // 2
-    each = [_touches(evidence, touching, row, frame) for frame in (middle, first, last)]
-    ends = [contacts for contacts in each if contacts is not None]
-    if len(ends) < len(each):
-        return None
+    frames = [middle, first, last]
+    if motion.meets[first:last, row].any():  # what comes by may touch it for a frame, or between two
+        frames += list(range(first + 1, last))
+    ends: list[Contacts] = []
+    for frame in frames:
+        contacts = _touches(evidence, touching, row, frame)
+        if contacts is None:
+            return None
+        ends.append(contacts)
     met = ends[0]
     other, sign = _other(met, row)
     normal = sign * met.normal[0]  # towards the body
@@ -129,8 +134,12 @@ def _touches(evidence: Evidence, touching: Touching, row: int, frame: int) -> Co
     """The contacts of a body that rolls on one thing, along one line, without slipping; None where it does not."""
     motion = evidence.motion
     poses = Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
-    contacts = touching.at(poses.q, NEAR)
+    intervals = slice(max(frame - 1, 0), frame + 1)
+    h, far = float(motion.h[intervals].max()), 2.0 * float(motion.reach[intervals].max())
+    contacts = touching.at(poses.q, NEAR + far)
     contacts = contacts.only((contacts.one == row) | (contacts.two == row))
+    apart = np.einsum("ni,ni->n", slip(touching, contacts, poses), contacts.normal)
+    contacts = contacts.only(contacts.gap <= NEAR + np.abs(apart) * h)
     if not len(contacts) or np.any(contacts.shapes != contacts.shapes[0]):
         return None
     if np.any(contacts.normal @ contacts.normal[0] < 1.0 - FLAT):

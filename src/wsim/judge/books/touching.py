@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.judge.books.flats import flats
 from wsim.judge.books.meshes import Triangles, colliding, touching
 from wsim.scene.contact import Pair, pair_law, passing
 
@@ -142,8 +143,8 @@ class Touching:
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
-            if self._meshes:
-                others.append(together(self._on_meshes(poses[k], float(far))))
+            if self._meshes or self._flat:
+                others.append(together([*self._on_meshes(poses[k], float(far)), *self._flats(poses[k], float(far))]))
         geom = np.concatenate([NONE.shapes, *geoms])
         shapes = self._shape_of_geom[geom]
         contacts = Contacts(
@@ -168,6 +169,27 @@ class Touching:
         named = [(owner, shape.prim) for _, owner, shape in self.shapes]
         meet = [[frozenset((a[0], b[0])) not in tied and not passes(a, b) for b in named] for a in named]
         return np.array(meet, dtype=bool).reshape(len(named), len(named))
+
+    @cached_property
+    def _flat(self) -> bool:
+        """Whether there are solids with flat sides beside others."""
+        return sum(shape.kind in ("box", "cylinder") for _, _, shape in self.shapes) > 1 or any(
+            shape.kind == "cylinder" for _, _, shape in self.shapes
+        )
+
+    def _flats(self, pose: Floats, reach: float) -> list[Contacts]:
+        """Further points of what is flat among what MuJoCo has found last, at one pose of all bodies."""
+        if not self._flat:
+            return []
+        found = self._data.contact
+        pairs = self._shape_of_geom[np.array(found.geom).reshape(-1, 2)]
+        normal = np.array(found.frame).reshape(-1, 9)[:, :3]
+        further = flats(pairs, normal, [shape for _, _, shape in self.shapes], lambda k: self._placed(k, pose))
+        shapes = pairs[further.of]
+        margin = np.array([shape.margin for _, _, shape in self.shapes])[shapes].sum(axis=1)
+        one, two = self._row_of_shape[shapes].T
+        made = Contacts(one, two, shapes, further.point, further.normal, further.gap - margin)
+        return [made.only(made.gap <= reach)]
 
     def _on_meshes(self, poses: Floats, reach: float) -> list[Contacts]:
         """Contacts of all shapes with all meshes of other bodies; of two meshes, with the faces of both."""
@@ -205,6 +227,12 @@ class Touching:
         laws = [self._law(int(pair) // count, int(pair) % count) for pair in pairs]
         both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which]
         return both[:, 0], both[:, 1]
+
+    def bounces(self, shapes: Rows) -> Floats:
+        """Restitution of pairs of shapes (n, 2), (n,)."""
+        pairs, which = np.unique(shapes, axis=0, return_inverse=True)
+        found = np.array([self._law(one, two).restitution for one, two in pairs.tolist()], dtype=np.float64)
+        return found[which.ravel()]
 
     def _law(self, one: int, two: int) -> Pair:
         if (one, two) not in self._laws:

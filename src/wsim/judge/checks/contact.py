@@ -67,11 +67,16 @@ class CheckTunnelling(Check):
 
     @staticmethod
     def _passes(evidence: Evidence, i: int, shape: Placed, k: Indices) -> NDArray[np.bool_]:
-        """Whether the chord of body i's centre, seen from a shape, goes in and out by opposite faces."""
-        ends = []
-        for frames in (k, k + 1):
-            apart = evidence.motion.com[frames, i] - shape.position[frames]
-            ends.append(rotate(conjugate(shape.rotation[frames]), apart))
+        """Whether the chord of body i's centre, seen from a shape, goes in and out by opposite faces.
+
+        Seen as the shape is turned halfway: to one that turns with a shape what stands still beside it goes round.
+        """
+        first, last = shape.rotation[k], shape.rotation[k + 1]
+        halfway = first + np.where(np.sum(first * last, axis=1) < 0.0, -1.0, 1.0)[:, None] * last
+        halfway /= np.linalg.norm(halfway, axis=1, keepdims=True)
+        ends = [
+            rotate(conjugate(halfway), evidence.motion.com[frames, i] - shape.position[frames]) for frames in (k, k + 1)
+        ]
         half = _inner_half(shape.shape)
         start, way = ends[0], ends[1] - ends[0]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -81,9 +86,9 @@ class CheckTunnelling(Check):
         within = np.abs(start) < half
         enters = np.where(still, np.where(within, -np.inf, np.inf), np.minimum(one, other))
         leaves = np.where(still, np.where(within, np.inf, -np.inf), np.maximum(one, other))
-        first, last = enters.max(axis=1), leaves.min(axis=1)
+        into, out = enters.max(axis=1), leaves.min(axis=1)
         opposite = enters.argmax(axis=1) == leaves.argmin(axis=1)
-        passes: NDArray[np.bool_] = (first > 0.0) & (last < 1.0) & (first < last) & opposite
+        passes: NDArray[np.bool_] = (into > 0.0) & (out < 1.0) & (into < out) & opposite
         return passes
 
     def _finding(self, evidence: Evidence, i: int, shape: Placed, k: int) -> Finding:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import ONE_WAY, STILL
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.checks.check import Check, Checks, listed
@@ -112,6 +113,9 @@ class CheckRecordedForces(Check):
         change, slowest = np.linalg.norm(across[:, 1] - across[:, 0], axis=1), speed.min(axis=1)
         lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
         lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
+        # Landings that turn a slip turn its friction: they change it by at most the sine of that of its speed.
+        aside = contacts.landed(Books.of(evidence)) / np.maximum(slowest, 1e-30)
+        lasts &= aside < 1.0
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         if not len(rows):
             return []
@@ -120,7 +124,8 @@ class CheckRecordedForces(Check):
         rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
         friction, (least, most) = contacts.friction[rows], contacts.rubs(normal, speed)[:, rows]
         turned = contacts.swing(normal, speed.min(axis=1))[rows]
-        slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2) * friction + self.cone
+        round_ = 1.0 - np.sqrt(1.0 - aside[rows] ** 2)
+        slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2 + round_) * friction + self.cone
         given = np.clip(rubs, least, most)
         worst = int(np.argmax(np.abs(rubs - given) / slack))
         k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(given[worst]), float(slack[worst])
@@ -129,7 +134,8 @@ class CheckRecordedForces(Check):
             self._of_row(
                 evidence, contacts, k, f"slip, and rub with {value:.3g} of what they press; their friction is"
                 f"{resisted} {expected:.3g}", abs(value - expected), limit, "1",
-                "What slips rubs with all its friction", f"{self.edge:g} of the friction, and how far slips turn",
+                "What slips rubs with all its friction",
+                f"{self.edge:g} of the friction, and how far slips turn, by what lands in between, too",
             )
         ]  # fmt: skip
 

@@ -1,0 +1,154 @@
+"""Where cylinders touch with an end or along a side, and boxes with faces: all over what both share.
+
+MuJoCo tells a point or two of it.
+
+Of what stands flat, or lies along a line, any point may bear, and which one a search for the nearest finds is chance:
+of a roller across a dome it may be the roller's end. Here an end's disc is held against the points of the other shape
+that come nearest to it, a box's face against points of the cylinder's rim or side, and a side against what is round;
+and where boxes' faces lie on each other with fewer points than a face has, each is held against the other's corners.
+Each point has its own gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, rotate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Shape
+
+    Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
+    Points = tuple[Floats, Floats, Floats]  # halfway (n, 3), normals from the first shape (n, 3), gaps (n,)
+
+LEANS = 0.1  # [rad]: an end, a side or a face that leans by more touches with one point, which the search finds
+RIM = 16  # points of a rim,
+ALONG = 9  # and of a line
+CORNERS = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+BOXES, FACE = ("box", "box"), 4  # corners
+KINDS = {BOXES, *(("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder"))}
+Z = np.array([0.0, 0.0, 1.0])
+_NONE, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+
+
+@dataclass(frozen=True)
+class Further:
+    """Points beside those that were found, m of them."""
+
+    of: Rows  # (m,), a contact of the same pair
+    point: Floats  # (m, 3) [m], halfway
+    normal: Floats  # (m, 3), from the first shape to the second
+    gap: Floats  # (m,) [m]
+
+
+def flats(pairs: Rows, normal: Floats, shapes: Sequence[Shape], placed: Callable[[int], Floats]) -> Further:
+    """Further points of the contacts that cylinders take part in, and of boxes.
+
+    Args:
+        pairs: Of the shapes of each contact at one pose of all bodies, (n, 2).
+        normal: From the first to the second, (n, 3).
+        shapes: All that collide.
+        placed: Where a shape is in the world, (7,) [m; xyzw].
+    """
+    rows, points, ways, gaps = [_NONE], [_POINTS], [_POINTS], [np.zeros(0)]
+    for n, count in zip(*np.unique(pairs, axis=0, return_index=True, return_counts=True)[1:], strict=True):
+        for side, sign in ((0, 1.0), (1, -1.0)):
+            own, other = pairs[n, side], pairs[n, 1 - side]
+            kinds = shapes[own].kind, shapes[other].kind
+            if kinds not in KINDS or (kinds == BOXES and count >= FACE):
+                continue
+            ends = (shapes[own], placed(own)), (shapes[other], placed(other))
+            for point, way, gap in _shared(*ends, sign * normal[n]):
+                rows.append(np.full(len(gap), n))
+                points.append(point)
+                ways.append(sign * way)
+                gaps.append(gap)
+    return Further(np.concatenate(rows), np.concatenate(points), np.concatenate(ways), np.concatenate(gaps))
+
+
+def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Floats) -> list[Points]:
+    """What an end or a side of a cylinder that faces another shape shares with it, or a box with another's face."""
+    (shape, pose), (against, there) = own, other
+    if shape.kind == "box":
+        return [_on_face(_facing(shape, pose, outwards), against, there, outwards)]
+    axis = rotate(pose[3:], Z)
+    upright, lies = abs(axis @ outwards) >= np.cos(LEANS), abs(axis @ outwards) <= np.sin(LEANS)
+    found = []
+    if upright:
+        found.append(_on_disc(shape, pose, np.sign(axis @ outwards) * axis, _facing(against, there, -outwards)))
+    rounded = against.kind in ("sphere", "capsule") or abs(rotate(there[3:], Z) @ outwards) <= np.sin(LEANS)
+    if lies and against.kind != "box" and rounded:  # a cylinder's end is no ball's
+        found.append(_on_side(shape, pose, *_round(against, there)))
+    if (upright or lies) and against.kind == "box":
+        found.append(_on_face(_facing(shape, pose, outwards), against, there, outwards))
+    return found
+
+
+def _on_disc(shape: Shape, pose: Floats, axis: Floats, points: Floats) -> Points:
+    """Of some points those that are over a cylinder's end on the way of its axis."""
+    end = pose[:3] + 0.5 * shape.size[1] * axis
+    gap = (points - end) @ axis
+    inside = np.linalg.norm(points - end - gap[:, None] * axis, axis=1) <= shape.size[0]
+    return _halfway(points - gap[:, None] * axis, np.tile(axis, (len(points), 1)), gap, inside)
+
+
+def _on_side(shape: Shape, pose: Floats, centres: Floats, radius: float) -> Points:
+    """Where balls of a radius are nearest to a cylinder's side, beside it."""
+    axis = rotate(pose[3:], Z)
+    along = (centres - pose[:3]) @ axis
+    apart = centres - pose[:3] - along[:, None] * axis
+    far = np.linalg.norm(apart, axis=1)
+    way = apart / np.maximum(far, 1e-300)[:, None]
+    surface = pose[:3] + along[:, None] * axis + shape.size[0] * way
+    beside = (np.abs(along) <= 0.5 * shape.size[1]) & (far > 0.0)
+    return _halfway(surface, way, far - shape.size[0] - radius, beside)
+
+
+def _on_face(points: Floats, box: Shape, pose: Floats, outwards: Floats) -> Points:
+    """Of some points of a shape those over the face of a box that is turned to it."""
+    way = rotate(conjugate(pose[3:]), -outwards)
+    k, edges = int(np.argmax(np.abs(way))), 0.5 * np.asarray(box.size)
+    if abs(way[k]) < np.cos(LEANS):
+        return _POINTS, _POINTS, np.zeros(0)
+    own, sign = rotate(conjugate(pose[3:]), points - pose[:3]), float(np.sign(way[k]))
+    normal = -rotate(pose[3:], sign * np.eye(3)[k])
+    gap = sign * own[:, k] - edges[k]
+    inside = np.all((np.abs(own) <= edges) | (np.arange(3) == k), axis=1)
+    return _halfway(points, np.tile(normal, (len(points), 1)), gap, inside)
+
+
+def _halfway(surface: Floats, way: Floats, gap: Floats, which: NDArray[np.bool_]) -> Points:
+    """Some contacts, by their points on the first shape's surface."""
+    return (surface + 0.5 * gap[:, None] * way)[which], way[which], gap[which]
+
+
+def _facing(shape: Shape, pose: Floats, way: Floats) -> Floats:
+    """The points of a shape that may be its farthest on a way, (n, 3)."""
+    if shape.kind == "box":
+        return np.asarray(pose[:3] + rotate(pose[3:], CORNERS * np.asarray(shape.size)))
+    centres, radius = _round(shape, pose)
+    axis = rotate(pose[3:], Z)
+    if shape.kind != "cylinder":
+        return np.asarray(centres + radius * way)
+    if abs(axis @ way) < np.cos(LEANS):
+        across = way - (axis @ way) * axis
+        return np.asarray(centres + radius * across / np.linalg.norm(across))
+    angle = 2.0 * np.pi * np.arange(RIM) / RIM
+    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(RIM)])
+    end = pose[:3] + 0.5 * shape.size[1] * np.sign(axis @ way) * axis
+    return np.asarray(end + radius * rotate(pose[3:], ring))
+
+
+def _round(shape: Shape, pose: Floats) -> tuple[Floats, float]:
+    """The centres (n, 3) of the balls that make up a sphere, a capsule or a cylinder's side, and their radius [m]."""
+    length = 0.0 if shape.kind == "sphere" else shape.size[1]
+    share = np.linspace(-0.5, 0.5, ALONG) if length > 0.0 else np.zeros(1)
+    return np.asarray(pose[:3] + (share * length)[:, None] * rotate(pose[3:], Z)), float(shape.size[0])

@@ -1,0 +1,46 @@
+"""Heaps that a ball strikes: what the simulator does is accepted, and a friction that is not theirs is found."""
+
+from dataclasses import replace
+
+import pytest
+
+from benchmarks.judge_families import heaps  # noqa: F401 - registers its worlds
+from benchmarks.judge_families.drawn import MECHANISMS, Sound
+from wsim.judge import judge
+from wsim.recording import read
+from wsim.sim import Simulation
+
+# A card that a ball bounces off slips on as it is knocked; the lowest box of a stack slips and stands again between two
+# frames; a box on a roller across a dome; cards that lie on each other's faces.
+WORLDS = [("struck row", 3), ("struck stack", 10), ("struck pile", 46), ("struck row", 41)]
+
+
+@pytest.fixture(scope="module", params=WORLDS, ids=[f"{name} {k}" for name, k in WORLDS])
+def recording(request, tmp_path_factory):
+    name, k = request.param
+    folder = tmp_path_factory.mktemp("heap")
+    Simulation(Sound(MECHANISMS[name], k).scene().save(folder / "stage.usda"), device="cpu").run(folder / "r.rrd")
+    return read(folder / "r.rrd")
+
+
+def failed(recording):
+    return [f"{finding.check}: {finding.message}" for finding in judge(recording).failures]
+
+
+def test_what_is_struck_is_accepted(recording):
+    assert failed(recording) == []
+
+
+def test_it_is_accepted_without_the_contacts_recorded(recording):
+    assert failed(replace(recording, contacts=None, ties=None)) == []
+
+
+def test_half_of_its_friction_is_found(recording):
+    bodies = [
+        body.model_copy(
+            update={"shapes": [each.model_copy(update={"friction": 0.5 * each.friction}) for each in body.shapes]}
+        )
+        for body in recording.world.bodies
+    ]
+    told = recording.world.model_copy(update={"bodies": bodies})
+    assert failed(replace(recording, world=told))
