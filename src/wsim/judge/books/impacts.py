@@ -49,6 +49,7 @@ class Rub:
     most: float  # the coefficient times the push
     before: float  # the slip as they met
     after: float  # and as they parted
+    unsure: float | None = None  # of the impulse, where it is recorded and the slip is known to keep its way
 
 
 @dataclass(frozen=True)
