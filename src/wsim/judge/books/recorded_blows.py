@@ -128,7 +128,8 @@ class RecordedBlows:
         shapes = [contacts.shapes[shape] for shape in contacts.track.pair[row].tolist()]
         named = [self._evidence.world.bodies[body].prim if body >= 0 else shape.prim
                  for body, shape in zip(bodies, shapes, strict=True)]  # fmt: skip
-        rub = self._rub(row, law, slips, poses, point)
+        slides = "slides" in (one.kind, two.kind)  # what else rubs may change its slip at once, before frames show it
+        rub = None if slides else self._rub(row, law, slips, poses, point)
         return Blow(k, *bodies, (named[0], named[1]), approach, parting, law.restitution, unsure, rub)
 
     def _alone(self, row: int) -> bool:
