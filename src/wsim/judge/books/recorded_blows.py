@@ -18,7 +18,7 @@ from wsim.geometry.rotations import conjugate, cross, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.books.followed import Followed, Pose
 from wsim.judge.books.forces import ONE_WAY, STILL
-from wsim.judge.books.impacts import ACROSS, SHOWS, STAYS, Blow, Rub
+from wsim.judge.books.impacts import ACROSS, SHOWS, SLOW, STAYS, Blow, Rub
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.scene.contact import pair_law
 
@@ -60,6 +60,8 @@ class RecordedBlows:
         unit = np.append(np.where(self._motion.kinematic, -1, self._motion.unit), -1)
         self._unit = unit[contacts.body]  # (n, 2) of each row's mechanisms, -1 for what gives no way
         self._followed = Followed(evidence, self._struck)
+        things = (*evidence.world.bodies, *evidence.world.statics)
+        self._owners = [thing.prim for thing in things for _ in thing.shapes]
 
     @property
     def candidates(self) -> Rows:
@@ -121,13 +123,13 @@ class RecordedBlows:
         unsure += one.off(when, point) + two.off(when, point)
         unsure += max(self._followed.turned(each, point, 2) for each in poses)
         rest = float(motion.h[k]) - when
+        if approach < SLOW * self._followed.dt + unsure:
+            return None
         if unsure > SHOWS * approach or 2.0 * law.restitution * approach < pull * rest * (law.restitution > STAYS):
             return None  # too slow, or it may have bounced and come back
         if self._stays(row, law):
             return None
-        shapes = [contacts.shapes[shape] for shape in contacts.track.pair[row].tolist()]
-        named = [self._evidence.world.bodies[body].prim if body >= 0 else shape.prim
-                 for body, shape in zip(bodies, shapes, strict=True)]  # fmt: skip
+        named = [self._owners[shape] for shape in contacts.track.pair[row].tolist()]
         slides = "slides" in (one.kind, two.kind)  # what else rubs may change its slip at once, before frames show it
         rub = None if slides else self._rub(row, law, slips, poses, point)
         return Blow(k, *bodies, (named[0], named[1]), approach, parting, law.restitution, unsure, rub)
