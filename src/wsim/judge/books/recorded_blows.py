@@ -60,8 +60,8 @@ class RecordedBlows:
         unit = np.append(np.where(self._motion.kinematic, -1, self._motion.unit), -1)
         self._unit = unit[contacts.body]  # (n, 2) of each row's mechanisms, -1 for what gives no way
         self._followed = Followed(evidence, self._struck)
-        things = (*evidence.world.bodies, *evidence.world.statics)
-        self._owners = [thing.prim for thing in things for _ in thing.shapes]
+        moving = [body.prim for body in evidence.world.bodies for _ in body.shapes]
+        self._owners = moving + [still.prim for still in evidence.world.statics for _ in still.shapes]
 
     @property
     def candidates(self) -> Rows:
@@ -105,10 +105,9 @@ class RecordedBlows:
         k, bodies, normal = int(contacts.track.frame[row]) - 1, contacts.body[row].tolist(), self._normal[row]
         if abs(float(np.linalg.norm(normal)) - 1.0) > FLAT or not self._alone(row):
             return None
-        courses = [self._followed.course(body, k, self._flies(row, side)) for side, body in enumerate(bodies)]
-        if courses[0] is None or courses[1] is None:
+        one, two = (self._followed.course(body, k, self._flies(row, side)) for side, body in enumerate(bodies))
+        if one is None or two is None:
             return None
-        one, two = courses
         when = self._followed.meet([each for each in (one, two) if each.gives])
         if when is None:
             return None
@@ -129,10 +128,10 @@ class RecordedBlows:
             return None  # too slow, or it may have bounced and come back
         if self._stays(row, law):
             return None
-        named = [self._owners[shape] for shape in contacts.track.pair[row].tolist()]
+        first, second = (self._owners[shape] for shape in contacts.track.pair[row].tolist())
         slides = "slides" in (one.kind, two.kind)  # what else rubs may change its slip at once, before frames show it
         rub = None if slides else self._rub(row, law, slips, poses, point)
-        return Blow(k, *bodies, (named[0], named[1]), approach, parting, law.restitution, unsure, rub)
+        return Blow(k, bodies[0], bodies[1], (first, second), approach, parting, law.restitution, unsure, rub)
 
     def _alone(self, row: int) -> bool:
         """Whether nothing else strikes what the pair's bodies are part of in the interval, or pushes along the blow."""

@@ -36,8 +36,8 @@ class CheckRestitution(Check):
                 f"{one} and {two} part at {worst.parting:.3g} m/s at {time:.3f} s, after they met at "
                 f"{worst.approach:.3g} m/s",
                 worst.parting, (expected - limit, expected + limit), "m/s", expected, prim=two, time=time,
-                limit_from=f"restitution {worst.restitution:g} times the approach; {self.share:g} of it, and twice "
-                "what a step changes",
+                limit_from=f"restitution {worst.restitution:g} times the approach; {self.share:g} of it, and what "
+                "a step changes",
                 target=RepairTarget(
                     kind="physical parameter", prim=two, parameter="restitution", why="it is another than stated"
                 ),
@@ -69,6 +69,11 @@ class CheckBlowFriction(Check):
         slips = rub.unsure is not None or rub.after > limit
         time = float(evidence.time[blow.interval + 1])
         least = rub.most - limit if slips else -rub.most - limit
+        told = "the friction of the pair times the change of speed across it; " + (
+            f"{self.edge:g} of it, and how far the slip turns"
+            if rub.unsure is not None
+            else f"{self.share:g} of approach and slip, and twice what a step changes"
+        )
         how = f"though they slip on at {rub.after:.3g} m/s" if slips else "and they slip no more"
         return [
             self.between(
@@ -76,8 +81,7 @@ class CheckBlowFriction(Check):
                 f"allows {rub.most:.3g} m/s",
                 rub.impulse, (least, rub.most + limit), "m/s", rub.most if slips else min(rub.impulse, rub.most),
                 prim=two, time=time,
-                limit_from=f"the friction of the pair times the change of speed across it; {self.share:g} of approach "
-                "and slip, and twice what a step changes",
+                limit_from=told,
                 target=RepairTarget(
                     kind="physical parameter", prim=two, parameter="friction", why="it is another than stated"
                 ),
