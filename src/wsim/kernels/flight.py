@@ -264,3 +264,13 @@ def fly(
         qpos[world, p + i] = qpos.dtype(true_q[world, p + i])
     for i in range(6):
         qvel[world, f + i] = qvel.dtype(true_qd[world, f + i])
+
+
+# MuJoCo's numbers are double in C and single in Warp. Each kernel is made for both at once: Warp compiles a module anew
+# whenever a kernel of it is launched with a type that it has not had, three to six times in a first run.
+for _number in (float, wp.float64):
+    _rows: Any = wp.array2d(dtype=_number)
+    wp.overload(recall, {"qpos": _rows, "qvel": _rows})
+    wp.overload(keep, {"values": _rows})
+    wp.overload(tumble, {"bias": _rows})
+    wp.overload(fly, dict.fromkeys(("qacc", "held", "pushed", "bias", "qpos", "qvel"), _rows))
