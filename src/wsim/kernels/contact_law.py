@@ -16,6 +16,7 @@ ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law h
 SMALL_CHANGE = wp.constant(1.0e-5)  # [m/s], and
 MOST_SHARE = wp.constant(19.0)  # of the solution before, as wsim.solvers.contact_law has them
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
+NEVER = wp.constant(2**30)  # steps
 vec5 = wp.types.vector(length=5, dtype=float)
 
 
@@ -89,18 +90,19 @@ def waiting(goal: float, distance: float, speed: float, touched: bool, threshold
     if speed < -threshold:
         if distance > 0.0:
             return wp.where(touched, -LATER, wp.min(goal, 4.0 * speed))
-    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
-    elif touched and distance > -threshold * h:
+    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
+    # what was parting is hit anew in the step after, and bounces.
+    elif touched and (distance > -threshold * h or speed > threshold):
         return -LATER
     return goal
 
 
 @wp.func
-def went_exactly(exact: wp.array2d(dtype=int), world: int, loose: int) -> bool:
-    """Whether a body of a row among the loose ones did in the step before; -1 goes as stated."""
+def since_exact(since: wp.array2d(dtype=int), world: int, loose: int) -> int:
+    """Steps of the first order since a body of a row among the loose ones went exactly; -1 goes as stated."""
     if loose >= 0:
-        return exact[world, loose] != 0
-    return loose == -1
+        return since[world, loose]
+    return wp.where(loose == -1, 0, NEVER)
 
 
 @wp.func
@@ -126,13 +128,13 @@ def strike(
     timestep: wp.array(dtype=float),
     bow: wp.array(dtype=float),
     geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
-    geom_body: wp.array(dtype=int),
+    geom_group: wp.array(dtype=int),  # of bodies that joints tie together; 0 for the world
     law: wp.array3d(dtype=wp.vec3),
     threshold: float,
     # Data out:
     struck: wp.array2d(dtype=int),
 ):
-    """Mark the bodies that something hits in this step."""
+    """Mark the groups of bodies that something hits in this step."""
     k = wp.tid()
     if k >= count[0]:
         return
@@ -145,9 +147,9 @@ def strike(
     h = timestep[world % timestep.shape[0]]
     if meets(contact_dist[k], velocity[world, row] + bow[k], restitution, h, threshold * h):
         for side in range(2):
-            body = geom_body[geom[side]]
-            if body > 0:
-                struck[world, body] = 1
+            group = geom_group[geom[side]]
+            if group > 0:
+                struck[world, group] = 1
 
 
 @wp.kernel(enable_backward=False)
@@ -164,6 +166,7 @@ def aim(
     bow: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
     geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
     geom_body: wp.array(dtype=int),
+    geom_group: wp.array(dtype=int),
     law: wp.array3d(dtype=wp.vec3),
     geom_kind: wp.array(dtype=int),
     curvature: wp.array2d(dtype=float),
@@ -173,7 +176,7 @@ def aim(
     free: wp.array2d(dtype=float),  # acceleration without constraints
     touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
     loose: wp.array(dtype=int),  # which of the loose bodies a body is; -1 goes as stated
-    exact: wp.array2d(dtype=int),  # whether a loose body went exactly in the step before
+    since: wp.array2d(dtype=int),  # a loose body's steps of the first order since its last exact one
     sparse: bool,
     nv: int,
     jacobian: wp.array3d(dtype=float),
@@ -208,12 +211,12 @@ def aim(
     goal = settling(distance, h, settle_time, settle_speed)
     blow[k] = 0.0
     if pair[1] > 0.0:
-        touched = struck[world, wp.max(geom_body[geom[0]], 0)] + struck[world, wp.max(geom_body[geom[1]], 0)]
+        touched = struck[world, geom_group[geom[0]]] + struck[world, geom_group[geom[1]]]
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
-            smooth = float(touched_for[world]) * wp.abs(pull) * h < wp.abs(speed)
             one, two = loose[geom_body[geom[0]]], loose[geom_body[geom[1]]]
-            smooth = smooth or (went_exactly(exact, world, one) and went_exactly(exact, world, two))
+            rough = wp.min(touched_for[world], wp.max(since_exact(since, world, one), since_exact(since, world, two)))
+            smooth = float(rough) * wp.abs(pull) * h < wp.abs(speed)
             goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         else:
@@ -261,26 +264,37 @@ def weigh(
     row_nnz: wp.array2d(dtype=int),
     row_start: wp.array2d(dtype=int),
     column: wp.array3d(dtype=int),
+    force: wp.array2d(dtype=float),
+    target: wp.array(dtype=float),
+    blow: wp.array(dtype=float),
     slip: wp.array(dtype=float),
     before: wp.array(dtype=wp.vec2),  # guess, and what was left, of the solution before
     # Data out:
     remaining: wp.array(dtype=float),
     sums: wp.array2d(dtype=wp.vec2),  # of each body's contacts
 ):
-    """What slip a solution leaves, and what the bodies' contacts say together of how it goes with the guess."""
+    """What slip a solution leaves, and what the bodies' contacts say together of how it goes with the guess.
+
+    With it goes what a blow's friction takes of the rebound: `friction_pays` of `wsim.solvers.targets`.
+    """
     k = wp.tid()
     if k >= count[0] or contact_row[k, 0] < 0:
         return
     world, geom = contact_world[k], contact_geom[k]
     h = timestep[world % timestep.shape[0]]
     friction = contact_friction[k]
-    slipped = float(0.0)
+    slipped, gained = float(0.0), float(0.0)
     for j in range(contact_dim[k] - 1):
         r = contact_row[k, j + 1]
         change = along(world, r, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
-        v = friction[j] * (velocity[world, r] + h * change)
+        end = velocity[world, r] + h * change
+        v = friction[j] * end
         slipped += v * v
+        gained += force[world, r] * (velocity[world, r] + end)
     remaining[k] = wp.sqrt(slipped)
+    push = force[world, contact_row[k, 0]]
+    if blow[k] > 0.0 and push > 0.0:
+        remaining[k] += wp.clamp(gained / push, 0.0, target[k])
     rest = remaining[k] - slip[k]
     change = rest - (before[k][1] - before[k][0])
     for side in range(2):

@@ -212,7 +212,7 @@ def fly(
     tied: wp.array(dtype=int),  # whether a rope or a loop may hold it
     steady: wp.array2d(dtype=int),  # whether its contacts leave it no jolt
     # Data out:
-    exact: wp.array2d(dtype=int),
+    since: wp.array2d(dtype=int),  # the last exact step: steps of the first order
     true_q: wp.array2d(dtype=wp.float64),
     true_qd: wp.array2d(dtype=wp.float64),
     qpos: wp.array2d(dtype=Any),
@@ -240,7 +240,7 @@ def fly(
     late = wp.float64(0.0)  # how much of the step's change of velocity its way lacks
     if alone and (free or (tied[k] == 0 and steady[world, k] != 0)):
         late = wp.float64(0.5) * h
-    exact[world, k] = wp.where(late > wp.float64(0.0), 1, 0)
+    since[world, k] = wp.where(late > wp.float64(0.0), 0, since[world, k] + 1)
     kick = twist - change[world, k]
     kicked = w + h * kick
     turn = free_turn(axes, inertia, kicked - late * kick, h)

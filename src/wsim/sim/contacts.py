@@ -12,7 +12,7 @@ import numpy as np
 from wsim.recording.contacts import shapes_of
 from wsim.scene.contact import curvature, pair_law, within
 from wsim.scene.world import Shape, World
-from wsim.solvers.contact_law import ContactConfig
+from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.surfaces import Surfaces
 
 Array = np.ndarray

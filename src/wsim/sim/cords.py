@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 
 from wsim.scene.world import Guide, Rope, Spring, World
-from wsim.solvers.contact_law import ContactConfig
+from wsim.solvers.contact_config import ContactConfig
 
 SITE, GEOM, SPATIAL = 0, 1, 1  # of the mujoco:tendon_wrap_type and mujoco:tendon_type attributes
 SHORTEST = -1e4  # [m]: the limit below, which none reaches

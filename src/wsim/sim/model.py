@@ -25,7 +25,7 @@ from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
-from wsim.solvers.contact_law import ContactConfig
+from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.shapes import OpenBox
 from wsim.solvers.solver_sph import SolverSPH
 from wsim.solvers.surface_contacts import SurfaceParts

@@ -23,7 +23,7 @@ from wsim.sim.ledger import Ledger
 from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
-from wsim.solvers.contact_law import ContactConfig
+from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.solver_rigid import SolverRigid
 from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 

@@ -13,6 +13,7 @@ from wsim.geometry.shapes import kind_of
 from wsim.scene.limits import MIN_TIME_STEP
 from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import Body, Joint, World
+from wsim.sim.cable_steps import cable_limits
 from wsim.sim.spring_steps import DRIVE_SHARE, spring_limits
 
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
@@ -38,7 +39,7 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
         given: A step from the caller or the stage [s]: one more upper bound.
 
     Raises:
-        UserError: If a drive or a spring is so stiff that no step of `MIN_TIME_STEP` or more can follow it.
+        UserError: If a drive, a spring or a loaded chain needs a step of less than `MIN_TIME_STEP`.
     """
     limits = {"rigid bodies": LARGEST_RIGID_STEP}
     crossing = _crossing_time(world)
@@ -47,7 +48,7 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
     if fluid_limit is not None:
         limits["sound in the fluid"] = fluid_limit
     limits |= _drive_limits(world)
-    limits |= spring_limits(world)
+    limits |= spring_limits(world) | cable_limits(world)
     if given:
         limits["given"] = given
     reason = min(limits, key=limits.__getitem__)

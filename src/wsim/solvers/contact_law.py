@@ -11,8 +11,9 @@ A contact is a row before the surfaces touch: it may close its gap in the step a
 Where the two bounce, the step that ends farther below than it starts above is the one in which they meet; the speed
 after it is that with which a body of the same acceleration comes back through the surface at e times its speed. What
 MuJoCo's regularisation gives way under a blow is added to what is asked for, or each would lose 1e-4 of its speed.
-A body that is hit lets go of what it touches for that step, so that a blow goes through a row of bodies one by one,
-as in Newton's cradle, and all keep their energy.
+A body that is hit, with what hangs on it by joints, lets go of what it touches for that step, so that a blow goes
+through a row of bodies one by one, as in Newton's cradle, and all keep their energy. Friction that turns a slip round
+gives what surfaces stored: so much less is left of the rebound (`friction_pays` of `wsim.solvers.targets`).
 
 What rolls is resisted by a torque of rho times its push, rho = C / (1/R1 + 1/R2): C is the pair's coefficient, R the
 radii of the two surfaces where they touch, without end for a flat one (as discrete elements have it: Ai et al. 2011).
@@ -28,141 +29,25 @@ the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from wsim.solvers.breaking import BreakingC
+from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
+from wsim.solvers.groups import tied_groups
 from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import extrapolated
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
+from wsim.solvers.targets import friction_pays, settling, targets
 from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
-LATER = 1e3  # [m/s], far below what any contact is asked for: it takes no part
 ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
-
-
-@dataclass(frozen=True)
-class ContactConfig:
-    """How the law is applied."""
-
-    impedance: float = 0.9999
-    """Share of what is asked for that a contact alone reaches; MuJoCo's largest."""
-    kinematic_impedance: float = 0.99
-    """The same of the weld that holds a kinematic body to its way; nearer to one it shakes what rides on it."""
-    solver_tolerance: float = 1e-10
-    """MuJoCo's tolerance. Contacts are so hard that their forces are known far worse than the accelerations: at 1e-7
-    what they turn a box by that begins to slip is 3.5 % of m g R off, at 1e-9 0.2 %; 1e-10 takes no more time."""
-    solver_tolerance_warp: float = 1e-4
-    """The same where worlds are batched. What is left of the cost is below this times the trace of M, of some three
-    masses for a body: an error of 0.025 m/s^2 at most, and of less than 1e-3 m/s^2 where it was measured; at 1e-3 a log
-    in a groove rubbed 1 % too much. At 1e-6 single precision does not end its search."""
-    unbalanced: float = 0.4
-    """Acceleration of a body that the forces of a step's last solution may leave without a cause, where worlds are
-    batched, 4 % of g [m/s^2]. It changes its sign from step to step: of a crate that is thrown against a wall on a
-    lift a frame leaves 0.15 % of what pushes it or less; 1.3 % at the tolerance of the other solutions. Rounding alone
-    leaves 0.1 to 0.4 in a heap of boxes: what is asked below that is searched for in vain."""
-    last_turns: int = 25
-    """MuJoCo's iterations in the last solution at most. Where boxes tumble over each other Newton's method in double
-    precision needs up to 18 from the solution before; ten left 12 to 23 m/s^2 in some steps."""
-    reach: float = 0.01
-    """Gap at which a contact becomes a row [m]."""
-    limit_reach: float = 0.1
-    """The same of a joint's stop [rad or m]."""
-    settle_time: float = 0.02
-    """Time in which overlap fades [s]."""
-    settle_speed: float = 0.5
-    """Speed at which it fades at most [m/s]."""
-    threshold: float = 2 * 9.81
-    """A slower approach than this times the step is no blow [m/s^2]: gravity alone makes such speeds in a step."""
-    solutions: int = 3
-    """Solutions of a step after which the slip need only be known roughly."""
-    most_solutions: int = 20
-    """Solutions of a step at most."""
-    solutions_warp: int = 6
-    """Solutions of a step where worlds are batched, always."""
-    tolerance: float = 3e-4
-    """Change of the slip, times friction, below which it stays [m/s]."""
-    rough: float = 3e-3
-    """The same after `solutions` [m/s]: what is hit would hop by 0.5 um."""
-    steady: float = 0.5
-    """Acceleration along its normal below which a contact goes on as it was [m/s^2]: what it puts a gap off by, in
-    steps of 1.25 ms, fades at 6 um."""
-    smallest_friction: float = 1e-5
-    """MuJoCo's least, and ours for none."""
-
-
-def settling(distance: Array, h: float, config: ContactConfig) -> Array:
-    """Speed at which contacts may close, or must open, without a bounce [m/s]."""
-    return np.where(distance > 0.0, -distance / h, np.minimum(-distance / config.settle_time, config.settle_speed))
-
-
-def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: float, smooth: Array) -> Array:
-    """Speeds after the step in which surfaces meet, for which the energy of the fall comes back e² times [m/s].
-
-    Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2: they keep
-    v² + a h v - 2 a z. Others follow that of v. The step of the blow itself goes on by h times the speed after it.
-
-    Args:
-        distance: Gaps [m].
-        speed: Normal speeds at the step's start [m/s].
-        free: Normal accelerations without constraints [m/s^2].
-        restitution: Of each pair.
-        h: Time step [s].
-        smooth: Whether the bodies fly by steps of a higher order, (contacts,).
-    """
-    half = np.where(smooth, 0.0, 0.5 * free * h)
-    fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
-    own = np.where(smooth, free * h, half)
-    squared = restitution**2 * ((speed + half) ** 2 - fall) + fall + np.where(smooth, own**2, 0.0)
-    return np.maximum(np.sqrt(np.maximum(squared, 0.0)) + own, 0.0)
-
-
-def targets(
-    distance: Array,
-    speed: Array,
-    free: Array,
-    restitution: Array,
-    bodies: Array,
-    h: float,
-    config: ContactConfig,
-    smooth: Array | bool = False,
-) -> tuple[Array, Array]:
-    """Normal speeds that contacts should end a step of `h` [s] with [m/s], and which of them are blows, (contacts,).
-
-    Args:
-        distance: Gaps, negative where shapes overlap [m].
-        speed: Normal speeds at the step's start, negative where they approach [m/s].
-        free: Normal accelerations without constraints [m/s^2].
-        restitution: Of each pair.
-        bodies: (contacts, 2), 0 for the world.
-        h: Time step [s].
-        config: How the law is applied.
-        smooth: Whether bodies fly by steps of a higher order.
-    """
-    goal = settling(distance, h, config)
-    bouncy = restitution > 0.0
-    if not bouncy.any():
-        return goal, bouncy
-    after = distance + speed * h
-    fast = bouncy & (speed < -config.threshold * h)
-    meets = fast & (after < 0.0) & (-after > distance)
-    rebound = rebounds(distance, speed, free, restitution, h, np.broadcast_to(smooth, speed.shape))
-    waits = fast & ~meets & (distance > 0.0)
-    struck = np.zeros(int(bodies.max()) + 1, dtype=bool)
-    struck[bodies[meets]] = True
-    struck[0] = False
-    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself.
-    light = distance > -config.threshold * h * h
-    later = bouncy & (waits | (~fast & light)) & struck[bodies].any(axis=1)
-    goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
-    return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
 
 def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
@@ -221,6 +106,7 @@ class ContactLawC:
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
+        self._groups = tied_groups(mujoco, model)
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -335,9 +221,12 @@ class ContactLawC:
         mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
         speed, bow = data.efc_vel[normal], self._bow[chosen]
         free, bodies = image[normal], model.geom_bodyid[geoms]
-        smooth = self.smooth & (self.touched * np.abs(free) * h < np.abs(speed))  # not by the first order all the fall
-        smooth |= self.flight.smooth(bodies)
-        goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], bodies, h, config, smooth)
+        since = self.flight.since_exact(bodies)
+        if self.smooth:
+            since = np.minimum(since, self.touched)
+        smooth = since * np.abs(free) * h < np.abs(speed)  # not by the first order all the fall
+        groups = self._groups[bodies]
+        goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], groups, h, config, smooth)
         goal = goal + bow
         # Rows of friction: as many a contact as it has dimensions, but the normal one.
         offset = np.arange(1, 6)
@@ -353,7 +242,11 @@ class ContactLawC:
             data.efc_aref[normal] = (goal - slip - speed) / h + given
             mujoco.mj_fwdConstraint(model, data)
             mujoco.mj_mulJacVec(model, data, image, data.qacc)
-            left = np.linalg.norm(weight * (velocity + h * image[rows]), axis=1)
+            end = velocity + h * image[rows]
+            left = np.linalg.norm(weight * end, axis=1)
+            if blow.any():
+                rub = np.where(held, data.efc_force[rows], 0.0)
+                left += friction_pays(blow, goal, data.efc_force[normal], rub, velocity, end)
             change = float(np.abs(left - slip).max())
             if change < config.tolerance and (k or not blow.any()):
                 break

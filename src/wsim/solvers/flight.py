@@ -22,6 +22,7 @@ from wsim.kernels.flight import fly, jolt, keep, recall, tumble
 
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
+NEVER = 2**30  # steps
 
 
 class Flight:
@@ -60,20 +61,20 @@ class Flight:
             self.row = wp.array(rows, dtype=int)  # of each of MuJoCo's bodies among the loose ones, or below 0
             self._tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
             self._steady = wp.zeros(shape, dtype=int)  # in this step
-            self.exact = wp.zeros(shape, dtype=int)  # in the step before
+            self.since = wp.zeros(shape, dtype=int)  # the last exact step: steps of the first order
             self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
             self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
         # Of C's numbers: a kernel's launch takes longer than a step of a small world.
         in_c = [(true.numpy(), array.numpy()) for true, array in zip(self._true, (self._qpos, self._qvel), strict=True)]
         self._shared = in_c if isinstance(data.qpos, Array) else []
-        self._row_c, self._steady_c, self._exact_c = rows, self._steady.numpy()[0], self.exact.numpy()[0]
+        self._row_c, self._steady_c, self._since_c = rows, self._steady.numpy()[0], self.since.numpy()[0]
         self.forget()
 
     def forget(self) -> None:
         """Start from the state, whatever was told."""
         for told in self._told:
             told.fill_(math.nan)
-        self.exact.fill_(1)
+        self.since.zero_()
 
     def recall(self, state: Any) -> None:
         """Put what is true of `state` into MuJoCo's data, which has it in single precision."""
@@ -103,11 +104,10 @@ class Flight:
         for true, array in zip(self._true, (self._qpos, self._qvel), strict=True):
             wp.launch(keep, dim=array.shape, inputs=[array], outputs=[true], device=self.model.device)
 
-    def smooth(self, bodies: Array) -> Array:
-        """Of contacts in C, whether both bodies (contacts, 2) went exactly in the step before."""
-        rows = self._row_c[bodies]
-        known = np.append(self._exact_c, [0, 1])  # at OTHER, and at STATED
-        return np.asarray((known[rows] > 0).all(axis=1))
+    def since_exact(self, bodies: Array) -> Array:
+        """Of contacts in C, the steps of the first order since both bodies (contacts, 2) went exactly."""
+        known = np.append(self._since_c, [NEVER, 0])  # at OTHER, and at STATED
+        return np.asarray(known[self._row_c[bodies]].max(axis=1))
 
     def ease(self, jolted: Array) -> None:
         """Note in C that all bodies go on as they did, but for those that are jolted."""
@@ -147,7 +147,7 @@ class Flight:
                 self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
                 self._qacc, self._held, self._pushed, self._bias, self._tied, self._steady,
             ],
-            outputs=[self.exact, *self._true, self._qpos, self._qvel],
+            outputs=[self.since, *self._true, self._qpos, self._qvel],
             device=self.model.device,
         )  # fmt: skip
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from wsim.solvers.contact_law import ContactConfig
+from wsim.solvers.contact_config import ContactConfig
 
 Array = np.ndarray
 SOFTER = (0.999, 0.99, 0.9)  # MuJoCo's own is 0.9 to 0.95

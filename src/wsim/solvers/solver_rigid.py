@@ -11,28 +11,24 @@ import warp as wp
 from mujoco_warp import OverflowType
 
 from wsim.geometry.rotations import conjugate, rotate
-from wsim.kernels.contact_law import aim, aim_again, stop, strike, weigh
-from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
+from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
-from wsim.solvers.contact_law import ContactConfig, ContactLawC
+from wsim.solvers.contact_law import ContactLawC
+from wsim.solvers.contact_law_warp import ContactLawWarp
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
 from wsim.solvers.host_models import host_models
-from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import (
-    last_tolerance,
     soften_contacts_for_single_precision,
     soften_for_single_precision,
 )
-from wsim.solvers.smooth_steps import SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
 from wsim.solvers.yielding import yielding
 
 Array = np.ndarray
-ALWAYS = 2**30  # steps
 
 
 class SolverRigid(newton.solvers.SolverMuJoCo):
@@ -92,9 +88,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         mujoco = self.import_mujoco()[0]
         self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data, self._hosts())
         driven = drive_rows(mujoco, self.mj_model)
-        self._drives: Any = None
+        self._law_warp: ContactLawWarp | None = None
         if on_c:
-            drives = DrivesC(mujoco, self.mj_model, driven) if driven else None
+            drives: Any = DrivesC(mujoco, self.mj_model, driven) if driven else None
             self._law_c = ContactLawC(
                 mujoco,
                 self.mj_model,
@@ -107,21 +103,24 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 drives,
             )
         elif may_touch or not smooth:
-            self._prepare_warp(of_geoms, np.array(gives))
+            self._prepare_warp(np.array(gives))
             with wp.ScopedDevice(model.device):
-                self._drives = DrivesWarp(self._hosts(), driven, self.mjw_data.nworld) if driven else None
+                drives = DrivesWarp(self._hosts(), driven, self.mjw_data.nworld) if driven else None
+            self._law_warp = ContactLawWarp(
+                (mujoco, self._mujoco_warp),
+                self.mj_model,
+                self.mjw_model,
+                self.mjw_data,
+                self._flight,
+                of_geoms,
+                smooth,
+                self.contact_config,
+                self.breaking,
+                touching,
+                drives,
+            )
         else:  # Runge and Kutta's stages take drives as MuJoCo does
             self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
-        self._ropes: Any = None
-        if not on_c and self.mj_model.tendon_limited.any():
-            with wp.ScopedDevice(model.device):
-                self._ropes = RopesWarp(self._mujoco_warp, self.mjw_data)
-        self._smooth_steps: Any = None
-        if smooth and may_touch and not on_c:
-            self._touched_for.zero_()
-            self._smooth_steps = SmoothStepsWarp(
-                mujoco, self._mujoco_warp, self.mjw_model, self.mjw_data, self._touched_for
-            )
 
     def _hosts(self) -> Iterator[Any]:
         return host_models(self, self._differ)
@@ -205,6 +204,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             return
         capacity = self.mjw_data.naconmax // self.mjw_data.nworld
         self.impulses = ContactImpulsesWarp(self.mj_model, of_geoms, self.model.device, capacity)
+        if self._law_warp is not None:
+            self._law_warp.impulses = self.impulses
 
     def keep_ties(self, joints: Sequence[TiedJoint], cords: Sequence[TiedCord]) -> None:
         """Sum what joints and cords give from here on, in C alone."""
@@ -217,8 +218,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.breaking is not None:
             self.breaking.clear(self.mj_data if self.use_mujoco_cpu else self.mjw_data)
 
-    def _prepare_warp(self, surfaces: Surfaces, gives: Array) -> None:
-        device, data = self.model.device, self.mjw_data
+    def _prepare_warp(self, gives: Array) -> None:
+        """What of MuJoCo Warp's model the law needs otherwise than Newton gives it."""
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
         # the contacts of a box that slides, on an H200 in one step of some 300.
@@ -231,38 +232,6 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._give_warp("body_invweight0", weights)
         margin = self.mjw_model.geom_margin
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
-        with wp.ScopedDevice(device):
-            self._geom_class = wp.array(surfaces.classes, dtype=int)
-            self._law = wp.array(surfaces.law, dtype=wp.vec3)
-            self._curvature = wp.array(surfaces.curvature, dtype=float)
-            self._struck = wp.zeros((data.nworld, self.mj_model.nbody), dtype=int)
-            self._target = wp.zeros(data.naconmax, dtype=float)
-            self._blow = wp.zeros(data.naconmax, dtype=float)
-            self._touched_for = wp.full(data.nworld, value=ALWAYS, dtype=int)
-            self._slip = wp.zeros(data.naconmax, dtype=float)
-            self._before = wp.zeros(data.naconmax, dtype=wp.vec2)
-            self._remaining = wp.zeros(data.naconmax, dtype=float)
-            self._sums = wp.zeros((data.nworld, self.mj_model.nbody), dtype=wp.vec2)
-            self._bow = wp.zeros(data.naconmax, dtype=float)
-            self._last_tolerance = wp.array(
-                [last_tolerance(self._mujoco, self.mj_model, self.contact_config)], dtype=float
-            )
-        self.mjw_model.callback.contactfilter = self._mend_contacts
-
-    def _mend_contacts(self, model: Any, data: Any) -> None:
-        """After MuJoCo Warp's search for contacts: those that it finds only nearly, and those that it cannot know."""
-        contact = data.contact
-        wp.launch(
-            settle_round_on_flat,
-            dim=data.naconmax,
-            inputs=[
-                model.geom_type, model.geom_size, data.nacon, contact.worldid, contact.geom, data.geom_xpos,
-                data.geom_xmat,
-            ],
-            outputs=[contact.pos, contact.dist, contact.frame],
-        )  # fmt: skip
-        if self._touching:
-            self._touching.add_to_warp(model, data, self._bow)
 
     def step(
         self, state_in: Any, state_out: Any, control: Any, contacts: Any, dt: float, *, observables: Any = None
@@ -317,129 +286,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._flight.tell(state)
 
     def _mujoco_warp_step(self) -> None:
-        """MuJoCo Warp's step, with the law between its halves."""
-        model, data = self.mjw_model, self.mjw_data
-        if model.opt.integrator == self._mujoco.mjtIntegrator.mjINT_RK4:
+        """MuJoCo Warp's step under the law; by itself where nothing touches and steps are smooth."""
+        if self._law_warp is None:
             super()._mujoco_warp_step()
-            return
-        warp = self._mujoco_warp
-        if self._smooth_steps:
-            self._smooth_steps.before(model, data)
-        if self._ropes:
-            self._ropes.look_back(model, data)
-        warp.fwd_position(model, data)
-        warp.fwd_velocity(model, data)
-        if self._flight:
-            self._flight.tumble(self._dt)
-        warp.fwd_actuation(model, data)
-        if self._drives:
-            self._drives.take_over(data)
-        warp.fwd_acceleration(model, data)
-        self._aim(model, data)
-        if self._drives:
-            self._drives.aim(model, data)
-        for _ in range(self.contact_config.solutions_warp - 1):
-            warp.solve(model, data)
-            self._aim_again(model, data)
-        if self.breaking is not None:
-            warp.solve(model, data)
-            self.breaking.give_way(model, data)
-        self._solve_last(model, data)
-        if isinstance(self.impulses, ContactImpulsesWarp):
-            self.impulses.add(data, self._dt)
-        self._implicit(model, data)
-        if self._flight:
-            self._flight.ease_warp(model, data, self._jacobian(model, data.efc), self.contact_config.steady)
-            self._flight.fly(self._dt)
-        if self._smooth_steps:
-            self._smooth_steps.after(model, data, self.breaking.anew if self.breaking else None)
-        if model.nu:
-            self._tell_efforts(model, data)
-
-    def _solve_last(self, model: Any, data: Any) -> None:
-        """The solution whose forces move the bodies, and are recorded."""
-        option = model.opt
-        usual = option.tolerance, option.iterations
-        option.tolerance, option.iterations = self._last_tolerance, self.contact_config.last_turns
-        self._mujoco_warp.solve(model, data)
-        option.tolerance, option.iterations = usual
-
-    def _implicit(self, model: Any, data: Any) -> None:
-        """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
-        flags = model.opt.disableflags
-        model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_ACTUATION) if self._drives else 0
-        self._mujoco_warp.implicit(model, data)
-        model.opt.disableflags = flags
-
-    def _tell_efforts(self, model: Any, data: Any) -> None:
-        """What the drives give at the step's end, which the books need, whichever way the step was made."""
-        warp = self._mujoco_warp
-        warp.kinematics(model, data)
-        warp.com_pos(model, data)
-        warp.transmission(model, data)
-        warp.fwd_velocity(model, data)
-        warp.fwd_actuation(model, data)
-
-    def _aim(self, model: Any, data: Any) -> None:
-        config, efc, contact, flight = self.contact_config, data.efc, data.contact, self._flight
-        assert flight is not None
-        h = model.opt.timestep
-        self._struck.zero_()
-        touching = [data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address]
-        wp.launch(
-            strike,
-            dim=data.naconmax,
-            inputs=[
-                *touching, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
-                config.threshold,
-            ],
-            outputs=[self._struck],
-        )  # fmt: skip
-        wp.launch(
-            aim,
-            dim=data.naconmax,
-            inputs=[
-                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid, self._law,
-                model.geom_type, self._curvature, data.geom_xmat, contact.frame, self._struck,
-                data.qacc_smooth, self._touched_for, flight.row, flight.exact, *self._jacobian(model, efc),
-                config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
-            ],
-            outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
-        )  # fmt: skip
-        wp.launch(
-            stop,
-            dim=(data.nworld, data.njmax),
-            inputs=[
-                data.nefc, efc.type, efc.pos, efc.vel, h, efc.id, data.ten_length,
-                self._ropes.length if self._ropes else data.ten_length, config.settle_time, config.settle_speed,
-            ],
-            outputs=[efc.aref],
-        )  # fmt: skip
-
-    def _aim_again(self, model: Any, data: Any) -> None:
-        efc, contact = data.efc, data.contact
-        wp.copy(data.qacc_warmstart, data.qacc)
-        self._sums.zero_()
-        touching, h = [data.nacon, contact.worldid, contact.geom, contact.efc_address], model.opt.timestep
-        wp.launch(
-            weigh,
-            dim=data.naconmax,
-            inputs=[
-                *touching, contact.dim, contact.friction, efc.vel, h, model.geom_bodyid, data.qacc,
-                *self._jacobian(model, efc), self._slip, self._before,
-            ],
-            outputs=[self._remaining, self._sums],
-        )  # fmt: skip
-        wp.launch(
-            aim_again,
-            dim=data.naconmax,
-            inputs=[
-                *touching, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target, self._blow, efc.D,
-                efc.force,
-            ],
-            outputs=[self._slip, self._before, efc.aref],
-        )  # fmt: skip
-
-    @staticmethod
-    def _jacobian(model: Any, efc: Any) -> list[Any]:
-        return [model.is_sparse, model.nv, efc.J, efc.J_rownnz, efc.J_rowadr, efc.J_colind]
+        else:
+            self._law_warp.step(self._dt)

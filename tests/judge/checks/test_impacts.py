@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from tests.judge.theory import EDGE, RADIUS, ask, ball, bouncing, box, ground, only, record, times, with_world
 from wsim.judge.checks.impacts import CheckRestitution
+from wsim.scene.world import Shape
 
 
 def stated(recording, restitution):
@@ -127,3 +128,42 @@ def test_what_spins_off_a_blow_is_asked_as_closely(real, lean):
     for said in (real - 0.007, real + 0.007):
         if said <= 1.0:
             assert not only(ask(CheckRestitution(), stated(weightless, said))).passed
+
+
+def gripping(share, restitution, lean=0.7, along=0.5, down=2.0, friction=0.6):
+    """A rod that leans about Y and grips the ground as it meets it, without gravity; it slips no more.
+
+    Its push alone would turn its slip round: friction P_t gives it P_t v_t / 2. The law takes that from the rebound,
+    P_n (v_n' - e v_n) = -P_t v_t; here `share` of it is taken.
+    """
+    t, when = times(0.3, 60.0), 0.205
+    shape = Shape(prim="/World/rod/g", kind="capsule", size=(0.02, 0.5), friction=friction)
+    rod = box("rod", size=(0.02, 0.02, 0.5), mass=1.0).model_copy(update={"shapes": [shape]})
+    inertia = rod.inertia[4]
+    x, z = -0.25 * np.sin(lean), -0.25 * np.cos(lean) - 0.02
+    masses = np.linalg.inv([[1.0 + z**2 / inertia, -x * z / inertia], [-x * z / inertia, 1.0 + x**2 / inertia]])
+    parting = restitution * down
+    for _ in range(100):
+        push = masses @ [-along, parting + down]
+        parting = restitution * down - share * push[0] * along / push[1]
+    assert 0.05 * push[1] < push[0] < friction * push[1]
+    since, after = t - when, t >= when
+    speed = np.where(after[:, None], np.array([along, -down]) + push, np.array([along, -down]))
+    spin = np.where(after, (z * push[0] - x * push[1]) / inertia, 0.0)
+    place, angle, none = speed * since[:, None] + [0.0, -z], lean + spin * since, 0.0 * t
+    recording = record(
+        [rod], np.stack([place[:, 0], none, place[:, 1]], axis=1), np.stack([speed[:, 0], none, speed[:, 1]], axis=1),
+        t, rotation=np.stack([none, np.sin(angle / 2), none, np.cos(angle / 2)], axis=1),
+        spin=np.stack([none, spin, none], axis=1), statics=[ground(friction)],
+    )  # fmt: skip
+    return stated(with_world(recording, gravity=(0.0, 0.0, 0.0)), restitution), parting
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.8, 1.0])
+def test_friction_that_turns_the_slip_round_is_paid_with_the_rebound(restitution):
+    """Neither may it give energy (Kane and Levinson 1985), nor may more be missing than it gave."""
+    for share, sound in ((1.0, True), (0.0, False), (0.5, False), (2.0, False)):
+        recording, parting = gripping(share, restitution)
+        finding = only(ask(CheckRestitution(), recording))
+        assert finding.passed is sound, (share, finding.message)
+        assert finding.value == pytest.approx(parting, rel=0.01)

@@ -3,7 +3,8 @@
 Between two frames bodies go on as they did before and as they will after, but for the blow itself. Where the course of
 one frame, carried on, meets that of the next, carried back, in place and in turning, there was one blow, short beside
 the frames; there the shapes touch, and Newton's law of impact holds for the points that do: no point parts at less than
-the restitution times its approach, and one that pushes at no more.
+the restitution times its approach, and one that pushes at no more. Where friction's impulse and the mean of first and
+last slip have one way, friction gives energy: a point parts at so much less (`wsim.solvers.targets`).
 """
 
 from __future__ import annotations
@@ -65,6 +66,7 @@ class Blow:
     parting: float  # [m/s]
     restitution: float  # by the pair's law
     unsure: float  # of either speed [m/s]: what a step changes, and how far the normal turned
+    spent: tuple[float, float]  # of the rebound, by friction that turned the slip round: least and most [m/s]
     rub: Rub | None = None  # where it was one point of both, and neither touched anything else
 
 
@@ -171,29 +173,58 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
     parts = float(parting[n])
-    rub = _rub(courses, touching, met, (before, after), speed + parts, law.friction, pair)
-    alone = len(touches) == 1 and not _others(contacts, pair).any()
-    return Blow(k, *pair, (prims[0], prims[1]), speed, parts, law.restitution, unsure, rub if alone else None)
+    slips = [_slip(touching, met, each) for each in (before, after)]
+    across = _across(courses, met, (before, after), speed + parts, pair)
+    exactly = min(max(float(across @ (slips[0] + slips[1])) / max(speed + parts, 1e-12), 0.0), back)
+    if len(touches) > 1 or _others(contacts, pair).any():
+        # One of some points has a share of what all gave that is not known, and no more than its cone allows.
+        spent = 0.0, min(len(touches) * exactly, _spent_at_most(slips[0], slips[1], law.friction, unsure), back)
+        return Blow(k, *pair, (prims[0], prims[1]), speed, parts, law.restitution, unsure, spent)
+    rub = _rub(slips, across, speed + parts, law.friction, _balls(evidence, pair))
+    return Blow(k, *pair, (prims[0], prims[1]), speed, parts, law.restitution, unsure, (exactly, exactly), rub)
 
 
-def _rub(
-    courses: Courses, touching: Touching, met: Contacts, poses: tuple[Poses, Poses], bounce: float, friction: float,
-    pair: tuple[int, int],
-) -> Rub:  # fmt: skip
-    """Of one contact of a pair, whose points part by `bounce` [m/s] faster than they met, by the poses around it."""
+def _slip(touching: Touching, met: Contacts, poses: Poses) -> Floats:
+    """How fast one contact's second surface slips over the first [m/s], (3,)."""
+    moves, normal = slip(touching, met, poses)[0], met.normal[0]
+    found: Floats = moves - (moves @ normal) * normal
+    return found
+
+
+def _across(
+    courses: Courses, met: Contacts, poses: tuple[Poses, Poses], bounce: float, pair: tuple[int, int]
+) -> Floats:
+    """Friction's impulse on the second of two bodies over the mass that their point feels [m/s], (3,).
+
+    The points of their one contact part by `bounce` [m/s] faster than they met.
+    """
     motion, normal = courses.evidence.motion, met.normal[0]
     row, sign = (pair[1], 1.0) if pair[1] >= 0 and not motion.kinematic[pair[1]] else (pair[0], -1.0)
     change = sign * (poses[1].v[row] - poses[0].v[row])  # of the push, and of friction, over the body's mass
     push = float(change @ normal)
-    slips = [slip(touching, met, each)[0] for each in poses]
-    slips = [each - (each @ normal) * normal for each in slips]
-    after = float(np.linalg.norm(slips[1]))
-    scale = bounce / max(push, 1e-12)  # to the mass that the point feels
-    across = scale * (change - push * normal)
-    before, impulse = float(np.linalg.norm(slips[0])), float(np.linalg.norm(across))
-    if after > STAYS * before and _balls(courses.evidence, pair):
+    found: Floats = bounce / max(push, 1e-12) * (change - push * normal)
+    return found
+
+
+def _rub(slips: list[Floats], across: Floats, bounce: float, friction: float, balls: bool) -> Rub:
+    """Of one contact of a pair, by its slips before and after, and by its friction's impulse."""
+    before, after = (float(np.linalg.norm(each)) for each in slips)
+    impulse = float(np.linalg.norm(across))
+    if after > STAYS * before and balls:
         impulse = -float(across @ slips[1]) / after
     return Rub(impulse, friction * bounce, before, after)
+
+
+def _spent_at_most(before: Floats, after: Floats, friction: float, unsure: float) -> float:
+    """What friction may have used up of a point's rebound [m/s], where several share the impulse.
+
+    Its work over half the push, friction being at most the coefficient times the push, and against the slip that is
+    left where there is one.
+    """
+    left = float(np.linalg.norm(after))
+    if left <= unsure:
+        return friction * float(np.linalg.norm(before))
+    return friction * max(-float(before @ after) / left - left, 0.0)
 
 
 def _changing(

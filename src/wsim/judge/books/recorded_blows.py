@@ -131,7 +131,10 @@ class RecordedBlows:
         first, second = (self._owners[shape] for shape in contacts.track.pair[row].tolist())
         slides = "slides" in (one.kind, two.kind)  # what else rubs may change its slip at once, before frames show it
         rub = None if slides else self._rub(row, law, slips, poses, point)
-        return Blow(k, bodies[0], bodies[1], (first, second), approach, parting, law.restitution, unsure, rub)
+        spent, doubt = self._spent(row, law, slips, poses, point, law.restitution * approach)
+        return Blow(
+            k, bodies[0], bodies[1], (first, second), approach, parting, law.restitution, unsure + doubt, spent, rub
+        )
 
     def _alone(self, row: int) -> bool:
         """Whether nothing else strikes what the pair's bodies are part of in the interval, or pushes along the blow."""
@@ -168,6 +171,35 @@ class RecordedBlows:
             found = max(found, 2.0 * abs(float(kind_of(shape).depth(own[None])[0])))
         return found
 
+    def _spent(
+        self, row: int, law: Pair, slips: list[Floats], poses: list[tuple[Pose, Pose]], point: Floats, back: float
+    ) -> tuple[tuple[float, float], float]:
+        """What friction that turned the slip round took of the rebound, least and most, and how unsure that is [m/s].
+
+        P_t (v_t + v_t') / P_n (`wsim.solvers.targets`); of points that rub different ways, no more than cones allow.
+        """
+        normal, pressed = self._normal[row], float(self._pressed[row])
+        given = self._contacts.track.impulse[row].astype(np.float64)
+        share = (given - (given @ normal) * normal) / pressed
+        doubt = float(np.linalg.norm(share)) * self._followed.turned(poses[1], point, 1)
+        moved = slips[0] + slips[1]
+        exactly = float(np.clip(share @ moved, 0.0, back))
+        if self._one_way(row, [each.com for each in poses[0]], point, given, share * pressed):
+            return (exactly, exactly), doubt if exactly > 0.0 or float(share @ moved) > -doubt else 0.0
+        most = law.friction * float(np.linalg.norm(moved - (moved @ normal) * normal))
+        return (0.0, min(max(exactly, most), back)), doubt
+
+    def _one_way(self, row: int, coms: list[Floats], point: Floats, given: Floats, along: Floats) -> bool:
+        """Whether all points of the pair rub the same way: their impulses turn the bodies as one at their mean does."""
+        for side, (com, sign) in enumerate(zip(coms, (-1.0, 1.0), strict=True)):
+            body = int(self._contacts.body[row, side])
+            if body < 0:
+                continue
+            turn = self._contacts.track.turn[row, side] - sign * cross(point - com, given)
+            if np.linalg.norm(turn) > SHARED * self._motion.radius[body] * np.linalg.norm(along):
+                return False
+        return True
+
     def _rub(
         self, row: int, law: Pair, slips: list[Floats], poses: list[tuple[Pose, Pose]], point: Floats
     ) -> Rub | None:
@@ -180,13 +212,8 @@ class RecordedBlows:
         along = given - (given @ normal) * normal
         if law.rolling or cosine < ONE_WAY or after < STILL + 2.0 * self._followed.turned(poses[1], point, 1):
             return None
-        for side, (pose, sign) in enumerate(zip(poses[0], (-1.0, 1.0), strict=True)):
-            body = int(contacts.body[row, side])
-            if body < 0:
-                continue
-            turn = contacts.track.turn[row, side] - sign * cross(point - pose.com, given)
-            if np.linalg.norm(turn) > SHARED * self._motion.radius[body] * np.linalg.norm(along):
-                return None
+        if not self._one_way(row, [each.com for each in poses[0]], point, given, along):
+            return None
         scale = float((slips[1] - slips[0]) @ normal) / pressed
         way = across[0] / before + across[1] / after
         impulse = -float(along @ way) / float(np.linalg.norm(way))

@@ -1,0 +1,55 @@
+"""The numbers by which the law of contact is applied."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ContactConfig:
+    """How the law is applied."""
+
+    impedance: float = 0.9999
+    """Share of what is asked for that a contact alone reaches; MuJoCo's largest."""
+    kinematic_impedance: float = 0.99
+    """The same of the weld that holds a kinematic body to its way; nearer to one it shakes what rides on it."""
+    solver_tolerance: float = 1e-10
+    """MuJoCo's tolerance. Contacts are so hard that their forces are known far worse than the accelerations: at 1e-7
+    what they turn a box by that begins to slip is 3.5 % of m g R off, at 1e-9 0.2 %; 1e-10 takes no more time."""
+    solver_tolerance_warp: float = 1e-4
+    """The same where worlds are batched. What is left of the cost is below this times the trace of M, of some three
+    masses for a body: an error of 0.025 m/s^2 at most, and of less than 1e-3 m/s^2 where it was measured; at 1e-3 a log
+    in a groove rubbed 1 % too much. At 1e-6 single precision does not end its search."""
+    unbalanced: float = 0.4
+    """Acceleration of a body that the forces of a step's last solution may leave without a cause, where worlds are
+    batched, 4 % of g [m/s^2]. It changes its sign from step to step: of a crate that is thrown against a wall on a
+    lift a frame leaves 0.15 % of what pushes it or less; 1.3 % at the tolerance of the other solutions. Rounding alone
+    leaves 0.1 to 0.4 in a heap of boxes: what is asked below that is searched for in vain."""
+    last_turns: int = 25
+    """MuJoCo's iterations in the last solution at most. Where boxes tumble over each other Newton's method in double
+    precision needs up to 18 from the solution before; ten left 12 to 23 m/s^2 in some steps."""
+    reach: float = 0.01
+    """Gap at which a contact becomes a row [m]."""
+    limit_reach: float = 0.1
+    """The same of a joint's stop [rad or m]."""
+    settle_time: float = 0.02
+    """Time in which overlap fades [s]."""
+    settle_speed: float = 0.5
+    """Speed at which it fades at most [m/s]."""
+    threshold: float = 2 * 9.81
+    """A slower approach than this times the step is no blow [m/s^2]: gravity alone makes such speeds in a step."""
+    solutions: int = 3
+    """Solutions of a step after which the slip need only be known roughly."""
+    most_solutions: int = 20
+    """Solutions of a step at most."""
+    solutions_warp: int = 6
+    """Solutions of a step where worlds are batched, always."""
+    tolerance: float = 3e-4
+    """Change of the slip, times friction, below which it stays [m/s]."""
+    rough: float = 3e-3
+    """The same after `solutions` [m/s]: what is hit would hop by 0.5 um."""
+    steady: float = 0.5
+    """Acceleration along its normal below which a contact goes on as it was [m/s^2]: what it puts a gap off by, in
+    steps of 1.25 ms, fades at 6 um."""
+    smallest_friction: float = 1e-5
+    """MuJoCo's least, and ours for none."""

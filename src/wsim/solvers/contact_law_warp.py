@@ -1,0 +1,216 @@
+"""The law of contact of `wsim.solvers.contact_law` on MuJoCo Warp's data, for worlds that are batched or on a GPU."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import warp as wp
+
+from wsim.kernels.contact_law import aim, aim_again, stop, strike, weigh
+from wsim.kernels.round_on_flat import settle_round_on_flat
+from wsim.solvers.contact_config import ContactConfig
+from wsim.solvers.contact_impulses import ContactImpulsesWarp
+from wsim.solvers.flight import Flight
+from wsim.solvers.groups import tied_groups
+from wsim.solvers.ropes import RopesWarp
+from wsim.solvers.single_precision import last_tolerance
+from wsim.solvers.smooth_steps import SmoothStepsWarp
+from wsim.solvers.surface_contacts import SurfaceContacts
+from wsim.solvers.surfaces import Surfaces
+
+ALWAYS = 2**30  # steps
+
+
+class ContactLawWarp:
+    """Steps worlds under the law.
+
+    Args:
+        modules: Of MuJoCo in C, and of MuJoCo Warp.
+        host: MuJoCo's model of the first world.
+        model: MuJoCo Warp's model.
+        data: MuJoCo Warp's data.
+        flight: Steps the loose bodies.
+        surfaces: Of the geoms of all worlds alike, or of each.
+        smooth: Whether steps that touch nothing are of the fourth order.
+        config: How the law is applied.
+        breaking: What breaks joints, if any may break.
+        touching: Finds contacts with what MuJoCo does not know.
+        drives: The drives that damp, if there are any.
+    """
+
+    def __init__(
+        self,
+        modules: tuple[Any, Any],
+        host: Any,
+        model: Any,
+        data: Any,
+        flight: Flight,
+        surfaces: Surfaces,
+        smooth: bool,
+        config: ContactConfig,
+        breaking: Any = None,
+        touching: SurfaceContacts | None = None,
+        drives: Any = None,
+    ) -> None:
+        mujoco, self._mujoco_warp = modules
+        self._mujoco, self._model, self._data, self._flight, self._config = mujoco, model, data, flight, config
+        self._breaking, self._touching, self._drives = breaking, touching, drives
+        self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
+        groups = tied_groups(mujoco, host)
+        with wp.ScopedDevice(data.qpos.device):
+            self._geom_class = wp.array(surfaces.classes, dtype=int)
+            self._law = wp.array(surfaces.law, dtype=wp.vec3)
+            self._curvature = wp.array(surfaces.curvature, dtype=float)
+            self._geom_group = wp.array(groups[host.geom_bodyid], dtype=int)
+            self._struck = wp.zeros((data.nworld, int(groups.max()) + 1), dtype=int)
+            self._target = wp.zeros(data.naconmax, dtype=float)
+            self._blow = wp.zeros(data.naconmax, dtype=float)
+            self._touched_for = wp.full(data.nworld, value=0 if smooth else ALWAYS, dtype=int)
+            self._slip = wp.zeros(data.naconmax, dtype=float)
+            self._before = wp.zeros(data.naconmax, dtype=wp.vec2)
+            self._remaining = wp.zeros(data.naconmax, dtype=float)
+            self._sums = wp.zeros((data.nworld, host.nbody), dtype=wp.vec2)
+            self._bow = wp.zeros(data.naconmax, dtype=float)
+            self._last_tolerance = wp.array([last_tolerance(mujoco, host, config)], dtype=float)
+            self._ropes = RopesWarp(self._mujoco_warp, data) if host.tendon_limited.any() else None
+        self._smooth_steps: Any = None
+        if smooth:
+            self._smooth_steps = SmoothStepsWarp(mujoco, self._mujoco_warp, model, data, self._touched_for)
+        model.callback.contactfilter = self._mend_contacts
+
+    def step(self, h: float) -> None:
+        """Advance by `h` [s]: MuJoCo Warp's step, with the law between its halves."""
+        model, data, warp = self._model, self._data, self._mujoco_warp
+        if self._smooth_steps:
+            self._smooth_steps.before(model, data)
+        if self._ropes:
+            self._ropes.look_back(model, data)
+        warp.fwd_position(model, data)
+        warp.fwd_velocity(model, data)
+        self._flight.tumble(h)
+        warp.fwd_actuation(model, data)
+        if self._drives:
+            self._drives.take_over(data)
+        warp.fwd_acceleration(model, data)
+        self._aim(model, data)
+        if self._drives:
+            self._drives.aim(model, data)
+        for _ in range(self._config.solutions_warp - 1):
+            warp.solve(model, data)
+            self._aim_again(model, data)
+        if self._breaking is not None:
+            warp.solve(model, data)
+            self._breaking.give_way(model, data)
+        self._solve_last(model, data)
+        if self.impulses is not None:
+            self.impulses.add(data, h)
+        self._implicit(model, data)
+        self._flight.ease_warp(model, data, self._jacobian(model, data.efc), self._config.steady)
+        self._flight.fly(h)
+        if self._smooth_steps:
+            self._smooth_steps.after(model, data, self._breaking.anew if self._breaking else None)
+        if model.nu:
+            self._tell_efforts(model, data)
+
+    def _mend_contacts(self, model: Any, data: Any) -> None:
+        """After MuJoCo Warp's search for contacts: those that it finds only nearly, and those that it cannot know."""
+        contact = data.contact
+        wp.launch(
+            settle_round_on_flat,
+            dim=data.naconmax,
+            inputs=[
+                model.geom_type, model.geom_size, data.nacon, contact.worldid, contact.geom, data.geom_xpos,
+                data.geom_xmat,
+            ],
+            outputs=[contact.pos, contact.dist, contact.frame],
+        )  # fmt: skip
+        if self._touching:
+            self._touching.add_to_warp(model, data, self._bow)
+
+    def _solve_last(self, model: Any, data: Any) -> None:
+        """The solution whose forces move the bodies, and are recorded."""
+        option = model.opt
+        usual = option.tolerance, option.iterations
+        option.tolerance, option.iterations = self._last_tolerance, self._config.last_turns
+        self._mujoco_warp.solve(model, data)
+        option.tolerance, option.iterations = usual
+
+    def _implicit(self, model: Any, data: Any) -> None:
+        """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
+        flags = model.opt.disableflags
+        model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_ACTUATION) if self._drives else 0
+        self._mujoco_warp.implicit(model, data)
+        model.opt.disableflags = flags
+
+    def _tell_efforts(self, model: Any, data: Any) -> None:
+        """What the drives give at the step's end, which the books need, whichever way the step was made."""
+        warp = self._mujoco_warp
+        warp.kinematics(model, data)
+        warp.com_pos(model, data)
+        warp.transmission(model, data)
+        warp.fwd_velocity(model, data)
+        warp.fwd_actuation(model, data)
+
+    def _aim(self, model: Any, data: Any) -> None:
+        config, efc, contact, flight = self._config, data.efc, data.contact, self._flight
+        h = model.opt.timestep
+        self._struck.zero_()
+        touching = [data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address]
+        wp.launch(
+            strike,
+            dim=data.naconmax,
+            inputs=[
+                *touching, efc.vel, h, self._bow, self._geom_class, self._geom_group, self._law,
+                config.threshold,
+            ],
+            outputs=[self._struck],
+        )  # fmt: skip
+        wp.launch(
+            aim,
+            dim=data.naconmax,
+            inputs=[
+                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid,
+                self._geom_group, self._law, model.geom_type, self._curvature, data.geom_xmat, contact.frame,
+                self._struck, data.qacc_smooth, self._touched_for, flight.row, flight.since,
+                *self._jacobian(model, efc), config.threshold, config.settle_time, config.settle_speed,
+                config.smallest_friction,
+            ],
+            outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
+        )  # fmt: skip
+        wp.launch(
+            stop,
+            dim=(data.nworld, data.njmax),
+            inputs=[
+                data.nefc, efc.type, efc.pos, efc.vel, h, efc.id, data.ten_length,
+                self._ropes.length if self._ropes else data.ten_length, config.settle_time, config.settle_speed,
+            ],
+            outputs=[efc.aref],
+        )  # fmt: skip
+
+    def _aim_again(self, model: Any, data: Any) -> None:
+        efc, contact = data.efc, data.contact
+        wp.copy(data.qacc_warmstart, data.qacc)
+        self._sums.zero_()
+        touching, h = [data.nacon, contact.worldid, contact.geom, contact.efc_address], model.opt.timestep
+        wp.launch(
+            weigh,
+            dim=data.naconmax,
+            inputs=[
+                *touching, contact.dim, contact.friction, efc.vel, h, model.geom_bodyid, data.qacc,
+                *self._jacobian(model, efc), efc.force, self._target, self._blow, self._slip, self._before,
+            ],
+            outputs=[self._remaining, self._sums],
+        )  # fmt: skip
+        wp.launch(
+            aim_again,
+            dim=data.naconmax,
+            inputs=[
+                *touching, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target, self._blow, efc.D,
+                efc.force,
+            ],
+            outputs=[self._slip, self._before, efc.aref],
+        )  # fmt: skip
+
+    @staticmethod
+    def _jacobian(model: Any, efc: Any) -> list[Any]:
+        return [model.is_sparse, model.nv, efc.J, efc.J_rownnz, efc.J_rowadr, efc.J_colind]
