@@ -33,7 +33,7 @@ def slides_so_far(plan: Plan) -> Plan:
     item = plan.object(name)
     assert item.pose is not None and item.material is not None
     ground = plan.object("ground").material
-    friction = max(item.material.friction, ground.friction if ground is not None else 0.5)  # the greater one counts
+    friction = min(item.material.friction, ground.friction if ground is not None else 0.5)  # the weaker one counts
     speed = math.hypot(*item.velocity[:2])
     way = speed**2 / (2 * friction * G)
     x, y, z = item.pose.position

@@ -91,7 +91,8 @@ def spring(stretch: float, edge: float) -> Plan:
     rail = Joint(name="rail", kind="slider", child="block", axis="X", limits=(-1.0, 1.0))
     objectives = [Objective(kind="moves", object="block", value=0.5 * stretch, sentence="The block swings.")]
     period = 2 * math.pi * math.sqrt(2700.0 * edge**3 / STIFFNESS)
-    plan = planned("A block swings on a spring", [block], objectives, round(2.5 * period, 2), [rail])
+    goes = {"block": [(2 * stretch, 0.0, 0.0)]}
+    plan = planned("A block swings on a spring", [block], objectives, round(2.5 * period, 2), [rail], goes=goes)
     window = (round(0.45 * period, 3), round(0.55 * period, 3))
     far = say.eventually(say.reaches("block", (2 * stretch, 0.0, 0.5), 0.02), window)
     return asks(plan, "block", far, "The block is at the far end after half of sqrt(m / k) 2 pi.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -71,8 +71,12 @@ def planned(
     joints: Sequence[Joint] = (),
     frame_rate: float = FRAME_RATE,
     time_step: float = 0.0,
+    goes: Mapping[str, Sequence[Vec3]] | None = None,
 ) -> Plan:
-    """A plan written by hand: the objects with their poses stand on the ground, seen from the side and from above."""
+    """A plan written by hand: the objects with their poses stand on the ground, seen from the side and from above.
+
+    `goes` says where else objects come from their starts [m], by name, for the cameras to show.
+    """
     whole = Plan(
         title=title,
         prompt=title,
@@ -81,7 +85,7 @@ def planned(
         objectives=list(objectives),
         simulation=SimulationPlan(duration=duration, frame_rate=frame_rate, time_step=time_step),
     )
-    return filmed(Plan.model_validate({**whole.model_dump(), "cameras": cameras(whole, above=0.0)}))
+    return filmed(Plan.model_validate({**whole.model_dump(), "cameras": cameras(whole, above=0.0, goes=goes)}))
 
 
 def thing(

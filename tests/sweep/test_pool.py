@@ -64,9 +64,10 @@ def test_who_hangs_is_given_up() -> None:
     assert time.monotonic() - started < 60.0
 
 
-def test_work_that_raises_is_lost_with_its_worker() -> None:
-    assert [result for _, result in Pool(raises, 1, lambda task: 60.0).run([1])] == [
-        Lost("its process ended with exit code 1")
+def test_work_that_raises_is_lost_with_what_it_says_and_its_worker_goes_on() -> None:
+    assert list(Pool(raises, 1, lambda task: 60.0).run([1, 2])) == [
+        (1, Lost("LookupError: 1")),
+        (2, Lost("LookupError: 2")),
     ]
 
 

@@ -103,3 +103,26 @@ def test_a_folder_without_a_sweep_is_said(tmp_path: Path) -> None:
     (tmp_path / "sweep.json").write_text('{"samples": 0}')
     with pytest.raises(UserError, match=r"samples: .*greater than or equal to 1"):
         _ = SweepFolder.open(tmp_path).spec
+
+
+BREAKS = """
+from wsim.scene import Scene
+def build(scene: Scene) -> None:
+    height = scene.param("height", 1.0, low=0.5, high=2.0)
+    scene.simulation(duration=0.1)
+    scene.ground()
+    if height > 1.2:
+        raise ValueError(f"the shelf at {height:.2f} m is above the lamp")
+    scene.sphere("ball", radius=0.1, density=500.0, position=(0, 0, height))
+"""
+
+
+def test_what_a_program_raised_is_in_its_row(tmp_path: Path) -> None:
+    program = tmp_path / "shelf.py"
+    program.write_text(BREAKS, encoding="utf-8")
+    axes = axes_of(program, [Axis(name="height", low=0.5, high=2.0, values=(1.63,))])
+    folder = SweepFolder.create(tmp_path / "runs", "shelf", Spec(axes=axes, method="grid"), [program])
+    sweep(folder, workers=1)
+    said = {number: outcome.reason for number, outcome in folder.outcomes().items()}
+    assert said[0].startswith("Accepted")
+    assert "ValueError: the shelf at 1.63 m is above the lamp" in said[1]

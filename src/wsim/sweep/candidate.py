@@ -36,7 +36,7 @@ class Outcome(BaseModel):
     Attributes:
         candidate: It.
         status: The verdict's; "failed" where there is none, for a reason that is not the world's.
-        reason: The verdict's summary, or why there is none.
+        reason: The verdict's summary and what the program raised, or why there is no verdict.
         slack: The least distance of an objective to its limit as a share of both, in (-1, 1); negative: it, or another
             finding, fails. None where nothing was asked and nothing failed.
         decided_by: The finding of that slack: its objective's sentence, or its check's name.
@@ -77,7 +77,7 @@ class Outcome(BaseModel):
         return cls(
             candidate=candidate,
             status=verdict.status,
-            reason=verdict.summary,
+            reason=reason(verdict),
             slack=None if tightest is None else slack(tightest),
             decided_by="" if tightest is None else name(tightest),
             margins={key: finding.margin for key, finding in nearest.items() if finding.margin is not None},
@@ -85,6 +85,14 @@ class Outcome(BaseModel):
             failures=list(dict.fromkeys(map(name, verdict.failures))),
             seconds=round(seconds, 3),
         )
+
+
+def reason(verdict: Verdict) -> str:
+    """The summary; where there was no world to judge, also what the program said, which no other file keeps."""
+    first = next(iter(verdict.failures), None)
+    if first is None or not first.message or first.message.rstrip(".") in verdict.summary:
+        return verdict.summary
+    return f"{verdict.summary.rstrip('.')}: {first.message}"
 
 
 def name(finding: Finding) -> str:

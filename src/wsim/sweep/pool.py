@@ -1,4 +1,4 @@
-"""Worker processes that may die or hang: each loses what it was at, and nothing else."""
+"""Worker processes that may die, hang or raise: each loses what it was at, and nothing else."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", LIMIT: "1"}
 
 @dataclass(frozen=True)
 class Lost:
-    """Why a task has no result."""
+    """Why a task has no result, and whether another try may have one."""
 
     reason: str
+    again: bool = False
 
 
 @dataclass
@@ -60,7 +61,7 @@ class Pool(Generic[Task, Result]):
                     index, result = self._answer(worker, tasks)
                     if index is None:
                         continue
-                    if isinstance(result, Lost) and tries[index] < TRIES and not result.reason.startswith("took"):
+                    if isinstance(result, Lost) and result.again and tries[index] < TRIES:
                         todo.appendleft(index)
                         continue
                     yield tasks[index], result
@@ -105,7 +106,7 @@ class Pool(Generic[Task, Result]):
         self._workers.remove(worker)
         if hung and index is not None:
             return index, Lost(f"took more than {self._patience(tasks[index]):g} s")
-        return index, Lost(f"its process ended with {_cause(worker.process.exitcode)}")
+        return index, Lost(f"its process ended with {_cause(worker.process.exitcode)}", again=True)
 
 
 def _start(work: Callable[[Any], Any]) -> _Worker:
@@ -128,7 +129,17 @@ def _serve(pipe: Connection, work: Callable[[Any], Any]) -> None:
     """In a worker: do what comes, until nobody is there to send it."""
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
-            pipe.send(work(pipe.recv()))
+            task = pipe.recv()
+            try:
+                done = work(task)
+            except Exception as error:  # noqa: BLE001 - whatever it was, the row says so
+                done = Lost(told(error))
+            pipe.send(done)
+
+
+def told(error: Exception) -> str:
+    """What went wrong, in a line."""
+    return f"{type(error).__name__}: {' '.join(str(error).split())[:400]}"
 
 
 def _end(worker: _Worker) -> None:

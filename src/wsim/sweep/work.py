@@ -18,6 +18,7 @@ from wsim.runs.iteration import Iteration, no_world
 from wsim.runs.settings import Settings
 from wsim.sweep.batch import Member, batches, verdicts
 from wsim.sweep.candidate import Candidate, Outcome
+from wsim.sweep.pool import told
 from wsim.sweep.spec import Spec
 
 if TYPE_CHECKING:
@@ -154,6 +155,5 @@ def _outcome(candidate: Candidate, run: Callable[[], Verdict], seconds: Callable
         if candidate.params:
             verdict = as_varied(verdict)
         return Outcome.of(candidate, verdict, seconds())
-    except FAILURES as error:
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())[:400]}"
-        return Outcome(candidate=candidate, status="failed", reason=reason, seconds=round(seconds(), 3))
+    except Exception as error:  # noqa: BLE001 - one candidate's, and the others go on
+        return Outcome(candidate=candidate, status="failed", reason=told(error), seconds=round(seconds(), 3))

@@ -59,6 +59,13 @@ def test_two_balls_part_as_their_restitution_has_it(after, restitution, sound):
     assert finding.passed is sound
 
 
+@pytest.mark.parametrize(("speed", "asked"), [(0.02, 0), (0.03, 1)])
+def test_what_meets_by_less_than_a_step_s_fall_is_no_blow(speed, asked):
+    """2 g dt, 0.0218 m/s at 1 / 900 s: slower surfaces do not bounce (docs/rigid.md)."""
+    met = stated(meeting((speed, 0.0), (0.5 * speed, 0.5 * speed), gap=0.01), 0.5)
+    assert [finding.passed for finding in ask(CheckRestitution(), met)] == [False] * asked
+
+
 def test_what_is_gained_and_what_is_lost_are_told_apart():
     gained, lost = (
         only(ask(CheckRestitution(), stated(meeting((2.0, 0.0), after), 0.5))) for after in ((0.0, 2.0), (0.9, 1.1))

@@ -9,7 +9,9 @@ import pytest
 
 from wsim.judge.checks.stated import CheckPath, CheckStart
 from wsim.judge.evidence.evidence import Evidence
+from wsim.program.mend.apply import mended
 from wsim.scene import Scene
+from wsim.scene.describe import describe
 from wsim.sim import Simulation
 from wsim.sim.collect import collect
 
@@ -89,3 +91,57 @@ def test_another_engine_s_model_may_start_anywhere(tmp_path):
     told = evidence(tmp_path, thrown, speed=6.0)
     told.recording.metadata.pop("loose_order")
     assert CheckStart().run(told) == []
+
+
+# ---- what the repairs say, put into the program, is what happened
+THROWN = """
+def build(scene):
+    scene.simulation(duration=0.2, frame_rate=30)
+    scene.box("brick", size=(0.2, 0.3, 0.1), position=(0, 0, 1), velocity=(3, 0, 2), mass=1,
+              angular_velocity_deg=(0, 0, 100), rotation_deg=(10, 20, 30))
+"""
+LED = """
+def build(scene):
+    scene.simulation(duration=1.0, frame_rate=30)
+    lift = scene.box("lift", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+    scene.path(lift, times=[0, 0.5, 1], positions=[(0, 0, 0.5), (0, 0, 0.9), (0, 0, 1.5)],
+               rotations_deg=[(0, 0, 0), (0, 0, 10), (0, 0, 30)])
+    scene.box("belt", size=(1, 1, 0.1), position=(0, 3, 0.5), kinematic=True, velocity=(0.3, 0, 0))
+    scene.cylinder("table", radius=0.5, height=0.1, position=(0, 6, 0.5), kinematic=True,
+                   angular_velocity_deg=(0, 0, 60))
+"""
+
+
+def built(tmp_path, program, name):
+    scene, space = Scene(), {}
+    exec(program, space)
+    space["build"](scene)
+    return scene.save(tmp_path / f"{name}.usda")
+
+
+@pytest.mark.parametrize(
+    ("program", "check", "stated", "happened"),
+    [
+        (THROWN, CheckStart(), "velocity=(3, 0, 2)", "velocity=(3, 0, 2.5)"),
+        (THROWN, CheckStart(), "position=(0, 0, 1)", "position=(0, 0.1, 1)"),
+        (THROWN, CheckStart(), "(10, 20, 30)", "(-15, 24, 70)"),
+        (THROWN, CheckStart(), "(0, 0, 100)", "(20, 0, 100)"),
+        (LED, CheckPath(), "velocity=(0.3, 0, 0)", "velocity=(0.3, 0.1, 0)"),
+        (LED, CheckPath(), "(0, 0, 60)", "(0, 0, 200)"),
+        (LED, CheckPath(), "(0, 0, 0.9)", "(0, 0.2, 0.8)"),
+        (LED, CheckPath(), "(0, 0, 10)", "(0, 0, 25)"),
+    ],
+)
+def test_the_repair_states_what_happened(tmp_path, program, check, stated, happened):
+    moved = collect(Simulation(built(tmp_path, program.replace(stated, happened), "moved"), "cpu"))
+    for rounds in range(3):
+        told = dataclasses.replace(moved, world=describe(built(tmp_path, program, "told")))
+        evidence_of = Evidence(told.recording(0))
+        found = check.run(evidence_of)
+        failed = [finding for finding in found if not finding.passed]
+        assert failed or rounds
+        if not failed:
+            break
+        program = mended(program, check.repair(failed[0], evidence_of))
+    assert found and not failed, failed
+    assert stated not in program

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from wsim.program.api.entry import Entry, Parameter
-from wsim.program.api.lookup import _folder, _forget
+from wsim.program.api.lookup import _folder, _forget, _read
 from wsim.program.api.sources import all as sources
+from wsim.program.api.sources import pxr_results
 from wsim.program.api.store import Store
 
 ENTRIES = [
@@ -86,3 +87,23 @@ def test_cache_lies_where_the_environment_says(monkeypatch: pytest.MonkeyPatch, 
     assert _folder() == tmp_path / "wsim" / "api"
     monkeypatch.setenv("XDG_CACHE_HOME", "relative")
     assert _folder() == Path("~/.cache/wsim/api").expanduser()
+
+
+def test_an_index_that_lacks_what_could_not_be_looked_at_is_not_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A process that ends too late is killed: who asks next finds no index without it, but makes one with it."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(sources, "_SOURCES", {"programs": {"pxr": sources._pxr}})
+    told: list[str] = []
+    with monkeypatch.context() as hurried:
+        hurried.setattr(pxr_results, "_SECONDS", 1e-3)
+        hasty = _read("programs", told.append).find("pxr.UsdGeom.Cube.Define")
+    assert hasty is not None
+    assert hasty.returns == ""
+    assert "TimeoutExpired" in told[-1]
+    assert not (tmp_path / "wsim" / "api").exists()
+    whole = _read("programs", told.append).find("pxr.UsdGeom.Cube.Define")
+    assert whole is not None
+    assert whole.returns == "pxr.UsdGeom.Cube"
+    assert len(list((tmp_path / "wsim" / "api").iterdir())) == 1

@@ -34,6 +34,7 @@ SLIGHT = 0.003  # of a body's speed: what changes by less is no blow
 SHOWS = 0.1  # of an approach: where it is less sure than that the frames say nothing of the parting
 ACROSS = 0.2  # cosine between the normals of two contacts that do not share a blow
 STAYS = 0.05  # of the approach: what was to bounce and parts by less may have done so more than once
+SLOW = 2 * 9.81  # [m/s^2]: an approach slower than this times the step is no blow (docs/rigid.md)
 SURE = 0.02  # of a step: points that come to touch within it do so together,
 APART = 3.0  # and those that do after so many do not
 
@@ -50,6 +51,7 @@ class Rub:
     most: float  # the coefficient times the push
     before: float  # the slip as they met
     after: float  # and as they parted
+    unsure: float | None = None  # of the impulse, where it is recorded and the slip is known to keep its way
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,7 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
     jump = max(float(np.linalg.norm(after.v[row] - before.v[row])) for row in pair if row >= 0)
     rest = float(motion.h[k]) - when
     if (
-        approach < SHOWS * jump
+        approach < max(SHOWS * jump, SLOW * dt)
         or len(near) > len(touches)  # they may have been in the blow, or in one of their own
         or abs(lowest) > approach * dt + rounding
         or (k == len(motion.h) - 1 and rest < APART * dt)  # its push may go on beyond what is recorded

@@ -12,13 +12,14 @@ from wsim.geometry.paths import exponential
 from wsim.geometry.rotations import lengths, multiply, rotate
 from wsim.judge.checks.check import Check, Checks, worst
 from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.repair.start import start_taken, way_taken
 from wsim.scene.usd_motion import curve_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.verdict import Finding
+    from wsim.judge.verdict import Finding, RepairTarget
     from wsim.scene.world import Body
 
     Floats = NDArray[np.float64]
@@ -44,6 +45,10 @@ class CheckStart(Check):
             if not body.kinematic:
                 found += self._of(evidence, k, body)
         return worst(found)
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """The start that was taken."""
+        return start_taken(evidence, finding)
 
     def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
         motion = evidence.motion
@@ -91,6 +96,10 @@ class CheckPath(Check):
             if body.kinematic:
                 found += self._of(evidence, k, body)
         return worst(found)
+
+    def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
+        """The way that was taken."""
+        return way_taken(evidence, finding)
 
     def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
         motion, time = evidence.motion, evidence.time

@@ -140,8 +140,11 @@ def _read(part: str, progress: Progress) -> Store:
     file = _folder() / f"{part}-{sources.key(part)}.sqlite"
     found = Store.open(file)
     if found is None:
-        found = Store.of(sources.entries(part, progress))
-        if found.save(file):
+        missed: list[str] = []
+        found = Store.of(sources.entries(part, progress, missed.append))
+        for why in missed:
+            progress(f"API index: not kept, since this could not be read: {why}")
+        if not missed and found.save(file):
             _forget(part, file.parent)
     return found
 

@@ -75,6 +75,9 @@ def _set(source: Source, target: RepairTarget) -> None:
         else:
             source.insert(None, f"scene.simulation({parameter}={value!r})")
         return
+    if parameter.startswith("path."):
+        _keys(source, target)
+        return
     call = source.call(_object(target.prim))
     if ", " in parameter:
         _several(source, call, parameter.split(", "), target)
@@ -117,6 +120,27 @@ def _number(source: Source, call: ast.Call, parameter: str, value: float) -> Non
     if other and held is not None:
         source.drop(call, other)
     source.put(call, parameter, value)
+
+
+def _keys(source: Source, target: RepairTarget) -> None:
+    """Three numbers at each key of a path, behind one another."""
+    name, values = _object(target.prim), target.vector or ()
+    paths = [call for call in source.calls() if method(call) == "path" and call.args]
+    made = [call for call in paths if _named(source, call.args[0]) == name]
+    if not made:
+        raise NotMendedError(f"no call gives {name} a path")
+    source.put(
+        made[0], target.parameter.partition(".")[2], [tuple(values[k : k + 3]) for k in range(0, len(values), 3)]
+    )
+
+
+def _named(source: Source, node: ast.expr) -> str:
+    """The object that an argument means: its name, or the variable that holds its handle."""
+    if isinstance(node, ast.Constant):
+        return str(node.value)
+    held = [each for each in ast.walk(ast.parse(source.text)) if isinstance(each, ast.Assign)]
+    said = source.said(node)
+    return next((made_by(each.value) for each in held if any(ast.unparse(to) == said for to in each.targets)), "")
 
 
 def _several(source: Source, call: ast.Call, names: list[str], target: RepairTarget) -> None:

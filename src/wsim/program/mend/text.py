@@ -180,4 +180,6 @@ def written(value: Any) -> str:
     """A value as a person writes it."""
     if isinstance(value, bool) or not isinstance(value, int | float | tuple | list):
         return repr(value)
+    if isinstance(value, list) and all(isinstance(x, tuple) for x in value):
+        return f"[{', '.join(map(written, value))}]"
     return tuple_of([float(x) for x in value]) if isinstance(value, tuple | list) else number(float(value))

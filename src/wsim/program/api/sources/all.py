@@ -13,6 +13,8 @@ from wsim.program.api.entry import Entry
 from wsim.program.api.sources import pxr_bindings, python_package, usd_schemas
 
 Part = str  # "programs" or "lower"
+Told = Callable[[str], None]
+Read = Callable[[Told], Iterator[Entry]]
 PACKAGES = {
     "programs": ("numpy", "usd-core", "newton-usd-schemas", "griffelib"),
     "lower": ("newton", "warp-lang", "griffelib"),
@@ -42,14 +44,20 @@ def files(part: Part) -> list[Path]:
     return [file for file in found if file.suffix in (".py", ".usda", ".json", ".toml") and file.is_file()]
 
 
-def entries(part: Part, progress: Callable[[str], None]) -> Iterator[Entry]:
-    """Every entry of a part; of two with one name the first counts."""
+def entries(part: Part, progress: Told, missed: Told) -> Iterator[Entry]:
+    """Every entry of a part; of two with one name the first counts.
+
+    Args:
+        part: Which.
+        progress: Told what is being read.
+        missed: Told what could not be read this time, and may be the next.
+    """
     for title, read in _SOURCES[part].items():
         progress(f"API index: reading {title}")
-        yield from read()
+        yield from read(missed)
 
 
-def _scene() -> Iterator[Entry]:
+def _scene(_: Told) -> Iterator[Entry]:
     from wsim.program.api.sources.python_source import Package  # griffe, for an index that is made anew
 
     package = Package("wsim", "wsim")
@@ -64,29 +72,32 @@ def _without(found: Iterable[Entry], modules: tuple[str, ...]) -> Iterator[Entry
     return (entry for entry in found if not entry.name.startswith(modules))
 
 
-def _pxr() -> Iterator[Entry]:
-    return pxr_bindings.entries()
+def _pxr(missed: Told) -> Iterator[Entry]:
+    return pxr_bindings.entries(missed)
 
 
-def _schemas() -> Iterator[Entry]:
+def _schemas(_: Told) -> Iterator[Entry]:
     return usd_schemas.entries()
 
 
-def _numpy() -> Iterator[Entry]:
+def _numpy(_: Told) -> Iterator[Entry]:
     return python_package.entries(python_package.NUMPY, "numpy")
 
 
-def _standard() -> Iterator[Entry]:
+def _standard(_: Told) -> Iterator[Entry]:
     return python_package.entries(python_package.STANDARD, "python")
 
 
-def _lower(name: str) -> Callable[[], Iterator[Entry]]:
-    def read() -> Iterator[Entry]:
+def _lower(name: str) -> Read:
+    def read(missed: Told) -> Iterator[Entry]:
         from wsim.program.api.sources.python_source import Package  # griffe, for an index that is made anew
 
         try:
             package = Package(name, name, programs=False)
-        except (ImportError, OSError):
+        except ImportError:  # it is not installed
+            return
+        except OSError as error:
+            missed(f"{name}: {error}")
             return
         for entry in package.entries(name):
             yield dataclasses.replace(entry, doc=entry.doc[:1500])
@@ -94,7 +105,7 @@ def _lower(name: str) -> Callable[[], Iterator[Entry]]:
     return read
 
 
-_SOURCES: dict[Part, dict[str, Callable[[], Iterator[Entry]]]] = {
+_SOURCES: dict[Part, dict[str, Read]] = {
     "programs": {
         "wsim.scene": _scene,
         "USD's schemas": _schemas,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
 
@@ -18,7 +18,7 @@ import pxr
 from wsim.program.api.docstring import clean, summary
 from wsim.program.api.entry import Entry, Parameter
 from wsim.program.api.sources.pxr_overloads import is_binding, overloads
-from wsim.program.api.sources.pxr_results import results
+from wsim.program.api.sources.pxr_results import NotLookedError, results
 from wsim.program.api.sources.python_package import function_entry
 
 
@@ -33,9 +33,17 @@ def modules() -> list[ModuleType]:
     return found
 
 
-def entries() -> Iterator[Entry]:
-    """Modules, classes, functions, methods and constants of pxr."""
-    returned = results()
+def entries(missed: Callable[[str], None]) -> Iterator[Entry]:
+    """Modules, classes, functions, methods and constants of pxr.
+
+    Args:
+        missed: Told why, where it could not be found out what calls return: the entries then do not say.
+    """
+    returned: dict[str, str] = {}
+    try:
+        returned = results()
+    except NotLookedError as error:
+        missed(f"what pxr's calls return: {error}")
     yield Entry("pxr", "module", "pxr", summary="OpenUSD's Python modules.")
     for module in modules():
         yield Entry(module.__name__, "module", "pxr", summary=summary(clean(module.__doc__)))

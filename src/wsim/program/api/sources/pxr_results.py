@@ -24,8 +24,16 @@ _LEFT_OUT = re.compile(
 )
 
 
+class NotLookedError(Exception):
+    """The process that looks at the calls did not end well, and nothing is known of what they return."""
+
+
 def results() -> dict[str, str]:
-    """Whole name of a function or method: whole name of the class that it returns. Empty if it cannot be found out."""
+    """Whole name of a function or method: whole name of the class that it returns.
+
+    Raises:
+        NotLookedError: If the process that calls them was killed, took too long, or said nothing.
+    """
     try:
         done = subprocess.run(
             [sys.executable, "-c", "from wsim.program.api.sources.pxr_results import _main; _main()"],
@@ -35,8 +43,8 @@ def results() -> dict[str, str]:
             text=True,
         )
         found: dict[str, str] = json.loads(done.stdout.splitlines()[-1])
-    except (OSError, subprocess.SubprocessError, ValueError, IndexError):
-        return {}
+    except (OSError, subprocess.SubprocessError, ValueError, IndexError) as error:
+        raise NotLookedError(f"{type(error).__name__}: {error}") from error
     return found
 
 
