@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, TypeVar
 
-from wsim.scene.usd_threads import LIMIT
+from wsim.scene import usd_threads
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 TRIES = 2  # a worker may be killed for what another one uses; who kills two is to blame
 # As many processes as cores, and they may be forked.
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", LIMIT: "1"}
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", **usd_threads.ONE_THREAD}
 
 
 @dataclass(frozen=True)
