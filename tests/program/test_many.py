@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import resource
 from pathlib import Path
 
 import pytest
@@ -71,3 +73,25 @@ def test_more_than_a_process_takes(tmp_path: Path) -> None:
     built = list(build_many(program, stages, [{"edge": 0.1 + 0.01 * k} for k in range(count)]))
     assert all(result.ok for result in built)
     assert len({stage.read_text() for stage in stages}) == count
+
+
+@pytest.fixture
+def many_open_files():
+    """As a sweep of hundreds of candidates has: what is opened next has a number above 1,023."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard != resource.RLIM_INFINITY and hard < 4096:
+        pytest.skip(f"at most {hard} open files here")
+    resource.setrlimit(resource.RLIMIT_NOFILE, (4096, hard))
+    opened = [os.open(os.devnull, os.O_RDONLY) for _ in range(1030)]
+    yield
+    for descriptor in opened:
+        os.close(descriptor)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+@pytest.mark.usefixtures("many_open_files")
+def test_builds_beside_a_thousand_open_files(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(BOX)
+    built = list(build_many(program, [tmp_path / f"{k}.usda" for k in range(2)], [{}, {}], isolation=ISOLATION[0]))
+    assert [result.message for result in built if not result.ok] == []

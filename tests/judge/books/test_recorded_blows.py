@@ -86,3 +86,15 @@ def test_what_a_recorded_impulse_rubs_is_what_coulomb_has(recording):
     rubs = [blow.rub for blow in recorded_blows(Evidence(recording)) if blow.rub is not None]
     assert rubs
     assert np.allclose([rub.impulse / rub.most for rub in rubs], 1.0, atol=5e-3)
+
+
+def test_what_hits_without_friction(tmp_path):
+    """It slips on as fast as it came; a friction of 0.001 that is told would have slowed it by 6 mm/s."""
+    scene = Scene()
+    scene.simulation(duration=0.4, frame_rate=60.0)
+    scene.ground(friction=1.0)
+    scene.sphere("ice", radius=0.1, position=(0, 0, 0.5), velocity=(2, 0, -2), friction=0.0, restitution=0.5)
+    Simulation(scene.save(tmp_path / "stage.usda"), device="cpu").run(tmp_path / "r.rrd")
+    recording = read(tmp_path / "r.rrd")
+    assert ask(CheckBlowFriction(), recording)[0].passed
+    assert not ask(CheckBlowFriction(), told(recording, "ice", friction=0.001))[0].passed

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 STEADY = 2.0  # times what a contact gives in the intervals around: more than that is a blow
 SHARED = 0.02  # of friction's impulse by the size of a body: points that rub different ways turn it by more
 FLAT = 1e-3  # of a push: normals that differ by less are one
+NONE = 2e-5  # of a push: surfaces without friction have 1e-5, the least that MuJoCo knows
 
 
 def recorded_blows(evidence: Evidence) -> list[Blow]:
@@ -212,15 +213,16 @@ class RecordedBlows:
         along = given - (given @ normal) * normal
         if law.rolling or cosine < ONE_WAY or after < STILL + 2.0 * self._followed.turned(poses[1], point, 1):
             return None
-        if not self._one_way(row, [each.com for each in poses[0]], point, given, along):
+        rubs = float(np.linalg.norm(along))
+        if rubs > NONE * pressed and not self._one_way(row, [each.com for each in poses[0]], point, given, along):
             return None
         scale = float((slips[1] - slips[0]) @ normal) / pressed
         way = across[0] / before + across[1] / after
         impulse = -float(along @ way) / float(np.linalg.norm(way))
-        if impulse < ONE_WAY * float(np.linalg.norm(along)):
+        if impulse < ONE_WAY * rubs - NONE * pressed:
             return None  # what is left of the slip is what turning makes of it
         most = law.friction * pressed
-        return Rub(impulse * scale, most * scale, before, after, (1.0 - cosine) * most * scale)
+        return Rub(impulse * scale, most * scale, before, after, ((1.0 - cosine) * most + NONE * pressed) * scale)
 
 
 def _step_leaves(approach: float, restitution: float, pull: float, deep: float) -> float:

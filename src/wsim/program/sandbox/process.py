@@ -135,7 +135,7 @@ class SandboxProcess:
         try:
             while True:
                 left = deadline - time.monotonic()
-                if select.select([ended], [], [], max(0.0, min(_TICK, left)))[0]:
+                if _ready(ended, max(0.0, min(_TICK, left))):
                     break
                 excess = self.excess()
                 if excess or left <= 0.0:
@@ -206,7 +206,7 @@ class SandboxProcess:
 
     def _inner(self) -> int | None:
         """The program's process, which is the one child of the first process in bubblewrap's name space."""
-        if self._info is None or not select.select([self._info], [], [], 0.0)[0]:
+        if self._info is None or not _ready(self._info, 0.0):
             return None
         with contextlib.suppress(OSError, ValueError, KeyError, IndexError):
             if not hasattr(self, "_first"):
@@ -235,3 +235,10 @@ def _remove(folder: str) -> None:
     # With isolation "none" a program can nest folders deeper than Python follows, or take its own rights to them.
     for command in (["chmod", "-R", "u+rwX", folder], ["rm", "-rf", folder]):
         subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+
+
+def _ready(descriptor: int, seconds: float) -> bool:
+    """Whether there is something to read, or an end, within some time; select(2) knows no descriptor above 1,023."""
+    waiting = select.poll()
+    waiting.register(descriptor, select.POLLIN)
+    return bool(waiting.poll(1000.0 * seconds))
