@@ -91,8 +91,8 @@ def waiting(goal: float, distance: float, speed: float, touched: bool, threshold
         if distance > 0.0:
             return wp.where(touched, -LATER, wp.min(goal, 4.0 * speed))
     # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
-    # what was parting is hit anew in the step after, and bounces.
-    elif touched and (distance > -threshold * h or speed > threshold):
+    # what would be out of it by the step's end is hit anew in the step after, and bounces.
+    elif touched and (distance > -threshold * h or distance + speed * h > 0.0):
         return -LATER
     return goal
 
