@@ -1,5 +1,6 @@
 """What flies: loose bodies tumble as Euler's equations have it, and go as far as their velocity takes them."""
 
+import math
 from functools import partial
 
 import newton
@@ -151,3 +152,47 @@ def test_a_state_that_is_set_counts(simulate, worlds):
     ball, other = (simulation.state.body_q.numpy()[k, :3] for k in simulation.built.bodies)
     assert ball == pytest.approx((before[0, 0] + simulation.dt, 0.0, 5.0 + 2.0 * simulation.dt), abs=1e-6)
     assert other == pytest.approx((before[1, 0] + simulation.dt, 1.0, 0.0), abs=1e-6)
+
+
+@BOTH
+def test_a_hinged_pair_that_tumbles_beside_a_crate_keeps_its_energy(simulate, worlds):
+    """It touches nothing; by steps of the first order it blew up."""
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, 0))
+        scene.box("floor", size=(2, 2, 0.2), position=(5, 0, -0.1), static=True)
+        scene.box("crate", size=(0.4,) * 3, mass=5.0, position=(5, 0, 0.199))
+        spin = (1000, 1500, 2000)
+        scene.box("one", size=(0.3, 0.04, 0.05), mass=1.0, position=(0, 0, 0), angular_velocity_deg=spin)
+        scene.box("two", size=(0.3, 0.04, 0.05), mass=0.1, position=(0.3, 0, 0), angular_velocity_deg=spin)
+        scene.joint_revolute("hinge", "one", "two", anchor=(0.15, 0, 0), axis="Z")
+
+    run = simulate(build, 0.5, worlds)
+    energy, momentum = 0.0, 0.0
+    for name, mass in (("one", 1.0), ("two", 0.1)):
+        energy = energy + 0.5 * mass * (run.v[name] ** 2).sum(axis=1) + _kept(run, name)[1]
+        momentum = momentum + mass * run.v[name]
+    assert np.abs(run.q["crate"] - run.q["crate"][0]).max() < 1e-3
+    assert energy == pytest.approx(np.full(len(energy), energy[0]), rel=1e-3)
+    assert momentum == pytest.approx(np.broadcast_to(momentum[0], momentum.shape), abs=1e-3 * 1.1 * 30.0 * 0.3)
+
+
+@BOTH
+@pytest.mark.parametrize("slides", [True, False])
+def test_what_spins_about_a_centre_off_its_origin_keeps_its_momentum(simulate, worlds, slides):
+    """On a floor without friction, and struck: its origin's velocity turns with it."""
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, -9.81 if slides else 0))
+        if slides:
+            scene.ground(friction=0.0)
+        off = (0.0, 0.0, 0.0), (0.6, 0.0, 0.0)
+        parts = [Part("box", size=(0.2, 0.2, 0.2), position=place, friction=0.0) for place in off]
+        scene.compound("double", parts=parts, mass=3.0, position=(0, 0, 0.1), velocity=(0, -40.0 * 0.3, 0),
+                       angular_velocity_deg=(0, 0, math.degrees(40.0)))  # fmt: skip
+        if not slides:
+            scene.sphere("ball", radius=0.1, mass=1.0, position=(-2, 0.05, 0.1), velocity=(4, 0, 0), restitution=0.5)
+
+    run = simulate(build, 0.6, worlds)
+    momentum = 3.0 * run.v["double"] + (0.0 if slides else run.v["ball"])
+    assert momentum[:, :2] == pytest.approx(np.broadcast_to(momentum[0, :2], (len(momentum), 2)), abs=2e-4)

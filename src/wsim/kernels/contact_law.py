@@ -87,15 +87,19 @@ def bent(turn: wp.mat33, frame: wp.mat33, curvature: float, kind: int) -> float:
 
 
 @wp.func
-def waiting(goal: float, distance: float, speed: float, touched: bool, threshold: float, h: float) -> float:
+def waiting(
+    goal: float, distance: float, speed: float, touched: bool, threshold: float, h: float, settle_speed: float
+) -> float:
     """Speed of a contact of what bounces, while its own blow is not now: it lets go of what is hit elsewhere."""
     if speed < -threshold:
         if distance > 0.0:
             return wp.where(touched, -LATER, wp.min(goal, 4.0 * speed))
     # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
-    # what would be out of it by the step's end is hit anew in the step after, and bounces.
-    elif touched and (distance > -threshold * h or distance + speed * h > 0.0):
-        return -LATER
+    # what would be out of it by the step's end, or parts faster than overlaps do, is hit anew in the step after.
+    elif touched:
+        parts = distance + speed * h > 0.0 or speed > settle_speed + threshold
+        if parts or distance > -threshold * h:
+            return -LATER
     return goal
 
 
@@ -189,7 +193,8 @@ def aim(
     struck: wp.array2d(dtype=int),
     state: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
-    touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
+    body_mechanism: wp.array(dtype=int),
+    touched_for: wp.array2d(dtype=int),  # a mechanism's steps of the first order since its last smooth one
     loose: wp.array(dtype=int),  # which of the loose bodies a body is; -1 goes as stated
     since: wp.array2d(dtype=int),  # a loose body's steps of the first order since its last exact one
     sparse: bool,
@@ -229,13 +234,16 @@ def aim(
         touched = struck[world, geom_group[geom[0]]] + struck[world, geom_group[geom[1]]]
         if meets(distance, speed, pair[1], h, threshold * h):
             pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
-            one, two = loose[geom_body[geom[0]]], loose[geom_body[geom[1]]]
-            rough = wp.min(touched_for[world], wp.max(since_exact(since, world, one), since_exact(since, world, two)))
+            rough = int(0)
+            for side in range(2):
+                body = geom_body[geom[side]]
+                own_since = since_exact(since, world, loose[body])
+                rough = wp.max(rough, wp.min(touched_for[world, body_mechanism[body]], own_since))
             smooth = float(rough) * wp.abs(pull) * h < wp.abs(speed)
             goal = rebound(distance, speed, pull, pair[1], h, smooth)
             blow[k] = 1.0
         else:
-            goal = waiting(goal, distance, speed, touched > 0, threshold * h, h)
+            goal = waiting(goal, distance, speed, touched > 0, threshold * h, h, settle_speed)
     goal += bow[k]
     target[k] = goal
 

@@ -220,7 +220,8 @@ def fly(
 ):
     """Advance the loose bodies: what pushes them changes their spin at the step's start, then they turn freely.
 
-    Where nothing holds a body its centre of mass goes straight, else its origin, whose velocity contacts have seen.
+    Its centre of mass goes straight, or the body would not keep its momentum as it turns; only where a rope or a loop
+    holds a body its origin does, whose velocity those have seen.
     Under gravity and steady contacts alone it goes by the mean of the velocities before and after: what accelerates
     evenly then is where it should be. Of a spring's force, which changes with the place, that would add energy.
     """
@@ -246,7 +247,7 @@ def fly(
     turn = free_turn(axes, inertia, kicked - late * kick, h)
     after = spin_after(axes, inertia, kicked, turn)
     end = wp.normalize(q * turn)
-    if free:
+    if free or tied[k] == 0:
         pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
         way = v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull
         x += wp.quat_rotate(q, c) + h * (way - late * pull) - wp.quat_rotate(end, c)

@@ -1,9 +1,11 @@
-"""Which worlds of a batch touch nothing in a step, and the better step for those."""
+"""Which mechanisms touch nothing in a step, and the better step for those."""
 
 import warp as wp
 
-FIRST_THAT_JUMPS = wp.constant(1)  # mjtConstraint: after equalities come dry friction, stops and contacts
-DRIVE = wp.constant(2)  # mjCNSTR_FRICTION_TENDON, which jumps not
+DRY = wp.constant(1)  # mjtConstraint: mjCNSTR_FRICTION_DOF,
+DRIVE = wp.constant(2)  # mjCNSTR_FRICTION_TENDON, which jumps not,
+STOP = wp.constant(3)  # mjCNSTR_LIMIT_JOINT,
+TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON; contacts come after
 
 
 @wp.kernel(enable_backward=False)
@@ -11,36 +13,59 @@ def find_touching(
     # Data in:
     rows: wp.array(dtype=int),
     kind: wp.array2d(dtype=int),
+    which: wp.array2d(dtype=int),  # joint, degree of freedom, tendon or contact
+    contact_geom: wp.array(dtype=wp.vec2i),
+    geom_owner: wp.array(dtype=int),
+    joint_owner: wp.array(dtype=int),
+    freedom_owner: wp.array(dtype=int),
+    tendon_owner: wp.array(dtype=int),
     # Data out:
-    touches: wp.array(dtype=int),
+    touches: wp.array2d(dtype=int),
 ):
-    """Mark the worlds with dry friction, a stop or a contact among their constraint rows."""
+    """Mark the mechanisms with dry friction, a stop or a contact among their constraint rows, and the first for any."""
     world, row = wp.tid()
-    if row < rows[world] and kind[world, row] >= FIRST_THAT_JUMPS and kind[world, row] != DRIVE:
-        touches[world] = 1
+    if row >= rows[world]:
+        return
+    what, k = kind[world, row], which[world, row]
+    if what < DRY or what == DRIVE:
+        return
+    touches[world, 0] = 1
+    if what == DRY:
+        touches[world, freedom_owner[k]] = 1
+    elif what == STOP:
+        touches[world, joint_owner[k]] = 1
+    elif what == TAUT:
+        touches[world, tendon_owner[k]] = 1
+    else:
+        for side in range(2):
+            touches[world, geom_owner[contact_geom[k][side]]] = 1
 
 
 @wp.kernel(enable_backward=False)
 def count_touching(
     # Data in:
-    touches: wp.array(dtype=int),
+    breaks: wp.array(dtype=int),
     # Data out:
-    steps: wp.array(dtype=int),
+    touches: wp.array2d(dtype=int),
+    steps: wp.array2d(dtype=int),
 ):
-    """Count each world's steps in which it touches something, from the last one in which it does not."""
-    world = wp.tid()
-    steps[world] = wp.where(touches[world] == 0, 0, steps[world] + 1)
+    """Count the steps in which a mechanism touches something, from the last one in which it does not."""
+    world, k = wp.tid()
+    if breaks[world] > 0:
+        touches[world, k] = 1
+    steps[world, k] = wp.where(touches[world, k] == 0, 0, steps[world, k] + 1)
 
 
 @wp.kernel(enable_backward=False)
 def take_where_free(
     # Data in:
-    touches: wp.array(dtype=int),
+    touches: wp.array2d(dtype=int),
+    owner: wp.array(dtype=int),
     smooth: wp.array2d(dtype=float),
     # Data out:
     taken: wp.array2d(dtype=float),
 ):
-    """Take the values of the smooth step where a world touches nothing."""
+    """Take the values of the smooth step where a mechanism touches nothing, or, of what is none, its whole world."""
     world, k = wp.tid()
-    if touches[world] == 0:
+    if touches[world, owner[k]] == 0:
         taken[world, k] = smooth[world, k]

@@ -14,6 +14,7 @@ import newton
 import numpy as np
 import warp as wp
 
+from wsim.errors import UserError
 from wsim.progress import Progress, silent
 from wsim.recording import RecordingWriter
 from wsim.scene.describe import describe
@@ -90,6 +91,8 @@ class Simulation:
         processes: int = 1,
     ) -> None:
         stages = [Path(stage)] if isinstance(stage, str | Path) else [Path(each) for each in stage]
+        if not isinstance(world_count, int) or world_count < 1:
+            raise UserError(f"world_count = {world_count!r}: give a whole number from 1")
         if len(stages) > 1 and world_count != 1:
             raise ValueError(f"world_count={world_count}: {len(stages)} stages are as many worlds; leave it out")
         world_count = max(world_count, len(stages))

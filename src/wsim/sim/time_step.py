@@ -39,8 +39,10 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
         given: A step from the caller or the stage [s]: one more upper bound.
 
     Raises:
-        UserError: If a drive, a spring or a loaded chain needs a step of less than `MIN_TIME_STEP`.
+        UserError: If a drive, a spring or a loaded chain needs a step of less than `MIN_TIME_STEP`, or one is given.
     """
+    if given is not None and not MIN_TIME_STEP <= given < math.inf:
+        raise UserError(f"time_step = {given!r} s: give {MIN_TIME_STEP:g} s or more, or leave it out")
     limits = {"rigid bodies": LARGEST_RIGID_STEP}
     crossing = _crossing_time(world)
     if crossing is not None:
@@ -49,7 +51,7 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
         limits["sound in the fluid"] = fluid_limit
     limits |= _drive_limits(world)
     limits |= spring_limits(world) | cable_limits(world)
-    if given:
+    if given is not None:
         limits["given"] = given
     reason = min(limits, key=limits.__getitem__)
     limit = limits[reason]

@@ -25,8 +25,11 @@ class ContactConfig:
     batched, 0.2 % of g [m/s^2]. Rounding alone leaves 0.1 to 0.4 in a heap of boxes; but MuJoCo Warp ends where one
     turn gains little, also where its search along a line gets stuck: at 0.4 a stack that a ball hits was left with 3.5
     to 5 m/s^2 in every third step, after one turn of two that are needed."""
+    most_factored: int = 1000
+    """Degrees of freedom of a world that Newton's method takes where worlds are batched; beyond, conjugate gradients.
+    MuJoCo Warp factors a world's Hessian whole, with one block of threads."""
     last_turns: int = 25
-    """MuJoCo's iterations in the last solution at most. Where boxes tumble over each other Newton's method in double
+    """Newton's iterations in the last solution at most. Where boxes tumble over each other Newton's method in double
     precision needs up to 18 from the solution before; ten left 12 to 23 m/s^2 in some steps."""
     reach: float = 0.01
     """Gap at which a contact becomes a row [m]."""

@@ -41,9 +41,10 @@ from wsim.solvers.contact_impulses import ContactImpulsesC
 from wsim.solvers.contact_rows import ContactRows
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
-from wsim.solvers.groups import tied_groups
+from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import seek_slip
+from wsim.solvers.smooth_steps import Owners, SmoothStepsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.targets import settling, stopped, targets
@@ -100,16 +101,17 @@ class ContactLawC:
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
         self.touching, self._bow = touching, np.zeros(0)
         self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
-        self.touched = 0  # steps of the first order since the last smooth one
         self.rolls = bool(self.law[..., 2].any())
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
-        self.unilateral = int(mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT)
         rows = mujoco.mjtConstraint
         self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
         self._groups = tied_groups(mujoco, model)
+        moves_as_one = mechanisms(mujoco, model, self._groups, flight.stated) if smooth else np.zeros(model.nbody, int)
+        self.owners = Owners(mujoco, model, moves_as_one)
+        self.smooth_steps = SmoothStepsC(mujoco, model, self.owners)
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -121,20 +123,21 @@ class ContactLawC:
         while self.breaking is not None and self.breaking.give_way(data):
             touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
+        whole = self.smooth and not touching
+        free = self.smooth_steps.free(data, whole)
         if self.ties is not None:
-            self.ties.add(data, self.smooth and not touching)
-        if self.smooth and not touching:
-            # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
-            model.opt.disableflags |= self.unilateral
-            mujoco.mj_RungeKutta(model, data, 4)
-            model.opt.disableflags &= ~self.unilateral
-            self.touched = 0
+            self.ties.add(data, free)
+        if whole:
+            self.smooth_steps.step(data)
         else:
+            if free.any():
+                self.smooth_steps.make(data)
             self._implicit(data)
             if self.impulses is not None:
                 self.impulses.add(data, model.opt.timestep)
             self.flight.fly(model.opt.timestep)
-            self.touched += 1
+            if free.any():
+                self.smooth_steps.take(data, free)
         if model.nu:
             self._tell_efforts(data)
 
@@ -224,8 +227,8 @@ class ContactLawC:
         speed = data.efc_vel[rows.normal] + bow
         since = self.flight.since_exact(bodies)
         if self.smooth:
-            since = np.minimum(since, self.touched)
-        smooth = since * np.abs(free) * h < np.abs(speed - bow)  # not by the first order all the fall
+            since = np.minimum(since, self.smooth_steps.since[self.owners.of_body[bodies]])
+        smooth = since.max(axis=1) * np.abs(free) * h < np.abs(speed - bow)  # not by the first order all the fall
         goal, blow = targets(distance, speed, free, law[:, 1], self._groups[bodies], h, config, smooth)
         rows.aim(goal + bow, blow)
         hits = bool((blow | stopped(goal, speed, h, config)).any())

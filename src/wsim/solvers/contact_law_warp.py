@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import warp as wp
 
 from wsim.kernels.contact_law import aim, stop, strike, vec5
@@ -12,10 +13,10 @@ from wsim.kernels.slips import guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesWarp
 from wsim.solvers.flight import Flight
-from wsim.solvers.groups import tied_groups
+from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import last_tolerance
-from wsim.solvers.smooth_steps import SmoothStepsWarp
+from wsim.solvers.smooth_steps import Owners, SmoothStepsWarp
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 
@@ -58,6 +59,8 @@ class ContactLawWarp:
         self._breaking, self._touching, self._drives = breaking, touching, drives
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
         groups = tied_groups(mujoco, host)
+        moves_as_one = mechanisms(mujoco, host, groups, flight.stated) if smooth else np.zeros(host.nbody, dtype=int)
+        owners = Owners(mujoco, host, moves_as_one)
         with wp.ScopedDevice(data.qpos.device):
             self._geom_class = wp.array(surfaces.classes, dtype=int)
             self._law = wp.array(surfaces.law, dtype=wp.vec3)
@@ -66,7 +69,8 @@ class ContactLawWarp:
             self._struck = wp.zeros((data.nworld, int(groups.max()) + 1), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._blow = wp.zeros(data.naconmax, dtype=float)
-            self._touched_for = wp.full(data.nworld, value=0 if smooth else ALWAYS, dtype=int)
+            self._mechanism = wp.array(moves_as_one, dtype=int)
+            self._touched_for = wp.full((data.nworld, owners.count), value=0 if smooth else ALWAYS, dtype=int)
             self._slip = wp.zeros(data.naconmax, dtype=float)
             self._before = wp.zeros(data.naconmax, dtype=wp.vec2)
             self._remaining = wp.zeros(data.naconmax, dtype=float)
@@ -82,7 +86,7 @@ class ContactLawWarp:
             self._ropes = RopesWarp(self._mujoco_warp, data) if host.tendon_limited.any() else None
         self._smooth_steps: Any = None
         if smooth:
-            self._smooth_steps = SmoothStepsWarp(mujoco, self._mujoco_warp, model, data, self._touched_for)
+            self._smooth_steps = SmoothStepsWarp(mujoco, self._mujoco_warp, model, data, owners, self._touched_for)
         model.callback.contactfilter = self._mend_contacts
 
     def step(self, h: float) -> None:
@@ -136,7 +140,9 @@ class ContactLawWarp:
         """The solution whose forces move the bodies, and are recorded."""
         option = model.opt
         usual = option.tolerance, option.iterations
-        option.tolerance, option.iterations = self._last_tolerance, self._config.last_turns
+        option.tolerance = self._last_tolerance
+        if option.solver == int(self._mujoco.mjtSolver.mjSOL_NEWTON):
+            option.iterations = self._config.last_turns
         self._mujoco_warp.solve(model, data)
         option.tolerance, option.iterations = usual
 
@@ -178,8 +184,8 @@ class ContactLawWarp:
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid,
                 self._geom_group, self._law, model.geom_type, self._curvature, data.geom_xmat, contact.frame,
-                self._struck, self._search, data.qacc_smooth, self._touched_for, flight.row, flight.since,
-                *self._jacobian(model, efc), config.threshold, config.settle_time, config.settle_speed,
+                self._struck, self._search, data.qacc_smooth, self._mechanism, self._touched_for, flight.row,
+                flight.since, *self._jacobian(model, efc), config.threshold, config.settle_time, config.settle_speed,
                 config.smallest_friction,
             ],
             outputs=[

@@ -105,9 +105,14 @@ class Flight:
             wp.launch(keep, dim=array.shape, inputs=[array], outputs=[true], device=self.model.device)
 
     def since_exact(self, bodies: Array) -> Array:
-        """Of contacts in C, the steps of the first order since both bodies (contacts, 2) went exactly."""
+        """Of bodies in C, the steps of the first order since they went exactly."""
         known = np.append(self._since_c, [NEVER, 0])  # at OTHER, and at STATED
-        return np.asarray(known[self._row_c[bodies]].max(axis=1))
+        return np.asarray(known[self._row_c[bodies]])
+
+    @property
+    def stated(self) -> Array:
+        """Whether a body of MuJoCo's goes as is stated, (bodies,): the world does."""
+        return np.asarray(self._row_c == STATED)
 
     def ease(self, jolted: Array) -> None:
         """Note in C that all bodies go on as they did, but for those that are jolted."""

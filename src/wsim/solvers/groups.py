@@ -1,4 +1,4 @@
-"""Which bodies joints tie together: what hits one of them is felt by all in the same instant."""
+"""Which bodies joints tie together: what hits one of them is felt by all in the same instant, and they move as one."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 Array = np.ndarray
+FREE = 6  # degrees of freedom of what no joint holds
 
 
 def tied_groups(mujoco: Any, model: Any) -> Array:
@@ -32,3 +33,44 @@ def tied_groups(mujoco: Any, model: Any) -> Array:
         if one and two:
             groups[groups == max(one, two)] = min(one, two)
     return groups
+
+
+def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array) -> Array:
+    """Of each of MuJoCo's bodies the number of its mechanism, (bodies,): 0 for what is of none.
+
+    A mechanism is a group with a joint, or what springs and ropes tie to it or to each other, all of which its smooth
+    step moves: one with a part that goes as stated, or with a drive that is a constraint row, is none.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model.
+        groups: Of the bodies (`tied_groups`).
+        stated: Whether a body goes as is stated, (bodies,).
+    """
+    together, barred = groups.copy(), set(groups[stated].tolist())
+    for tendon in range(model.ntendon):
+        bodies = tendon_bodies(mujoco, model, tendon)
+        own = sorted({int(together[body]) for body in bodies} - {0})
+        if model.wrap_type[model.tendon_adr[tendon]] == mujoco.mjtWrap.mjWRAP_JOINT:
+            barred |= {int(groups[body]) for body in bodies}
+        together[np.isin(together, own)] = own[0] if own else 0
+    barred = {int(together[body]) for body in np.flatnonzero(np.isin(groups, list(barred)))} | {0}
+    found = np.zeros(model.nbody, dtype=int)
+    for number in sorted(set(together.tolist()) - barred):
+        own = np.flatnonzero(together == number)
+        if len(own) > 1 or np.count_nonzero(model.dof_bodyid == own[0]) < FREE:
+            found[own] = found.max() + 1
+    return found
+
+
+def tendon_bodies(mujoco: Any, model: Any, tendon: int) -> list[int]:
+    """The bodies that a tendon pulls or runs round."""
+    owners = {
+        int(mujoco.mjtWrap.mjWRAP_JOINT): model.jnt_bodyid,
+        int(mujoco.mjtWrap.mjWRAP_SITE): model.site_bodyid,
+        int(mujoco.mjtWrap.mjWRAP_SPHERE): model.geom_bodyid,
+        int(mujoco.mjtWrap.mjWRAP_CYLINDER): model.geom_bodyid,
+    }
+    first = model.tendon_adr[tendon]
+    ways = range(first, first + model.tendon_num[tendon])
+    return [int(owners[kind][model.wrap_objid[k]]) for k in ways if (kind := int(model.wrap_type[k])) in owners]

@@ -210,8 +210,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def keep_ties(self, joints: Sequence[TiedJoint], cords: Sequence[TiedCord]) -> None:
         """Sum what joints and cords give from here on, in C alone."""
         if self.use_mujoco_cpu:
-            ties = TieImpulsesC(self.import_mujoco()[0], self.mj_model, joints, cords)
-            self.tie_impulses = self._law_c.ties = ties
+            law = self._law_c
+            ties = TieImpulsesC(self.import_mujoco()[0], self.mj_model, joints, cords, law.owners.of_body)
+            self.tie_impulses = law.ties = ties
 
     def mend(self) -> None:
         """Make all joints whole that broke."""
@@ -224,7 +225,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
         # the contacts of a box that slides, on an H200 in one step of some 300.
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
-        if soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config):
+        ill = soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config)
+        if ill or self.mj_model.nv > self.contact_config.most_factored:
             self.mjw_model.opt.solver = int(self._mujoco.mjtSolver.mjSOL_CG)
         self._tell_warp("geom_solimp")
         weights = self.mjw_model.body_invweight0.numpy()[: len(gives)]

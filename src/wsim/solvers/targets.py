@@ -71,8 +71,9 @@ def targets(
     struck[groups[meets]] = True
     struck[0] = False
     # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
-    # what would be out of it by the step's end is hit anew in the step after, and bounces.
-    light = (distance > -config.threshold * h * h) | (after > 0.0)
+    # what would be out of it by the step's end, or parts faster than overlaps do, is hit anew in the step after.
+    parts = (after > 0.0) | (speed > config.settle_speed + config.threshold * h)
+    light = parts | (distance > -config.threshold * h * h)
     later = bouncy & (waits | (~fast & light)) & struck[groups].any(axis=1)
     goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
     return np.where(meets, rebound, np.where(later, -LATER, goal)), meets

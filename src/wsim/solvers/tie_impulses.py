@@ -51,7 +51,7 @@ class TiedCord:
 class _Step:
     """What is kept of a step."""
 
-    smooth: bool
+    smooth: Array  # whether the step of a joint or a cord is one of Runge and Kutta's, (joints + ends,)
     state: Array  # what does not change its size, one after another
     told: Array  # the drives' targets
     rows: tuple[Array, ...]  # of the constraints: kind, number, force, place
@@ -110,18 +110,24 @@ class TieImpulsesC:
         model: MuJoCo's model.
         joints: As a recording counts them.
         cords: Likewise.
+        mechanism: Of each body (`wsim.solvers.groups.mechanisms`).
     """
 
     OF_BODIES = ("cfrc_int", "subtree_com", "xipos", "xpos", "xquat", "qpos", "qfrc_actuator", "qfrc_applied")
     OF_CORDS = ("ten_length", "ten_velocity", "wrap_xpos", "wrap_obj", "ten_wrapnum")
 
-    def __init__(self, mujoco: Any, model: Any, joints: Sequence[TiedJoint], cords: Sequence[TiedCord]) -> None:
+    def __init__(
+        self, mujoco: Any, model: Any, joints: Sequence[TiedJoint], cords: Sequence[TiedCord], mechanism: Array
+    ) -> None:
         self._mujoco, self._model, self._joints, self._cords = mujoco, model, joints, cords
+        tied = [(joint.child, joint.parent) for joint in joints] + [cord.bodies for cord in cords for _ in cord.bodies]
+        self._mechanism = np.array([mechanism[list(bodies)].max(initial=0) for bodies in tied], dtype=int)
+        self._widths = [JOINT_WIDTH] * len(joints) + [CORD_WIDTH] * (len(tied) - len(joints))
         self._parts = self.OF_BODIES + (self.OF_CORDS if cords else ())
         self._views: list[Array] = []
         self._kept: list[_Step] = []
         self._frames: list[tuple[int, TieSumsLater]] = []  # that wait: where their steps end
-        self._before: Array | None = None  # what joints and cords gave at the last step's start, where it was smooth
+        self._before: Array | None = None  # what joints and cords gave at the last step's start; NaN where not smooth
         self._told: Array | None = None  # of that step: how many constraints it had, and what its drives were set to
         kinds, types = mujoco.mjtConstraint, mujoco.mjtEq
         self._equality, self._rubs = int(kinds.mjCNSTR_EQUALITY), int(kinds.mjCNSTR_FRICTION_DOF)
@@ -136,15 +142,20 @@ class TieImpulsesC:
         ]
 
     # ---- step by step
-    def add(self, data: Any, smooth: bool) -> None:
-        """Keep what acts in a step, once it is solved and before it is made; `smooth` is one of Runge and Kutta's."""
+    def add(self, data: Any, smooth: Array) -> None:
+        """Keep what acts in a step, once it is solved and before it is made.
+
+        Args:
+            data: MuJoCo's.
+            smooth: Which mechanisms go by a step of Runge and Kutta's, (mechanisms,).
+        """
         self._mujoco.mj_rnePostConstraint(self._model, data)
         if not self._views:
             self._views = [getattr(data, name).ravel() for name in self._parts]  # not copied
         rows: tuple[Array, ...] = ()
         if data.nefc:
             rows = tuple(array.copy() for array in (data.efc_type, data.efc_id, data.efc_force, data.efc_pos))
-        self._kept.append(_Step(smooth, np.concatenate(self._views), data.ctrl.copy(), rows))
+        self._kept.append(_Step(smooth[self._mechanism], np.concatenate(self._views), data.ctrl.copy(), rows))
 
     def take(self) -> TieSumsLater:
         """The sums since the last call, which start anew."""
@@ -178,14 +189,15 @@ class TieImpulsesC:
 
     def _means(self, acting: Array, frame: _Frame) -> Array:
         """Over each step of what acts at its start, (S, n)."""
-        smooth, jumps = frame.smooth, frame.jumps
-        before = np.concatenate([acting[:1] if self._before is None else self._before[None], acting[:-1]])
-        came = np.concatenate([[self._before is not None], smooth[:-1]]) & ~jumps
-        goes = np.append(smooth[1:] & ~jumps[1:], False)
-        after = np.where(came[:, None], 2.0 * acting - before, acting)
-        after[goes] = acting[1:][goes[:-1]]
-        self._before = acting[-1] if smooth[-1] else None
-        return np.where(smooth[:, None], 0.5 * (acting + after), acting)
+        smooth, jumps = np.repeat(frame.smooth, self._widths, axis=1), frame.jumps[:, None]
+        none = np.full(acting.shape[1], np.nan)
+        known = np.where(smooth, acting, np.nan)
+        before = np.concatenate([[none if self._before is None else self._before], known[:-1]])
+        after = np.where(jumps | np.isnan(before), acting, 2.0 * acting - before)
+        follows = np.concatenate([np.where(jumps[1:], np.nan, known[1:]), [none]])
+        after = np.where(np.isnan(follows), after, follows)
+        self._before = known[-1]
+        return np.where(smooth, 0.5 * (acting + after), acting)
 
     def _frame(self, kept: list[_Step]) -> _Frame:
         values, at, parts = np.stack([step.state for step in kept]), 0, {}
