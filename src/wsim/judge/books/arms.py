@@ -71,7 +71,7 @@ def changing(asked: Floats, angle: Floats, mass: Floats, hit: Bools, unit: Rows)
     found = np.zeros(angle.shape)
     for each in np.unique(unit):
         own = np.flatnonzero(unit == each)
-        calm = ~hit[:, own].any(axis=1)
+        calm = np.asarray(~hit[:, own].any(axis=1))
         change = np.linalg.norm(np.diff(asked[:, own], axis=0), axis=2) * (calm[1:] & calm[:-1])[:, None]
         change = np.maximum(np.pad(change, ((1, 0), (0, 0))), np.pad(change, ((0, 1), (0, 0))))
         missed = angle[:, own] * change / 12.0
