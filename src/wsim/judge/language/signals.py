@@ -115,7 +115,8 @@ class Signals:
         found = np.zeros((self.count, len(self.time)), dtype=bool)
         contacts = self.evidence.recording.contacts if self.evidence is not None else None
         if contacts is not None:
-            owners = np.array([each.prim for each in (*self.world.bodies, *self.world.statics) for _ in each.shapes])
+            owner = [body.prim for body in self.world.bodies for _ in body.shapes]
+            owners = np.array(owner + [static.prim for static in self.world.statics for _ in static.shapes])
             ours = owners[contacts.pair]  # (n, 2)
             a, b = self.prim(one), self.prim(other)
             both = np.all(ours == (a, b), axis=1) | np.all(ours == (b, a), axis=1)
