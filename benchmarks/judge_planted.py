@@ -41,6 +41,7 @@ from benchmarks.judge_worlds.tables import between_marks, markdown, print_tables
 from benchmarks.judge_worlds.tamper import simulate  # noqa: E402
 from benchmarks.judge_worlds.world import SoundWorld  # noqa: E402
 from wsim.judge import judge  # noqa: E402
+from wsim.judge.verdict import unjudged  # noqa: E402
 from wsim.plan.schema import Plan  # noqa: E402
 from wsim.recording import read  # noqa: E402
 
@@ -172,6 +173,8 @@ def run(case: Case, rejudge: bool = False, judged: bool = True) -> Outcome:
             made.status = "recorded"
             return made
         verdict = judge(recording, case.plan)
+        if verdict.crashes:
+            raise RuntimeError(f"{unjudged(verdict.crashes)}\n{verdict.crashes[0].traceback}")
         made.status = verdict.status
         made.checks = sorted({finding.check for finding in verdict.failures})
         made.failed = [f"{finding.check}: {finding.message}" for finding in verdict.failures]

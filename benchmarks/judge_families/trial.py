@@ -13,6 +13,7 @@ from benchmarks.judge_families.family import Family, effect
 from benchmarks.judge_families.record import other, own, simulated, world_of
 from benchmarks.judge_families.register import FAMILIES, MECHANISMS
 from wsim.judge import judge
+from wsim.judge.verdict import unjudged
 
 LEAST_EFFECT = 0.01  # of a body's size, of its speed, or in radians
 TRIES = 4  # worlds that a fault is put into until it does something there
@@ -145,6 +146,8 @@ def _sound_is_accepted(sound: Sound, evidence: str) -> bool:
 
 def _judge(made: Outcome, recording: object, plan: object = None) -> None:
     verdict = judge(recording, plan)  # type: ignore[arg-type]
+    if verdict.crashes:
+        raise RuntimeError(unjudged(verdict.crashes))
     made.status = verdict.status
     made.checks = sorted({finding.check for finding in verdict.failures})
     made.failed = [f"{finding.check}: {finding.message}" for finding in verdict.failures]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -36,37 +37,45 @@ def simulate(stage: Path, recording: Path, tamper: Tamper | None = None, picture
     """Simulate a stage on the CPU into a recording, tampered with or not.
 
     Raises:
-        RuntimeError: If the run broke, which no fault here is meant to do.
+        RuntimeError: If the run broke, which no fault here is meant to do, or the tampering had no turn at each of its
+            steps and frames.
     """
     from wsim.sim import Simulation
 
     tamper = tamper or Tamper()
     simulation = Simulation(stage, device="cpu")
     tamper.prepare(simulation)
-    with _tampered(simulation, tamper):
+    with _tampered(simulation, tamper) as turns:
         result = simulation.run(recording, video=recording.with_name("video.mp4") if pictures else None)
     if result.problems:
         raise RuntimeError(f"{recording}: {'; '.join(result.problems)}")
+    for name, count in (("stepped", result.steps), ("frame", result.frames)):
+        if getattr(type(tamper), name) is not getattr(Tamper, name) and turns[name] != count:
+            raise RuntimeError(f"{tamper!r} had {turns[name]} turns of {count} at its {name}: it is no fault")
 
 
 @contextmanager
-def _tampered(simulation: Any, tamper: Tamper) -> Iterator[None]:
+def _tampered(simulation: Any, tamper: Tamper) -> Iterator[Counter[str]]:
+    """A run that is tampered with: how often its steps and its frames were."""
     from wsim.sim import simulation as module
 
-    step, measure = simulation.step, module.measure
+    measure, turns = module.measure, Counter[str]()
 
-    def stepped() -> None:
-        step()
-        tamper.stepped(simulation)
+    def advanced() -> None:
+        """A frame step by step: what is alone goes a whole frame in C otherwise, where nobody has a turn."""
+        for _ in range(simulation.substeps):
+            simulation.step()
+            tamper.stepped(simulation)
+            turns["stepped"] += 1
 
     def measured(*arguments: Any) -> Frame:
+        turns["frame"] += 1
         return tamper.frame(simulation.time, measure(*arguments), simulation.world)
 
-    changes = type(tamper).stepped is not Tamper.stepped
+    if type(tamper).stepped is not Tamper.stepped:
+        simulation.advance_frame = advanced
     with mock.patch.object(module, "measure", measured):
-        if changes:
-            simulation.step = stepped
-        yield
+        yield turns
 
 
 def row(world: World, name: str) -> int:

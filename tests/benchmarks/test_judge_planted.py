@@ -3,6 +3,7 @@
 import dataclasses
 import math
 from collections import Counter
+from functools import partial
 
 import pytest
 
@@ -11,7 +12,11 @@ from benchmarks.judge_worlds import FAULTS, WORLDS, in_program
 from benchmarks.judge_worlds.fault import halves
 from benchmarks.judge_worlds.in_recording import Teleport
 from benchmarks.judge_worlds.tables import between_marks, interval, markdown, summary
+from benchmarks.judge_worlds.tamper import Tamper, simulate
 from benchmarks.judge_worlds.world import with_arguments
+from wsim.recording import read
+from wsim.scene import Scene
+from wsim.sim import Simulation
 
 
 def a_case(name: str) -> judge_planted.Case:
@@ -146,3 +151,44 @@ def test_programs_are_edited_by_call():
     longer = in_program.appended("scene.ground()")(program)
     compile(longer, "program.py", "exec")
     assert longer.index("scene.ground()") < longer.index("__main__")
+
+
+@dataclasses.dataclass
+class Counted(Tamper):
+    """Counts its turns, and does nothing."""
+
+    steps: int = 0
+    frames: int = 0
+
+    def stepped(self, simulation):
+        self.steps += 1
+
+    def frame(self, t, frame, world):
+        self.frames += 1
+        return frame
+
+
+def test_a_tampering_has_a_turn_at_every_step_of_a_world_that_goes_a_frame_in_c(tmp_path):
+    stage, tamper = falling(tmp_path), Counted()
+    simulate(stage, tmp_path / "plain.rrd")
+    simulate(stage, tmp_path / "counted.rrd", tamper)
+    plain, counted = (read(tmp_path / name) for name in ("plain.rrd", "counted.rrd"))
+    frames = len(plain.time)
+    assert tamper.frames == frames
+    assert tamper.steps == round(plain.time[-1] / plain.metadata["time_step"])
+    assert counted.body_q == pytest.approx(plain.body_q, abs=1e-6)  # nothing else is changed
+
+
+def test_a_tampering_that_has_no_turn_breaks_the_benchmark(tmp_path, monkeypatch):
+    """As where a simulator goes on by what nobody has wrapped."""
+    stage, advance = falling(tmp_path), Simulation.advance_frame
+    monkeypatch.setattr(Simulation, "advance_frame", property(lambda self: partial(advance, self), lambda *_: None))
+    with pytest.raises(RuntimeError, match=r"had 0 turns of .* at its stepped: it is no fault"):
+        simulate(stage, tmp_path / "counted.rrd", Counted())
+
+
+def falling(folder):
+    scene = Scene()
+    scene.simulation(duration=0.2, frame_rate=30.0)
+    scene.sphere("ball", radius=0.1, density=600.0, position=(0.0, 0.0, 2.0))
+    return scene.save(folder / "stage.usda")

@@ -14,10 +14,14 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 from tests import children
+from tests.crashing import crashing
 from tests.patience import STUCK
 from wsim import __version__
+from wsim.cli import app
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.verdict import Verdict
 
 PROMPT = "A wooden block floats in a tank of water."
@@ -84,6 +88,20 @@ def test_judge_judges_the_recording_again(wsim, floating, reruns) -> None:
     rejected = wsim("judge", heavy.run, "--json")
     assert rejected.code == 1
     assert Verdict.model_validate_json(rejected.out).status == "rejected"
+
+
+def test_a_judge_that_crashes_says_so_and_ends_with_3(reruns, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, heavy = reruns
+    recording = heavy.run / "iterations" / "01" / "recording.rrd"
+    alone = shutil.copyfile(recording, tmp_path / "alone.rrd")
+    crashing(monkeypatch, CheckEnergy)
+    ended = CliRunner().invoke(app, ["judge", str(alone)])
+    assert ended.exit_code == 3
+    assert "? CheckEnergy could not be evaluated: ZeroDivisionError: float division by zero" in ended.output
+    assert "report it with its traceback, which wsim judge --json prints" in ended.output
+    beside = CliRunner().invoke(app, ["judge", str(recording)])  # by the plan, which its mass breaks
+    assert beside.exit_code == 1
+    assert "? CheckEnergy could not be evaluated" in beside.output
 
 
 def test_a_recording_alone_is_judged_without_a_plan(wsim, reruns, tmp_path: Path) -> None:

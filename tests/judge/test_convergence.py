@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from tests.crashing import CRASH
 from wsim.judge.convergence import CheckConverged, Rerun
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 
@@ -53,6 +54,15 @@ def test_a_number_that_moves_towards_what_is_expected_has_the_room_to_the_other_
     (finding,) = compare(measured(9.0, expected=5.0), measured(second, expected=5.0))
     assert finding.limit == pytest.approx(0.5 * (1.0 if second > 9.0 else 9.0))
     assert finding.passed is passed
+
+
+def test_an_objective_that_crashed_in_the_rerun_is_not_gone_from_it() -> None:
+    crash = CRASH.model_copy(update={"check": "ObjectiveStops", "objective": "it stops"})
+    again = Verdict(status="blocked", summary="", findings=[measured(6.0, objective=None)], crashes=[crash])
+    found = CheckConverged().compare(
+        verdict(measured(6.0)), [Rerun("half the time step", again, 0.5, "theory", TARGET)]
+    )
+    assert all(finding.passed for finding in found)
 
 
 def test_a_limit_that_tightens_with_the_resolution_is_no_move() -> None:

@@ -1,14 +1,19 @@
 """Whole verdicts: what theory gives is accepted; each planted fault is rejected by the check that is there for it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests.crashing import crashing
 from wsim.judge import judge
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.physics import CheckDensity
 from wsim.judge.checks.run import CheckPlanControl
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.language import Signals, evaluate, parse
+from wsim.judge.language import ObjectiveCheck, Signals, evaluate, parse
+from wsim.judge.language.objective import name_of
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Objective, Step
 from wsim.scene.world import Joint
@@ -324,11 +329,53 @@ def test_a_box_on_the_ground_must_be_carried_with_its_weight(stack):
     assert judge(case.changed(contact_force=force * 0.0).recording, case.plan).status == "accepted"  # not recorded
 
 
-def test_a_crash_in_a_check_is_a_failed_finding(pool):
-    case = pool().body(BLOCK, shapes=[])
+def test_a_crash_in_a_check_is_neither_a_pass_nor_a_fail(pool, monkeypatch):
+    case = pool()
+    whole = judge(case.recording, case.plan)
+    crashing(monkeypatch, CheckEnergy)
+    verdict = judge(case.recording, case.plan)
+    assert verdict.status == "blocked"
+    said = "CheckEnergy could not be evaluated: ZeroDivisionError: float division by zero"
+    assert verdict.summary == f"Blocked: {said}; all {len(verdict.findings)} findings of the others pass."
+    assert [f for f in whole.findings if f.check != "CheckEnergy"] == verdict.findings
+    [crash] = verdict.crashes
+    assert crash.message == said
+    assert "1.0 / len(evidence.world.bodies[:0])" in crash.traceback
+    assert Verdict.model_validate_json(verdict.model_dump_json()) == verdict
+    assert "crashes" not in whole.model_dump_json()  # a verdict without any is written as ever
+
+
+def test_a_crash_beside_what_fails_is_told_and_the_world_rejected(pool, monkeypatch):
+    case = pool(lift=0.2 * 0.14)
+    crashing(monkeypatch, CheckDensity)
     verdict = judge(case.recording, case.plan)
     assert verdict.status == "rejected"
-    assert any("could not be evaluated" in finding.message for finding in verdict.failures)
+    assert "ObjectiveFloats" in failed(verdict)
+    assert [crash.check for crash in verdict.crashes] == ["CheckDensity"]
+    assert verdict.summary.endswith("CheckDensity could not be evaluated: ZeroDivisionError: float division by zero.")
+
+
+def test_an_objective_that_crashes_is_named_in_its_own_words(pool, monkeypatch):
+    case = pool()
+    crashing(monkeypatch, ObjectiveCheck)
+    verdict = judge(case.recording, case.plan)
+    assert verdict.status == "blocked"
+    assert [(crash.check, crash.objective) for crash in verdict.crashes] == [
+        (name_of(each.kind), ObjectiveCheck(each).asks) for each in case.plan.objectives
+    ]
+    assert "ObjectiveFloats could not be evaluated" in verdict.summary
+    assert f", nor {len(verdict.crashes) - 1} more;" in verdict.summary
+
+
+def test_what_the_recording_lacks_is_no_crash(pool):
+    case = pool()
+    fluids = [fluid.model_copy(update={"container": "/World/cup"}) for fluid in case.recording.world.fluids]
+    world = case.recording.world.model_copy(update={"fluids": fluids})
+    verdict = judge(replace(case.recording, world=world), case.plan)
+    assert verdict.status == "rejected"
+    assert verdict.crashes == []
+    contained = only(verdict, "CheckFluidContained")
+    assert not contained.passed and "no container in the world: /World/cup" in contained.message
 
 
 def with_objective(case, **objective):

@@ -13,6 +13,7 @@ from wsim.judge import judge
 from wsim.judge.books.balance import Balance
 from wsim.judge.checks.contact import CheckSupport
 from wsim.judge.checks.continuity import CheckContinuity
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.rest import CheckJitter
 from wsim.judge.decide import judge_copies
 from wsim.judge.evidence.alike import alike
@@ -102,6 +103,20 @@ def test_each_verdict_is_that_of_the_world_alone(planted: Trajectories, processe
         margins = sorted(f.margin for f in alone.findings if f.margin is not None)
         here = [margin[k] for margin in found.margin.values()]
         assert sorted(m for m in here if not np.isnan(m)) == pytest.approx(margins, nan_ok=True)
+
+
+def test_a_crash_in_one_world_blocks_that_one_alone(worlds: Trajectories, monkeypatch) -> None:
+    sound = CheckEnergy.evaluate
+
+    def evaluate(self, evidence):
+        return [1 / 0] if evidence.body_q[0, 0, 0] == worlds.body_q[3, 0, 0, 0] else sound(self, evidence)
+
+    monkeypatch.setattr(CheckEnergy, "evaluate", evaluate)  # of the one world whose box begins there
+    found = judge_worlds(worlds, sweep_plan(), processes=2)
+    assert found.status == ["blocked" if k == 3 else "accepted" for k in range(WORLDS)]
+    assert [len(crashes) for crashes in found.crashes] == [int(k == 3) for k in range(WORLDS)]
+    assert found.crashes[3][0].message == "CheckEnergy could not be evaluated: ZeroDivisionError: division by zero"
+    assert found.failures(3) == []
 
 
 def test_what_copies_ask_alike_is_worked_out_once_for_all(planted: Trajectories, monkeypatch) -> None:

@@ -18,11 +18,13 @@ from tests import children
 from tests.agents.flies import PROMPT, edit, flies, lasts, opinion
 from tests.agents.kept import Kept, models
 from tests.agents.scripted import Server, call, hang, status, text
+from tests.crashing import crashing
 from tests.patience import STUCK, until
 from wsim.agents import relay
 from wsim.agents.budget import Budget
 from wsim.agents.models import ROLES, Models
 from wsim.agents.transcript import read
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.loop.generate import generate
 from wsim.loop.options import Generated, Options
 from wsim.plan.schema import Plan
@@ -294,3 +296,47 @@ def test_without_a_coder_it_ends_at_its_limit(tmp_path: Path) -> None:
     assert done.verdict is not None
     assert done.verdict.status == "rejected"
     assert len(Kept(done.run.path).rows) == 1
+
+
+# --- a judge that crashes
+
+
+def undecided(done: Generated) -> Kept:
+    """What a run has left whose only world passes all checks but one, which crashed."""
+    kept = Kept(done.run.path)
+    assert done.verdict is not None
+    assert done.verdict.status == kept.facts["status"] == "blocked"
+    assert done.verdict.failures == []
+    assert [crash.check for crash in done.verdict.crashes] == ["CheckEnergy"]
+    assert done.verdict.summary.startswith("Blocked: CheckEnergy could not be evaluated: ZeroDivisionError")
+    assert "ZeroDivisionError" in json.loads(kept.text(1, "verdict.json"))["crashes"][0]["traceback"]
+    assert not list(kept.folder.glob("accepted*"))
+    assert "What could not be evaluated" in (kept.folder / "report.html").read_text()
+    return kept
+
+
+def test_a_world_that_the_judge_crashes_on_is_nobodys_to_mend(
+    server: Server, loop: Callable[..., Generated], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    crashing(monkeypatch, CheckEnergy)
+    done = loop(SETTINGS, roles=("coder", "judge"), plan=flies(simulation={"duration": 0.4, "frame_rate": 10}))
+    assert undecided(done).rows == [("recording", "blocked", True)]
+    assert server.requests == []
+
+
+def test_without_a_coder_it_ends_blocked_where_the_judge_crashes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    crashing(monkeypatch, CheckEnergy)
+    plan = flies(simulation={"duration": 0.4, "frame_rate": 10})
+    kept = undecided(generate(PROMPT, tmp_path, Options(settings=SETTINGS), plan=plan))
+    assert kept.rows == [("recording", "blocked", True)]
+
+
+def test_what_fails_beside_a_crash_is_mended_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    crashing(monkeypatch, CheckEnergy)
+    done = generate(PROMPT, tmp_path, Options(settings=SETTINGS), plan=flies())
+    assert done.verdict is not None
+    assert done.verdict.status == "blocked"
+    rows = Kept(done.run.path).rows
+    assert [status for _, status, _ in rows] == ["rejected", "blocked"]

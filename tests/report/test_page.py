@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.crashing import CRASH
 from wsim.errors import UserError
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.recording import Frame, RecordingWriter
@@ -41,6 +42,15 @@ def test_the_reason_comes_first(rejected: Path) -> None:
     rows = page.all("tbody", class_="finding")
     assert [("fail" in (row["class"] or "").split()) for row in rows] == [True, False]
     assert "wsim view " in text and "--finding 2" in text and "--finding 1" not in text
+
+
+def test_a_check_that_crashed_is_shown_with_its_traceback(make_run, floats: Finding) -> None:
+    summary = f"Blocked: {CRASH.message}; all 1 findings of the others pass."
+    page = Elements(write(make_run(Verdict(status="blocked", summary=summary, findings=[floats], crashes=[CRASH]))))
+    assert page.words.index("Blocked") < page.words.index("What could not be evaluated")
+    crashed = page.words[page.words.index("What could not be evaluated") : page.words.index("What must happen")]
+    assert CRASH.message in crashed and CRASH.traceback in crashed and "a fault of wsim's" in crashed
+    assert "Why it failed" not in page.words
 
 
 def test_the_summary_says_nothing_twice(make_run) -> None:

@@ -11,6 +11,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.crashing import crashing
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.verdict import Verdict
 from wsim.program.bare import bare
 from wsim.runs.accept import accept
@@ -165,6 +167,19 @@ def test_the_bare_program_goes_the_same_way_and_is_stamped(ball: SimpleNamespace
     assert "print" not in text
     assert "review_" not in text + (ball.run.path / "accepted" / "stage.usda").read_text()
     assert "review_" in (ball.iteration / "stage.usda").read_text()
+
+
+def test_a_bare_world_that_cannot_be_judged_in_full_is_blocked_and_not_stamped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ball = accepted(tmp_path, program(BALL.format(more="")))
+    crashing(monkeypatch, CheckEnergy)
+    verdict = accept(ball.run, Iteration(ball.iteration, None, SETTINGS))
+    assert verdict.status == "blocked"
+    assert verdict.failures == []
+    assert [crash.check for crash in verdict.crashes] == ["CheckEnergy"]
+    assert verdict.summary.startswith("The bare program: CheckEnergy could not be evaluated: ZeroDivisionError")
+    assert not (ball.run.path / "accepted").exists()
 
 
 def test_an_earlier_run_of_the_same_program_is_the_second_run(tmp_path: Path, ball: SimpleNamespace) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.agents.flies import BALL, GROUND, flies
+from tests.crashing import CRASH
 from wsim.judge.verdict import Finding, Verdict
 from wsim.program.compose import compose
 from wsim.runs.attempt import Attempt, Reached, attempt
@@ -115,6 +116,13 @@ def test_farther_is_better_then_fewer_then_nearer() -> None:
     ]
     assert worst_first == sorted(worst_first)
     assert len(set(worst_first)) == len(worst_first)
+
+
+def test_a_patch_that_only_makes_a_check_crash_is_no_better() -> None:
+    verdict = Verdict(status="blocked", summary="", findings=[], crashes=[CRASH])
+    unknown = Attempt(Path("01"), "", Reached.PHYSICS, verdict).rank
+    assert rank(Reached.PHYSICS, miss(0.1), miss(0.1, "CheckMass")) < unknown < rank(Reached.PHYSICS, miss(0.1))
+    assert unknown == rank(Reached.PHYSICS, Finding(check="CheckRest", passed=False, message=""))
 
 
 def test_one_cause_that_is_found_twice_counts_once() -> None:

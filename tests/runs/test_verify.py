@@ -6,14 +6,19 @@ import json
 import re
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.crashing import crashing
 from tests.patience import STUCK
+from wsim.judge import judge
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.verdict import Verdict
 from wsim.plan.schema import Plan
+from wsim.progress import silent
 from wsim.recording import read
 from wsim.runs.alone import run_in_folder
 from wsim.runs.folder import RunFolder
@@ -187,6 +192,29 @@ def test_shares_follow_from_the_order_of_convergence() -> None:
     assert len(variants(World(), 0.002, None, side_by_side=False)) == 2
 
 
+def test_a_judge_that_crashes_on_a_rerun_leaves_the_verdict_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = RunFolder.create(tmp_path, "ball").iteration(1)
+    scene = Scene()
+    scene.simulation(duration=0.2, frame_rate=30.0)
+    scene.sphere("ball", radius=0.1, density=600.0, position=(0.0, 0.0, 2.0))
+    Simulation(scene.save(folder / "stage.usda"), device="cpu").run(folder / "recording.rrd")
+    first = judge(read(folder / "recording.rrd"))
+    assert first.status == "accepted"
+
+    def again(stage: Path, time_step: float | None, seeds):
+        return nullcontext(Simulation(stage, device="cpu", time_step=time_step, seeds=seeds))
+
+    crashing(monkeypatch, CheckEnergy)
+    verdict = Verification(folder, None, again, False, None, silent).check(first)
+    assert verdict.status == "blocked"
+    assert verdict.failures == []
+    assert [crash.rerun for crash in verdict.crashes] == ["half the time step", "another seed"]
+    said = "CheckEnergy could not be evaluated of the run with half the time step: ZeroDivisionError"
+    assert verdict.summary.startswith(f"Blocked: {said}")
+
+
 def test_other_seeds_run_side_by_side_where_the_device_allows(tmp_path: Path) -> None:
     """Batched on MuJoCo Warp: each world is judged as if it were alone, and all of them count."""
     folder = RunFolder.create(tmp_path, "slide").iteration(1)
@@ -201,12 +229,8 @@ def test_other_seeds_run_side_by_side_where_the_device_allows(tmp_path: Path) ->
     opened = []
 
     def open_(stage: Path, time_step: float | None, seeds):
-        from contextlib import nullcontext
-
         opened.append(len(seeds))
         return nullcontext(Simulation(stage, device="cpu", world_count=len(seeds), time_step=time_step, seeds=seeds))
-
-    from wsim.judge import judge
 
     first = judge(read(folder / "recording.rrd"))
     again = Verification(folder, None, open_, True, None, lambda stage, done, total: None)

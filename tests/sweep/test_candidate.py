@@ -6,9 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.crashing import CRASH
 from wsim.judge.verdict import Finding, Verdict
 from wsim.sweep.candidate import Candidate, Outcome, slack
 from wsim.sweep.table import ranked, table
+from wsim.sweep.work import as_varied
 
 
 def finding(margin: float | None, limit: float = 1.0, objective: str | None = "the ball flies") -> Finding:
@@ -35,6 +37,18 @@ def test_the_order_is_that_of_verdicts_then_of_room() -> None:
         outcome(6, "accepted", finding(0.5)),
     ]
     assert [row.candidate.number for row in ranked(rows)] == [4, 6, 2, 3, 1, 5, 0]
+
+
+def test_a_crash_of_the_judge_is_kept_and_no_parameter_excuses_it() -> None:
+    varied = Finding(check="CheckPlanSizes", passed=False, message="twice as long as planned")
+    rejected = Verdict(status="rejected", summary="", findings=[finding(0.5), varied], crashes=[CRASH])
+    verdict = as_varied(rejected)
+    assert verdict.status == "blocked"
+    assert verdict.summary.startswith("Blocked: CheckEnergy could not be evaluated: ZeroDivisionError")
+    row = Outcome.of(Candidate(number=0), verdict, 1.0)
+    assert (row.status, row.failures, row.crashes) == ("blocked", [], [CRASH])
+    assert Outcome.model_validate_json(row.model_dump_json()) == row
+    assert "CheckEnergy could not be evaluated" in table([row])["reason"].to_pylist()[0]
 
 
 def test_what_was_asked_decides_and_what_else_failed() -> None:

@@ -7,7 +7,9 @@ import re
 
 import pytest
 
+from tests.crashing import CRASH
 from tests.tools.conftest import done, refused
+from wsim.judge.verdict import Verdict
 from wsim.tools import Workspace
 
 G = 9.81
@@ -137,6 +139,15 @@ def test_a_verdict_tells_what_failed_first_and_what_to_change(empty: Workspace) 
     assert lines[-1].startswith("passed: CheckFinite")
     assert len(lines) == len(set(lines))
     assert "margin" in done(empty, "read_verdict", passed=True)
+
+
+def test_a_verdict_tells_what_crashed(empty: Workspace) -> None:
+    done(empty, "write_program", text="def build(scene):\n    scene.ground()\n")
+    verdict = Verdict(status="blocked", summary="", crashes=[CRASH])
+    (empty.run.iterations()[-1] / "verdict.json").write_text(verdict.model_dump_json())
+    assert done(empty, "read_verdict").splitlines() == [
+        "blocked: 0 of 0 findings fail", f"{CRASH.message}; this is a fault of wsim's, not of the world",
+    ]  # fmt: skip
 
 
 def test_what_was_not_run_has_no_verdict_and_says_who_has(empty: Workspace) -> None:

@@ -182,7 +182,7 @@ OF_MOTION = (
     _energy("spring", 0, 0.006),
     _energy("ball joint", 0, 0.009),
     _energy("throw", 3, 0.022),
-    _energy("cradle", 0, 0.02),
+    _energy("cradle", 0, 0.022),
     _late("drop", 0, "oak_cube", 0.3),
     _late("throw", 2, "red_ball", 1.0),
     _late("door", 0, "door", 0.1),

@@ -77,7 +77,8 @@ class Crew:
     def judge(self, tried: Attempt, plan: Plan, undone: Sequence[Attempt] = ()) -> None:
         """Let the judge's model name what to mend, or object. Checks that failed stay failed.
 
-        Where every check passed and a reviewer saw no difference there is nothing to ask.
+        Where every check passed and a reviewer saw no difference there is nothing to ask, nor where no check failed and
+        one crashed.
 
         Args:
             tried: What is judged.
@@ -85,7 +86,7 @@ class Crew:
             undone: Patches of it that made it no better: what was asked for before them did not help.
         """
         settled = tried.verdict.status == "accepted" and tried.seen is not None and not tried.seen
-        if not self.has("judge") or tried.reached < Reached.PHYSICS or settled:
+        if not self.has("judge") or tried.reached < Reached.PHYSICS or settled or tried.verdict.status == "blocked":
             return
         passed = tried.verdict.status == "accepted"
         found, history = verdict_lines(tried.folder / "verdict.json"), self._history(undone)

@@ -141,6 +141,11 @@ def show_verdict(verdict: Verdict, folder: Path, report: Path | None = None) -> 
         console.print(Text(f"✗ {finding.check}{where}: {finding.message}", style="red"))
         if finding.target is not None:
             console.print(Text(f"  → {finding.target.sentence}: {finding.target.why}".rstrip(": ")))
+    for crash in verdict.crashes:
+        console.print(Text(f"? {crash.message}", style="yellow"))
+    if verdict.crashes:
+        why = "a fault of wsim's, not of the world: report it with its traceback, which wsim judge --json prints"
+        console.print(Text(f"  → {why}"))
     console.print(Text(verdict.status, style=STATUS_STYLE[verdict.status]), Text(f" {verdict.summary}"))
     console.print(f"run:    {folder}", soft_wrap=True)
     if report:

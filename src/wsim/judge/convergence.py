@@ -56,7 +56,9 @@ class CheckConverged:
     def _compare(self, first: Verdict, rerun: Rerun) -> Iterator[Finding]:
         """What fell, what is gone, and how far each objective's number moved."""
         before, after = _by_key(first), _by_key(rerun.verdict)
+        # Of what crashed there nothing is known: the verdict keeps it as such.
         judged = {finding.objective for finding in rerun.verdict.findings}
+        judged |= {crash.objective for crash in rerun.verdict.crashes}
         for key, other in after.items():
             finding = before.get(key)
             if not other.passed:

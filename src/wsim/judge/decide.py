@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from wsim.judge.books.copies import work_out
@@ -11,13 +13,28 @@ from wsim.judge.evidence.alike import groups
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
-from wsim.judge.verdict import Finding, RepairTarget, Verdict
+from wsim.judge.verdict import Crash, Finding, RepairTarget, Verdict, status_of, unjudged
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
+    from wsim.judge.checks.check import Check
     from wsim.plan.schema import Plan
     from wsim.recording.recording import Recording
+
+
+@dataclass
+class Answers:
+    """What checks found, and which could not be evaluated."""
+
+    findings: list[Finding] = field(default_factory=list)
+    crashes: list[Crash] = field(default_factory=list)
+
+    def ask(self, checks: Iterable[Check], evidence: Evidence) -> None:
+        """Put some checks to the evidence. One that crashes is kept as such, and the others go on."""
+        for check in checks:
+            try:
+                self.findings += check.run(evidence)
+            except Exception as error:  # noqa: BLE001 - whatever it is, it says something of the judge, not of the world
+                self.crashes.append(Crash.of(error, check.name, check.asks))
 
 
 def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
@@ -28,8 +45,8 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
         plan: What was asked for. Without one, only the checks that hold for any world are made.
 
     Returns:
-        Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge, or something
-        acts in the world that the judge does not know.
+        Accepted if every finding passed, rejected if one did not, blocked if there is nothing to judge, something acts
+        in the world that the judge does not know, or a check crashed where none failed.
     """
     return judge_copies([Evidence(recording, plan)])[0]
 
@@ -44,8 +61,10 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         return [_nothing() for _ in copies]
     if copies[0].world.foreign:
         return [_cannot_judge(evidence) for evidence in copies]
-    runs = [[finding for check in run_checks() for finding in check.run(evidence)] for evidence in copies]
-    broken = [next((f for f in found if f.check == "CheckFinite" and not f.passed), None) for found in runs]
+    runs = [Answers() for _ in copies]
+    for answers, evidence in zip(runs, copies, strict=True):
+        answers.ask(run_checks(), evidence)
+    broken = [next((f for f in run.findings if f.check == "CheckFinite" and not f.passed), None) for run in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
     for group in groups(sound):
         if len(group) > 1:
@@ -67,21 +86,20 @@ def _work_out(copies: Sequence[Evidence]) -> None:
                 check.prepare(joined, copies)
 
 
-def _conclusion(evidence: Evidence, findings: list[Finding], broken: Finding | None) -> Verdict:
+def _conclusion(evidence: Evidence, answers: Answers, broken: Finding | None) -> Verdict:
     """The verdict on what moved, unless the numbers are broken."""
+    asked = [ObjectiveCheck(each) for each in (evidence.plan.objectives if evidence.plan is not None else [])]
     if broken is None:
-        findings += [finding for check in physics_checks() for finding in check.run(evidence)]
-    for objective in evidence.plan.objectives if evidence.plan is not None else []:
-        check = ObjectiveCheck(objective)
-        if broken is None:
-            findings += check.run(evidence)
-        else:
-            prim = evidence.prim(objective.object)
-            message = f"{prim}: cannot be measured: {broken.message}"
-            findings.append(
-                check.failed(message, objective=check.sentence, prim=prim, time=broken.time, line=evidence.line(prim))
-            )
-    return conclude(findings, evidence)
+        answers.ask([*physics_checks(), *asked], evidence)
+    else:
+        answers.findings += [_unmeasured(check, evidence, broken) for check in asked]
+    return conclude(answers.findings, evidence, answers.crashes)
+
+
+def _unmeasured(check: ObjectiveCheck, evidence: Evidence, broken: Finding) -> Finding:
+    prim = evidence.prim(check.objective.object)
+    message = f"{prim}: cannot be measured: {broken.message}"
+    return check.failed(message, objective=check.asks, prim=prim, time=broken.time, line=evidence.line(prim))
 
 
 def _nothing() -> Verdict:
@@ -104,13 +122,22 @@ def _cannot_judge(evidence: Evidence) -> Verdict:
     return Verdict(status="blocked", summary=f"Blocked: cannot judge what {told[0]}{more}.", findings=findings)
 
 
-def conclude(findings: list[Finding], evidence: Evidence | None = None) -> Verdict:
-    """Accepted if every finding passed; one sentence says why not, and each failed finding what to change."""
+def conclude(findings: list[Finding], evidence: Evidence | None = None, crashes: Sequence[Crash] = ()) -> Verdict:
+    """The verdict of some findings: one sentence says why it is so, and each failed finding what to change."""
     aim(findings, evidence)
+    return Verdict(
+        status=status_of(findings, crashes), summary=_summary(findings, crashes), findings=findings,
+        crashes=list(crashes),
+    )  # fmt: skip
+
+
+def _summary(findings: list[Finding], crashes: Sequence[Crash]) -> str:
     failures = [finding for finding in findings if not finding.passed]
     if not failures:
-        return Verdict(status="accepted", summary=f"Accepted: all {len(findings)} findings pass.", findings=findings)
+        if crashes:
+            return f"Blocked: {unjudged(crashes)}; all {len(findings)} findings of the others pass."
+        return f"Accepted: all {len(findings)} findings pass."
     # An objective says more to a person than the check that a broken world fails besides.
     first = next((finding for finding in failures if finding.objective is not None), failures[0])
-    summary = f"Rejected: {len(failures)} of {len(findings)} findings fail; {first.message.rstrip('.')}."
-    return Verdict(status="rejected", summary=summary, findings=findings)
+    besides = f"; {unjudged(crashes)}" if crashes else ""
+    return f"Rejected: {len(failures)} of {len(findings)} findings fail; {first.message.rstrip('.')}{besides}."

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import traceback
+from collections.abc import Sequence
+from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -75,16 +77,54 @@ class Finding(BaseModel):
     target: RepairTarget | None = None  # what to change, where the finding failed
 
 
+class Crash(BaseModel):
+    """A check that could not be evaluated. It says nothing of the world: it is a fault of the judge, to be reported."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    check: str  # as in a finding
+    objective: str | None = None
+    error: str  # "ZeroDivisionError: division by zero"
+    traceback: str
+    rerun: str = ""  # the one it was asked of, where it was not the run itself: "half the time step"
+
+    @classmethod
+    def of(cls, error: Exception, check: str, objective: str | None = None) -> Self:
+        """What a check raised."""
+        what = " ".join(f"{type(error).__name__}: {error}".rstrip(": ").split())
+        return cls(check=check, objective=objective, error=what, traceback="".join(traceback.format_exception(error)))
+
+    @property
+    def message(self) -> str:
+        """One sentence a person reads."""
+        of = f" of the run with {self.rerun}" if self.rerun else ""
+        return f"{self.check} could not be evaluated{of}: {self.error}"
+
+
 class Verdict(BaseModel):
-    """Accepted: every finding passed. Rejected: one did not. Blocked: the world could not be judged."""
+    """Accepted: every finding passed. Rejected: one did not. Blocked: the world could not be judged, or not in full."""
 
     model_config = ConfigDict(extra="forbid")
 
     status: Status
     summary: str
     findings: list[Finding] = Field(default_factory=list)
+    crashes: list[Crash] = Field(default_factory=list, exclude_if=lambda crashes: not crashes)
 
     @property
     def failures(self) -> list[Finding]:
         """The findings that did not pass."""
         return [finding for finding in self.findings if not finding.passed]
+
+
+def status_of(findings: Sequence[Finding], crashes: Sequence[Crash]) -> Status:
+    """What failed rejects, whatever else crashed; of a world whose findings pass a crash leaves it open."""
+    if not all(finding.passed for finding in findings):
+        return "rejected"
+    return "blocked" if crashes else "accepted"
+
+
+def unjudged(crashes: Sequence[Crash]) -> str:
+    """What could not be evaluated, in words: "CheckEnergy could not be evaluated: KeyError: 3, nor 2 more"."""
+    more = f", nor {len(crashes) - 1} more" if len(crashes) > 1 else ""
+    return f"{crashes[0].message.rstrip('.')}{more}" if crashes else ""

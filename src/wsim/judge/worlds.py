@@ -20,12 +20,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.language import Outcome
-    from wsim.judge.verdict import Finding, Status, Verdict
+    from wsim.judge.verdict import Crash, Finding, Status, Verdict
     from wsim.plan.schema import Plan
     from wsim.plan.schema.formula import Formula
     from wsim.recording.trajectories import Trajectories
 
-    Row = tuple[Status, dict[str, tuple[bool, float]]]  # a world's status, and its findings by key
+    # A world's status, its findings by key, and what crashed.
+    Row = tuple[Status, dict[str, tuple[bool, float]], list[Crash]]
 
 CHUNK = 64  # worlds judged at once, between two reports of progress
 
@@ -40,12 +41,14 @@ class WorldVerdicts:
         passed: By finding, (W,): whether it passed; True where a world has no such finding.
         margin: By finding, (W,): distance to its limit in its unit, positive = satisfied; NaN where it has none.
             A finding's key is its objective's sentence or its check's name, numbered where there are several.
+        crashes: Of each world what could not be evaluated.
     """
 
     accepted: NDArray[np.bool_]
     status: list[Status]
     passed: dict[str, NDArray[np.bool_]]
     margin: dict[str, NDArray[np.float64]]
+    crashes: list[list[Crash]]
 
     def failures(self, k: int) -> list[str]:
         """The keys of what failed in world k."""
@@ -71,13 +74,14 @@ def judge_worlds(
     for part in _judged(worlds, plan, processes or len(os.sched_getaffinity(0))):
         rows += map(_row, part)
         progress("judging", len(rows), count)
-    keys = list(dict.fromkeys(key for _, found in rows for key in found))
+    keys = list(dict.fromkeys(key for _, found, _ in rows for key in found))
     none = (True, np.nan)
     return WorldVerdicts(
-        accepted=np.array([status == "accepted" for status, _ in rows], dtype=bool),
-        status=[status for status, _ in rows],
-        passed={key: np.array([found.get(key, none)[0] for _, found in rows], dtype=bool) for key in keys},
-        margin={key: np.array([found.get(key, none)[1] for _, found in rows]) for key in keys},
+        accepted=np.array([status == "accepted" for status, *_ in rows], dtype=bool),
+        status=[status for status, *_ in rows],
+        passed={key: np.array([found.get(key, none)[0] for _, found, _ in rows], dtype=bool) for key in keys},
+        margin={key: np.array([found.get(key, none)[1] for _, found, _ in rows]) for key in keys},
+        crashes=[crashes for *_, crashes in rows],
     )
 
 
@@ -121,7 +125,7 @@ def _row(verdict: Verdict) -> Row:
         seen[name] += 1
         key = name if seen[name] == 1 else f"{name} ({seen[name]})"
         found[key] = (finding.passed, np.nan if finding.margin is None else finding.margin)
-    return verdict.status, found
+    return verdict.status, found, verdict.crashes
 
 
 def _name(finding: Finding) -> str:

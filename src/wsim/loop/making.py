@@ -44,17 +44,23 @@ class Making:
 
     @property
     def ends(self) -> bool:
-        """Whether the best is right, or nothing more may be tried."""
-        assert self.best is not None
-        return self.best.verdict.status == "accepted" or self.tried >= self.options.budget.iterations
+        """Whether nothing is left to mend in the best, or nothing more may be tried."""
+        return self._unfaulted or self.tried >= self.options.budget.iterations
 
     @property
     def verdict(self) -> Verdict:
         """That of the best; blocked where more was to be tried."""
         assert self.best is not None
-        if self.best.verdict.status == "accepted" or not self.crew.has("coder"):
+        if self._unfaulted or not self.crew.has("coder"):
             return self.best.verdict
         return self.blocked(f"iteration limit: {self.tried} programs were tried")
+
+    @property
+    def _unfaulted(self) -> bool:
+        """Whether no check found a fault in the best: one that crashed is the judge's to be mended, not the world's."""
+        assert self.best is not None
+        verdict = self.best.verdict
+        return verdict.status == "accepted" or (bool(verdict.crashes) and not verdict.failures)
 
     def blocked(self, cause: str) -> Verdict:
         """The verdict on a run that could not go on: why, and the best so far."""
@@ -65,6 +71,7 @@ class Making:
             status="blocked",
             summary=f"{cause}. Best so far: iteration {self.best.number}: {self.best.verdict.summary}",
             findings=self.best.verdict.findings,
+            crashes=self.best.verdict.crashes,
         )
 
     def first_draft(self) -> str:

@@ -29,7 +29,7 @@ def objective_of(finding: Finding, evidence: Evidence) -> Objective | None:
 
 def sentence_of(item: Objective) -> str:
     """An objective in words, as its findings carry it."""
-    return ObjectiveCheck(item).sentence
+    return ObjectiveCheck(item).asks
 
 
 def decider(finding: Finding, evidence: Evidence) -> tuple[Predicate, Measure] | None:

@@ -114,6 +114,7 @@ def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:
         "notes": contents.notes,
         "rows": rows,
         "failed": failed,
+        "crashes": verdict.crashes if verdict else [],
         "passed": [row for row in rows if row.finding.passed],
         "closest": _closest(rows),
         "cards": cards,

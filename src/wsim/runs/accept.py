@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from wsim import sim
-from wsim.judge.verdict import Finding, RepairTarget, Verdict
+from wsim.judge.verdict import Finding, RepairTarget, Verdict, status_of, unjudged
 from wsim.program.bare import bare
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.runs.iteration import Iteration
@@ -26,7 +26,7 @@ def accept(run: RunFolder, iteration: Iteration, earlier: Trajectory | None = No
         earlier: Another run of this very program; where nothing is stripped, it is the second run.
 
     Returns:
-        The bare world's verdict; rejected, with the finding `CheckReproduced`, if it goes another way.
+        The bare world's verdict; with the finding `CheckReproduced` where that, or another, is not accepted.
     """
     folder = run.path / "bare.partial"
     shutil.rmtree(folder, ignore_errors=True)
@@ -57,7 +57,11 @@ def _confirmed(run: RunFolder, iteration: Iteration, folder: Path, earlier: Traj
     if verdict.status != "accepted" or not found.passed:
         findings = [*verdict.findings, found]
         failed = sum(not finding.passed for finding in findings)
-        return Verdict(status="rejected", summary=f"The bare program: {failed} findings fail.", findings=findings)
+        said = "; ".join(filter(None, (f"{failed} findings fail" if failed else "", unjudged(verdict.crashes))))
+        return Verdict(
+            status=status_of(findings, verdict.crashes), summary=f"The bare program: {said}.", findings=findings,
+            crashes=verdict.crashes,
+        )  # fmt: skip
     run.stamp(again.folder, {"stripped": not as_it_was, "largest_distance_m": apart})
     return verdict
 

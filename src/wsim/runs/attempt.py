@@ -68,10 +68,14 @@ class Attempt:
 
     @property
     def rank(self) -> Rank:
-        """Greater is better: further, then fewer failures, then less far from the limits."""
-        failures = self.verdict.failures
+        """Greater is better: further, then fewer failures, then less far from the limits.
+
+        What could not be evaluated may have failed, and counts as if it had.
+        """
+        failures, crashes = self.verdict.failures, self.verdict.crashes
         different = {(finding.check, finding.prim, finding.objective) for finding in failures}
-        return (int(self.reached), -len(different), -sum(map(_short, failures)))
+        unknown = {(crash.check, crash.objective) for crash in crashes}
+        return (int(self.reached), -len(different) - len(unknown), -sum(map(_short, failures)) - len(unknown))
 
 
 def _short(finding: Finding) -> float:

@@ -17,7 +17,7 @@ from wsim import recording
 from wsim.judge import judge
 from wsim.judge.convergence import CheckConverged, Rerun
 from wsim.judge.decide import conclude
-from wsim.judge.verdict import Finding, RepairTarget, Verdict
+from wsim.judge.verdict import Crash, Finding, RepairTarget, Verdict
 from wsim.program.control import ControlError
 from wsim.progress import Progress
 from wsim.runs.folder import write_whole
@@ -151,12 +151,16 @@ class Verification:
         """The verdict with what the reruns add to it: a `CheckConverged` finding or more for each variant."""
         world = describe(self.folder / "stage.usda")
         found: list[Finding] = []
+        crashes: list[Crash] = []
         chosen = variants(world, self._time_step(), self._given or world.time_step or None, self._batches(world))
         for number, variant in enumerate(chosen, start=1):
             label = f"verifying {number} of {len(chosen)}, {variant.name}"
             reruns = self._run(variant, lambda stage, done, total, label=label: self._tell(label, stage, done, total))
             found += CheckConverged().compare(first, reruns)
-        return conclude([*first.findings, *found])
+            crashes += [
+                crash.model_copy(update={"rerun": rerun.name}) for rerun in reruns for crash in rerun.verdict.crashes
+            ]
+        return conclude([*first.findings, *found], crashes=crashes)
 
     def _time_step(self) -> float:
         return float(recording.read(self.folder / "recording.rrd").metadata["time_step"])

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from wsim.judge.verdict import Finding, Verdict
+from wsim.judge.verdict import Crash, Finding, Verdict
 
 Status = Literal["accepted", "rejected", "blocked", "failed"]
 ORDER: tuple[Status, ...] = ("accepted", "rejected", "blocked", "failed")  # the best first
@@ -43,6 +43,7 @@ class Outcome(BaseModel):
         margins: By objective, the distance to its limit in its unit; positive: satisfied.
         values: By objective, what was measured.
         failures: What did not pass.
+        crashes: What could not be evaluated.
         seconds: What it took [s].
     """
 
@@ -56,6 +57,7 @@ class Outcome(BaseModel):
     margins: dict[str, float] = Field(default_factory=dict)
     values: dict[str, float] = Field(default_factory=dict)
     failures: list[str] = Field(default_factory=list)
+    crashes: list[Crash] = Field(default_factory=list, exclude_if=lambda crashes: not crashes)
     seconds: float = 0.0
 
     @property
@@ -83,6 +85,7 @@ class Outcome(BaseModel):
             margins={key: finding.margin for key, finding in nearest.items() if finding.margin is not None},
             values={key: finding.value for key, finding in nearest.items() if finding.value is not None},
             failures=list(dict.fromkeys(map(name, verdict.failures))),
+            crashes=verdict.crashes,
             seconds=round(seconds, 3),
         )
 

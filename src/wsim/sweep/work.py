@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from wsim.assets import assets_folder
 from wsim.errors import UserError
-from wsim.judge.verdict import Verdict
+from wsim.judge.verdict import Verdict, status_of, unjudged
 from wsim.plan.store import load
 from wsim.program import sandbox
 from wsim.runs.iteration import Iteration, no_world
@@ -98,8 +98,10 @@ def as_varied(verdict: Verdict) -> Verdict:
         return verdict
     if any(not finding.passed for finding in kept):
         return verdict.model_copy(update={"findings": kept})
-    summary = f"Accepted: all {len(kept)} findings pass; what differs from the plan was asked for."
-    return verdict.model_copy(update={"status": "accepted", "summary": summary, "findings": kept})
+    said = f"Blocked: {unjudged(verdict.crashes)}" if verdict.crashes else f"Accepted: all {len(kept)} findings pass"
+    summary = f"{said}; what differs from the plan was asked for."
+    status = status_of(kept, verdict.crashes)
+    return verdict.model_copy(update={"status": status, "summary": summary, "findings": kept})
 
 
 def build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteration, BuildResult]]:

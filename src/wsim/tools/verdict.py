@@ -49,6 +49,7 @@ def verdict_lines(path: Path, passed: bool = False) -> list[str]:
     if verdict.failures:
         lines += table(HEAD, [_row(finding) for finding in verdict.failures])
         lines += dict.fromkeys(line for finding in verdict.failures for line in _words(finding))  # each is said once
+    lines += [f"{crash.message}; this is a fault of wsim's, not of the world" for crash in verdict.crashes]
     if good and passed:
         rows = [[*_row(finding), number(finding.margin)] for finding in good]
         lines += ["passed:", *table((*HEAD, "margin"), rows)]

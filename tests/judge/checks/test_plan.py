@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.crashing import crashing
 from tests.judge.theory import (
     RADIUS,
     STEP,
@@ -26,6 +27,7 @@ from wsim.judge.checks.camera import CheckInFrame, CheckSeen
 from wsim.judge.checks.mass import CheckMass
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_joints import CheckPlanJoints
+from wsim.judge.language import ObjectiveCheck
 from wsim.plan.schema import Objective, Plan
 from wsim.plan.schema.formula_place import Crosses
 from wsim.recording.recording import SeenTrack
@@ -327,6 +329,13 @@ def test_what_happens_is_in_the_picture_as_it_does(at, passes):
     plan = a_plan().model_copy(update={"objectives": [asked]})
     found = [f for f in ask(CheckInFrame(), with_world(moves, cameras=[camera()]), plan) if not f.passed]
     assert [(f.prim, round(f.time, 1)) for f in found] == ([] if passes else [("/World/ball", at / 2.0)])
+
+
+def test_an_objective_that_crashes_takes_no_camera_with_it(monkeypatch):
+    crashing(monkeypatch, ObjectiveCheck)
+    plan = a_plan().model_copy(update={"objectives": [Objective(kind="settles", object="box")]})
+    found = ask(CheckInFrame(), with_world(a_world(), cameras=[camera(target=(0.0, -10.0, 1.0))]), plan)
+    assert [f.passed for f in found].count(False) > 0
 
 
 @pytest.mark.parametrize(

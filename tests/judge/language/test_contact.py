@@ -1,14 +1,18 @@
 """Predicates of contact: gaps, loads, rolling and collisions of balls and boxes."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
+from tests.judge.theory import RADIUS, ball, record, with_world
 from wsim.geometry.surfaces import box_surface
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language import evaluate, parse
+from wsim.judge.language import Signals, evaluate, parse
+from wsim.recording.contacts import ContactTrack
 from wsim.scene.world import Shape, Static, World
 
 RATE = 100.0
@@ -24,6 +28,31 @@ def margin(text, signals, world=0):
 
 def ball_and_box(world, ball, box=(0.0, 3.0, 0.2), **given):
     return moving(world, TIME, ONE * ball, ONE * box, **given)
+
+
+def test_what_is_struck_twice_within_a_frame_has_touched_what_struck_it():
+    """Balls in a row, 6 % of their radius apart: each passes its speed of 1.5 m/s on to the next, of equal mass."""
+    t, speed, apart = times(0.3, 60.0), 1.5, 0.06 * RADIUS
+    start = np.arange(3) * (2.0 * RADIUS + apart) - [0.1, 0.0, 0.0]
+    hits = np.array([0.1 + apart, 0.1 + 2.0 * apart]) / speed
+    since, until = np.array([0.0, *hits]), np.array([*hits, np.inf])
+    place, velocity = np.zeros((2, len(t), 3, 3))
+    place[..., 0] = start + speed * (np.clip(t[:, None], since, until) - since)
+    velocity[..., 0] = speed * ((t[:, None] >= since) & (t[:, None] < until))
+    row = with_world(record([ball(name) for name in "abc"], place, velocity, t), gravity=(0.0, 0.0, 0.0))
+    frame = np.searchsorted(t, hits)
+    assert frame[0] == frame[1]  # within which both blows are
+    by_ways = Signals.of(Evidence(row))
+    sums = np.zeros((2, 16), dtype=np.float32)
+    sums[:, 3] = speed * row.world.bodies[0].mass
+    contacts = ContactTrack(frame.astype(np.int32), np.array([(0, 1), (1, 2)], dtype=np.int32), sums)
+    as_recorded = Signals.of(Evidence(replace(row, contacts=contacts)))
+    for pair in ("a, b", "b, c"):
+        assert margin(f"touches({pair})", by_ways) < 0.0  # on from the frame before and back from the next they miss
+        assert margin(f"touches({pair})", as_recorded) > 0.0
+        assert margin(f"never_touches({pair})", as_recorded) <= 0.0
+    assert margin("collides_with(a, b)", by_ways) < 0.0 < margin("collides_with(a, b)", as_recorded)
+    assert margin("touches(a, c)", as_recorded) < 0.0
 
 
 def test_touches_and_never_touches_are_the_gap(tank_world):

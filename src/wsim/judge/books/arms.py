@@ -2,8 +2,10 @@
 
 An impulse is taken to act at the mean of its arms at both frames, along the mean of its axes. What a force F at an arm
 r turns in an interval is h (r F) at that mean, less what curves (the trapezoidal rule's r'' h^2 / 12) and what both
-change by together (r' F' h^2 / 12): of F r it is at most the angle by which the arm turns times that by which the force
-does, over 12. A rotor that spins about its own joint turns neither.
+change by together (r' F' h^2 / 12). Of a force that turns with its arm both are at most the square of the angle by
+which that turns, over 12, of F r. A force may change by more than it turns: at a dead point, where two links of a
+linkage line up, it goes through zero in a frame or two (`changing`). A rotor that spins about its own joint turns
+neither.
 """
 
 from __future__ import annotations
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from wsim.scene.world import Joint
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+    Rows = NDArray[np.intp]
 
 SHORT = 0.05  # of a body's size: an arm that is shorter counts as so long
 
@@ -47,6 +51,32 @@ def turned(evidence: Evidence, size: Floats) -> Floats:
     for unit in np.unique(motion.unit[motion.jointed]):
         own = np.flatnonzero(motion.unit == unit)
         found[:, own] = found[:, own].max(axis=1, keepdims=True)
+    return found
+
+
+def changing(asked: Floats, angle: Floats, mass: Floats, hit: Bools, unit: Rows) -> Floats:
+    """What is missed of arms that turn while what they pass on changes, as an acceleration, (N, B) [m/s^2].
+
+    The angle times the change of what a body's ties are asked for, over 12: the greater of that from the interval
+    before and to the one after, of which neither has a blow in it, nor the interval itself. Links pass it on to all
+    that hangs together; none gets more than all of it, as in `wsim.judge.books.admissible.explain`.
+
+    Args:
+        asked: Force over mass and torque over m R of each body in N intervals in a row, (N, B, 6) [m/s^2].
+        angle: As `turned` has it, (N, B) [rad].
+        mass: (B,) [kg].
+        hit: Where a contact, a stop or a rope gave it a blow, (N, B).
+        unit: Which mechanism each body is of, (B,).
+    """
+    found = np.zeros(angle.shape)
+    for each in np.unique(unit):
+        own = np.flatnonzero(unit == each)
+        calm = np.asarray(~hit[:, own].any(axis=1))
+        change = np.linalg.norm(np.diff(asked[:, own], axis=0), axis=2) * (calm[1:] & calm[:-1])[:, None]
+        change = np.maximum(np.pad(change, ((1, 0), (0, 0))), np.pad(change, ((0, 1), (0, 0))))
+        missed = angle[:, own] * change / 12.0
+        most = (missed * mass[own]).max(axis=1, keepdims=True) / mass[own]
+        found[:, own] = np.minimum(most, np.linalg.norm(missed, axis=1, keepdims=True))
     return found
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
-from wsim.judge.books import arms
+from wsim.judge.books import arms, jolts
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
@@ -97,8 +97,9 @@ class Balance:
         self._h, self._reach = (
             np.concatenate([getattr(motion, name) for motion in motions]) for name in ("h", "reach")
         )
-        angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
-        self._bent = np.concatenate(angles) ** 2 / 12.0  # (N, B) share that is wrong of what an arm taken halfway gives
+        self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
+        # (N, B) share that is wrong of what an arm taken halfway gives
+        self._bent = np.concatenate(self._angles) ** 2 / 12.0
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
@@ -126,12 +127,22 @@ class Balance:
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])
         turned += (wrong + pulled) / np.stack([mass, arm], axis=2) + stepped[..., None]
+        turned += self._changing(wanted, hit)[..., None]
         changes = np.split(both, len(self._copies))
         turned += np.concatenate([unknown(*each) for each in zip(self._copies, changes, strict=True)])
         found = left[..., :3], left[..., 3:], blow, turned, judged, hit, wanted, self._landed
         count = len(self._copies)
         parts = zip(*(np.split(array, count) for array in found), self._sizes, strict=True)
         return [Books(*part) for part in parts]
+
+    def _changing(self, wanted: Floats, hit: Bools) -> Floats:
+        """What arms that turn miss of forces that change, of what hangs on ties, (N, B) [m/s^2]."""
+        struck = np.concatenate(
+            [jolts.struck(*each) for each in zip(self._copies, (ties.jerks for ties in self._ties), strict=True)]
+        )
+        asked, blows = (np.split(each, len(self._copies)) for each in (wanted, hit & struck))
+        parts = zip(asked, self._angles, self._mass, blows, strict=True)
+        return np.concatenate([arms.changing(*part, self._mechanism) for part in parts])
 
     def _scale(self, ks: Rows) -> Floats:
         """What a force and a torque on each body count for in some intervals, (K, B, 6)."""

@@ -18,6 +18,8 @@ from wsim.judge.evidence import compound
 from wsim.judge.evidence.joints import AXES, anchors_of, broken, track_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from wsim.judge.books.struck import Ends
@@ -98,6 +100,14 @@ class Ties:
                 row = self._row[prim]
                 far[row] = max(far[row], float(np.linalg.norm(np.subtract(place, world.bodies[row].com))))
         return np.maximum(far, self.ropes.arms)
+
+    @property
+    def jerks(self) -> list[tuple[Iterable[int], Bools]]:
+        """Rows of bodies, and when a stop or a rope may jerk them, (T - 1,)."""
+        row = self._row
+        stops = [([row.get(each.joint.parent or "", WORLD), row[each.joint.child]], each.low | each.high)
+                 for each in self._joints]  # fmt: skip
+        return [*stops, *((pull.rows, pull.jerks) for pull in self.ropes.pulls)]
 
     def columns(self, k: int, ends: Ends) -> list[Columns]:
         """What may act between frames k and k + 1, as bodies are at two poses."""

@@ -183,14 +183,17 @@ def _events(evidence: Evidence) -> Iterator[tuple[str, float, str]]:
     """What comes true, as the plan asks: of which object, when [s], and in words. What always holds has no moment."""
     for objective in evidence.plan.objectives if evidence.plan is not None else []:
         check = ObjectiveCheck(objective)
-        found = check.run(evidence)
+        try:
+            found = check.run(evidence)
+        except Exception:  # noqa: BLE001 - the verdict tells of it where the objective itself is asked
+            continue
         if not any(finding.passed for finding in found):
-            continue  # one that cannot be evaluated has one finding, whatever it is made of
+            continue  # one whose object is not there has one finding, whatever it is made of
         for finding, part in zip(found, conjuncts(formula_of(objective, evidence)), strict=True):
             once = isinstance(part, Eventually | Then) or (isinstance(part, Predicate) and part.alone == "eventually")
             if once and finding.passed and finding.prim and finding.time is not None:
                 # The moment that decides is that of the greatest margin; it came true before.
-                yield finding.prim, finding.span[0] if finding.span is not None else finding.time, check.sentence
+                yield finding.prim, finding.span[0] if finding.span is not None else finding.time, check.asks
 
 
 def _things(evidence: Evidence) -> list[str]:

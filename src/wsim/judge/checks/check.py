@@ -1,4 +1,4 @@
-"""What checks share: a name, findings with their margins, and a guard that turns a crash into a finding."""
+"""What checks share: a name, and findings with their margins."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.verdict import Finding
 
 if TYPE_CHECKING:
@@ -41,8 +42,16 @@ class Check:
         """The name that findings carry."""
         return type(self).__name__
 
+    @property
+    def asks(self) -> str | None:
+        """The plan's objective that findings answer, if any."""
+        return None
+
     def run(self, evidence: Evidence) -> list[Finding]:
-        """The answers, each with the line that made its prim unless it says its own; a crash is a failed finding."""
+        """The answers, each with the line that made its prim unless it says its own.
+
+        What the world or the recording lacks is a failed finding; whatever else is raised is a crash of the check.
+        """
         if not self.of_world:
             return self._answers(evidence)
         if type(self) not in evidence.of_world:
@@ -52,8 +61,8 @@ class Check:
     def _answers(self, evidence: Evidence) -> list[Finding]:
         try:
             found = self.evaluate(evidence)
-        except Exception as error:  # noqa: BLE001 - whatever the evidence did to a check, the verdict must say it
-            return [self.failed(f"{self.name} could not be evaluated: {type(error).__name__}: {error}")]
+        except MissingError as error:
+            return [self.failed(f"{self.name} could not be evaluated: {error.args[0]}")]
         for finding in found:
             if "line" not in finding.model_fields_set:
                 finding.line = evidence.line(finding.prim)

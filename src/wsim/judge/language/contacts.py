@@ -53,7 +53,9 @@ def swept_gap(signals: Signals, one: str, other: str) -> Floats:
 
     In between, what moves goes on from the frame before as it goes there, and comes to the next one as it goes then: in
     a blow both ways meet at the surface. A gap counts where both have it, so that what bounces off a third thing on
-    the way is not thought to have come nearer than it did. Looked for where they may meet within the frame.
+    the way is not thought to have come nearer than it did. Looked for where they may meet within the frame. What is
+    struck twice in it, as the middle balls of a cradle are, goes neither way for a while: where contacts are recorded,
+    the two have no gap if they pressed on each other.
     """
     at_frames = gap(signals, one, other)
     least = at_frames.copy()
@@ -75,6 +77,7 @@ def swept_gap(signals: Signals, one: str, other: str) -> Floats:
         ]
         ahead, behind = (each.reshape(len(w), PARTS + 1) for each in gaps)
         least[w, t] = np.minimum(least[w, t], _lowest(ahead, behind))
+    least[:, :-1] = np.where(signals.pressed(one, other), np.minimum(least[:, :-1], 0.0), least[:, :-1])
     return least
 
 

@@ -110,6 +110,19 @@ class Signals:
         """The speed sqrt(g L) that gravity gives over a length [m/s]."""
         return math.sqrt(max(self.gravity, 1e-9) * length)
 
+    def pressed(self, one: str, other: str) -> NDArray[np.bool_]:
+        """Where a contact is recorded by which two objects pressed on each other between frames, (W, T - 1)."""
+        found = np.zeros((self.count, len(self.time)), dtype=bool)
+        contacts = self.evidence.recording.contacts if self.evidence is not None else None
+        if contacts is not None:
+            owner = [body.prim for body in self.world.bodies for _ in body.shapes]
+            owners = np.array(owner + [static.prim for static in self.world.statics for _ in static.shapes])
+            ours = owners[contacts.pair]  # (n, 2)
+            a, b = self.prim(one), self.prim(other)
+            both = np.all(ours == (a, b), axis=1) | np.all(ours == (b, a), axis=1)
+            found[:, contacts.frame[both & (contacts.pressed > 0.0)]] = True
+        return found[:, 1:]
+
     # ---- who is who
     def prim(self, name: str) -> str:
         """The prim of a name; MissingError naming all that are known."""
