@@ -87,6 +87,16 @@ def test_a_disc_bears_all_along_an_edge_across_it():
     assert found.point[:, [0, 2]] == pytest.approx(np.full((len(found), 2), 0.1), abs=1e-4)
 
 
+def test_a_disc_that_overhangs_a_box_bears_to_its_edges():
+    """Where its rim crosses them, a tenth of its radius inside, on two sides."""
+    inside = 0.9 * R
+    table, roller = solid("box", (0.2, 0.2, 0.1), "table"), solid("cylinder", (R, H), "roller")
+    found = touching(table, roller, [(0, 0, 0), (0.1 - inside, 0.1 - inside, 0.05 + H / 2)], UPRIGHT)
+    cross = 0.1 - inside + np.sqrt(R**2 - inside**2)
+    for corner in ((0.1, cross), (cross, 0.1)):
+        assert np.linalg.norm(found.point[:, :2] - corner, axis=1).min() < 1e-6
+
+
 def test_a_side_bears_all_along_an_edge():
     """As long as the shorter of both."""
     table, roller = solid("box", (0.2, 0.04, 0.2), "table"), solid("cylinder", (R, H), "roller")

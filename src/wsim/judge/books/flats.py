@@ -87,7 +87,8 @@ def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Fl
     if upright:
         down, points = np.sign(axis @ outwards) * axis, _facing(against, there, -outwards)
         if against.kind == "box":
-            points = np.concatenate([points, _across(_edge(against, there, -outwards), down, pose, shape.size)])
+            edges = _edges(against, there, -outwards)
+            points = np.concatenate([points, *(_across(edge, down, pose, shape.size[0]) for edge in edges)])
         found.append(_on_disc(shape, pose, down, points))
     rounded = against.kind in ("sphere", "capsule") or abs(rotate(there[3:], Z) @ outwards) <= np.sin(LEANS)
     if lies and against.kind != "box" and rounded:  # a cylinder's end is no ball's
@@ -95,7 +96,8 @@ def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Fl
     if (upright or lies) and against.kind == "box":
         found.append(_on_face(_facing(shape, pose, outwards), against, there, outwards))
     if lies and against.kind == "box":
-        found.append(_on_side(shape, pose, _beside(_edge(against, there, -outwards), axis, pose, shape.size[1]), 0.0))
+        for edge in _edges(against, there, -outwards):
+            found.append(_on_side(shape, pose, _beside(edge, axis, pose, shape.size[1]), 0.0))
     return found
 
 
@@ -119,10 +121,14 @@ def _on_side(shape: Shape, pose: Floats, centres: Floats, radius: float) -> Poin
     return _halfway(surface, way, far - shape.size[0] - radius, beside)
 
 
-def _edge(box: Shape, pose: Floats, way: Floats) -> Floats:
-    """Both ends of the edge of a box that is farthest on a way, (2, 3)."""
-    corners = np.asarray(pose[:3] + rotate(pose[3:], CORNERS * np.asarray(box.size)))
-    return np.asarray(corners[np.argsort(-(corners @ way), kind="stable")[:2]])
+def _edges(box: Shape, pose: Floats, way: Floats) -> Floats:
+    """Both ends of the four edges of a box's face that is turned a way, (4, 2, 3)."""
+    own = rotate(conjugate(pose[3:]), way)
+    k = int(np.argmax(np.abs(own)))
+    face = CORNERS[CORNERS[:, k] * own[k] > 0.0]
+    ring = face[[0, 1, 3, 2]]  # round it: corners are in the order of their coordinates
+    corners = pose[:3] + rotate(pose[3:], ring * np.asarray(box.size))
+    return np.stack([corners, np.roll(corners, 1, axis=0)], axis=1)
 
 
 def _beside(ends: Floats, axis: Floats, pose: Floats, length: float) -> Floats:
@@ -135,17 +141,17 @@ def _beside(ends: Floats, axis: Floats, pose: Floats, length: float) -> Floats:
     return np.asarray(ends[0] + share[:, None] * (ends[1] - ends[0])) if high > low else _POINTS
 
 
-def _across(ends: Floats, axis: Floats, pose: Floats, size: Sequence[float]) -> Floats:
-    """Points of a line from end to end that are over a cylinder's end, on the way of its axis, (n, 3)."""
+def _across(ends: Floats, axis: Floats, pose: Floats, radius: float) -> Floats:
+    """Both ends and the middle of what of a line is over a cylinder's end, on the way of its axis, (3 or 0, 3)."""
     flat = ends - pose[:3] - ((ends - pose[:3]) @ axis)[:, None] * axis
     way = flat[1] - flat[0]
     length = max(float(way @ way), 1e-300)
     nearest = -float(flat[0] @ way) / length
-    inside = size[0] ** 2 - float(np.sum((flat[0] + nearest * way) ** 2))
+    inside = radius**2 - float(np.sum((flat[0] + nearest * way) ** 2))
     if inside <= 0.0:
         return _POINTS
-    half = (1.0 - 1e-9) * np.sqrt(inside / length)
-    share = np.linspace(np.clip(nearest - half, 0.0, 1.0), np.clip(nearest + half, 0.0, 1.0), ALONG)
+    half = (1.0 - 1e-9) * np.sqrt(inside / length)  # a hair within the rim
+    share = np.linspace(np.clip(nearest - half, 0.0, 1.0), np.clip(nearest + half, 0.0, 1.0), 3)
     return np.asarray(ends[0] + share[:, None] * (ends[1] - ends[0]))
 
 
