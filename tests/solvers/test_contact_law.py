@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wsim.solvers.slips import extrapolated
+from wsim.solvers.contact_config import ContactConfig
+from wsim.solvers.slips import extrapolated, seek_slip
 
 slopes = st.floats(-5.0, 0.94)
 slips = st.floats(0.1, 10.0)
@@ -53,3 +54,31 @@ def test_a_body_s_contacts_are_weighed_together():
     left = [np.linalg.norm((1 - share) * rest + share * before) for share in shares]
     share = shares[int(np.argmin(left))]
     assert found == pytest.approx((1 - share) * leave(second) + share * second, abs=1e-3)
+
+
+@given(st.floats(-0.9, 0.94), slips, st.floats(0.0, 1.9))
+def test_a_line_takes_three_solutions(slope, fixed, first):
+    """A guess, what it leaves, and where the line through both has its fixed point; none is asked for twice."""
+    asked = []
+
+    def leave(guess):
+        asked.append(float(guess[0]))
+        return fixed + slope * (guess - fixed)
+
+    seek_slip(leave, np.full(2, first * fixed), np.tile([0, 1], (2, 1)), False, ContactConfig())
+    assert asked[-1] == pytest.approx(fixed, abs=20 * ContactConfig().rough)
+    assert len(asked) <= 3 and len(set(asked)) == len(asked)
+
+
+def test_of_guesses_that_none_settles_the_nearest_counts():
+    """What is left jumps: no guess is left as it was."""
+    asked = []
+
+    def leave(guess):
+        asked.append(guess)
+        return np.where(guess < 1.0, 3.0, 0.0)
+
+    seek_slip(leave, np.array([0.0]), np.array([[0, 1]]), False, ContactConfig())
+    assert len(asked) == ContactConfig().most_solutions + 1
+    off = [float(abs(leave(guess) - guess)[0]) for guess in list(asked)]
+    assert off[-1] == min(off) < 2.0

@@ -13,10 +13,12 @@ LIMIT = wp.constant(3)  # mjCNSTR_LIMIT_JOINT
 TAUT = wp.constant(4)  # mjCNSTR_LIMIT_TENDON
 CYLINDER = wp.constant(5)  # mjtGeom: mjGEOM_CYLINDER
 ON_END = wp.constant(0.70710678)  # of a cylinder, as wsim.solvers.contact_law has it
-SMALL_CHANGE = wp.constant(1.0e-5)  # [m/s], and
-MOST_SHARE = wp.constant(19.0)  # of the solution before, as wsim.solvers.contact_law has them
 LATER = wp.constant(1.0e3)  # [m/s], far below what any contact is asked for: it takes no part
 NEVER = wp.constant(2**30)  # steps
+OPEN = wp.constant(0)  # of a world's search for the slip: whether it goes on,
+TURNS = wp.constant(1)  # solutions with a guess so far, -1 before one without friction,
+NEARER = wp.constant(2)  # whether the last of them is the nearest,
+BLOWS = wp.constant(3)  # and whether surfaces meet that bounce
 vec5 = wp.types.vector(length=5, dtype=float)
 
 
@@ -131,10 +133,14 @@ def strike(
     geom_group: wp.array(dtype=int),  # of bodies that joints tie together; 0 for the world
     law: wp.array3d(dtype=wp.vec3),
     threshold: float,
+    settle_time: float,
+    settle_speed: float,
     # Data out:
     struck: wp.array2d(dtype=int),
+    state: wp.array2d(dtype=int),  # of each world's search for the slip
+    seeking: wp.array(dtype=int),  # whether any world seeks
 ):
-    """Mark the groups of bodies that something hits in this step."""
+    """Mark the groups of bodies that something hits in this step, and the worlds in which something does."""
     k = wp.tid()
     if k >= count[0]:
         return
@@ -145,11 +151,19 @@ def strike(
     own = world % law.shape[0]
     restitution = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
-    if meets(contact_dist[k], velocity[world, row] + bow[k], restitution, h, threshold * h):
+    distance, speed = contact_dist[k], velocity[world, row] + bow[k]
+    state[world, OPEN] = 1
+    seeking[0] = 1
+    if meets(distance, speed, restitution, h, threshold * h):
+        state[world, TURNS] = -1
+        state[world, BLOWS] = 1
         for side in range(2):
             group = geom_group[geom[side]]
             if group > 0:
                 struck[world, group] = 1
+    elif restitution == 0.0 or distance <= 0.0:  # what bounces waits above the surface
+        if speed < -threshold * h and settling(distance, h, settle_time, settle_speed) - speed > threshold * h:
+            state[world, TURNS] = -1
 
 
 @wp.kernel(enable_backward=False)
@@ -173,6 +187,7 @@ def aim(
     geom_turn: wp.array2d(dtype=wp.mat33),
     contact_frame: wp.array(dtype=wp.mat33),
     struck: wp.array2d(dtype=int),
+    state: wp.array2d(dtype=int),
     free: wp.array2d(dtype=float),  # acceleration without constraints
     touched_for: wp.array(dtype=int),  # steps of the first order since the last smooth one
     loose: wp.array(dtype=int),  # which of the loose bodies a body is; -1 goes as stated
@@ -188,11 +203,11 @@ def aim(
     settle_speed: float,
     smallest: float,
     # Data out:
+    pair_friction: wp.array(dtype=vec5),
     contact_friction: wp.array(dtype=vec5),
     target: wp.array(dtype=float),
     blow: wp.array(dtype=float),  # 1 where surfaces meet
     slip: wp.array(dtype=float),
-    before: wp.array(dtype=wp.vec2),
     weight: wp.array2d(dtype=float),
     aref: wp.array2d(dtype=float),
 ):
@@ -230,6 +245,7 @@ def aim(
             round = curvature[own, geom[side]]
             bend += bent(geom_turn[world, geom[side]], contact_frame[k], round, geom_kind[geom[side]])
     friction = coefficients(pair, bend, smallest)
+    pair_friction[k] = friction
     contact_friction[k] = friction
     for j in range(2, contact_dim[k] - 1):
         share = friction[j] / friction[0]
@@ -241,114 +257,12 @@ def aim(
         aref[world, r] = -v / h
         slipped += friction[j] * friction[j] * v * v
     slip[k] = wp.sqrt(slipped)
-    before[k] = wp.vec2(slip[k], slip[k])
+    if state[world, TURNS] < 0:  # the slip before says little of that after: the first solution is without friction
+        slip[k] = 0.0
+        for j in range(5):
+            friction[j] = smallest
+        contact_friction[k] = friction
     aref[world, row] = (goal - slip[k] - velocity[world, row]) / h
-
-
-@wp.kernel(enable_backward=False)
-def weigh(
-    # Data in:
-    count: wp.array(dtype=int),
-    contact_world: wp.array(dtype=int),
-    contact_geom: wp.array(dtype=wp.vec2i),
-    contact_row: wp.array2d(dtype=int),
-    contact_dim: wp.array(dtype=int),
-    contact_friction: wp.array(dtype=vec5),
-    velocity: wp.array2d(dtype=float),
-    timestep: wp.array(dtype=float),
-    geom_body: wp.array(dtype=int),
-    acceleration: wp.array2d(dtype=float),
-    sparse: bool,
-    nv: int,
-    jacobian: wp.array3d(dtype=float),
-    row_nnz: wp.array2d(dtype=int),
-    row_start: wp.array2d(dtype=int),
-    column: wp.array3d(dtype=int),
-    force: wp.array2d(dtype=float),
-    target: wp.array(dtype=float),
-    blow: wp.array(dtype=float),
-    slip: wp.array(dtype=float),
-    before: wp.array(dtype=wp.vec2),  # guess, and what was left, of the solution before
-    # Data out:
-    remaining: wp.array(dtype=float),
-    sums: wp.array2d(dtype=wp.vec2),  # of each body's contacts
-):
-    """What slip a solution leaves, and what the bodies' contacts say together of how it goes with the guess.
-
-    With it goes what a blow's friction takes of the rebound: `friction_pays` of `wsim.solvers.targets`.
-    """
-    k = wp.tid()
-    if k >= count[0] or contact_row[k, 0] < 0:
-        return
-    world, geom = contact_world[k], contact_geom[k]
-    h = timestep[world % timestep.shape[0]]
-    friction = contact_friction[k]
-    slipped, gained = float(0.0), float(0.0)
-    for j in range(contact_dim[k] - 1):
-        r = contact_row[k, j + 1]
-        change = along(world, r, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
-        end = velocity[world, r] + h * change
-        v = friction[j] * end
-        slipped += v * v
-        gained += force[world, r] * (velocity[world, r] + end)
-    remaining[k] = wp.sqrt(slipped)
-    push = force[world, contact_row[k, 0]]
-    if blow[k] > 0.0 and push > 0.0:
-        remaining[k] += wp.clamp(gained / push, 0.0, target[k])
-    rest = remaining[k] - slip[k]
-    change = rest - (before[k][1] - before[k][0])
-    for side in range(2):
-        body = geom_body[geom[side]]
-        if body > 0:
-            wp.atomic_add(sums, world, body, wp.vec2(change * rest, change * change))
-
-
-@wp.kernel(enable_backward=False)
-def aim_again(
-    # Data in:
-    count: wp.array(dtype=int),
-    contact_world: wp.array(dtype=int),
-    contact_geom: wp.array(dtype=wp.vec2i),
-    contact_row: wp.array2d(dtype=int),
-    velocity: wp.array2d(dtype=float),
-    timestep: wp.array(dtype=float),
-    geom_body: wp.array(dtype=int),
-    remaining: wp.array(dtype=float),
-    sums: wp.array2d(dtype=wp.vec2),
-    target: wp.array(dtype=float),
-    blow: wp.array(dtype=float),
-    inertia: wp.array2d(dtype=float),  # of the rows' regularisation, 1 / R
-    force: wp.array2d(dtype=float),
-    # Data out:
-    slip: wp.array(dtype=float),
-    before: wp.array(dtype=wp.vec2),  # guess, and what was left, of the solution before
-    aref: wp.array2d(dtype=float),
-):
-    """Guess the slip anew from what two solutions leave, as `extrapolated` of the solver does.
-
-    What a blow's row gave way is asked for in addition.
-    """
-    k = wp.tid()
-    if k >= count[0]:
-        return
-    row = contact_row[k, 0]
-    if row < 0:
-        return
-    world, geom = contact_world[k], contact_geom[k]
-    h = timestep[world % timestep.shape[0]]
-    both = wp.vec2(0.0, 0.0)
-    for side in range(2):
-        both += sums[world, wp.max(geom_body[geom[side]], 0)]  # nothing is added to the world's
-    share = float(0.0)
-    if both[1] > SMALL_CHANGE * SMALL_CHANGE:
-        share = wp.clamp(both[0] / both[1], -MOST_SHARE, 1.0)
-    changed = remaining[k] - before[k][1]
-    before[k] = wp.vec2(slip[k], remaining[k])
-    slip[k] = wp.max(remaining[k] - share * changed, 0.0)
-    given = float(0.0)
-    if blow[k] > 0.0:
-        given = force[world, row] / inertia[world, row]
-    aref[world, row] = (target[k] - slip[k] - velocity[world, row]) / h + given
 
 
 @wp.kernel(enable_backward=False)

@@ -42,8 +42,6 @@ class ContactConfig:
     """Solutions of a step after which the slip need only be known roughly."""
     most_solutions: int = 20
     """Solutions of a step at most."""
-    solutions_warp: int = 6
-    """Solutions of a step where worlds are batched, always."""
     tolerance: float = 3e-4
     """Change of the slip, times friction, below which it stays [m/s]."""
     rough: float = 3e-3

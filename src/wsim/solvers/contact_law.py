@@ -4,7 +4,9 @@ A contact pushes, never pulls; its friction is at most mu times its push, agains
 bodies part with e times the speed at which they met (Newton's law of impact). MuJoCo minimises over the friction cones,
 and there friction that may not exceed its cone buys push: a box that slides at v lifts off at mu v. What takes that
 away is the correction of de Saxcé and Feng (1998): ask for a normal speed that is lower by mu times the slip at the
-step's end. The slip is taken from the step's start, and again from each solution, until it stays.
+step's end. The slip is taken from the step's start, and again from each solution, until it stays. Where something
+hits, the slip before says little of that after: it is taken from a solution without friction. A crate that a plough
+shoves off slips on the floor and not on the plough; from rest, without any slip, the two would ask for a wedge.
 
 What a row should reach stands in its reference acceleration, (target - velocity) / h, with an impedance near one.
 A contact is a row before the surfaces touch: it may close its gap in the step and not more (Stewart and Trinkle 1996).
@@ -36,14 +38,15 @@ import numpy as np
 from wsim.solvers.breaking import BreakingC
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC
+from wsim.solvers.contact_rows import ContactRows
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.groups import tied_groups
 from wsim.solvers.ropes import RopesC
-from wsim.solvers.slips import extrapolated
+from wsim.solvers.slips import seek_slip
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
-from wsim.solvers.targets import friction_pays, settling, targets
+from wsim.solvers.targets import settling, stopped, targets
 from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
@@ -202,60 +205,33 @@ class ContactLawC:
         first = data.contact.efc_address[: data.ncon]
         chosen = np.flatnonzero(first >= 0)
         if len(chosen):
-            self._solve_contacts(data, chosen, first[chosen], h)
+            self._solve_contacts(data, chosen, h)
         else:
             self.mujoco.mj_fwdConstraint(self.model, data)
             self.flight.ease(chosen)
 
-    def _solve_contacts(self, data: Any, chosen: Array, normal: Array, h: float) -> None:
-        mujoco, model, config, contact = self.mujoco, self.model, self.config, data.contact
-        geoms = contact.geom[chosen]
+    def _solve_contacts(self, data: Any, chosen: Array, h: float) -> None:
+        model, config = self.model, self.config
+        geoms = data.contact.geom[chosen]
+        bodies = model.geom_bodyid[geoms]
         classes = self.classes[geoms]
         law = self.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
-        contact.friction[chosen] = friction
-        contact.mu[chosen] = friction[:, 0]
+        rows = ContactRows(self.mujoco, model, data, chosen, friction, config)
         if self.rolls:
-            self._weigh_rows(data, normal, contact.dim[chosen], friction)
-        image = np.zeros(data.nefc)
-        mujoco.mj_mulJacVec(model, data, image, data.qacc_smooth)
-        speed, bow = data.efc_vel[normal], self._bow[chosen]
-        free, bodies = image[normal], model.geom_bodyid[geoms]
+            self._weigh_rows(data, rows.normal, data.contact.dim[chosen], friction)
+        distance, bow, free = data.contact.dist[chosen], self._bow[chosen], rows.pull()
+        speed = data.efc_vel[rows.normal] + bow
         since = self.flight.since_exact(bodies)
         if self.smooth:
             since = np.minimum(since, self.touched)
-        smooth = since * np.abs(free) * h < np.abs(speed)  # not by the first order all the fall
-        groups = self._groups[bodies]
-        goal, blow = targets(contact.dist[chosen], speed + bow, free, law[:, 1], groups, h, config, smooth)
-        goal = goal + bow
-        # Rows of friction: as many a contact as it has dimensions, but the normal one.
-        offset = np.arange(1, 6)
-        held = offset < contact.dim[chosen][:, None]
-        rows = np.where(held, normal[:, None] + offset, normal[:, None])
-        weight = np.where(held, friction, 0.0)
-        velocity = data.efc_vel[rows]
-        data.efc_aref[rows[held]] = -velocity[held] / h
-        slip = np.linalg.norm(weight * velocity, axis=1)
-        before: tuple[Array, Array] = slip, slip
-        given = np.zeros(len(normal))  # by the regularisation under a blow [m/s^2]
-        for k in range(config.most_solutions):
-            data.efc_aref[normal] = (goal - slip - speed) / h + given
-            mujoco.mj_fwdConstraint(model, data)
-            mujoco.mj_mulJacVec(model, data, image, data.qacc)
-            end = velocity + h * image[rows]
-            left = np.linalg.norm(weight * end, axis=1)
-            if blow.any():
-                rub = np.where(held, data.efc_force[rows], 0.0)
-                left += friction_pays(blow, goal, data.efc_force[normal], rub, velocity, end)
-            change = float(np.abs(left - slip).max())
-            if change < config.tolerance and (k or not blow.any()):
-                break
-            if change < config.rough and k + 1 >= config.solutions:
-                break
-            slip, before = extrapolated(slip, left, before, bodies), (slip, left)
-            given = np.where(blow, data.efc_R[normal] * data.efc_force[normal], 0.0)
-            data.qacc_warmstart[:] = data.qacc
-        jolted = (data.efc_force[normal] > 0.0) & (np.abs(image[normal]) > config.steady)
+        smooth = since * np.abs(free) * h < np.abs(speed - bow)  # not by the first order all the fall
+        goal, blow = targets(distance, speed, free, law[:, 1], self._groups[bodies], h, config, smooth)
+        rows.aim(goal + bow, blow)
+        hits = bool((blow | stopped(goal, speed, h, config)).any())
+        slip = rows.left_without_friction() if hits else rows.slip
+        seek_slip(rows.left, slip, bodies, bool(blow.any()), config)
+        jolted = (rows.push > 0.0) & (np.abs(rows.acceleration) > config.steady)
         self.flight.ease(bodies[jolted])
 
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:

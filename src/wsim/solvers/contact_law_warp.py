@@ -6,8 +6,9 @@ from typing import Any
 
 import warp as wp
 
-from wsim.kernels.contact_law import aim, aim_again, stop, strike, weigh
+from wsim.kernels.contact_law import aim, stop, strike, vec5
 from wsim.kernels.round_on_flat import settle_round_on_flat
+from wsim.kernels.slips import guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesWarp
 from wsim.solvers.flight import Flight
@@ -69,7 +70,13 @@ class ContactLawWarp:
             self._slip = wp.zeros(data.naconmax, dtype=float)
             self._before = wp.zeros(data.naconmax, dtype=wp.vec2)
             self._remaining = wp.zeros(data.naconmax, dtype=float)
+            self._best = wp.zeros(data.naconmax, dtype=float)
+            self._friction = wp.zeros(data.naconmax, dtype=vec5)
             self._sums = wp.zeros((data.nworld, host.nbody), dtype=wp.vec2)
+            self._search = wp.zeros((data.nworld, 4), dtype=int)
+            self._change = wp.zeros(data.nworld, dtype=float)
+            self._nearest = wp.zeros(data.nworld, dtype=float)
+            self._seeking = wp.zeros(1, dtype=int)
             self._bow = wp.zeros(data.naconmax, dtype=float)
             self._last_tolerance = wp.array([last_tolerance(mujoco, host, config)], dtype=float)
             self._ropes = RopesWarp(self._mujoco_warp, data) if host.tendon_limited.any() else None
@@ -95,9 +102,7 @@ class ContactLawWarp:
         self._aim(model, data)
         if self._drives:
             self._drives.aim(model, data)
-        for _ in range(self._config.solutions_warp - 1):
-            warp.solve(model, data)
-            self._aim_again(model, data)
+        wp.capture_while(self._seeking, self._seek_slip, model=model, data=data)
         if self._breaking is not None:
             warp.solve(model, data)
             self._breaking.give_way(model, data)
@@ -155,15 +160,17 @@ class ContactLawWarp:
         config, efc, contact, flight = self._config, data.efc, data.contact, self._flight
         h = model.opt.timestep
         self._struck.zero_()
+        self._search.zero_()
+        self._seeking.zero_()
         touching = [data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address]
         wp.launch(
             strike,
             dim=data.naconmax,
             inputs=[
                 *touching, efc.vel, h, self._bow, self._geom_class, self._geom_group, self._law,
-                config.threshold,
+                config.threshold, config.settle_time, config.settle_speed,
             ],
-            outputs=[self._struck],
+            outputs=[self._struck, self._search, self._seeking],
         )  # fmt: skip
         wp.launch(
             aim,
@@ -171,11 +178,13 @@ class ContactLawWarp:
             inputs=[
                 *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid,
                 self._geom_group, self._law, model.geom_type, self._curvature, data.geom_xmat, contact.frame,
-                self._struck, data.qacc_smooth, self._touched_for, flight.row, flight.since,
+                self._struck, self._search, data.qacc_smooth, self._touched_for, flight.row, flight.since,
                 *self._jacobian(model, efc), config.threshold, config.settle_time, config.settle_speed,
                 config.smallest_friction,
             ],
-            outputs=[contact.friction, self._target, self._blow, self._slip, self._before, efc.D, efc.aref],
+            outputs=[
+                self._friction, contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref,
+            ],
         )  # fmt: skip
         wp.launch(
             stop,
@@ -187,28 +196,38 @@ class ContactLawWarp:
             outputs=[efc.aref],
         )  # fmt: skip
 
-    def _aim_again(self, model: Any, data: Any) -> None:
-        efc, contact = data.efc, data.contact
+    def _seek_slip(self, model: Any, data: Any) -> None:
+        """A solution, and from what slips it leaves what they are guessed to be."""
+        config, efc, contact = self._config, data.efc, data.contact
+        self._mujoco_warp.solve(model, data)
         wp.copy(data.qacc_warmstart, data.qacc)
         self._sums.zero_()
+        self._seeking.zero_()
         touching, h = [data.nacon, contact.worldid, contact.geom, contact.efc_address], model.opt.timestep
         wp.launch(
             weigh,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, contact.friction, efc.vel, h, model.geom_bodyid, data.qacc,
+                *touching, contact.dim, self._friction, efc.vel, h, model.geom_bodyid, data.qacc,
                 *self._jacobian(model, efc), efc.force, self._target, self._blow, self._slip, self._before,
+                self._search,
             ],
-            outputs=[self._remaining, self._sums],
+            outputs=[self._remaining, self._sums, self._change],
         )  # fmt: skip
         wp.launch(
-            aim_again,
+            settle,
+            dim=data.nworld,
+            inputs=[config.solutions, config.most_solutions, config.tolerance, config.rough],
+            outputs=[self._change, self._nearest, self._search, self._seeking],
+        )
+        wp.launch(
+            guess,
             dim=data.naconmax,
             inputs=[
-                *touching, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target, self._blow, efc.D,
-                efc.force,
+                *touching, self._friction, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target,
+                self._blow, efc.D, efc.force, config.most_solutions, self._search,
             ],
-            outputs=[self._slip, self._before, efc.aref],
+            outputs=[contact.friction, self._slip, self._before, self._best, efc.aref],
         )  # fmt: skip
 
     @staticmethod

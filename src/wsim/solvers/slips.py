@@ -1,12 +1,44 @@
-"""The slip that a step's contacts are left with, guessed from two solutions."""
+"""The slip that a step's contacts are left with, sought until a solution leaves what it was guessed to."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
+
+from wsim.solvers.contact_config import ContactConfig
 
 Array = np.ndarray
 SMALL_CHANGE = 1e-5  # [m/s]: less says nothing about how what is left goes with the guess
 MOST_SHARE = 19.0  # of the solution before: as where what is left is 0.95 of what was
+
+
+def seek_slip(left: Callable[[Array], Array], slip: Array, bodies: Array, blows: bool, config: ContactConfig) -> None:
+    """Solve until the slips that are left are those that were guessed.
+
+    What wedges itself in has none, or none that is found: then the nearest of all counts, not the last.
+
+    Args:
+        left: Solves with guessed slips, times friction [m/s], (contacts,), and says which the solution leaves.
+        slip: The first guess.
+        bodies: Of each contact, (contacts, 2), 0 for the world.
+        blows: Whether surfaces meet, whose first solution does not know yet what its regularisation gives way.
+        config: How near is near enough.
+    """
+    before: tuple[Array, Array] | None = None
+    nearest, best = math.inf, slip
+    for k in range(config.most_solutions):
+        found = left(slip)
+        change = float(np.abs(found - slip).max())
+        if change < config.tolerance and (k or not blows):
+            return
+        if change < config.rough and k + 1 >= config.solutions:
+            return
+        if change < nearest:
+            nearest, best = change, slip
+        slip, before = extrapolated(slip, found, before or (slip, found), bodies), (slip, found)
+    left(best)
 
 
 def extrapolated(slip: Array, left: Array, before: tuple[Array, Array], bodies: Array) -> Array:
@@ -21,7 +53,7 @@ def extrapolated(slip: Array, left: Array, before: tuple[Array, Array], bodies: 
     Args:
         slip: Guessed, times friction [m/s], (contacts,).
         left: By the solution with that guess.
-        before: The same two of the solution before; equal ones where there was none.
+        before: The same two of the solution before; these two where there was none.
         bodies: (contacts, 2), 0 for the world.
     """
     rest = left - slip

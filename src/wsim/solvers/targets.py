@@ -78,6 +78,12 @@ def targets(
     return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
 
 
+def stopped(goal: Array, speed: Array, h: float, config: ContactConfig) -> Array:
+    """Whether a step ends an approach [m/s] that a step of falling does not make, (contacts,)."""
+    least = config.threshold * h
+    return (speed < -least) & (goal - speed > least)
+
+
 def friction_pays(blow: Array, most: Array, push: Array, rub: Array, before: Array, after: Array) -> Array:
     """Rebound that a blow's friction has used up [m/s], (contacts,).
 
