@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.judge.theory import box, record, times
+from tests.judge.theory import box, ground, record, times
+from wsim.geometry.rotations import matrices
 from wsim.judge.books.flats import flats
 from wsim.judge.books.touching import Touching
 from wsim.judge.evidence.evidence import Evidence
@@ -71,3 +72,81 @@ def test_a_face_on_a_face_bears_at_its_corners(apart):
     assert corners == {(x, y) for x in (-0.03, 0.07) for y in (-0.05, 0.05)}
     assert found.gap[touch] == pytest.approx(apart, abs=1e-9)
     assert found.normal[touch] == pytest.approx(np.tile([0.0, 0.0, 1.0], (touch.sum(), 1)))
+
+
+def test_a_disc_bears_all_along_an_edge_across_it():
+    """A cylinder's end lies on a box's edge, at a quarter turn from its faces: along the chord."""
+    lean = np.array([0.0, np.sin(np.pi / 8), 0.0, np.cos(np.pi / 8)])
+    table, roller = solid("box", (0.2, 0.2, 0.2), "table"), solid("cylinder", (R, H), "roller")
+    way, off = np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0), 0.5 * R
+    middle = np.array([0.1, 0.0, 0.1]) + 0.5 * H * way + off * np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0)
+    found = touching(table, roller, [(0, 0, 0), tuple(middle)], lean)
+    chord = np.sqrt(R**2 - off**2)
+    assert found.point[:, 1].min() == pytest.approx(-chord, abs=1e-4)
+    assert found.point[:, 1].max() == pytest.approx(chord, abs=1e-4)
+    assert found.point[:, [0, 2]] == pytest.approx(np.full((len(found), 2), 0.1), abs=1e-4)
+
+
+def test_a_disc_that_overhangs_a_box_bears_to_its_edges():
+    """Where its rim crosses them, a tenth of its radius inside, on two sides."""
+    inside = 0.9 * R
+    table, roller = solid("box", (0.2, 0.2, 0.1), "table"), solid("cylinder", (R, H), "roller")
+    found = touching(table, roller, [(0, 0, 0), (0.1 - inside, 0.1 - inside, 0.05 + H / 2)], UPRIGHT)
+    cross = 0.1 - inside + np.sqrt(R**2 - inside**2)
+    for corner in ((0.1, cross), (cross, 0.1)):
+        assert np.linalg.norm(found.point[:, :2] - corner, axis=1).min() < 1e-6
+
+
+def test_a_side_bears_all_along_an_edge():
+    """As long as the shorter of both."""
+    table, roller = solid("box", (0.2, 0.04, 0.2), "table"), solid("cylinder", (R, H), "roller")
+    middle = 0.1 + R / np.sqrt(2.0)
+    found = touching(table, roller, [(0, 0, 0), (middle, 0.0, middle)], LYING)
+    near = found.gap < 1e-6
+    assert found.point[near][:, 1].min() == pytest.approx(-0.02, abs=1e-6)
+    assert found.point[near][:, 1].max() == pytest.approx(0.02, abs=1e-6)
+    assert abs(found.normal[near] @ np.array([1.0, 0.0, 1.0])) == pytest.approx(
+        np.full(near.sum(), np.sqrt(2.0)), rel=1e-4
+    )
+
+
+def test_a_drum_that_hardly_leans_bears_on_all_its_rim():
+    """It wobbles round it within an interval."""
+    t, turn = times(0.1), (np.sin(5e-4), 0.0, 0.0, np.cos(5e-4))
+    drum, height = solid("cylinder", (R, H), "drum"), 0.5 * H * np.cos(1e-3) + R * np.sin(1e-3)
+    place = np.tile((0.0, 0.0, height), (len(t), 1))
+    evidence = Evidence(record([drum], place, 0.0 * place, t, rotation=turn * np.ones((len(t), 4)), statics=[ground()]))
+    found = Touching.of(evidence).at(evidence.body_q[0], REACH)
+    angle = np.sort(np.arctan2(found.point[:, 1], found.point[:, 0]))
+    assert np.diff(angle, append=angle[0] + 2.0 * np.pi).max() < 0.5
+    assert found.gap == pytest.approx(found.surface(1)[:, 2], abs=1e-6)
+
+
+@pytest.mark.parametrize("reach", [1e-4, 0.03, 0.1])
+def test_the_nearest_point_is_found_from_far_and_near(reach):
+    """Of a capsule that lies across a drum's rim: a wide search had its normal 9 degrees off, and other points."""
+    (radius, tall), (thick, long) = (0.132446, 0.484408), (0.130292, 0.260584)
+    places = np.array([(0.414718, 0.054552, 0.254298), (0.299197, 0.03791, 0.638096)])
+    turns = np.array([(0.01149, 0.049089, -0.064063, 0.996672), (-0.648508, -0.233593, -0.190809, 0.698902)])
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    line = np.linspace(-0.5, 0.5, 20001)[:, None] * long * matrices(turns[1])[:, 2] + places[1] - places[0]
+    own = line @ matrices(turns[0])
+    across = np.linalg.norm(own[:, :2], axis=1)
+    inside = np.column_stack(
+        [own[:, :2] * np.minimum(1.0, radius / across)[:, None], np.clip(own[:, 2], -0.5 * tall, 0.5 * tall)]
+    )
+    apart = np.linalg.norm(own - inside, axis=1)
+    nearest = int(np.argmin(apart))
+    way = matrices(turns[0]) @ (own - inside)[nearest] / apart[nearest]
+    drop = apart[nearest] - thick
+    places[1] -= drop * way
+    t = times(0.1)
+    evidence = Evidence(
+        record([solid("cylinder", (radius, tall), "drum"), solid("capsule", (thick, long), "log")],
+               np.tile(places, (len(t), 1, 1)), np.zeros((len(t), 2, 3)), t,
+               rotation=np.tile(turns, (len(t), 1, 1)))
+    )  # fmt: skip
+    found = Touching.of(evidence).at(evidence.body_q[0], reach)
+    best = int(np.argmin(found.gap))
+    assert found.gap[best] == pytest.approx(0.0, abs=1e-6)
+    assert found.normal[best] * (1.0 if found.one[best] == 0 else -1.0) == pytest.approx(way, abs=1e-3)

@@ -11,8 +11,15 @@ from wsim.recording import read
 from wsim.sim import Simulation
 
 # A card that a ball bounces off slips on as it is knocked; the lowest box of a stack slips and stands again between two
-# frames; a box on a roller across a dome; cards that lie on each other's faces.
-WORLDS = [("struck row", 3), ("struck stack", 10), ("struck pile", 46), ("struck row", 41)]
+# frames; a box on a roller across a dome; cards that lie on each other's faces; a card whose edge a blow presses on the
+# ground; a drum that rolls over the edge of a box; a capsule across a drum's rim; a
+# drum that wobbles on its rim; a capsule whose slip turns as it lands; a ball that comes over a box's edge; a ball to
+# and fro between two others.
+WORLDS = [
+    ("struck row", 3), ("struck stack", 10), ("struck pile", 46), ("struck row", 41), ("struck row", 4),
+    ("struck pile", 30), ("struck pile", 26129), ("struck pile", 26148),
+    ("struck pile", 26111), ("struck stack", 26150), ("struck row", 26115),
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module", params=WORLDS, ids=[f"{name} {k}" for name, k in WORLDS])

@@ -4,9 +4,9 @@ MuJoCo tells a point or two of it.
 
 Of what stands flat, or lies along a line, any point may bear, and which one a search for the nearest finds is chance:
 of a roller across a dome it may be the roller's end. Here an end's disc is held against the points of the other shape
-that come nearest to it, a box's face against points of the cylinder's rim or side, and a side against what is round;
-and where boxes' faces lie on each other with fewer points than a face has, each is held against the other's corners.
-Each point has its own gap.
+that come nearest to it, and against a box's edge across it; a plane or a box's face against points of the cylinder's
+rim or side; and a side against what is round, or a box's edge. Where boxes' faces lie on each other with fewer points
+than a face has, each is held against the other's corners. Each point has its own gap.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ RIM = 16  # points of a rim,
 ALONG = 9  # and of a line
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
 BOXES, FACE = ("box", "box"), 4  # corners
-KINDS = {BOXES, *(("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder"))}
+KINDS = {BOXES, *(("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder", "plane"))}
 Z = np.array([0.0, 0.0, 1.0])
 _NONE, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
 
@@ -81,14 +81,23 @@ def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Fl
         return [_on_face(_facing(shape, pose, outwards), against, there, outwards)]
     axis = rotate(pose[3:], Z)
     upright, lies = abs(axis @ outwards) >= np.cos(LEANS), abs(axis @ outwards) <= np.sin(LEANS)
+    if against.kind == "plane":  # of a side MuJoCo finds both ends
+        return [_on_plane(_facing(shape, pose, outwards), there)] if upright else []
     found = []
     if upright:
-        found.append(_on_disc(shape, pose, np.sign(axis @ outwards) * axis, _facing(against, there, -outwards)))
+        down, points = np.sign(axis @ outwards) * axis, _facing(against, there, -outwards)
+        if against.kind == "box":
+            edges = _edges(against, there, -outwards)
+            points = np.concatenate([points, *(_across(edge, down, pose, shape.size[0]) for edge in edges)])
+        found.append(_on_disc(shape, pose, down, points))
     rounded = against.kind in ("sphere", "capsule") or abs(rotate(there[3:], Z) @ outwards) <= np.sin(LEANS)
     if lies and against.kind != "box" and rounded:  # a cylinder's end is no ball's
         found.append(_on_side(shape, pose, *_round(against, there)))
     if (upright or lies) and against.kind == "box":
         found.append(_on_face(_facing(shape, pose, outwards), against, there, outwards))
+    if lies and against.kind == "box":
+        for edge in _edges(against, there, -outwards):
+            found.append(_on_side(shape, pose, _beside(edge, axis, pose, shape.size[1]), 0.0))
     return found
 
 
@@ -110,6 +119,47 @@ def _on_side(shape: Shape, pose: Floats, centres: Floats, radius: float) -> Poin
     surface = pose[:3] + along[:, None] * axis + shape.size[0] * way
     beside = (np.abs(along) <= 0.5 * shape.size[1]) & (far > 0.0)
     return _halfway(surface, way, far - shape.size[0] - radius, beside)
+
+
+def _edges(box: Shape, pose: Floats, way: Floats) -> Floats:
+    """Both ends of the four edges of a box's face that is turned a way, (4, 2, 3)."""
+    own = rotate(conjugate(pose[3:]), way)
+    k = int(np.argmax(np.abs(own)))
+    face = CORNERS[CORNERS[:, k] * own[k] > 0.0]
+    ring = face[[0, 1, 3, 2]]  # round it: corners are in the order of their coordinates
+    corners = pose[:3] + rotate(pose[3:], ring * np.asarray(box.size))
+    return np.stack([corners, np.roll(corners, 1, axis=0)], axis=1)
+
+
+def _beside(ends: Floats, axis: Floats, pose: Floats, length: float) -> Floats:
+    """Points of a line from end to end that are beside a cylinder that lies along it, (n, 3)."""
+    along = (ends - pose[:3]) @ axis
+    if abs(along[1] - along[0]) < np.cos(LEANS) * np.linalg.norm(ends[1] - ends[0]):
+        return _POINTS
+    low, high = max(along.min(), -0.5 * length), min(along.max(), 0.5 * length)
+    share = (np.linspace(low, high, ALONG) - along[0]) / (along[1] - along[0])
+    return np.asarray(ends[0] + share[:, None] * (ends[1] - ends[0])) if high > low else _POINTS
+
+
+def _across(ends: Floats, axis: Floats, pose: Floats, radius: float) -> Floats:
+    """Both ends and the middle of what of a line is over a cylinder's end, on the way of its axis, (3 or 0, 3)."""
+    flat = ends - pose[:3] - ((ends - pose[:3]) @ axis)[:, None] * axis
+    way = flat[1] - flat[0]
+    length = max(float(way @ way), 1e-300)
+    nearest = -float(flat[0] @ way) / length
+    inside = radius**2 - float(np.sum((flat[0] + nearest * way) ** 2))
+    if inside <= 0.0:
+        return _POINTS
+    half = (1.0 - 1e-9) * np.sqrt(inside / length)  # a hair within the rim
+    share = np.linspace(np.clip(nearest - half, 0.0, 1.0), np.clip(nearest + half, 0.0, 1.0), 3)
+    return np.asarray(ends[0] + share[:, None] * (ends[1] - ends[0]))
+
+
+def _on_plane(points: Floats, plane: Floats) -> Points:
+    """Of some points of a shape what they have to a plane."""
+    normal = rotate(plane[3:], Z)
+    gap = (points - plane[:3]) @ normal
+    return _halfway(points, np.tile(-normal, (len(points), 1)), gap, np.ones(len(points), dtype=bool))
 
 
 def _on_face(points: Floats, box: Shape, pose: Floats, outwards: Floats) -> Points:

@@ -17,6 +17,7 @@ import numpy as np
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.courses import Courses, step_of
 from wsim.judge.books.forces import Poses, slip
+from wsim.judge.books.pressed import pushed_back
 from wsim.judge.books.touching import Contacts, Touching
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.contact import pair_law
@@ -51,6 +52,7 @@ class Rub:
     most: float  # the coefficient times the push
     before: float  # the slip as they met
     after: float  # and as they parted
+    least: float  # of it, where they slip on: less than most if the slip turned, as friction's way did with it
     unsure: float | None = None  # of the impulse, where it is recorded and the slip is known to keep its way
 
 
@@ -169,11 +171,15 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
         # What stays in touch is carried round on it: how fast its point parts changes within a step as well.
         either = max(either, _changing(courses, touching, k, when, met, speeds, 1))
     unsure = 2.0 * either + abs(there - back) + sum(_off(courses, k, when, met, side) for side in (0, 1))
+    parts = float(parting[n])
+    slips = [_slip(touching, met, each) for each in (before, after)]
+    others = contacts.only(_others(contacts, pair) & (contacts.gap <= approach * dt + rounding))
+    if len(others):
+        rubs = np.array([-law.friction / max(float(np.linalg.norm(each)), 1e-300) * each for each in slips])
+        unsure += pushed_back(motion, touching, before, met, others, speed + parts, rubs)
     if returns or unsure > SHOWS * approach:
         return None
     prims = [touching.shapes[int(shape)][1] for shape in met.shapes[0]]
-    parts = float(parting[n])
-    slips = [_slip(touching, met, each) for each in (before, after)]
     across = _across(courses, met, (before, after), speed + parts, pair)
     exactly = min(max(float(across @ (slips[0] + slips[1])) / max(speed + parts, 1e-12), 0.0), back)
     if len(touches) > 1 or _others(contacts, pair).any():
@@ -209,10 +215,14 @@ def _across(
 def _rub(slips: list[Floats], across: Floats, bounce: float, friction: float, balls: bool) -> Rub:
     """Of one contact of a pair, by its slips before and after, and by its friction's impulse."""
     before, after = (float(np.linalg.norm(each)) for each in slips)
-    impulse = float(np.linalg.norm(across))
+    impulse, most = float(np.linalg.norm(across)), friction * bounce
     if after > STAYS * before and balls:
         impulse = -float(across @ slips[1]) / after
-    return Rub(impulse, friction * bounce, before, after)
+        return Rub(impulse, most, before, after, most)
+    # The slip of what is no ball turns in a blow, from its first way to its last by one way round (Keller 1986), and
+    # friction with it: pushes whose ways are no more than an angle apart add up to its half's cosine of them at least.
+    cosine = float(slips[0] @ slips[1]) / max(before * after, 1e-30)
+    return Rub(impulse, most, before, after, most * float(np.sqrt(0.5 * max(1.0 + cosine, 0.0))))
 
 
 def _spent_at_most(before: Floats, after: Floats, friction: float, unsure: float) -> float:

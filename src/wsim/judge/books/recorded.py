@@ -179,6 +179,35 @@ class RecordedContacts:
             changes += np.where(rows >= 0, books.landed[interval, np.maximum(rows, 0)], 0.0)
         return changes
 
+    def knocked(self, rows: Rows, normal: Floats, change: Floats) -> Floats:
+        """How far blows may take the slips of some rows beyond those of both ends, and back, (rows,) [m/s].
+
+        What goes to and fro between others that it bounces off is struck several times between two frames. By what all
+        of that changes its slip, less what the ends differ by, it goes there and back.
+
+        Args:
+            rows: Which.
+            normal: Of every row, (n, 3).
+            change: Of the slips of some rows, from end to end, (rows,) [m/s].
+        """
+        found = np.zeros(len(rows))
+        for at, row in enumerate(rows if self._bounce.any() else ()):
+            for body in self.body[row][self.body[row] >= 0]:
+                others = (self.track.frame == self.track.frame[row]) & (self.body == body).any(axis=1) & self._bounce
+                others[row] = False
+                given = self.track.impulse[others].astype(np.float64)
+                across = given - (given @ normal[row])[:, None] * normal[row]
+                found[at] += float(np.linalg.norm(across, axis=1).sum()) / self._evidence.motion.mass[body]
+        return np.asarray(0.5 * np.maximum(found - change, 0.0))
+
+    @cached_property
+    def _bounce(self) -> Bools:
+        """Whether each row's pair bounces, (n,)."""
+        world, pairs = self._evidence.world, self.track.pair
+        each, which = np.unique(pairs, axis=0, return_inverse=True)
+        found = [pair_law(world, self.shapes[a], self.shapes[b]).restitution > 0.0 for a, b in each.tolist()]
+        return np.array(found, dtype=bool)[which.ravel()]
+
     @cached_property
     def slip(self) -> Floats:
         """Velocity of the second shape over the first at the place of each row, at both ends, (n, 2, 3) [m/s].

@@ -16,10 +16,11 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, cross, rotate
 from wsim.geometry.shapes import kind_of
-from wsim.judge.books.followed import Followed, Pose
+from wsim.judge.books.followed import Course, Followed, Pose
 from wsim.judge.books.forces import ONE_WAY, STILL
 from wsim.judge.books.impacts import ACROSS, SHOWS, SLOW, STAYS, Blow, Rub
 from wsim.judge.books.recorded import RecordedContacts
+from wsim.judge.books.touching import Touching
 from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 STEADY = 2.0  # times what a contact gives in the intervals around: more than that is a blow
 SHARED = 0.02  # of friction's impulse by the size of a body: points that rub different ways turn it by more
 FLAT = 1e-3  # of a push: normals that differ by less are one
+VEERS = 0.01  # [m]: surfaces that have met are no farther apart a step later
 NONE = 2e-5  # of a push: surfaces without friction have 1e-5, the least that MuJoCo knows
 
 
@@ -122,6 +124,8 @@ class RecordedBlows:
         unsure = _step_leaves(approach, law.restitution, pull / self._followed.dt, deep) + pull
         unsure += one.off(when, point) + two.off(when, point)
         unsure += max(self._followed.turned(each, point, 2) for each in poses)
+        if law.restitution <= STAYS:
+            unsure += self._veers(row, (one, two), when)
         rest = float(motion.h[k]) - when
         if approach < SLOW * self._followed.dt + unsure:
             return None
@@ -158,6 +162,32 @@ class RecordedBlows:
     def _stays(self, row: int, law: Pair) -> bool:
         """Whether the pair goes on to press where it does not bounce: what it gives after the blow is in the sum."""
         return law.restitution <= STAYS and bool(self._at(1)[row] > 0.0)
+
+    def _veers(self, row: int, courses: tuple[Course, Course], when: float) -> float:
+        """By how much a pair parts faster or slower a step after the blow, where it touches then [m/s].
+
+        What does not bounce is stopped in two steps: the first leaves it as fast as its gap asks for. Place and normal
+        that are recorded are means of both; surfaces part as the second has it.
+        """
+        touching, q = Touching.of(self._evidence), self._evidence.body_q[courses[0].k + 1].copy()
+        pair, rates = self._contacts.body[row].tolist(), []
+        for later in (when, when + self._followed.dt):
+            poses = [each.at(1, later) for each in courses]
+            for body, pose in zip(pair, poses, strict=True):
+                if body >= 0:
+                    com = np.array(self._evidence.world.bodies[body].com)
+                    q[body] = np.concatenate([pose.com - rotate(pose.q, com), pose.q])
+            contacts = touching.at(q, VEERS)
+            ours = np.flatnonzero(
+                ((contacts.one == pair[0]) & (contacts.two == pair[1]))
+                | ((contacts.one == pair[1]) & (contacts.two == pair[0]))
+            )
+            if not len(ours):
+                return np.inf
+            n = ours[np.argmin(contacts.gap[ours])]
+            one, two = poses if contacts.one[n] == pair[0] else poses[::-1]
+            rates.append(float((two.at(contacts.point[n]) - one.at(contacts.point[n])) @ contacts.normal[n]))
+        return abs(rates[1] - rates[0])
 
     def _depth(self, row: int, poses: tuple[Pose, Pose], point: Floats) -> float:
         """How far the surfaces are in each other or apart where they push, halfway between them [m]; 0 of meshes."""
@@ -222,7 +252,8 @@ class RecordedBlows:
         if impulse < ONE_WAY * rubs - NONE * pressed:
             return None  # what is left of the slip is what turning makes of it
         most = law.friction * pressed
-        return Rub(impulse * scale, most * scale, before, after, ((1.0 - cosine) * most + NONE * pressed) * scale)
+        unsure = ((1.0 - cosine) * most + NONE * pressed) * scale
+        return Rub(impulse * scale, most * scale, before, after, most * scale, unsure)
 
 
 def _step_leaves(approach: float, restitution: float, pull: float, deep: float) -> float:

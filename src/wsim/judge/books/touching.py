@@ -82,6 +82,9 @@ class Touching:
         self._laws: dict[tuple[int, int], Pair] = {}
         self._meshes: dict[int, Triangles] = {}
         spec = mujoco.MjSpec()
+        # Of what is round MuJoCo's further points are those of surfaces blown up by the reach: at 2 cm their normal was
+        # 9 degrees off, and the nearest point was none of them. What is flat has its own (`flats`).
+        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
         for row, body in enumerate(world.bodies):
             item = spec.worldbody.add_body(name=f"b{row}", mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
             item.add_freejoint()

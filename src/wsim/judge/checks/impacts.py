@@ -73,7 +73,7 @@ class CheckBlowFriction(Check):
         limit = self._limit(blow, rub)
         slips = rub.unsure is not None or rub.after > limit
         time = float(evidence.time[blow.interval + 1])
-        least = rub.most - limit if slips else -rub.most - limit
+        least = rub.least - limit if slips else -rub.most - limit
         told = "the friction of the pair times the change of speed across it; " + (
             f"{self.edge:g} of it, and how far the slip turns"
             if rub.unsure is not None
@@ -95,7 +95,7 @@ class CheckBlowFriction(Check):
 
     def _off(self, blow: Blow, rub: Rub) -> float:
         slips = rub.unsure is not None or rub.after > self._limit(blow, rub)
-        return abs(rub.impulse - rub.most) if slips else max(rub.impulse - rub.most, 0.0)
+        return max(rub.impulse - rub.most, rub.least - rub.impulse if slips else 0.0, 0.0)
 
     def _limit(self, blow: Blow, rub: Rub) -> float:
         if rub.unsure is not None:

@@ -114,9 +114,11 @@ class CheckRecordedForces(Check):
         lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
         lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
         # Landings that turn a slip turn its friction: they change it by at most the sine of that of its speed.
-        aside = contacts.landed(Books.of(evidence)) / np.maximum(slowest, 1e-30)
-        lasts &= aside < 1.0
+        aside = contacts.landed(Books.of(evidence))
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
+        aside[rows] += contacts.knocked(rows, normal, change[rows])
+        aside /= np.maximum(slowest, 1e-30)
+        rows = rows[aside[rows] < 1.0]
         if not len(rows):
             return []
         mean = across[rows].mean(axis=1)
