@@ -61,8 +61,8 @@ def test_a_crate_on_a_lift_that_stops(tmp_path, mass, most):
             scene.path(part, times=(0.0, 0.1, 1.0), positions=((x, 0, z), (x, 0, z + 0.05), (x, 0, z + 0.05)))
 
     found = unexplained(tmp_path, build, "crate")
-    # Single precision knows the force of a hard row to eps D v / h, D 1e4 of the mass: of 1 kg 0.3 N, and of four rows in
-    # the 13 steps of a frame 2e-3 N s, as much as the limit.
+    # Single precision knows the force of a hard row to eps D v / h, D 1e4 of the mass: of 1 kg 0.3 N, and of four rows
+    # in the 13 steps of a frame 2e-3 N s, as much as the limit.
     assert found.max() < most, found.max()
 
 

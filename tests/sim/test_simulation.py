@@ -172,13 +172,13 @@ def test_time_step_is_chosen_from_the_stage(tmp_path):
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -1.0, 0.0, 1e-9])
 def test_a_time_step_that_is_none_is_refused(tmp_path, bad):
-    with pytest.raises(UserError, match="^time_step = .* s or more"):
+    with pytest.raises(UserError, match=r"^time_step = .* s or more"):
         Simulation(stage_of(tmp_path, tank), device="cpu", time_step=bad)
 
 
 @pytest.mark.parametrize("bad", [0, -2, 1.5, "2"])
 def test_a_count_of_worlds_that_is_none_is_refused(tmp_path, bad):
-    with pytest.raises(UserError, match="^world_count = .* whole number"):
+    with pytest.raises(UserError, match=r"^world_count = .* whole number"):
         Simulation(stage_of(tmp_path, tank), device="cpu", world_count=bad)
 
 

@@ -184,7 +184,8 @@ def _imports(stages: Sequence[Path], worlds: Sequence[World], processes: int) ->
 def _time_step(worlds: Sequence[World], config: Any | None, given: float | None) -> TimeStep:
     """The shortest of those that the worlds need."""
     limit = config.max_time_step if config else None
-    return min((choose_time_step(world, limit, given or world.time_step or None) for world in worlds), key=_length)
+    own = (choose_time_step(world, limit, world.time_step or None if given is None else given) for world in worlds)
+    return min(own, key=_length)
 
 
 def _length(step: TimeStep) -> float:

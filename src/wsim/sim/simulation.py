@@ -91,7 +91,7 @@ class Simulation:
         processes: int = 1,
     ) -> None:
         stages = [Path(stage)] if isinstance(stage, str | Path) else [Path(each) for each in stage]
-        if not isinstance(world_count, int) or world_count < 1:
+        if not isinstance(world_count, int | np.integer) or world_count < 1:
             raise UserError(f"world_count = {world_count!r}: give a whole number from 1")
         if len(stages) > 1 and world_count != 1:
             raise ValueError(f"world_count={world_count}: {len(stages)} stages are as many worlds; leave it out")

@@ -57,9 +57,9 @@ def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array) -> Array:
     barred = {int(together[body]) for body in np.flatnonzero(np.isin(groups, list(barred)))} | {0}
     found = np.zeros(model.nbody, dtype=int)
     for number in sorted(set(together.tolist()) - barred):
-        own = np.flatnonzero(together == number)
-        if len(own) > 1 or np.count_nonzero(model.dof_bodyid == own[0]) < FREE:
-            found[own] = found.max() + 1
+        parts = np.flatnonzero(together == number)
+        if len(parts) > 1 or np.count_nonzero(model.dof_bodyid == parts[0]) < FREE:
+            found[parts] = found.max() + 1
     return found
 
 
