@@ -58,6 +58,8 @@ class ContactLawWarp:
         self._mujoco, self._model, self._data, self._flight, self._config = mujoco, model, data, flight, config
         self._breaking, self._touching, self._drives = breaking, touching, drives
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
+        # With a guess: where something hits, one solution has none.
+        self._most = config.solutions_cuda - 1 if data.qpos.device.is_cuda else config.most_solutions
         groups = tied_groups(mujoco, host)
         moves_as_one = mechanisms(mujoco, host, groups, flight.stated) if smooth else np.zeros(host.nbody, dtype=int)
         owners = Owners(mujoco, host, moves_as_one)
@@ -106,7 +108,7 @@ class ContactLawWarp:
         self._aim(model, data)
         if self._drives:
             self._drives.aim(model, data)
-        wp.capture_while(self._seeking, self._seek_slip, model=model, data=data)
+        self._seek(model, data)
         if self._breaking is not None:
             warp.solve(model, data)
             self._breaking.give_way(model, data)
@@ -202,6 +204,14 @@ class ContactLawWarp:
             outputs=[efc.aref],
         )  # fmt: skip
 
+    def _seek(self, model: Any, data: Any) -> None:
+        """Solve until all worlds' slips are what they were guessed to be, on CUDA a given number of times."""
+        if not data.qpos.device.is_cuda:
+            wp.capture_while(self._seeking, self._seek_slip, model=model, data=data)
+            return
+        for _ in range(self._config.solutions_cuda):
+            self._seek_slip(model, data)
+
     def _seek_slip(self, model: Any, data: Any) -> None:
         """A solution, and from what slips it leaves what they are guessed to be."""
         config, efc, contact = self._config, data.efc, data.contact
@@ -223,7 +233,7 @@ class ContactLawWarp:
         wp.launch(
             settle,
             dim=data.nworld,
-            inputs=[config.solutions, config.most_solutions, config.tolerance, config.rough],
+            inputs=[config.solutions, self._most, config.tolerance, config.rough],
             outputs=[self._change, self._nearest, self._search, self._seeking],
         )
         wp.launch(
@@ -231,7 +241,7 @@ class ContactLawWarp:
             dim=data.naconmax,
             inputs=[
                 *touching, self._friction, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target,
-                self._blow, efc.D, efc.force, config.most_solutions, self._search,
+                self._blow, efc.D, efc.force, self._most, self._search,
             ],
             outputs=[contact.friction, self._slip, self._before, self._best, efc.aref],
         )  # fmt: skip
