@@ -76,6 +76,20 @@ def weigh(
 
 
 @wp.kernel(enable_backward=False)
+def go_on_from(
+    # Data in:
+    state: wp.array2d(dtype=int),
+    acceleration: wp.array2d(dtype=float),
+    # Data out:
+    start: wp.array2d(dtype=float),
+):
+    """Start the next solution from this one in the worlds that seek; others find again what they have, to the bit."""
+    world, k = wp.tid()
+    if state[world, OPEN] > 0:
+        start[world, k] = acceleration[world, k]
+
+
+@wp.kernel(enable_backward=False)
 def settle(
     # Data in:
     solutions: int,

@@ -9,7 +9,7 @@ import warp as wp
 
 from wsim.kernels.contact_law import aim, stop, strike, vec5
 from wsim.kernels.round_on_flat import settle_round_on_flat
-from wsim.kernels.slips import guess, settle, weigh
+from wsim.kernels.slips import go_on_from, guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesWarp
 from wsim.solvers.flight import Flight
@@ -216,7 +216,7 @@ class ContactLawWarp:
         """A solution, and from what slips it leaves what they are guessed to be."""
         config, efc, contact = self._config, data.efc, data.contact
         self._mujoco_warp.solve(model, data)
-        wp.copy(data.qacc_warmstart, data.qacc)
+        wp.launch(go_on_from, dim=data.qacc.shape, inputs=[self._search, data.qacc], outputs=[data.qacc_warmstart])
         self._sums.zero_()
         self._seeking.zero_()
         touching, h = [data.nacon, contact.worldid, contact.geom, contact.efc_address], model.opt.timestep
