@@ -18,7 +18,9 @@ NEVER = wp.constant(2**30)  # steps
 OPEN = wp.constant(0)  # of a world's search for the slip: whether it goes on,
 TURNS = wp.constant(1)  # solutions with a guess so far, -1 before one without friction,
 NEARER = wp.constant(2)  # whether the last of them is the nearest,
-BLOWS = wp.constant(3)  # and whether surfaces meet that bounce
+BLOWS = wp.constant(3)  # whether surfaces meet that bounce,
+HITS = wp.constant(4)  # whether this round of blows is one of the world's, and
+ROUNDS = wp.constant(5)  # how many it has had in this step
 vec5 = wp.types.vector(length=5, dtype=float)
 
 
@@ -38,20 +40,42 @@ def meets(distance: float, speed: float, restitution: float, h: float, threshold
 
 
 @wp.func
+def stops(goal: float, speed: float, threshold: float) -> bool:
+    """Whether a step ends an approach that a step of falling does not make."""
+    return speed < -threshold and goal - speed > threshold
+
+
+@wp.func
 def rebound(distance: float, speed: float, free: float, restitution: float, h: float, smooth: bool) -> float:
-    """Speed after the step in which surfaces meet, for which the energy of the fall comes back e^2 times [m/s].
+    """Speed right after surfaces meet, for which the energy of the fall comes back e^2 times [m/s].
 
     Steps of the first order follow the parabola on which the speed is v + a h / 2, others that of v: see `rebounds` of
-    `wsim.solvers.contact_law`.
+    `wsim.solvers.targets`.
     """
     half = wp.where(smooth, 0.0, 0.5 * free * h)
-    own = wp.where(smooth, free * h, half)
     fall = 2.0 * wp.max(distance, speed * h) * free  # no deeper than this approach has brought it
     before = speed + half
     squared = restitution * restitution * (before * before - fall) + fall
-    if smooth:
-        squared += own * own
-    return wp.max(wp.sqrt(wp.max(squared, 0.0)) + own, 0.0)
+    return wp.max(wp.sqrt(wp.max(squared, 0.0)) - half, 0.0)
+
+
+@wp.func
+def target_speed(
+    distance: float, speed: float, restitution: float, h: float, threshold: float, settle_time: float,
+    settle_speed: float,
+) -> float:  # fmt: skip
+    """Normal speed that a contact should end the step with after its blows: see `targets` of `wsim.solvers.targets`."""
+    goal = settling(distance, h, settle_time, settle_speed)
+    waits = restitution > 0.0 and distance > 0.0 and speed < -threshold
+    if waits and not meets(distance, speed, restitution, h, threshold):
+        return wp.min(goal, 4.0 * speed)
+    return goal
+
+
+@wp.func
+def closing(distance: float, h: float) -> float:
+    """Speed at which a contact may close after the blows of an instant, without a bounce [m/s]."""
+    return wp.where(distance > 0.0, -distance / h, 0.0)
 
 
 @wp.func
@@ -87,23 +111,6 @@ def bent(turn: wp.mat33, frame: wp.mat33, curvature: float, kind: int) -> float:
 
 
 @wp.func
-def waiting(
-    goal: float, distance: float, speed: float, touched: bool, threshold: float, h: float, settle_speed: float
-) -> float:
-    """Speed of a contact of what bounces, while its own blow is not now: it lets go of what is hit elsewhere."""
-    if speed < -threshold:
-        if distance > 0.0:
-            return wp.where(touched, -LATER, wp.min(goal, 4.0 * speed))
-    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
-    # what would be out of it by the step's end, or parts faster than overlaps do, is hit anew in the step after.
-    elif touched:
-        parts = distance + speed * h > 0.0 or speed > settle_speed + threshold
-        if parts or distance > -threshold * h:
-            return -LATER
-    return goal
-
-
-@wp.func
 def since_exact(since: wp.array2d(dtype=int), world: int, loose: int) -> int:
     """Steps of the first order since a body of a row among the loose ones went exactly; -1 goes as stated."""
     if loose >= 0:
@@ -123,7 +130,7 @@ def coefficients(pair: wp.vec3, bend: float, smallest: float) -> vec5:
 
 
 @wp.kernel(enable_backward=False)
-def strike(
+def look(
     # Data in:
     count: wp.array(dtype=int),
     contact_world: wp.array(dtype=int),
@@ -134,17 +141,17 @@ def strike(
     timestep: wp.array(dtype=float),
     bow: wp.array(dtype=float),
     geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
-    geom_group: wp.array(dtype=int),  # of bodies that joints tie together; 0 for the world
     law: wp.array3d(dtype=wp.vec3),
+    instant: bool,
+    most_rounds: int,
     threshold: float,
     settle_time: float,
     settle_speed: float,
     # Data out:
-    struck: wp.array2d(dtype=int),
-    state: wp.array2d(dtype=int),  # of each world's search for the slip
-    seeking: wp.array(dtype=int),  # whether any world seeks
+    state: wp.array2d(dtype=int),
+    seeking: wp.array(dtype=int),
 ):
-    """Mark the groups of bodies that something hits in this step, and the worlds in which something does."""
+    """Note which worlds have contacts in the step, or blows in this instant, and whether something hits."""
     k = wp.tid()
     if k >= count[0]:
         return
@@ -155,19 +162,23 @@ def strike(
     own = world % law.shape[0]
     restitution = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
-    distance, speed = contact_dist[k], velocity[world, row] + bow[k]
-    state[world, OPEN] = 1
-    seeking[0] = 1
-    if meets(distance, speed, restitution, h, threshold * h):
-        state[world, TURNS] = -1
-        state[world, BLOWS] = 1
-        for side in range(2):
-            group = geom_group[geom[side]]
-            if group > 0:
-                struck[world, group] = 1
-    elif restitution == 0.0 or distance <= 0.0:  # what bounces waits above the surface
-        if speed < -threshold * h and settling(distance, h, settle_time, settle_speed) - speed > threshold * h:
+    distance, speed, least = contact_dist[k], velocity[world, row] + bow[k], threshold * h
+    if not instant:
+        state[world, OPEN] = 1
+        seeking[0] = 1
+        if stops(target_speed(distance, speed, restitution, h, least, settle_time, settle_speed), speed, least):
             state[world, TURNS] = -1
+        return
+    bounces = meets(distance, speed, restitution, h, least)
+    if not bounces and (restitution > 0.0 or not stops(closing(distance, h), speed, least)):
+        return
+    if state[world, ROUNDS] < most_rounds:
+        state[world, OPEN] = 1
+        state[world, HITS] = 1
+        state[world, TURNS] = -1
+        seeking[0] = 1
+        if bounces:
+            state[world, BLOWS] = 1
 
 
 @wp.kernel(enable_backward=False)
@@ -184,14 +195,13 @@ def aim(
     bow: wp.array(dtype=float),  # speed that the gap loses in a step to curvature
     geom_class: wp.array2d(dtype=int),  # of all worlds alike, or of each; so the law and the curvature
     geom_body: wp.array(dtype=int),
-    geom_group: wp.array(dtype=int),
     law: wp.array3d(dtype=wp.vec3),
     geom_kind: wp.array(dtype=int),
     curvature: wp.array2d(dtype=float),
     geom_turn: wp.array2d(dtype=wp.mat33),
     contact_frame: wp.array(dtype=wp.mat33),
-    struck: wp.array2d(dtype=int),
     state: wp.array2d(dtype=int),
+    instant: bool,  # the blows of an instant, or the step after them
     free: wp.array2d(dtype=float),  # acceleration without constraints
     body_mechanism: wp.array(dtype=int),
     touched_for: wp.array2d(dtype=int),  # a mechanism's steps of the first order since its last smooth one
@@ -228,22 +238,23 @@ def aim(
     pair = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]]
     h = timestep[world % timestep.shape[0]]
     distance, speed = contact_dist[k], velocity[world, row] + bow[k]
-    goal = settling(distance, h, settle_time, settle_speed)
     blow[k] = 0.0
-    if pair[1] > 0.0:
-        touched = struck[world, geom_group[geom[0]]] + struck[world, geom_group[geom[1]]]
-        if meets(distance, speed, pair[1], h, threshold * h):
-            pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
-            rough = int(0)
-            for side in range(2):
-                body = geom_body[geom[side]]
-                own_since = since_exact(since, world, loose[body])
-                rough = wp.max(rough, wp.min(touched_for[world, body_mechanism[body]], own_since))
-            smooth = float(rough) * wp.abs(pull) * h < wp.abs(speed)
-            goal = rebound(distance, speed, pull, pair[1], h, smooth)
-            blow[k] = 1.0
-        else:
-            goal = waiting(goal, distance, speed, touched > 0, threshold * h, h, settle_speed)
+    if not instant:
+        goal = target_speed(distance, speed, pair[1], h, threshold * h, settle_time, settle_speed)
+    elif state[world, HITS] == 0:
+        return
+    elif meets(distance, speed, pair[1], h, threshold * h):
+        pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
+        rough = int(0)
+        for side in range(2):
+            body = geom_body[geom[side]]
+            own_since = since_exact(since, world, loose[body])
+            rough = wp.max(rough, wp.min(touched_for[world, body_mechanism[body]], own_since))
+        smooth = float(rough) * wp.abs(pull) * h < wp.abs(speed)
+        goal = rebound(distance, speed, pull, pair[1], h, smooth)
+        blow[k] = 1.0
+    else:  # what bounces and does not meet now takes no part: it is met in the next round
+        goal = wp.where(pair[1] > 0.0, -LATER, closing(distance, h))
     goal += bow[k]
     target[k] = goal
 

@@ -41,6 +41,10 @@ class ContactConfig:
     """Speed at which it fades at most [m/s]."""
     threshold: float = 2 * 9.81
     """A slower approach than this times the step is no blow [m/s^2]: gravity alone makes such speeds in a step."""
+    most_blows: int = 100
+    """Rounds of blows in a step at most; what still hits then comes to rest on what it hits."""
+    blows_cuda: int = 2
+    """The same on CUDA, always: see `solutions_cuda`."""
     solutions: int = 3
     """Solutions of a step after which the slip need only be known roughly."""
     most_solutions: int = 20

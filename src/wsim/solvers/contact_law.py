@@ -31,10 +31,12 @@ the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from wsim.solvers.blows import BlowsC, Contacts
 from wsim.solvers.breaking import BreakingC
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC
@@ -112,6 +114,7 @@ class ContactLawC:
         moves_as_one = mechanisms(mujoco, model, self._groups, flight.stated) if smooth else np.zeros(model.nbody, int)
         self.owners = Owners(mujoco, model, moves_as_one)
         self.smooth_steps = SmoothStepsC(mujoco, model, self.owners)
+        self.blows = BlowsC(mujoco, model, config, self._aim_others)
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
@@ -121,12 +124,15 @@ class ContactLawC:
         mujoco.mj_checkVel(model, data)
         touching = self._forward(data)
         while self.breaking is not None and self.breaking.give_way(data):
+            self.blows.undo(data)
+            self.flight.keep()
             touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
         whole = self.smooth and not touching
         free = self.smooth_steps.free(data, whole)
         if self.ties is not None:
             self.ties.add(data, free)
+        self.blows.take_from(data)
         if whole:
             self.smooth_steps.step(data)
         else:
@@ -142,12 +148,32 @@ class ContactLawC:
             self._tell_efforts(data)
 
     def _forward(self, data: Any) -> bool:
-        """Accelerations at the step's start; whether a contact, a stop or dry friction may be among their causes."""
-        mujoco, model = self.mujoco, self.model
+        """The blows of the step, and accelerations after them; whether a contact, a stop or dry friction may be among
+        their causes."""
+        self.blows.begin()
         self._position(data)
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
             self.drives.choose(data, are_rows=touching or not self.smooth)
+        self._accelerate(data, touching)
+        contacts = self._contacts(data)
+        if contacts is None:
+            self._aim_others(data)
+            self.mujoco.mj_fwdConstraint(self.model, data)
+            self.flight.ease(np.zeros((0, 2), dtype=int))
+            return touching
+        rows = self.blows.rows(data, contacts)
+        if self.blows.strike(data, contacts, rows, partial(self._flies_smoothly, contacts.bodies)):
+            self.flight.keep()
+            self._accelerate(data, touching)
+            rows = self.blows.rows(data, contacts)
+        self._solve_contacts(data, contacts, rows)
+        self.blows.add_to(data)
+        return touching
+
+    def _accelerate(self, data: Any, touching: bool) -> None:
+        """Accelerations without constraints, at the present velocities."""
+        mujoco, model = self.mujoco, self.model
         mujoco.mj_fwdVelocity(model, data)
         if touching or not self.smooth:
             self.flight.tumble(model.opt.timestep)
@@ -155,8 +181,6 @@ class ContactLawC:
         if self.drives is not None:
             self.drives.take_over(data)
         mujoco.mj_fwdAcceleration(model, data)
-        self._solve(data)
-        return touching
 
     def _implicit(self, data: Any) -> None:
         """The step of the first order. Of drives' damping it knows already: their rows were solved with it."""
@@ -191,8 +215,8 @@ class ContactLawC:
         mujoco.mj_fwdVelocity(model, data)
         mujoco.mj_fwdActuation(model, data)
 
-    def _solve(self, data: Any) -> None:
-        """Constraint forces."""
+    def _aim_others(self, data: Any) -> None:
+        """Ask what is no contact for the speeds that it should have."""
         kinds = data.efc_type
         stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
         h = self.model.opt.timestep
@@ -205,37 +229,39 @@ class ContactLawC:
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
         rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
-        first = data.contact.efc_address[: data.ncon]
-        chosen = np.flatnonzero(first >= 0)
-        if len(chosen):
-            self._solve_contacts(data, chosen, h)
-        else:
-            self.mujoco.mj_fwdConstraint(self.model, data)
-            self.flight.ease(chosen)
 
-    def _solve_contacts(self, data: Any, chosen: Array, h: float) -> None:
-        model, config = self.model, self.config
+    def _contacts(self, data: Any) -> Contacts | None:
+        """The contacts that have rows, if there are any."""
+        chosen = np.flatnonzero(data.contact.efc_address[: data.ncon] >= 0)
+        if not len(chosen):
+            return None
         geoms = data.contact.geom[chosen]
-        bodies = model.geom_bodyid[geoms]
         classes = self.classes[geoms]
         law = self.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
-        rows = ContactRows(self.mujoco, model, data, chosen, friction, config)
         if self.rolls:
-            self._weigh_rows(data, rows.normal, data.contact.dim[chosen], friction)
-        distance, bow, free = data.contact.dist[chosen], self._bow[chosen], rows.pull()
-        speed = data.efc_vel[rows.normal] + bow
+            self._weigh_rows(data, data.contact.efc_address[chosen], data.contact.dim[chosen], friction)
+        bodies, distance = self.model.geom_bodyid[geoms], data.contact.dist[chosen]
+        return Contacts(chosen, bodies, friction, law[:, 1], distance, self._bow[chosen])
+
+    def _flies_smoothly(self, bodies: Array, speed: Array, free: Array) -> Array:
+        """Whether what meets at these speeds has not gone by the first order all the fall, (contacts,)."""
         since = self.flight.since_exact(bodies)
         if self.smooth:
             since = np.minimum(since, self.smooth_steps.since[self.owners.of_body[bodies]])
-        smooth = since.max(axis=1) * np.abs(free) * h < np.abs(speed - bow)  # not by the first order all the fall
-        goal, blow = targets(distance, speed, free, law[:, 1], self._groups[bodies], h, config, smooth)
-        rows.aim(goal + bow, blow)
-        hits = bool((blow | stopped(goal, speed, h, config)).any())
-        slip = rows.left_without_friction() if hits else rows.slip
-        seek_slip(rows.left, slip, bodies, bool(blow.any()), config)
+        return np.asarray(since.max(axis=1) * np.abs(free) * self.model.opt.timestep < np.abs(speed))
+
+    def _solve_contacts(self, data: Any, contacts: Contacts, rows: ContactRows) -> None:
+        """Constraint forces after the blows, with the slip that they leave."""
+        self._aim_others(data)
+        h, config = self.model.opt.timestep, self.config
+        speed = data.efc_vel[rows.normal] + contacts.bow
+        goal = targets(contacts.distance, speed, contacts.restitution, h, config)
+        rows.aim(goal + contacts.bow, np.zeros(len(goal), dtype=bool))
+        slip = rows.left_without_friction() if stopped(goal, speed, h, config).any() else rows.slip
+        seek_slip(rows.left, slip, contacts.bodies, False, config)
         jolted = (rows.push > 0.0) & (np.abs(rows.acceleration) > config.steady)
-        self.flight.ease(bodies[jolted])
+        self.flight.ease(contacts.bodies[jolted])
 
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
         """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""

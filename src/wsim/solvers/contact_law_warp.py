@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from wsim.kernels.contact_law import aim, stop, strike, vec5
+from wsim.kernels.blows import begin_round, count_round, lose_finite, silence
+from wsim.kernels.contact_law import ROUNDS, aim, look, stop, vec5
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.kernels.slips import go_on_from, guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
@@ -67,8 +68,6 @@ class ContactLawWarp:
             self._geom_class = wp.array(surfaces.classes, dtype=int)
             self._law = wp.array(surfaces.law, dtype=wp.vec3)
             self._curvature = wp.array(surfaces.curvature, dtype=float)
-            self._geom_group = wp.array(groups[host.geom_bodyid], dtype=int)
-            self._struck = wp.zeros((data.nworld, int(groups.max()) + 1), dtype=int)
             self._target = wp.zeros(data.naconmax, dtype=float)
             self._blow = wp.zeros(data.naconmax, dtype=float)
             self._mechanism = wp.array(moves_as_one, dtype=int)
@@ -79,7 +78,9 @@ class ContactLawWarp:
             self._best = wp.zeros(data.naconmax, dtype=float)
             self._friction = wp.zeros(data.naconmax, dtype=vec5)
             self._sums = wp.zeros((data.nworld, host.nbody), dtype=wp.vec2)
-            self._search = wp.zeros((data.nworld, 4), dtype=int)
+            self._search = wp.zeros((data.nworld, ROUNDS + 1), dtype=int)
+            self._struck = wp.zeros(1, dtype=int)
+            self._free, self._warm = wp.empty_like(data.qacc_smooth), wp.empty_like(data.qacc_warmstart)
             self._change = wp.zeros(data.nworld, dtype=float)
             self._nearest = wp.zeros(data.nworld, dtype=float)
             self._seeking = wp.zeros(1, dtype=int)
@@ -99,19 +100,13 @@ class ContactLawWarp:
         if self._ropes:
             self._ropes.look_back(model, data)
         warp.fwd_position(model, data)
-        warp.fwd_velocity(model, data)
-        self._flight.tumble(h)
-        warp.fwd_actuation(model, data)
-        if self._drives:
-            self._drives.take_over(data)
-        warp.fwd_acceleration(model, data)
-        self._aim(model, data)
+        self._accelerate(model, data, h)
+        self._strike(model, data, h)
+        self._aim(model, data, instant=False)
         if self._drives:
             self._drives.aim(model, data)
         self._seek(model, data)
-        if self._breaking is not None:
-            warp.solve(model, data)
-            self._breaking.give_way(model, data)
+        self._break(model, data)
         self._solve_last(model, data)
         if self.impulses is not None:
             self.impulses.add(data, h)
@@ -122,6 +117,59 @@ class ContactLawWarp:
             self._smooth_steps.after(model, data, self._breaking.anew if self._breaking else None)
         if model.nu:
             self._tell_efforts(model, data)
+
+    def _accelerate(self, model: Any, data: Any, h: float) -> None:
+        """Accelerations without constraints, at the present velocities."""
+        warp = self._mujoco_warp
+        warp.fwd_velocity(model, data)
+        self._flight.tumble(h)
+        warp.fwd_actuation(model, data)
+        if self._drives:
+            self._drives.take_over(data)
+        warp.fwd_acceleration(model, data)
+
+    def _strike(self, model: Any, data: Any, h: float) -> None:
+        """Give worlds the velocities after the blows of this step, and the accelerations there."""
+        wp.copy(self._free, data.qacc_smooth)
+        wp.copy(self._warm, data.qacc_warmstart)
+        self._struck.zero_()
+        self._search.zero_()
+        self._look(model, data, instant=True)
+        if data.qpos.device.is_cuda:
+            for _ in range(self._config.blows_cuda):
+                self._round(model, data, h)
+        else:
+            wp.capture_while(self._seeking, self._round, model=model, data=data, h=h)
+        wp.capture_if(self._struck, self._go_on, model=model, data=data, h=h)
+
+    def _round(self, model: Any, data: Any, h: float) -> None:
+        """One round of blows, of each world that has one, and a look at what they hit."""
+        search, efc = self._search, data.efc
+        wp.launch(count_round, dim=data.nworld, outputs=[search, self._struck])
+        data.qfrc_smooth.zero_()
+        data.qacc_smooth.zero_()
+        rows = (data.nworld, data.njmax)
+        wp.launch(lose_finite, dim=rows, inputs=[data.nefc, efc.type], outputs=[efc.frictionloss])
+        self._aim(model, data, instant=True)
+        self._seek(model, data)
+        wp.launch(silence, dim=rows, inputs=[search], outputs=[efc.force])
+        self._break(model, data)
+        self._solve_last(model, data)
+        wp.launch(silence, dim=rows, inputs=[search], outputs=[efc.force])
+        if self.impulses is not None:
+            self.impulses.add(data, h)
+        self._flight.jump(search, model.opt.timestep)
+        self._mujoco_warp.make_constraint(model, data)
+        self._look(model, data, instant=True)
+
+    def _go_on(self, model: Any, data: Any, h: float) -> None:
+        wp.copy(data.qacc_warmstart, self._warm)
+        self._accelerate(model, data, h)
+
+    def _break(self, model: Any, data: Any) -> None:
+        if self._breaking is not None:
+            self._mujoco_warp.solve(model, data)
+            self._breaking.give_way(model, data)
 
     def _mend_contacts(self, model: Any, data: Any) -> None:
         """After MuJoCo Warp's search for contacts: those that it finds only nearly, and those that it cannot know."""
@@ -164,31 +212,36 @@ class ContactLawWarp:
         warp.fwd_velocity(model, data)
         warp.fwd_actuation(model, data)
 
-    def _aim(self, model: Any, data: Any) -> None:
-        config, efc, contact, flight = self._config, data.efc, data.contact, self._flight
-        h = model.opt.timestep
-        self._struck.zero_()
-        self._search.zero_()
-        self._seeking.zero_()
-        touching = [data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address]
+    def _look(self, model: Any, data: Any, instant: bool) -> None:
+        """Which worlds have contacts in the step, or blows in this instant: the search for their slips begins."""
+        config, contact = self._config, data.contact
+        wp.launch(begin_round, dim=data.nworld, outputs=[self._search, self._seeking])
         wp.launch(
-            strike,
+            look,
             dim=data.naconmax,
             inputs=[
-                *touching, efc.vel, h, self._bow, self._geom_class, self._geom_group, self._law,
+                data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address, data.efc.vel,
+                model.opt.timestep, self._bow, self._geom_class, self._law, instant, config.most_blows,
                 config.threshold, config.settle_time, config.settle_speed,
             ],
-            outputs=[self._struck, self._search, self._seeking],
+            outputs=[self._search, self._seeking],
         )  # fmt: skip
+
+    def _aim(self, model: Any, data: Any, instant: bool) -> None:
+        """Ask for the speeds after the blows of an `instant`, or at the step's end."""
+        config, efc, contact, flight = self._config, data.efc, data.contact, self._flight
+        h = model.opt.timestep
+        if not instant:
+            self._look(model, data, instant)
         wp.launch(
             aim,
             dim=data.naconmax,
             inputs=[
-                *touching, contact.dim, efc.vel, h, self._bow, self._geom_class, model.geom_bodyid,
-                self._geom_group, self._law, model.geom_type, self._curvature, data.geom_xmat, contact.frame,
-                self._struck, self._search, data.qacc_smooth, self._mechanism, self._touched_for, flight.row,
-                flight.since, *self._jacobian(model, efc), config.threshold, config.settle_time, config.settle_speed,
-                config.smallest_friction,
+                data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address, contact.dim, efc.vel, h,
+                self._bow, self._geom_class, model.geom_bodyid, self._law, model.geom_type, self._curvature,
+                data.geom_xmat, contact.frame, self._search, instant, self._free, self._mechanism, self._touched_for,
+                flight.row, flight.since, *self._jacobian(model, efc), config.threshold, config.settle_time,
+                config.settle_speed, config.smallest_friction,
             ],
             outputs=[
                 self._friction, contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref,

@@ -18,6 +18,7 @@ import newton
 import numpy as np
 import warp as wp
 
+from wsim.kernels.blows import jump
 from wsim.kernels.flight import fly, jolt, keep, recall, tumble
 
 Array = np.ndarray
@@ -132,6 +133,16 @@ class Flight:
             ],
             outputs=[self._steady],
         )  # fmt: skip
+
+    def jump(self, search: Any, timestep: Any) -> None:
+        """Take in Warp the velocities after a round of blows, in the worlds that it is one of."""
+        wp.launch(
+            jump,
+            dim=self._qvel.shape,
+            inputs=[search, timestep, self._qacc],
+            outputs=[self._true[1], self._qvel],
+            device=self.model.device,
+        )
 
     def tumble(self, h: float) -> None:
         """Mend the bias of loose bodies, between what hangs on velocities and the accelerations."""

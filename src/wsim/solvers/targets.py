@@ -16,14 +16,14 @@ def settling(distance: Array, h: float, config: ContactConfig) -> Array:
 
 
 def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: float, smooth: Array) -> Array:
-    """Speeds after the step in which surfaces meet, for which the energy of the fall comes back e² times [m/s].
+    """Speeds right after surfaces meet, for which the energy of the fall comes back e² times [m/s].
 
     Steps of the first order, v += a h, z += v h, follow the parabola on which the speed is v + a h / 2: they keep
-    v² + a h v - 2 a z. Others follow that of v. The step of the blow itself goes on by h times the speed after it.
+    v² + a h v - 2 a z. Others follow that of v.
 
     Args:
         distance: Gaps [m].
-        speed: Normal speeds at the step's start [m/s].
+        speed: Normal speeds before [m/s].
         free: Normal accelerations without constraints [m/s^2].
         restitution: Of each pair.
         h: Time step [s].
@@ -31,52 +31,63 @@ def rebounds(distance: Array, speed: Array, free: Array, restitution: Array, h: 
     """
     half = np.where(smooth, 0.0, 0.5 * free * h)
     fall = 2.0 * np.maximum(distance, speed * h) * free  # no deeper than this approach has brought it
-    own = np.where(smooth, free * h, half)
-    squared = restitution**2 * ((speed + half) ** 2 - fall) + fall + np.where(smooth, own**2, 0.0)
-    return np.maximum(np.sqrt(np.maximum(squared, 0.0)) + own, 0.0)
+    squared = restitution**2 * ((speed + half) ** 2 - fall) + fall
+    return np.maximum(np.sqrt(np.maximum(squared, 0.0)) - half, 0.0)
 
 
-def targets(
+def after_blows(
     distance: Array,
     speed: Array,
     free: Array,
     restitution: Array,
-    groups: Array,
     h: float,
     config: ContactConfig,
     smooth: Array | bool = False,
-) -> tuple[Array, Array]:
-    """Normal speeds that contacts should end a step of `h` [s] with [m/s], and which of them are blows, (contacts,).
+) -> tuple[Array, Array, Array]:
+    """Normal speeds that contacts should have after the blows of an instant [m/s], which of them are blows of what
+    bounces, and which end an approach at all, (contacts,) each.
+
+    What bounces and does not meet now takes no part: what a blow sends against it meets it in the next round.
 
     Args:
         distance: Gaps, negative where shapes overlap [m].
-        speed: Normal speeds at the step's start, negative where they approach [m/s].
+        speed: Normal speeds before, negative where they approach [m/s].
         free: Normal accelerations without constraints [m/s^2].
         restitution: Of each pair.
-        groups: Of bodies that joints tie together, (contacts, 2), 0 for the world.
         h: Time step [s].
         config: How the law is applied.
         smooth: Whether bodies fly by steps of a higher order.
     """
-    goal = settling(distance, h, config)
     bouncy = restitution > 0.0
-    if not bouncy.any():
-        return goal, bouncy
-    after = distance + speed * h
-    fast = bouncy & (speed < -config.threshold * h)
-    meets = fast & (after < 0.0) & (-after > distance)
+    closes = np.where(distance > 0.0, -distance / h, 0.0)
+    meets = bouncy & _meets(distance, speed, h, config)
     rebound = rebounds(distance, speed, free, restitution, h, np.broadcast_to(smooth, speed.shape))
-    waits = fast & ~meets & (distance > 0.0)
-    struck = np.zeros(int(groups.max()) + 1, dtype=bool)
-    struck[groups[meets]] = True
-    struck[0] = False
-    # What overlaps by more than a step of falling brings is held, or a stack that is shaken would sink into itself; but
-    # what would be out of it by the step's end, or parts faster than overlaps do, is hit anew in the step after.
-    parts = (after > 0.0) | (speed > config.settle_speed + config.threshold * h)
-    light = parts | (distance > -config.threshold * h * h)
-    later = bouncy & (waits | (~fast & light)) & struck[groups].any(axis=1)
-    goal = np.where(waits, np.minimum(goal, 4.0 * speed), goal)
-    return np.where(meets, rebound, np.where(later, -LATER, goal)), meets
+    goal = np.where(meets, rebound, np.where(bouncy, -LATER, closes))
+    return goal, meets, meets | (~bouncy & stopped(closes, speed, h, config))
+
+
+def _meets(distance: Array, speed: Array, h: float, config: ContactConfig) -> Array:
+    """Whether surfaces meet at this step's start and not at its end: which is nearer, (contacts,)."""
+    after = distance + speed * h
+    return (speed < -config.threshold * h) & (after < 0.0) & (-after > distance)
+
+
+def targets(distance: Array, speed: Array, restitution: Array, h: float, config: ContactConfig) -> Array:
+    """Normal speeds that contacts should end a step of `h` [s] with after its blows [m/s], (contacts,).
+
+    What bounces and comes near lets itself be met nearer to the surface, unless it does meet.
+
+    Args:
+        distance: Gaps, negative where shapes overlap [m].
+        speed: Normal speeds at the step's start, negative where they approach [m/s].
+        restitution: Of each pair.
+        h: Time step [s].
+        config: How the law is applied.
+    """
+    goal = settling(distance, h, config)
+    waits = (restitution > 0.0) & (distance > 0.0) & (speed < -config.threshold * h)
+    waits &= ~_meets(distance, speed, h, config)
+    return np.where(waits, np.minimum(goal, 4.0 * speed), goal)
 
 
 def stopped(goal: Array, speed: Array, h: float, config: ContactConfig) -> Array:

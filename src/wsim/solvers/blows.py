@@ -1,0 +1,132 @@
+"""The blows of a step: impulses at the pose of its start, before anything moves.
+
+What is hit passes the blow on at once: each round is a solution for the velocities after the blows of an instant, and
+what they send against something else is hit in the next one. A row of balls that touch thus hands a blow through in one
+step, and none moves into its neighbour meanwhile. Forces that are finite, gravity, springs, drives and dry friction
+in joints, give nothing in no time. The step then goes on from the velocities after its last blow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wsim.solvers.contact_config import ContactConfig
+from wsim.solvers.contact_rows import ContactRows
+from wsim.solvers.slips import seek_slip
+from wsim.solvers.targets import after_blows
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """The contacts of a pose that have rows."""
+
+    chosen: Array  # (contacts,), their numbers
+    bodies: Array  # (contacts, 2)
+    friction: Array  # (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]
+    restitution: Array  # (contacts,)
+    distance: Array  # [m]
+    bow: Array  # speed that the gap loses in a step to curvature [m/s]
+
+
+class BlowsC:
+    """Rounds of blows in MuJoCo in C.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model.
+        config: How the law is applied.
+        aim_others: Asks what is no contact for the speeds that it should have.
+
+    Attributes:
+        struck: Whether something was in this step.
+        jump: Change of the velocities by its blows [m/s or rad/s], (nv,).
+    """
+
+    def __init__(self, mujoco: Any, model: Any, config: ContactConfig, aim_others: Callable[[Any], None]) -> None:
+        self._mujoco, self._model, self._config, self._aim_others = mujoco, model, config, aim_others
+        self.begin()
+
+    def begin(self) -> None:
+        """A step begins, in which nothing is struck yet."""
+        self.struck, self.jump = False, np.zeros(self._model.nv)
+
+    def strike(self, data: Any, contacts: Contacts, rows: ContactRows, smooth: Callable[[Array, Array], Array]) -> bool:
+        """Give `data` the velocities after this step's blows; whether there are any.
+
+        Args:
+            data: MuJoCo's, whose accelerations without constraints are known.
+            contacts: Of its pose.
+            rows: Of these.
+            smooth: Whether bodies fly by a higher order, from normal speeds and accelerations without constraints.
+        """
+        self._forces, rounds = np.zeros(data.nefc), 0
+        start, free = data.qvel.copy(), rows.pull()
+        is_smooth = smooth(data.efc_vel[rows.normal], free)
+        while rounds < self._config.most_blows:
+            speed = data.efc_vel[rows.normal] + contacts.bow
+            goal, blow, ends = after_blows(
+                contacts.distance, speed, free, contacts.restitution, self._model.opt.timestep, self._config, is_smooth
+            )
+            if not ends.any():
+                break
+            if rounds == 0:
+                self._without_finite_forces(data)
+            self._aim_others(data)
+            rows.aim(goal + contacts.bow, blow)
+            seek_slip(rows.left, rows.left_without_friction(), contacts.bodies, bool(blow.any()), self._config)
+            self._advance(data)
+            rounds, rows = rounds + 1, self.rows(data, contacts)
+        self.struck = rounds > 0
+        if self.struck:
+            self.jump = data.qvel - start
+            self._with_finite_forces(data)
+        return self.struck
+
+    def undo(self, data: Any) -> None:
+        """Go back to the velocities before the blows of this step."""
+        if self.struck:
+            data.qvel[:] -= self.jump
+
+    def add_to(self, data: Any) -> None:
+        """Add what the blows gave to the forces and accelerations of the step, which are recorded together."""
+        if self.struck:
+            self._smooth = data.qacc.copy()
+            data.efc_force[:] += self._forces
+            data.qacc[:] += self.jump / self._model.opt.timestep
+
+    def take_from(self, data: Any) -> None:
+        """Leave `data` the accelerations after the blows."""
+        if self.struck:
+            data.qacc[:] = self._smooth
+
+    def rows(self, data: Any, contacts: Contacts) -> ContactRows:
+        """The rows of some contacts, at the present velocities."""
+        return ContactRows(self._mujoco, self._model, data, contacts.chosen, contacts.friction, self._config)
+
+    def _advance(self, data: Any) -> None:
+        """Take the velocities of a round, and what they make of the rows."""
+        h = self._model.opt.timestep
+        self._forces += data.efc_force
+        data.qvel[:] += h * data.qacc
+        self._mujoco.mj_fwdVelocity(self._model, data)
+
+    def _without_finite_forces(self, data: Any) -> None:
+        self._warm, self._loss = data.qacc_warmstart.copy(), data.efc_frictionloss.copy()
+        data.qfrc_smooth[:], data.qacc_smooth[:] = 0.0, 0.0
+        self._lose(data, np.zeros(data.nefc))
+
+    def _with_finite_forces(self, data: Any) -> None:
+        data.qacc_warmstart[:] = self._warm
+        self._lose(data, self._loss)
+
+    @staticmethod
+    def _lose(data: Any, loss: Array) -> None:
+        data.efc_frictionloss[:] = loss
+        if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+            data.iefc_frictionloss[:] = loss[data.map_iefc2efc]
