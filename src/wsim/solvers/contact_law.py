@@ -11,10 +11,10 @@ shoves off slips on the floor and not on the plough; from rest, without any slip
 What a row should reach stands in its reference acceleration, (target - velocity) / h, with an impedance near one.
 A contact is a row before the surfaces touch: it may close its gap in the step and not more (Stewart and Trinkle 1996).
 Where the two bounce, the step that ends farther below than it starts above is the one in which they meet; the speed
-after it is that with which a body of the same acceleration comes back through the surface at e times its speed. What
-MuJoCo's regularisation gives way under a blow is added to what is asked for, or each would lose 1e-4 of its speed.
-A body that is hit, with what hangs on it by joints, lets go of what it touches for that step, so that a blow goes
-through a row of bodies one by one, as in Newton's cradle, and all keep their energy. Friction that turns a slip round
+after the blow is that with which a body of the same acceleration comes back through the surface at e times its speed.
+What MuJoCo's regularisation gives way under a blow is added to what is asked for, or each would lose 1e-4 of its speed.
+Blows are impulses before the step, in rounds (`wsim.solvers.blows`), so that one goes through a row of bodies one by
+one, as in Newton's cradle, and all keep their energy. Friction that turns a slip round
 gives what surfaces stored: so much less is left of the rebound (`friction_pays` of `wsim.solvers.targets`).
 
 What rolls is resisted by a torque of rho times its push, rho = C / (1/R1 + 1/R2): C is the pair's coefficient, R the
