@@ -1,5 +1,10 @@
 """Tests marked `cuda` are skipped where there is no CUDA device, and none hangs on the clock. Long files come first."""
 
+# ruff: noqa: E402
+from wsim.threads import one_thread
+
+one_thread()  # before anything loads NumPy: the tests have a process for each core
+
 from pathlib import Path
 
 import pytest
