@@ -22,9 +22,9 @@ settings.load_profile("any_machine")
 # A worker takes a file at a time (`--dist loadfile`): a long one that is taken last leaves the other cores idle. Left
 # to itself xdist begins with the files of most tests, which are quick ones: `make test` has it keep this order.
 LONG = (
-    "loop/test_transcripts.py", "benchmarks/test_sph", "program/test_hostile.py", "sim/", "test_examples", "cli/",
-    "sweep/", "runs/", "mcp/", "judge/checks/test_heaps.py", "loop/", "solvers/", "kernels/", "assets/test_standing.py",
-    "judge/", "rules/", "tools/", "agents/", "benchmarks/", "program/",
+    "loop/test_transcripts.py", "benchmarks/test_sph", "program/test_hostile.py", "skills/", "sim/", "test_examples",
+    "cli/", "sweep/", "runs/", "mcp/", "judge/checks/test_heaps.py", "loop/", "solvers/", "kernels/",
+    "assets/test_standing.py", "judge/", "rules/", "tools/", "agents/", "benchmarks/", "program/",
 )  # fmt: skip
 HERE = Path(__file__).parent
 
