@@ -45,8 +45,8 @@ class ContactConfig:
     """Solutions of a step after which the slip need only be known roughly."""
     most_solutions: int = 20
     """Solutions of a step at most."""
-    solutions_cuda: int = 6
-    """The same on CUDA, always: MuJoCo Warp's solution allocates, which a loop in a CUDA graph may not."""
+    solutions_unrolled: int = 6
+    """The same, always, where CUDA graphs know no loops: drivers before 12.4."""
     tolerance: float = 3e-4
     """Change of the slip, times friction, below which it stays [m/s]."""
     rough: float = 3e-3

@@ -222,6 +222,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _prepare_warp(self, gives: Array) -> None:
         """What of MuJoCo Warp's model the law needs otherwise than Newton gives it."""
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
+        if self.model.device.is_cuda and not wp.is_conditional_graph_supported():
+            self.mjw_model.opt.graph_conditional = False
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
         # the contacts of a box that slides, on an H200 in one step of some 300.
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
