@@ -228,8 +228,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         # the contacts of a box that slides, on an H200 in one step of some 300.
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         ill = soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config)
-        if ill or self.mj_model.nv > self.contact_config.most_factored:
+        too_many = self.mj_model.nv > self.contact_config.most_factored
+        if ill or too_many:
             self.mjw_model.opt.solver = int(self._mujoco.mjtSolver.mjSOL_CG)
+        if too_many:
+            self.mjw_model.opt.iterations = self.contact_config.most_conjugate
         self._tell_warp("geom_solimp")
         weights = self.mjw_model.body_invweight0.numpy()[: len(gives)]
         weights[..., 0] = gives
