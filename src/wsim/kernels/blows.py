@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from wsim.kernels.contact_law import HITS, ROUNDS, RUBBING
+from wsim.kernels.contact_law import BLOWS, ENDED, HITS, ROUNDS, RUBBING
 
 DRIVEN = wp.constant(2)  # mjtConstraint: mjCNSTR_FRICTION_TENDON
 
@@ -30,6 +30,7 @@ def count_round(
     world = wp.tid()
     if state[world, HITS] > 0:
         state[world, ROUNDS] = state[world, ROUNDS] + 1
+        state[world, ENDED] = 1 - state[world, BLOWS]
         struck[0] = 1
 
 

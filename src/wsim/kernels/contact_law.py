@@ -20,7 +20,8 @@ TURNS = wp.constant(1)  # solutions with a guess so far, -1 before one without f
 NEARER = wp.constant(2)  # whether the last of them is the nearest,
 BLOWS = wp.constant(3)  # whether surfaces meet that bounce,
 HITS = wp.constant(4)  # whether this round of blows is one of the world's, and
-ROUNDS = wp.constant(5)  # how many it has had in this step
+ROUNDS = wp.constant(5)  # how many it has had in this step,
+ENDED = wp.constant(6)  # and whether the last of them ended all approaches
 vec5 = wp.types.vector(length=5, dtype=float)
 
 
@@ -70,12 +71,6 @@ def target_speed(
     if waits and not meets(distance, speed, restitution, h, threshold):
         return wp.min(goal, 4.0 * speed)
     return goal
-
-
-@wp.func
-def closing(distance: float, h: float) -> float:
-    """Speed at which a contact may close after the blows of an instant, without a bounce [m/s]."""
-    return wp.where(distance > 0.0, -distance / h, 0.0)
 
 
 @wp.func
@@ -144,6 +139,7 @@ def look(
     law: wp.array3d(dtype=wp.vec3),
     instant: bool,
     most_rounds: int,
+    steady: float,
     threshold: float,
     settle_time: float,
     settle_speed: float,
@@ -163,22 +159,21 @@ def look(
     restitution = law[own, geom_class[own, geom[0]], geom_class[own, geom[1]]][1]
     h = timestep[world % timestep.shape[0]]
     distance, speed, least = contact_dist[k], velocity[world, row] + bow[k], threshold * h
-    if not instant:
-        state[world, OPEN] = 1
-        seeking[0] = 1
-        if stops(target_speed(distance, speed, restitution, h, least, settle_time, settle_speed), speed, least):
-            state[world, TURNS] = -1
+    bounces = instant and meets(distance, speed, restitution, h, least)
+    goal = target_speed(distance, speed, restitution, h, least, settle_time, settle_speed)
+    done = state[world, ROUNDS] >= most_rounds or (
+        not bounces and (state[world, ENDED] > 0 or goal - speed < steady * h)
+    )
+    if instant and done:
         return
-    bounces = meets(distance, speed, restitution, h, least)
-    if not bounces and (restitution > 0.0 or not stops(closing(distance, h), speed, least)):
-        return
-    if state[world, ROUNDS] < most_rounds:
-        state[world, OPEN] = 1
+    state[world, OPEN] = 1
+    seeking[0] = 1
+    if instant:
         state[world, HITS] = 1
-        state[world, TURNS] = -1
-        seeking[0] = 1
         if bounces:
             state[world, BLOWS] = 1
+        if bounces or stops(goal, speed, least):
+            state[world, TURNS] = -1
 
 
 @wp.kernel(enable_backward=False)
@@ -239,11 +234,10 @@ def aim(
     h = timestep[world % timestep.shape[0]]
     distance, speed = contact_dist[k], velocity[world, row] + bow[k]
     blow[k] = 0.0
-    if not instant:
-        goal = target_speed(distance, speed, pair[1], h, threshold * h, settle_time, settle_speed)
-    elif state[world, HITS] == 0:
+    goal = target_speed(distance, speed, pair[1], h, threshold * h, settle_time, settle_speed)
+    if instant and state[world, HITS] == 0:
         return
-    elif meets(distance, speed, pair[1], h, threshold * h):
+    if instant and meets(distance, speed, pair[1], h, threshold * h):
         pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
         rough = int(0)
         for side in range(2):
@@ -253,8 +247,8 @@ def aim(
         smooth = float(rough) * wp.abs(pull) * h < wp.abs(speed)
         goal = rebound(distance, speed, pull, pair[1], h, smooth)
         blow[k] = 1.0
-    else:  # what bounces and does not meet now takes no part: it is met in the next round
-        goal = wp.where(pair[1] > 0.0, -LATER, closing(distance, h))
+    elif instant and pair[1] > 0.0 and state[world, BLOWS] > 0:  # it takes no part: it is met in the next round
+        goal = -LATER
     goal += bow[k]
     target[k] = goal
 

@@ -4,8 +4,6 @@ from typing import Any
 
 import warp as wp
 
-from wsim.kernels.contact_law import along
-
 LARGEST_TURN = wp.constant(wp.float64(0.05))  # [rad] of a part of a step
 MOST_PARTS = wp.constant(1000)
 
@@ -160,42 +158,6 @@ def tumble(
 
 
 @wp.kernel(enable_backward=False)
-def jolt(
-    # Data in:
-    count: wp.array(dtype=int),
-    contact_world: wp.array(dtype=int),
-    contact_geom: wp.array(dtype=wp.vec2i),
-    contact_row: wp.array2d(dtype=int),
-    geom_body: wp.array(dtype=int),
-    loose: wp.array(dtype=int),  # which of the loose bodies a body is, or below 0
-    force: wp.array2d(dtype=float),
-    acceleration: wp.array2d(dtype=float),
-    sparse: bool,
-    nv: int,
-    jacobian: wp.array3d(dtype=float),
-    row_nnz: wp.array2d(dtype=int),
-    row_start: wp.array2d(dtype=int),
-    column: wp.array3d(dtype=int),
-    least: float,  # [m/s^2]
-    # Data out:
-    steady: wp.array2d(dtype=int),
-):
-    """Mark the bodies that a contact speeds up or slows down along its normal: that hit, or go round a bend."""
-    k = wp.tid()
-    if k >= count[0] or contact_row[k, 0] < 0:
-        return
-    world, row, geom = contact_world[k], contact_row[k, 0], contact_geom[k]
-    if force[world, row] <= 0.0:
-        return
-    change = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, acceleration)
-    if wp.abs(change) > least:
-        for side in range(2):
-            i = loose[geom_body[geom[side]]]
-            if i >= 0:
-                steady[world, i] = 0
-
-
-@wp.kernel(enable_backward=False)
 def fly(
     # Data in:
     place: wp.array(dtype=int),  # of each loose body, in qpos
@@ -210,7 +172,6 @@ def fly(
     pushed: wp.array2d(dtype=Any),  # what all else pushes with
     bias: wp.array2d(dtype=Any),  # gravity's part of that, and the spin's own, the other way
     tied: wp.array(dtype=int),  # whether a rope or a loop may hold it
-    steady: wp.array2d(dtype=int),  # whether its contacts leave it no jolt
     # Data out:
     since: wp.array2d(dtype=int),  # the last exact step: steps of the first order
     true_q: wp.array2d(dtype=wp.float64),
@@ -222,8 +183,9 @@ def fly(
 
     Its centre of mass goes straight, or the body would not keep its momentum as it turns; only where a rope or a loop
     holds a body its origin does, whose velocity those have seen.
-    Under gravity and steady contacts alone it goes by the mean of the velocities before and after: what accelerates
-    evenly then is where it should be. Of a spring's force, which changes with the place, that would add energy.
+    Under gravity and contacts alone, which jolt nothing after the step's blows, it goes by the mean of the velocities
+    before and after: what accelerates evenly then is where it should be. Of a spring's force, which changes with the
+    place, that would add energy.
     """
     world, k = wp.tid()
     own = world % moments.shape[0]
@@ -239,7 +201,7 @@ def fly(
         alone = alone and pushed[world, f + i] == -bias[world, f + i]
         alone = alone and pushed[world, f + 3 + i] == -bias[world, f + 3 + i]
     late = wp.float64(0.0)  # how much of the step's change of velocity its way lacks
-    if alone and (free or (tied[k] == 0 and steady[world, k] != 0)):
+    if alone and (free or tied[k] == 0):
         late = wp.float64(0.5) * h
     since[world, k] = wp.where(late > wp.float64(0.0), 0, since[world, k] + 1)
     kick = twist - change[world, k]

@@ -2,8 +2,10 @@
 
 What is hit passes the blow on at once: each round is a solution for the velocities after the blows of an instant, and
 what they send against something else is hit in the next one. A row of balls that touch thus hands a blow through in one
-step, and none moves into its neighbour meanwhile. Forces that are finite, gravity, springs, drives and dry friction
-in joints, give nothing in no time. The step then goes on from the velocities after its last blow.
+step, and none moves into its neighbour meanwhile. The last round ends all other approaches, and starts what overlaps
+on its way out, without a bounce: no contact is jolted in the step itself, so that all bodies may go by the mean of
+their first and last velocities, and what touches stays together. Forces that are finite, gravity, springs, drives and
+dry friction in joints, give nothing in no time. The step then goes on from the velocities after its last blow.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import numpy as np
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_rows import ContactRows
 from wsim.solvers.slips import seek_slip
-from wsim.solvers.targets import after_blows
+from wsim.solvers.targets import after_blows, stopped
 
 Array = np.ndarray
 
@@ -65,23 +67,25 @@ class BlowsC:
             rows: Of these.
             smooth: Whether bodies fly by a higher order, from normal speeds and accelerations without constraints.
         """
-        self._forces, rounds = np.zeros(data.nefc), 0
+        config, h = self._config, self._model.opt.timestep
+        self._forces, rounds, ended = np.zeros(data.nefc), 0, False
         start, free = data.qvel.copy(), rows.pull()
         is_smooth = smooth(data.efc_vel[rows.normal], free)
-        while rounds < self._config.most_blows:
+        while rounds < config.most_blows:
             speed = data.efc_vel[rows.normal] + contacts.bow
-            goal, blow, ends = after_blows(
-                contacts.distance, speed, free, contacts.restitution, self._model.opt.timestep, self._config, is_smooth
-            )
-            if not ends.any():
+            goal, blow = after_blows(contacts.distance, speed, free, contacts.restitution, h, config, is_smooth)
+            bounces = bool(blow.any())
+            if not bounces and (ended or (goal - speed).max() < config.steady * h):
                 break
             if rounds == 0:
                 self._without_finite_forces(data)
             self._aim_others(data)
             rows.aim(goal + contacts.bow, blow)
-            seek_slip(rows.left, rows.left_without_friction(), contacts.bodies, bool(blow.any()), self._config)
+            hits = bounces or stopped(goal, speed, h, config).any()
+            slip = rows.left_without_friction() if hits else rows.slip
+            seek_slip(rows.left, slip, contacts.bodies, bounces, config)
             self._advance(data)
-            rounds, rows = rounds + 1, self.rows(data, contacts)
+            rounds, rows, ended = rounds + 1, self.rows(data, contacts), not bounces
         self.struck = rounds > 0
         if self.struck:
             self.jump = data.qvel - start

@@ -49,7 +49,7 @@ from wsim.solvers.slips import seek_slip
 from wsim.solvers.smooth_steps import Owners, SmoothStepsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
-from wsim.solvers.targets import settling, stopped, targets
+from wsim.solvers.targets import settling, targets
 from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
@@ -160,7 +160,6 @@ class ContactLawC:
         if contacts is None:
             self._aim_others(data)
             self.mujoco.mj_fwdConstraint(self.model, data)
-            self.flight.ease(np.zeros((0, 2), dtype=int))
             return touching
         rows = self.blows.rows(data, contacts)
         if self.blows.strike(data, contacts, rows, partial(self._flies_smoothly, contacts.bodies)):
@@ -258,10 +257,7 @@ class ContactLawC:
         speed = data.efc_vel[rows.normal] + contacts.bow
         goal = targets(contacts.distance, speed, contacts.restitution, h, config)
         rows.aim(goal + contacts.bow, np.zeros(len(goal), dtype=bool))
-        slip = rows.left_without_friction() if stopped(goal, speed, h, config).any() else rows.slip
-        seek_slip(rows.left, slip, contacts.bodies, False, config)
-        jolted = (rows.push > 0.0) & (np.abs(rows.acceleration) > config.steady)
-        self.flight.ease(contacts.bodies[jolted])
+        seek_slip(rows.left, rows.slip, contacts.bodies, False, config)
 
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
         """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""

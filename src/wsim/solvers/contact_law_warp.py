@@ -9,7 +9,7 @@ import warp as wp
 
 from wsim.kernels import slips
 from wsim.kernels.blows import begin_round, count_round, lose_finite, silence
-from wsim.kernels.contact_law import ROUNDS, aim, look, stop, vec5
+from wsim.kernels.contact_law import ENDED, aim, look, stop, vec5
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.kernels.slips import go_on_from, guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
@@ -80,7 +80,7 @@ class ContactLawWarp:
             self._best = wp.zeros(data.naconmax, dtype=float)
             self._friction = wp.zeros(data.naconmax, dtype=vec5)
             self._sums = wp.zeros((data.nworld, host.nbody), dtype=wp.vec2)
-            self._search = wp.zeros((data.nworld, ROUNDS + 1), dtype=int)
+            self._search = wp.zeros((data.nworld, ENDED + 1), dtype=int)
             self._struck = wp.zeros(1, dtype=int)
             self._free, self._warm = wp.empty_like(data.qacc_smooth), wp.empty_like(data.qacc_warmstart)
             self._change = wp.zeros(data.nworld, dtype=float)
@@ -113,7 +113,6 @@ class ContactLawWarp:
         if self.impulses is not None:
             self.impulses.add(data, h)
         self._implicit(model, data)
-        self._flight.ease_warp(model, data, self._jacobian(model, data.efc), self._config.steady)
         self._flight.fly(h)
         if self._smooth_steps:
             self._smooth_steps.after(model, data, self._breaking.anew if self._breaking else None)
@@ -229,7 +228,7 @@ class ContactLawWarp:
             dim=data.naconmax,
             inputs=[
                 data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address, data.efc.vel,
-                model.opt.timestep, self._bow, self._geom_class, self._law, instant, config.most_blows,
+                model.opt.timestep, self._bow, self._geom_class, self._law, instant, config.most_blows, config.steady,
                 config.threshold, config.settle_time, config.settle_speed,
             ],
             outputs=[self._search, self._seeking],

@@ -52,11 +52,6 @@ class ContactRows:
         return np.asarray(self._image[self.normal])
 
     @property
-    def acceleration(self) -> Array:
-        """Along the normals, by the last solution [m/s^2], (contacts,)."""
-        return np.asarray(self._image[self.normal])
-
-    @property
     def push(self) -> Array:
         """Of the last solution [N], (contacts,)."""
         return np.asarray(self._data.efc_force[self.normal])

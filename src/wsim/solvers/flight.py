@@ -2,10 +2,11 @@
 
 MuJoCo takes a body's gyroscopic torque at the step's start and makes it implicit, which costs a body that tumbles its
 energy, by the square of what it turns in a step. Here the spin of the step's end follows from the free motion over the
-step; contacts see it as a smooth force. Where gravity, and what touches a body without a jolt, are all that acts on it,
-the step goes the way of the mean of its first and last velocities: falls, throws, slides and rolling are exact, where
-v += a h, x += v h would come a t h / 2 too far. Newton's state is in single precision, where a kilometre has steps of
-0.06 mm: what is true between two steps is kept beside it in double, for as long as nobody else writes the state.
+step; contacts see it as a smooth force. Where gravity, and what touches a body, are all that acts on it after the
+step's blows, the step goes the way of the mean of its first and last velocities: falls, throws, slides and rolling are
+exact, where v += a h, x += v h would come a t h / 2 too far. Newton's state is in single precision, where a kilometre
+has steps of 0.06 mm: what is true between two steps is kept beside it in double, for as long as nobody else writes the
+state.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.blows import jump
-from wsim.kernels.flight import fly, jolt, keep, recall, tumble
+from wsim.kernels.flight import fly, keep, recall, tumble
 
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
@@ -61,14 +62,13 @@ class Flight:
             self._change = wp.zeros(shape, dtype=wp.vec3d)
             self.row = wp.array(rows, dtype=int)  # of each of MuJoCo's bodies among the loose ones, or below 0
             self._tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
-            self._steady = wp.zeros(shape, dtype=int)  # in this step
             self.since = wp.zeros(shape, dtype=int)  # the last exact step: steps of the first order
             self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
             self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
         # Of C's numbers: a kernel's launch takes longer than a step of a small world.
         in_c = [(true.numpy(), array.numpy()) for true, array in zip(self._true, (self._qpos, self._qvel), strict=True)]
         self._shared = in_c if isinstance(data.qpos, Array) else []
-        self._row_c, self._steady_c, self._since_c = rows, self._steady.numpy()[0], self.since.numpy()[0]
+        self._row_c, self._since_c = rows, self.since.numpy()[0]
         self.forget()
 
     def forget(self) -> None:
@@ -115,25 +115,6 @@ class Flight:
         """Whether a body of MuJoCo's goes as is stated, (bodies,): the world does."""
         return np.asarray(self._row_c == STATED)
 
-    def ease(self, jolted: Array) -> None:
-        """Note in C that all bodies go on as they did, but for those that are jolted."""
-        self._steady_c[:] = 1
-        rows = self._row_c[jolted]
-        self._steady_c[rows[rows >= 0]] = 0
-
-    def ease_warp(self, model: Any, data: Any, jacobian: list[Any], least: float) -> None:
-        """The same in Warp: jolted is what a contact accelerates along its normal by more than `least` [m/s^2]."""
-        self._steady.fill_(1)
-        wp.launch(
-            jolt,
-            dim=data.naconmax,
-            inputs=[
-                data.nacon, data.contact.worldid, data.contact.geom, data.contact.efc_address, model.geom_bodyid,
-                self.row, data.efc.force, data.qacc, *jacobian, least,
-            ],
-            outputs=[self._steady],
-        )  # fmt: skip
-
     def jump(self, search: Any, timestep: Any) -> None:
         """Take in Warp the velocities after a round of blows, in the worlds that it is one of."""
         wp.launch(
@@ -161,7 +142,7 @@ class Flight:
             dim=self._change.shape,
             inputs=[
                 self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
-                self._qacc, self._held, self._pushed, self._bias, self._tied, self._steady,
+                self._qacc, self._held, self._pushed, self._bias, self._tied,
             ],
             outputs=[self.since, *self._true, self._qpos, self._qvel],
             device=self.model.device,

@@ -43,11 +43,12 @@ def after_blows(
     h: float,
     config: ContactConfig,
     smooth: Array | bool = False,
-) -> tuple[Array, Array, Array]:
-    """Normal speeds that contacts should have after the blows of an instant [m/s], which of them are blows of what
-    bounces, and which end an approach at all, (contacts,) each.
+) -> tuple[Array, Array]:
+    """Normal speeds that contacts should have after the blows of an instant [m/s], and which of them meet and bounce,
+    (contacts,) each.
 
-    What bounces and does not meet now takes no part: what a blow sends against it meets it in the next round.
+    While anything does, what could bounce and does not meet takes no part: what is sent against it meets it in the next
+    round. After that all end their approaches as contacts do that do not bounce.
 
     Args:
         distance: Gaps, negative where shapes overlap [m].
@@ -59,11 +60,12 @@ def after_blows(
         smooth: Whether bodies fly by steps of a higher order.
     """
     bouncy = restitution > 0.0
-    closes = np.where(distance > 0.0, -distance / h, 0.0)
     meets = bouncy & _meets(distance, speed, h, config)
+    goal = targets(distance, speed, restitution, h, config)
+    if not meets.any():
+        return goal, meets
     rebound = rebounds(distance, speed, free, restitution, h, np.broadcast_to(smooth, speed.shape))
-    goal = np.where(meets, rebound, np.where(bouncy, -LATER, closes))
-    return goal, meets, meets | (~bouncy & stopped(closes, speed, h, config))
+    return np.where(meets, rebound, np.where(bouncy, -LATER, goal)), meets
 
 
 def _meets(distance: Array, speed: Array, h: float, config: ContactConfig) -> Array:
