@@ -56,6 +56,10 @@ def free_turn(principal: wp.quatd, moments: wp.vec3d, spin: wp.vec3d, h: wp.floa
     return principal * turn * wp.quat_inverse(principal)
 
 
+ALWAYS = wp.constant(2**30)  # steps, of what has been even since the start
+SETTLING = wp.constant(3)  # steps that a start takes
+
+
 @wp.func
 def in_axes(principal: wp.quatd, moments: wp.vec3d, spin: wp.vec3d) -> wp.vec3d:
     """Angular momentum about the centre of mass, in the body's axes."""
@@ -172,7 +176,12 @@ def fly(
     pushed: wp.array2d(dtype=Any),  # what all else pushes with
     bias: wp.array2d(dtype=Any),  # gravity's part of that, and the spin's own, the other way
     tied: wp.array(dtype=int),  # whether a rope or a loop may hold it
+    arm: wp.array2d(dtype=wp.float64),  # by which a turn counts beside a way: its greatest radius of gyration [m]
+    even: wp.float64,  # change of an acceleration that is none [m/s^2]
+    patience: wp.float64,  # for which it must have been even [s]
     # Data out:
+    known: wp.array3d(dtype=wp.vec3d),  # acceleration and turning since when it is even, along the world's axes
+    calm: wp.array2d(dtype=int),  # steps since then
     since: wp.array2d(dtype=int),  # the last exact step: steps of the first order
     true_q: wp.array2d(dtype=wp.float64),
     true_qd: wp.array2d(dtype=wp.float64),
@@ -184,8 +193,9 @@ def fly(
     Its centre of mass goes straight, or the body would not keep its momentum as it turns; only where a rope or a loop
     holds a body its origin does, whose velocity those have seen.
     Under gravity and contacts alone, which jolt nothing after the step's blows, it goes by the mean of the velocities
-    before and after: what accelerates evenly then is where it should be. Of a spring's force, which changes with the
-    place, that would add energy.
+    before and after, where it accelerates evenly: then it is where it should be. Of a force that changes with the
+    place, a spring's, or that of a gutter in which a ball rolls to and fro at w [rad/s], that would add w^2 h / 2 of
+    the energy a second; steps of the first order are symplectic and keep it.
     """
     world, k = wp.tid()
     own = world % moments.shape[0]
@@ -200,17 +210,26 @@ def fly(
         free = free and held[world, f + i] == held.dtype(0.0) and held[world, f + 3 + i] == held.dtype(0.0)
         alone = alone and pushed[world, f + i] == -bias[world, f + i]
         alone = alone and pushed[world, f + 3 + i] == -bias[world, f + 3 + i]
+    kick = twist - change[world, k]
+    pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
+    spun = wp.quat_rotate(q, kick)
+    off = wp.length(pull - known[world, k, 0]) + arm[own, k] * wp.length(spun - known[world, k, 1])
+    steps = calm[world, k]
+    begins = steps >= ALWAYS - SETTLING and steps < ALWAYS  # it may close a gap of rounding
+    if not (off <= even):
+        known[world, k, 0] = pull
+        known[world, k, 1] = spun
+        steps = wp.where(begins, steps, -1)
+    calm[world, k] = wp.where(wp.isnan(off), ALWAYS - SETTLING, wp.min(steps + 1, ALWAYS))
     late = wp.float64(0.0)  # how much of the step's change of velocity its way lacks
-    if alone and (free or tied[k] == 0):
+    if alone and (free or (tied[k] == 0 and wp.float64(calm[world, k]) * h >= patience)):
         late = wp.float64(0.5) * h
     since[world, k] = wp.where(late > wp.float64(0.0), 0, since[world, k] + 1)
-    kick = twist - change[world, k]
     kicked = w + h * kick
     turn = free_turn(axes, inertia, kicked - late * kick, h)
     after = spin_after(axes, inertia, kicked, turn)
     end = wp.normalize(q * turn)
     if free or tied[k] == 0:
-        pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
         way = v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull
         x += wp.quat_rotate(q, c) + h * (way - late * pull) - wp.quat_rotate(end, c)
         v = way - wp.quat_rotate(end, wp.cross(after, c))

@@ -25,6 +25,8 @@ from wsim.kernels.flight import fly, keep, recall, tumble
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
 NEVER = 2**30  # steps
+EVEN = 0.1  # change of an acceleration that is none [m/s^2]: what rounding of a gap makes in a step is a fifth of it
+PATIENCE = 0.2  # for which an acceleration must have been even [s]: at the ends of a swing it is for a while
 
 
 class Flight:
@@ -48,7 +50,7 @@ class Flight:
         ours = ~kinematic[model.joint_child.numpy()[: self.joints]] & (place >= 0)
         loose = _loose(mujoco, solver.mj_model, place[ours])
         of_worlds = [_inertia(mujoco, host, loose) for host in hosts]
-        center, principal, moments = (np.stack(each) for each in zip(*of_worlds, strict=True))
+        center, principal, moments, arm = (np.stack(each) for each in zip(*of_worlds, strict=True))
         jnt = solver.mj_model.body_jntadr[loose]
         shape = self._qpos.shape[0], len(loose)
         rows = _rows_of_bodies(solver, loose, place[kinematic[model.joint_child.numpy()[: self.joints]]])
@@ -60,6 +62,9 @@ class Flight:
             self._principal = wp.array(principal, dtype=wp.quatd)
             self._moments = wp.array(moments, dtype=wp.vec3d)
             self._change = wp.zeros(shape, dtype=wp.vec3d)
+            self._arm = wp.array(arm, dtype=wp.float64)
+            self._known = wp.zeros((*shape, 2), dtype=wp.vec3d)
+            self._calm = wp.zeros(shape, dtype=int)
             self.row = wp.array(rows, dtype=int)  # of each of MuJoCo's bodies among the loose ones, or below 0
             self._tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
             self.since = wp.zeros(shape, dtype=int)  # the last exact step: steps of the first order
@@ -75,6 +80,7 @@ class Flight:
         """Start from the state, whatever was told."""
         for told in self._told:
             told.fill_(math.nan)
+        self._known.fill_(math.nan)
         self.since.zero_()
 
     def recall(self, state: Any) -> None:
@@ -142,9 +148,10 @@ class Flight:
             dim=self._change.shape,
             inputs=[
                 self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
-                self._qacc, self._held, self._pushed, self._bias, self._tied,
+                self._qacc, self._held, self._pushed, self._bias, self._tied, self._arm, wp.float64(EVEN),
+                wp.float64(PATIENCE),
             ],
-            outputs=[self.since, *self._true, self._qpos, self._qvel],
+            outputs=[self._known, self._calm, self.since, *self._true, self._qpos, self._qvel],
             device=self.model.device,
         )  # fmt: skip
 
@@ -185,10 +192,10 @@ def _tied(mujoco: Any, model: Any, loose: Array) -> Array:
     return np.isin(loose, np.concatenate(bodies)).astype(np.int32)
 
 
-def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Array]:
+def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Array, Array]:
     """Of each body with what is fixed to it, in its axes: centre of mass [m], principal axes and moments [kg m^2].
 
-    Moments rise; the axes are a turn xyzw.
+    Moments rise; the axes are a turn xyzw. Last comes the greatest radius of gyration [m].
     """
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -202,4 +209,5 @@ def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Arra
     turns = np.zeros((len(bodies), 4))
     for turn, matrix in zip(turns, principal, strict=True):
         mujoco.mju_mat2Quat(turn, matrix.flatten())
-    return center, turns[:, [1, 2, 3, 0]], moments
+    arm = np.sqrt(moments[:, 2] / data.crb[bodies][:, 9])
+    return center, turns[:, [1, 2, 3, 0]], moments, arm
