@@ -121,6 +121,7 @@ class Simulation:
                 controller is not None,
                 self.built.breakable,
                 self.built.surfaces,
+                self.built.cylinders,
             )
             if self.model.body_count
             else None
