@@ -13,6 +13,7 @@ import warp as wp
 
 d = wp.float64
 TINY = wp.constant(wp.float64(1.0e-9))
+NEAR = wp.constant(wp.float64(0.2))  # cosine: a rim that faces away by no more may be one that touches
 SECANTS = wp.constant(24)
 RIM_STEPS = wp.constant(24)
 
@@ -82,6 +83,11 @@ def _try(pair: Pair, way: wp.vec3d, best: wp.vec4d) -> wp.vec4d:
     if gap > best[3]:
         return wp.vec4d(n[0], n[1], n[2], gap)
     return best
+
+
+@wp.func
+def _sign(x: wp.float64) -> wp.float64:
+    return wp.where(x < d(0.0), d(-1.0), d(1.0))
 
 
 @wp.func
@@ -204,7 +210,9 @@ def _on_rims(pair: Pair, corner: wp.vec3d, start: wp.vec3d, best: wp.vec4d) -> w
             slope -= radius * wp.vec2d(wp.dot(outward, first), wp.dot(outward, second))
             bow += radius / flat * wp.outer(q, q)
         move = wp.inverse(bow) * slope
-        move *= wp.min(d(1.0), limit / wp.max(wp.length(move), TINY * TINY))
+        if wp.length(move) < TINY:
+            break
+        move *= wp.min(d(1.0), limit / wp.length(move))
         there = wp.normalize(n + move[0] * first + move[1] * second)
         if _rims_gap(pair, corner, there) >= gap:
             n = there
@@ -214,10 +222,29 @@ def _on_rims(pair: Pair, corner: wp.vec3d, start: wp.vec3d, best: wp.vec4d) -> w
 
 
 @wp.func
+def _off_axis(pair: Pair, corner: wp.vec3d, axis: wp.vec3d, other: wp.vec3d, best: wp.vec4d, from_one: int) -> wp.vec4d:
+    """The same from where a rim's axis points, if the gap grows off it: the way that all but this rim would have it."""
+    radius = wp.where(from_one == 1, pair.one.disc, pair.two.disc)
+    rest = wp.where(from_one == 1, pair.two.disc, pair.one.disc)
+    n = _sign(wp.dot(pair.place, axis)) * axis
+    tangent = wp.cross(other, n)
+    flat = wp.max(wp.length(tangent), TINY)
+    slope = corner - rest / flat * wp.cross(tangent, other)
+    gap = wp.dot(slope, n)
+    slope -= gap * n
+    steep = wp.length(slope)
+    if steep <= radius:
+        return best
+    step = wp.min((steep - radius) / (rest / flat + wp.max(gap, d(0.0))), d(0.3))
+    return _on_rims(pair, corner, wp.normalize(n + step / steep * slope), best)
+
+
+@wp.func
 def _where_rims_cross(pair: Pair, corner: wp.vec3d, best: wp.vec4d) -> wp.vec4d:
-    """The same from all starts: the best so far, and across the tangents where one rim is next to the other's plane."""
-    start = wp.vec3d(best[0], best[1], best[2]) + d(0.1) * wp.normalize(pair.place)
-    best = _on_rims(pair, corner, wp.normalize(start), best)
+    """The same from all starts: off each axis, and across the tangents where one rim is next to the other's plane."""
+    up = wp.vec3d(d(0.0), d(0.0), d(1.0))
+    best = _off_axis(pair, corner, up, _column(pair.turn, 2), best, 1)
+    best = _off_axis(pair, corner, _column(pair.turn, 2), up, best, 0)
     axis = _column(pair.turn, 2)
     tilt = wp.sqrt(axis[0] * axis[0] + axis[1] * axis[1])
     if tilt < TINY:
@@ -288,9 +315,13 @@ def apart(pair: Pair, enough: wp.float64) -> wp.vec4d:
     if pair.two.disc > d(0.0):
         best = _on_circle(pair, up, _column(pair.turn, 2), _column(pair.turn, 2), best)
         axis = _column(pair.turn, 2)
+        way = wp.vec3d(best[0], best[1], best[2])
         ends = int(4)
         for k in range(ends):
-            one = wp.where((k & 1) == 0, pair.one.span[2], -pair.one.span[2])
-            two = wp.where((k & 2) == 0, pair.two.span[2], -pair.two.span[2])
-            best = _where_rims_cross(pair, pair.place + two * axis - one * up, best)
+            one = wp.where((k & 1) == 0, d(1.0), d(-1.0))
+            two = wp.where((k & 2) == 0, d(1.0), d(-1.0))
+            if one * way[2] > -NEAR and two * wp.dot(axis, way) < NEAR:
+                best = _where_rims_cross(
+                    pair, pair.place + two * pair.two.span[2] * axis - one * pair.one.span[2] * up, best
+                )
     return best

@@ -78,13 +78,15 @@ def _note(scene: Scene, point: wp.vec3d, normal: wp.vec3d, gap: wp.float64) -> w
 
 
 @wp.func
-def _on_side(scene: Scene, centre: wp.vec3d, radius: wp.float64) -> wp.float64:
-    """A ball beside a cylinder."""
+def _on_side(scene: Scene, centre: wp.vec3d, radius: wp.float64, axis: wp.vec3d) -> wp.float64:
+    """A point beside a cylinder, or one of the axis of another's side of a radius."""
     far = wp.sqrt(centre[0] * centre[0] + centre[1] * centre[1])
     if far == d(0.0):
         return NONE
     out = wp.vec3d(centre[0] / far, centre[1] / far, d(0.0))
     own = scene.pair.one.disc
+    lean = wp.dot(out, axis)
+    radius = radius / wp.sqrt(d(1.0) - lean * lean)
     gap = far - own - radius
     return _note(scene, wp.vec3d(d(0.0), d(0.0), centre[2]) + (own + d(0.5) * gap) * out, out, gap)
 
@@ -99,6 +101,20 @@ def _on_end(scene: Scene, point: wp.vec3d) -> wp.float64:
     gap = side * point[2] - scene.pair.one.span[2]
     up = wp.vec3d(d(0.0), d(0.0), side)
     return _note(scene, point - d(0.5) * gap * up, up, gap)
+
+
+@wp.func
+def _on_rim(scene: Scene, point: wp.vec3d, along: wp.vec3d) -> wp.float64:
+    """A point over a cylinder's rim where what goes on along a unit vector, an edge or another rim, crosses it."""
+    side = _sign(scene.way[2])
+    n = wp.cross(wp.vec3d(-point[1], point[0], d(0.0)), along)
+    if wp.length(n) < LEANS * scene.pair.one.disc:
+        return NONE
+    n = _sign(wp.dot(n, scene.way)) * wp.normalize(n)
+    if wp.dot(n, scene.way) < ALL_BUT:
+        return NONE
+    gap = (point[2] - side * scene.pair.one.span[2]) * n[2]
+    return _note(scene, point - d(0.5) * gap * n, n, gap)
 
 
 @wp.func
@@ -167,9 +183,13 @@ def _edge_on_end(scene: Scene, start: wp.vec3d, along: wp.vec3d) -> wp.float64:
     inside = _over_disc(scene, start, along)
     if inside[1] <= inside[0]:
         return NONE
-    nearest = _on_end(scene, start + inside[0] * along)
+    nearest = NONE
+    if inside[0] > d(0.0):
+        nearest = _on_rim(scene, start + inside[0] * along, wp.normalize(along))
+    else:
+        nearest = _on_end(scene, start)
     if inside[1] < d(1.0):
-        nearest = wp.min(nearest, _on_end(scene, start + inside[1] * along))
+        nearest = wp.min(nearest, _on_rim(scene, start + inside[1] * along, wp.normalize(along)))
     return nearest
 
 
@@ -231,9 +251,7 @@ def _within(start: wp.float64, slope: wp.float64, half: wp.float64) -> wp.vec2d:
 
 
 @wp.func
-def _side_on_edge(
-    scene: Scene, k: int, face: int, out: wp.vec3d, other: int, beyond: wp.vec3d
-) -> wp.float64:
+def _side_on_edge(scene: Scene, k: int, face: int, out: wp.vec3d, other: int, beyond: wp.vec3d) -> wp.float64:
     """Both ends of what of an edge between two faces of a box is beside a cylinder that faces it, not one of them."""
     along = _column(scene.pair.turn, k)
     span = scene.pair.two.span
@@ -248,7 +266,7 @@ def _side_on_edge(
         place = middle + wp.where(end == 0, low, high) * along
         if place[0] * out[0] + place[1] * out[1] < ACROSS:
             if place[0] * beyond[0] + place[1] * beyond[1] < ACROSS:
-                nearest = wp.min(nearest, _on_side(scene, place, d(0.0)))
+                nearest = wp.min(nearest, _on_side(scene, place, d(0.0), along))
     return nearest
 
 
@@ -263,22 +281,40 @@ def _side_on_round(scene: Scene) -> wp.float64:
     if high <= low:
         return NONE
     radius = scene.pair.two.disc + scene.pair.two.ball
-    nearest = _on_side(scene, scene.pair.place + low * along, radius)
-    return wp.min(nearest, _on_side(scene, scene.pair.place + high * along, radius))
+    nearest = NONE
+    for end in range(2):
+        share = wp.where(end == 0, low, high)
+        centre = scene.pair.place + share * along
+        if scene.pair.two.disc > d(0.0) and wp.abs(share) == half:  # its rim
+            rim = centre
+            for _step in range(2):
+                toward = -wp.normalize(wp.vec3d(rim[0], rim[1], d(0.0)))
+                rim = centre + radius * wp.normalize(toward - wp.dot(toward, along) * along)
+            nearest = wp.min(nearest, _on_side(scene, rim, d(0.0), along))
+        else:
+            nearest = wp.min(nearest, _on_side(scene, centre, radius, along))
+    return nearest
 
 
 @wp.func
 def _line_on_end(scene: Scene) -> wp.float64:
     """The side of another cylinder, or of a capsule, across a cylinder's end: both ends of what is over it."""
-    along = _column(scene.pair.turn, 2)
-    half = scene.pair.two.span[2] * along
-    toward = -(scene.way - wp.dot(scene.way, along) * along)
-    start = scene.pair.place - half + (scene.pair.two.disc + scene.pair.two.ball) * wp.normalize(toward)
-    inside = _over_disc(scene, start, d(2.0) * half)
+    axis = _column(scene.pair.turn, 2)
+    along = d(2.0) * scene.pair.two.span[2] * axis
+    side = _sign(scene.way[2])
+    toward = wp.normalize(axis[2] * axis - wp.vec3d(d(0.0), d(0.0), d(1.0)))
+    start = scene.pair.place - d(0.5) * along + side * (scene.pair.two.disc + scene.pair.two.ball) * toward
+    inside = _over_disc(scene, start, along)
     if inside[1] <= inside[0]:
         return NONE
-    nearest = _on_end(scene, start + inside[0] * d(2.0) * half)
-    return wp.min(nearest, _on_end(scene, start + inside[1] * d(2.0) * half))
+    nearest = NONE
+    for end in range(2):
+        place = start + inside[end] * along
+        if inside[end] > d(0.0) and inside[end] < d(1.0):
+            nearest = wp.min(nearest, _on_rim(scene, place, axis))
+        else:
+            nearest = wp.min(nearest, _on_end(scene, place))
+    return nearest
 
 
 @wp.func
@@ -306,9 +342,17 @@ def _end_on_end(scene: Scene, other: Scene) -> wp.float64:
     if room > d(0.0):
         for side in range(2):
             aside = wp.where(side == 0, wp.sqrt(room), -wp.sqrt(room))
-            place = along * way + aside * wp.vec3d(-way[1], way[0], d(0.0))
-            nearest = wp.min(nearest, _on_end(scene, _over(place, centre, facing)))
-    return wp.min(nearest, _on_end(scene, _over((apart - wide) * way, centre, facing)))
+            place = _over(along * way + aside * wp.vec3d(-way[1], way[0], d(0.0)), centre, facing)
+            tangent = wp.normalize(wp.cross(facing, place - centre))
+            for _step in range(3):  # what is a circle seen along one axis is none along the other
+                slope = d(2.0) * (place[0] * tangent[0] + place[1] * tangent[1])
+                place += (radius * radius - place[0] * place[0] - place[1] * place[1]) / slope * tangent
+                place = centre + wide * wp.normalize(place - centre)
+                tangent = wp.normalize(wp.cross(facing, place - centre))
+            nearest = wp.min(nearest, _on_rim(scene, place, tangent))
+    if wp.abs(facing[0]) + wp.abs(facing[1]) < d(100.0) * LEVEL:
+        nearest = wp.min(nearest, _on_end(scene, _over((apart - wide) * way, centre, facing)))
+    return nearest
 
 
 @wp.func

@@ -169,4 +169,3 @@ def _probe(model: Any, shape: int) -> tuple[Any, Array, Array, Array, Array]:
     probe.kind, probe.size = int(HULL), wp.vec3(*(0.5 * (high - low)))
     probe.corner_count, probe.plane_count = len(corners), len(planes)
     return probe, pose, np.array([0.5 * (low + high), 0.5 * (high - low)]), corners, planes
-
