@@ -1,4 +1,4 @@
-"""Contacts of cylinders against the distance of convex bodies, by brute force over directions, and against their surfaces."""
+"""Contacts of cylinders against the distance by brute force over directions, and against both surfaces."""
 
 import mujoco
 import numpy as np
@@ -120,7 +120,7 @@ def test_contacts_at_random(pose):
     if known > REACH:
         return
     assert 1 <= len(found) <= 8
-    # Sampling ends up to 50 um below the greatest gap; where two ways off differ by less than 10 um either may be taken.
+    # Sampling ends up to 50 um below the greatest gap; of two ways off within 10 um either may be taken.
     assert known - 1e-5 < found.min() < known + 5e-5
     loose = 1e-6 + ASIDE * radius * (found > found.min() + 2e-6)
     assert (np.abs(np.cross(point, normal)[:, 2]) < loose).all()

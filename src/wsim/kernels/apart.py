@@ -1,12 +1,12 @@
 """How far a cylinder is from a box, a capsule or another cylinder, and which way: exactly, also where they overlap.
 
-Each is a sum of three segments, a disc about its Z axis and a ball, and is its own mirror image. Along a direction n two
-convex bodies are apart by g(n) = c . n - h_A(n) - h_B(n), c from one middle to the other and h how far a body reaches;
+Each is a sum of three segments, a disc about its Z axis and a ball, and is its own mirror image. Along a direction n
+two convex bodies are apart by g(n) = c . n - h_A(n) - h_B(n), c from one middle to the other, h how far a body reaches;
 their distance is the greatest g of all directions, below 0 how far they overlap (the separating axis theorem). The
 greatest is where all is smooth or on a great circle where an edge, or a cylinder's side, lies across n. So these are
 tried: faces and ends, an edge across an edge or a side, a corner beside a side or beyond a rim, all in closed form; a
-rim on an edge, by halving along its circle; and a rim on a rim, by Newton's method. What is tried too much does no harm.
-All is in the frame of the first, which is the cylinder.
+rim on an edge, by secants along its circle; and a rim on a rim, by Newton's method.
+All is in the frame of the first, which is the cylinder. What is tried too much does no harm.
 """
 
 import warp as wp
@@ -57,6 +57,7 @@ def _reach_change(solid: Solid, n: wp.vec3d, turned: wp.vec3d) -> wp.float64:
 
 @wp.func
 def gap_along(pair: Pair, n: wp.vec3d) -> wp.float64:
+    """How far a pair is apart along a unit vector [m]."""
     return wp.dot(pair.place, n) - reach(pair.one, n) - reach(pair.two, wp.transpose(pair.turn) * n)
 
 
@@ -86,12 +87,14 @@ def _try(pair: Pair, way: wp.vec3d, best: wp.vec4d) -> wp.vec4d:
 
 
 @wp.func
-def _sign(x: wp.float64) -> wp.float64:
+def sign(x: wp.float64) -> wp.float64:
+    """1, also of 0, or -1."""
     return wp.where(x < d(0.0), d(-1.0), d(1.0))
 
 
 @wp.func
-def _column(turn: wp.mat33d, k: int) -> wp.vec3d:
+def column(turn: wp.mat33d, k: int) -> wp.vec3d:
+    """A column of a matrix: an axis of what it turns."""
     return wp.vec3d(turn[0, k], turn[1, k], turn[2, k])
 
 
@@ -177,7 +180,7 @@ def _on_circle(pair: Pair, across: wp.vec3d, axis: wp.vec3d, other: wp.vec3d, be
 def _rims_gap(pair: Pair, corner: wp.vec3d, n: wp.vec3d) -> wp.float64:
     """How far two rims are apart, that about `corner` seen from the other's middle."""
     gap = wp.dot(corner, n) - pair.one.disc * wp.sqrt(n[0] * n[0] + n[1] * n[1])
-    return gap - pair.two.disc * wp.length(wp.cross(_column(pair.turn, 2), n))
+    return gap - pair.two.disc * wp.length(wp.cross(column(pair.turn, 2), n))
 
 
 @wp.func
@@ -201,7 +204,7 @@ def _on_rims(pair: Pair, corner: wp.vec3d, start: wp.vec3d, best: wp.vec4d) -> w
         stiff = wp.max(gap, d(1.0e-3) * pair.one.disc)
         bow = wp.diag(wp.vec2d(stiff, stiff))
         for rim in range(2):
-            axis = wp.where(rim == 0, up, _column(pair.turn, 2))
+            axis = wp.where(rim == 0, up, column(pair.turn, 2))
             radius = wp.where(rim == 0, pair.one.disc, pair.two.disc)
             tangent = wp.cross(axis, n)
             flat = wp.max(wp.length(tangent), TINY)
@@ -226,7 +229,7 @@ def _off_axis(pair: Pair, corner: wp.vec3d, axis: wp.vec3d, other: wp.vec3d, bes
     """The same from where a rim's axis points, if the gap grows off it: the way that all but this rim would have it."""
     radius = wp.where(from_one == 1, pair.one.disc, pair.two.disc)
     rest = wp.where(from_one == 1, pair.two.disc, pair.one.disc)
-    n = _sign(wp.dot(pair.place, axis)) * axis
+    n = sign(wp.dot(pair.place, axis)) * axis
     tangent = wp.cross(other, n)
     flat = wp.max(wp.length(tangent), TINY)
     slope = corner - rest / flat * wp.cross(tangent, other)
@@ -243,9 +246,9 @@ def _off_axis(pair: Pair, corner: wp.vec3d, axis: wp.vec3d, other: wp.vec3d, bes
 def _where_rims_cross(pair: Pair, corner: wp.vec3d, best: wp.vec4d) -> wp.vec4d:
     """The same from all starts: off each axis, and across the tangents where one rim is next to the other's plane."""
     up = wp.vec3d(d(0.0), d(0.0), d(1.0))
-    best = _off_axis(pair, corner, up, _column(pair.turn, 2), best, 1)
-    best = _off_axis(pair, corner, _column(pair.turn, 2), up, best, 0)
-    axis = _column(pair.turn, 2)
+    best = _off_axis(pair, corner, up, column(pair.turn, 2), best, 1)
+    best = _off_axis(pair, corner, column(pair.turn, 2), up, best, 0)
+    axis = column(pair.turn, 2)
     tilt = wp.sqrt(axis[0] * axis[0] + axis[1] * axis[1])
     if tilt < TINY:
         return best
@@ -290,7 +293,7 @@ def apart(pair: Pair, enough: wp.float64) -> wp.vec4d:
     best = _try(pair, up, best)
     best = _try(pair, wp.vec3d(pair.place[0], pair.place[1], d(0.0)), best)
     for k in range(3):
-        edge = _column(pair.turn, k)
+        edge = column(pair.turn, k)
         if k == 2 or pair.two.span[k] > d(0.0):
             best = _try(pair, edge, best)
             best = _try(pair, wp.cross(up, edge), best)
@@ -311,10 +314,10 @@ def apart(pair: Pair, enough: wp.float64) -> wp.vec4d:
     edges = int(3)
     for k in range(edges):
         if pair.two.span[k] > d(0.0):
-            best = _on_circle(pair, _column(pair.turn, k), up, _column(pair.turn, (k + 1) % 3), best)
+            best = _on_circle(pair, column(pair.turn, k), up, column(pair.turn, (k + 1) % 3), best)
     if pair.two.disc > d(0.0):
-        best = _on_circle(pair, up, _column(pair.turn, 2), _column(pair.turn, 2), best)
-        axis = _column(pair.turn, 2)
+        best = _on_circle(pair, up, column(pair.turn, 2), column(pair.turn, 2), best)
+        axis = column(pair.turn, 2)
         way = wp.vec3d(best[0], best[1], best[2])
         ends = int(4)
         for k in range(ends):

@@ -2,8 +2,8 @@
 
 import warp as wp
 
-from wsim.kernels.cylinder_contacts import Touches
 from wsim.kernels.surface import Found
+from wsim.kernels.touches import Touches
 
 vec5 = wp.types.vector(length=5, dtype=float)
 

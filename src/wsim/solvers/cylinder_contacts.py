@@ -1,4 +1,4 @@
-"""Contacts of cylinders with boxes, capsules and each other, in MuJoCo's place, which finds them nearly or not at all."""
+"""Contacts of cylinders with boxes, capsules and each other; MuJoCo would find them nearly, or not at all."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from wsim.kernels.cylinder_contacts import Touches, touch_cylinders
+from wsim.kernels.cylinder_contacts import touch_cylinders
 from wsim.kernels.own_rows import add_touches
+from wsim.kernels.touches import Touches
 from wsim.solvers.own_contacts import put_in_c, rows_of
 
 Array = np.ndarray
