@@ -146,14 +146,16 @@ def _side_on_round(scene: Scene) -> wp.float64:
     for end in range(2):
         share = wp.where(end == 0, low, high)
         centre = scene.pair.place + share * along
-        if scene.pair.two.disc > d(0.0) and wp.abs(share) == half:  # its rim
+        if wp.abs(share) < half:
+            nearest = wp.min(nearest, on_side(scene, centre, radius, along))
+        elif scene.pair.two.disc == d(0.0):  # a ball
+            nearest = wp.min(nearest, on_side(scene, centre, radius, wp.vec3d()))
+        else:  # a rim
             rim = centre
             for _step in range(2):
                 toward = -wp.normalize(wp.vec3d(rim[0], rim[1], d(0.0)))
                 rim = centre + radius * wp.normalize(toward - wp.dot(toward, along) * along)
             nearest = wp.min(nearest, on_side(scene, rim, d(0.0), along))
-        else:
-            nearest = wp.min(nearest, on_side(scene, centre, radius, along))
     return nearest
 
 
