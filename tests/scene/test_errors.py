@@ -69,6 +69,11 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.compound("n", parts=[Part("sphere", radius=1)], mass="x"), 'mass = "x" must be a number'),  # type: ignore[arg-type]
     (lambda s: s.compound("n", parts=[Part("sphere", radius=1, density=1e-30)]), "density = 1e-30 must be >= 0.001"),
     (lambda s: s.box("b", size=UNIT, mass=10**400), "mass must be finite in kg"),
+    (lambda s: s.box("b", size={0.1, 0.2, 0.3}), "is a set, which has no order; give a list of 3 numbers"),  # type: ignore[arg-type]
+    (lambda s: s.box("b", size=UNIT, position={0, 1, 2}), "position = {0, 1, 2} is a set"),  # type: ignore[arg-type]
+    (lambda s: s.box("b", size=UNIT, color=frozenset((0, 1, 0.5))), "is a set, which has no order"),  # type: ignore[arg-type]
+    (lambda s: s.camera("c", eye={1, 2, 3}, target=(0, 0, 0)), "eye = {1, 2, 3} is a set"),  # type: ignore[arg-type]
+    (lambda s: s.simulation(gravity={0, 1, -9}), "is a set, which has no order"),  # type: ignore[arg-type]
     (lambda s: s.box("b", size=UNIT, mass=1e-30), "mass = 1e-30 must be >= 1e-12 kg"),
     (lambda s: s.box("b", size=UNIT, static="no"), 'static = "no" must be True or False'),  # type: ignore[arg-type]
     (lambda s: s.rope("r", "block", None, anchor_b=UNIT, around=None), "around = None must be a list"),  # type: ignore[arg-type]

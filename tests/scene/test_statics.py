@@ -46,6 +46,8 @@ def test_a_track_that_cannot_be_is_refused(arguments, says):
         ({"heights": "flat", "size": (1, 1)}, "heights"),
         ({"heights": [[0, 0], [0, 0]], "size": 1.0}, "size"),
         ({"heights": lambda x, y: math.nan, "size": (1, 1)}, "heights(x, y)"),
+        ({"heights": lambda x, y: 1.0 / (x - x), "size": (1, 1)}, "heights(-0.5, -0.5) raised ZeroDivisionError"),
+        ({"heights": lambda x: x, "size": (1, 1)}, "give a function of x and y in m"),
         ({"heights": lambda x, y: 0.0, "size": (1, 1), "cells": (0, 5)}, "cells[0]"),
     ],
 )

@@ -176,6 +176,12 @@ def test_a_time_step_that_is_none_is_refused(tmp_path, bad):
         Simulation(stage_of(tmp_path, tank), device="cpu", time_step=bad)
 
 
+@pytest.mark.parametrize("bad", [Scene().stage, Scene(), None, [], [Scene().stage], 3])
+def test_what_is_no_path_of_a_stage_is_refused(bad):
+    with pytest.raises(UserError, match=r"^stage = .* stage\.Export\(path\) writes a Usd\.Stage, scene\.save"):
+        Simulation(bad, device="cpu")
+
+
 @pytest.mark.parametrize("bad", [0, -2, 1.5, "2"])
 def test_a_count_of_worlds_that_is_none_is_refused(tmp_path, bad):
     with pytest.raises(UserError, match=r"^world_count = .* whole number"):

@@ -104,7 +104,7 @@ def _field(call: Call, heights: object, across: tuple[float, float], cells: Sequ
             call.fail(f"cells = {shown(cells)} must be 2 whole numbers, along x and y")
         nx, ny = (call.integer(f"cells[{k}]", n, 1, _MOST - 1) for k, n in enumerate(cells))
         xs, ys = (np.linspace(-edge / 2, edge / 2, n + 1) for edge, n in zip(across, (nx, ny), strict=True))
-        heights = [[call.number("heights(x, y)", heights(float(x), float(y)), "m") for x in xs] for y in ys]
+        heights = [[_height(call, heights, float(x), float(y)) for x in xs] for y in ys]
     try:
         field = np.array(heights, dtype=np.float64)
     except (TypeError, ValueError):
@@ -116,6 +116,17 @@ def _field(call: Call, heights: object, across: tuple[float, float], cells: Sequ
         row, column = np.argwhere(bad)[0]
         call.fail(f"heights[{row}][{column}] = {field[row, column]:g} must be within {MAX_SIZE:g} m of 0")
     return field
+
+
+def _height(call: Call, heights: Callable[[float, float], object], x: float, y: float) -> float:
+    try:
+        height = heights(x, y)
+    except Exception as error:  # noqa: BLE001 - whatever a program's own function raises
+        call.fail(
+            f"heights({x:g}, {y:g}) raised {type(error).__name__}: {error}; "
+            "give a function of x and y in m, within the field, that returns a height in m"
+        )
+    return call.number("heights(x, y)", height, "m")
 
 
 def _solid(field: Floats, across: tuple[float, float], depth: float) -> tuple[Floats, NDArray[np.int64]]:

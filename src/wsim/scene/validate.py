@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import NoReturn, SupportsFloat, SupportsIndex, TypeAlias, cast
@@ -192,7 +192,11 @@ class Call:
         return self._items(field, value, 3, meaning)
 
     def _items(self, field: str, value: object, count: int, meaning: str) -> Sequence[object]:
-        if isinstance(value, (str, bytes, dict)) or not isinstance(value, Iterable):
+        if isinstance(value, Set):
+            self.fail(
+                f"{field} = {shown(value)} is a set, which has no order; give a list of {count} numbers {meaning}"
+            )
+        if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
             self.fail(f"{field} = {shown(value)} must be {count} numbers {meaning}")
         items = list(value)
         if len(items) != count:

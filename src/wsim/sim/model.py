@@ -26,7 +26,7 @@ from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed,
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import differences, texts, with_numbers
 from wsim.sim.pieces import with_pieces
-from wsim.sim.surfaces import take_surfaces
+from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_config import ContactConfig
@@ -58,6 +58,7 @@ class Built:
     time_step: TimeStep
     breakable: list[list[Breakable]]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
+    cylinders: tuple[tuple[int, int], ...] = ()  # pairs of shapes that MuJoCo does not see touch, a cylinder first
 
     @property
     def world(self) -> World:
@@ -74,6 +75,7 @@ class _One:
     fluids: dict[str, slice]
     breakable: list[Breakable]
     surfaces: SurfaceParts | None
+    cylinders: tuple[tuple[int, int], ...]
 
 
 def build_model(stage: Path, world: World, device: Any, world_count: int = 1, time_step: float | None = None) -> Built:
@@ -149,7 +151,7 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     world = with_pieces(single, world)
     add_cords(single, world, ContactConfig())
     add_drives(single, world)
-    return _One(single, world, fluids, breakable, surfaces)
+    return _One(single, world, fluids, breakable, surfaces, take_cylinders(single))
 
 
 def _imports(stages: Sequence[Path], worlds: Sequence[World], processes: int) -> Iterator[_One]:
@@ -204,6 +206,7 @@ def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: Tim
         time_step=step,
         breakable=[one.breakable for one in ones],
         surfaces=first.surfaces,
+        cylinders=first.cylinders,
     )
 
 

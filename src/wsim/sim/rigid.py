@@ -24,6 +24,7 @@ from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_config import ContactConfig
+from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.solver_rigid import SolverRigid
 from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 
@@ -72,6 +73,7 @@ class RigidBodies:
         controlled: Whether a controller pushes bodies or joints.
         breakable: The joints that may break, of all worlds alike or of each.
         surfaces: What collides by its triangles.
+        cylinders: Pairs of shapes of the first world, a cylinder first, that MuJoCo does not see touch.
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
@@ -85,6 +87,7 @@ class RigidBodies:
         controlled: bool = False,
         breakable: Sequence[Sequence[Breakable]] = ((),),
         surfaces: SurfaceParts | None = None,
+        cylinders: Sequence[tuple[int, int]] = (),
     ) -> None:
         world = worlds[0]
         self.model, self.breakable, self._world = model, breakable[0], world
@@ -97,15 +100,16 @@ class RigidBodies:
         smooth = swings and model.particle_count == 0 and not any(is_overdamped(each, dt) for each in worlds)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
+        round = CylinderContacts(cylinders, ContactConfig().reach) if cylinders else None
         self._touching = touching
-        may_touch = _may_touch(model) or bool(world.ropes or touching) or jumps
+        may_touch = _may_touch(model) or bool(world.ropes or touching or round) or jumps
         if touching:
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + drive_count(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
         found = surfaces_of(model, worlds)
-        self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, **sizes)
+        self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, round, **sizes)
         self.solver.hold_points(np.array([held_points(each) for each in worlds]))
         self.solver.move_surfaces(surface_velocities(model, worlds))
         kinds: set[Any] = set()

@@ -18,6 +18,7 @@ from wsim.errors import UserError
 from wsim.progress import Progress, silent
 from wsim.recording import RecordingWriter
 from wsim.scene.describe import describe
+from wsim.scene.validate import shown
 from wsim.scene.world import World
 from wsim.sim.devices import pick_device
 from wsim.sim.measure import measure
@@ -28,6 +29,17 @@ from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
 from wsim.sim.starts import start_joints
 from wsim.solvers.solver_sph import SolverSPH
+
+
+def _paths(stage: object) -> list[Path]:
+    """The files that were given."""
+    given = [stage] if isinstance(stage, str | Path) else stage
+    if not isinstance(given, Sequence) or not given or not all(isinstance(each, str | Path) for each in given):
+        raise UserError(
+            f"stage = {shown(stage)}: give the path of a USD file, or a list of paths; "
+            "stage.Export(path) writes a Usd.Stage, scene.save(path) a Scene"
+        )
+    return [Path(each) for each in given]
 
 
 class Controller(Protocol):
@@ -90,7 +102,7 @@ class Simulation:
         worlds: Sequence[World] = (),
         processes: int = 1,
     ) -> None:
-        stages = [Path(stage)] if isinstance(stage, str | Path) else [Path(each) for each in stage]
+        stages = _paths(stage)
         if not isinstance(world_count, int | np.integer) or world_count < 1:
             raise UserError(f"world_count = {world_count!r}: give a whole number from 1")
         if len(stages) > 1 and world_count != 1:
@@ -121,6 +133,7 @@ class Simulation:
                 controller is not None,
                 self.built.breakable,
                 self.built.surfaces,
+                self.built.cylinders,
             )
             if self.model.body_count
             else None

@@ -1,16 +1,18 @@
-"""The meshes of a stage that stand still and collide as they are, kept from MuJoCo, which would take their hulls."""
+"""What is kept from MuJoCo: meshes that stand still, which it would take the hulls of, and pairs with cylinders."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
-from newton import ShapeFlags
+from newton import GeoType, ShapeFlags
 
 from wsim.geometry.rotations import rotate
 from wsim.scene.world import Shape, World
 from wsim.solvers.surface_contacts import SurfaceParts
 from wsim.solvers.surface_mesh import Part
+
+EXACT = (GeoType.BOX, GeoType.CAPSULE, GeoType.CYLINDER)  # what `wsim.solvers.cylinder_contacts` knows
 
 
 def take_surfaces(builder: Any, world: World) -> SurfaceParts | None:
@@ -32,6 +34,27 @@ def take_surfaces(builder: Any, world: World) -> SurfaceParts | None:
         for k in moving:
             builder.add_shape_collision_filter_pair(surface, k)
     return SurfaceParts([_part(shape) for shape in exact], shapes, spared)
+
+
+def take_cylinders(builder: Any) -> tuple[tuple[int, int], ...]:
+    """The pairs of a cylinder and a box, a capsule or a cylinder that may touch; MuJoCo no longer sees them do so.
+
+    Args:
+        builder: The `newton.ModelBuilder` of one world, all that does not touch already filtered.
+    """
+    spared = {(min(a, b), max(a, b)) for a, b in builder.shape_collision_filter_pairs}
+    kinds, bodies, collide = builder.shape_type, builder.shape_body, int(ShapeFlags.COLLIDE_SHAPES)
+    solid = [k for k in range(builder.shape_count) if int(builder.shape_flags[k]) & collide and kinds[k] in EXACT]
+    pairs = []
+    for one in solid:
+        for two in solid:
+            both = kinds[one] == kinds[two] == GeoType.CYLINDER
+            if kinds[one] != GeoType.CYLINDER or (both and one > two) or bodies[one] == bodies[two]:
+                continue
+            if (min(one, two), max(one, two)) not in spared:
+                pairs.append((one, two))
+                builder.add_shape_collision_filter_pair(one, two)
+    return tuple(pairs)
 
 
 def _part(shape: Shape) -> Part:

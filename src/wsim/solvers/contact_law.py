@@ -41,6 +41,7 @@ from wsim.solvers.breaking import BreakingC
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC
 from wsim.solvers.contact_rows import ContactRows
+from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
@@ -82,6 +83,7 @@ class ContactLawC:
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
         touching: Finds contacts with what MuJoCo does not know.
+        cylinders: Finds those of cylinders.
         drives: The drives that damp, if there are any.
     """
 
@@ -95,13 +97,14 @@ class ContactLawC:
         config: ContactConfig,
         breaking: BreakingC | None = None,
         touching: SurfaceContacts | None = None,
+        cylinders: CylinderContacts | None = None,
         drives: DrivesC | None = None,
     ) -> None:
         self.breaking, self.drives, self.flight = breaking, drives, flight
         self.impulses: ContactImpulsesC | None = None  # where somebody wants them summed
         self.ties: TieImpulsesC | None = None  # likewise
         self.mujoco, self.model, self.config, self.smooth = mujoco, model, config, smooth
-        self.touching, self._bow = touching, np.zeros(0)
+        self.touching, self.cylinders, self._bow = touching, cylinders, np.zeros(0)
         self.classes, self.law, self.curvature = surfaces.classes[0], surfaces.law[0], surfaces.curvature[0]
         self.rolls = bool(self.law[..., 2].any())
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
@@ -189,9 +192,9 @@ class ContactLawC:
         self.model.opt.disableflags &= ~off
 
     def _position(self, data: Any) -> None:
-        """What hangs on the pose, contacts with what MuJoCo does not know among it."""
+        """What hangs on the pose, contacts that MuJoCo does not find among it."""
         mujoco, model = self.mujoco, self.model
-        if self.touching is None:
+        if self.touching is None and self.cylinders is None:
             mujoco.mj_fwdPosition(model, data)
             self._bow = np.zeros(data.ncon)
             return
@@ -199,7 +202,9 @@ class ContactLawC:
         mujoco.mj_makeM(model, data)
         mujoco.mj_factorM(model, data)
         mujoco.mj_collision(model, data)
-        self._bow = self.touching.add_to_c(mujoco, model, data)
+        if self.cylinders is not None:
+            self.cylinders.add_to_c(mujoco, model, data)
+        self._bow = self.touching.add_to_c(mujoco, model, data) if self.touching else np.zeros(data.ncon)
         mujoco.mj_makeConstraint(model, data)
         mujoco.mj_island(model, data)
         mujoco.mj_transmission(model, data)

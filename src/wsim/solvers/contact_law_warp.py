@@ -10,10 +10,10 @@ import warp as wp
 from wsim.kernels import slips
 from wsim.kernels.blows import begin_round, count_round, lose_finite, silence
 from wsim.kernels.contact_law import ENDED, aim, look, stop, vec5
-from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.kernels.slips import go_on_from, guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesWarp
+from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.kept_memory import KeptMemory
@@ -40,6 +40,7 @@ class ContactLawWarp:
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
         touching: Finds contacts with what MuJoCo does not know.
+        cylinders: Finds those of cylinders.
         drives: The drives that damp, if there are any.
     """
 
@@ -55,11 +56,13 @@ class ContactLawWarp:
         config: ContactConfig,
         breaking: Any = None,
         touching: SurfaceContacts | None = None,
+        cylinders: CylinderContacts | None = None,
         drives: Any = None,
     ) -> None:
         mujoco, self._mujoco_warp = modules
         self._mujoco, self._model, self._data, self._flight, self._config = mujoco, model, data, flight, config
-        self._breaking, self._touching, self._drives = breaking, touching, drives
+        self._breaking, self._drives = breaking, drives
+        self._touching, self._cylinders = touching, cylinders
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
         groups = tied_groups(mujoco, host)
         moves_as_one = mechanisms(mujoco, host, groups, flight.stated) if smooth else np.zeros(host.nbody, dtype=int)
@@ -92,7 +95,7 @@ class ContactLawWarp:
         self._smooth_steps: Any = None
         if smooth:
             self._smooth_steps = SmoothStepsWarp(mujoco, self._mujoco_warp, model, data, owners, self._touched_for)
-        model.callback.contactfilter = self._mend_contacts
+        model.callback.contactfilter = self._add_contacts
 
     def step(self, h: float) -> None:
         """Advance by `h` [s]: MuJoCo Warp's step, with the law between its halves."""
@@ -174,18 +177,10 @@ class ContactLawWarp:
             self._solve(model, data)
             self._breaking.give_way(model, data)
 
-    def _mend_contacts(self, model: Any, data: Any) -> None:
-        """After MuJoCo Warp's search for contacts: those that it finds only nearly, and those that it cannot know."""
-        contact = data.contact
-        wp.launch(
-            settle_round_on_flat,
-            dim=data.naconmax,
-            inputs=[
-                model.geom_type, model.geom_size, data.nacon, contact.worldid, contact.geom, data.geom_xpos,
-                data.geom_xmat,
-            ],
-            outputs=[contact.pos, contact.dist, contact.frame],
-        )  # fmt: skip
+    def _add_contacts(self, model: Any, data: Any) -> None:
+        """After MuJoCo Warp's search for contacts those that it does not find."""
+        if self._cylinders:
+            self._cylinders.add_to_warp(model, data)
         if self._touching:
             self._touching.add_to_warp(model, data, self._bow)
 

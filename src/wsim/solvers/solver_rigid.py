@@ -16,6 +16,7 @@ from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
 from wsim.solvers.contact_law import ContactLawC
 from wsim.solvers.contact_law_warp import ContactLawWarp
+from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
 from wsim.solvers.host_models import host_models
@@ -43,6 +44,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         time_step: Of the steps to come [s].
         breakable: The joints that may break, of all worlds alike or of each.
         touching: Finds contacts with what MuJoCo does not know.
+        cylinders: Finds those of cylinders.
         options: For `newton.solvers.SolverMuJoCo`.
     """
 
@@ -56,6 +58,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         time_step: float,
         breakable: Sequence[Sequence[Breakable]] = (),
         touching: SurfaceContacts | None = None,
+        cylinders: CylinderContacts | None = None,
         **options: Any,
     ) -> None:
         self.contact_config = ContactConfig()
@@ -85,12 +88,16 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
+        if cylinders:
+            cylinders.bind(self.mjc_geom_to_newton_shape.numpy()[0])
         mujoco = self.import_mujoco()[0]
         self._free_bodies = self._not_led()
         self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data, self._hosts())
         driven = drive_rows(mujoco, self.mj_model)
         self._law_warp: ContactLawWarp | None = None
         if on_c:
+            if cylinders:
+                cylinders.bind_c(self.mj_model, self.mj_data)
             drives: Any = DrivesC(mujoco, self.mj_model, driven) if driven else None
             self._law_c = ContactLawC(
                 mujoco,
@@ -101,10 +108,13 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 self.contact_config,
                 self.breaking,
                 touching,
+                cylinders,
                 drives,
             )
         elif may_touch or not smooth:
             self._prepare_warp(np.array(gives))
+            if cylinders:
+                cylinders.bind_warp(self.mjw_model, self.mjw_data)
             with wp.ScopedDevice(model.device):
                 drives = DrivesWarp(self._hosts(), driven, self.mjw_data.nworld) if driven else None
             self._law_warp = ContactLawWarp(
@@ -118,6 +128,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
                 self.contact_config,
                 self.breaking,
                 touching,
+                cylinders,
                 drives,
             )
         else:  # Runge and Kutta's stages take drives as MuJoCo does

@@ -12,8 +12,9 @@ from newton import BodyFlags, GeoType, ShapeFlags
 from scipy.spatial import ConvexHull
 
 from wsim.kernels.convex import BOX, CAPSULE, CYLINDER, HULL, SPHERE, Convex
+from wsim.kernels.own_rows import add_found
 from wsim.kernels.surface import Found, touch
-from wsim.kernels.surface_rows import add
+from wsim.solvers.own_contacts import put_in_c, rows_of
 from wsim.solvers.surface_mesh import Part, make_surface
 
 Array = np.ndarray
@@ -110,46 +111,23 @@ class SurfaceContacts:
         position, normal = self.found.position.numpy(), self.found.normal.numpy()
         distance, bend, part = (a.numpy() for a in (self.found.distance, self.found.bend, self.found.part))
         bends = np.zeros(own + int(counts.sum()))
-        contact, k = mujoco.MjContact(), own
-        for probe in np.flatnonzero(counts):
-            geom = int(self.geoms[probe])
-            for slot in range(counts[probe]):
-                fixed = int(self.part_geoms[part[probe, slot]])
-                contact.dist, contact.pos[:] = distance[probe, slot], position[probe, slot]
-                contact.frame[:] = _frame(normal[probe, slot]).reshape(-1)
-                contact.includemargin = self.reach
-                contact.solref[:], contact.solimp[:] = model.geom_solref[geom], model.geom_solimp[geom]
-                friction = np.maximum(model.geom_friction[geom], model.geom_friction[fixed])
-                contact.friction[:] = friction[[0, 0, 1, 2, 2]]
-                contact.solreffriction[:] = contact.adhesion = 0.0
-                contact.dim = max(model.geom_condim[geom], model.geom_condim[fixed])
-                contact.geom[:] = fixed, geom
-                contact.geom1, contact.geom2 = fixed, geom
-                contact.flex[:] = contact.elem[:] = contact.vert[:] = -1
-                contact.exclude, contact.efc_address = 0, -1
-                mujoco.mj_addContact(model, data, contact)
-                bends[k] = bend[probe, slot]
-                k += 1
+        probe, slot = np.nonzero(np.arange(position.shape[1]) < counts[:, None])
+        bends[own:] = bend[probe, slot]
+        geoms = np.stack([self.part_geoms[part[probe, slot]], self.geoms[probe]], axis=1)
+        at = probe, slot
+        put_in_c(mujoco, model, data, geoms, position[at], normal[at], distance[at], self.reach)
         return bends
 
     def add_to_warp(self, model: Any, data: Any, bend: Any) -> None:
         """The same for MuJoCo Warp's; `bend` is one number for each of its contacts."""
         bend.zero_()
-        contact = data.contact
         wp.launch(
-            add,
+            add_found,
             dim=(len(self.shapes), SLOTS),
-            inputs=[
-                self.found, self._world, self._geom, self._part_geom, model.geom_condim, model.geom_friction,
-                model.geom_solref, model.geom_solimp, self.reach,
-            ],
-            outputs=[
-                data.nacon, contact.dist, contact.pos, contact.frame, contact.includemargin, contact.friction,
-                contact.solref, contact.solreffriction, contact.solimp, contact.dim, contact.geom, contact.adhesion,
-                contact.type, contact.geomcollisionid, contact.efc_address, contact.worldid, bend,
-            ],
+            inputs=[self.found, self._world, self._geom, self._part_geom],
+            outputs=[rows_of(model, data, self.reach), bend],
             device=self.model.device,
-        )  # fmt: skip
+        )
 
 
 def _moving(model: Any) -> list[int]:
@@ -191,12 +169,3 @@ def _probe(model: Any, shape: int) -> tuple[Any, Array, Array, Array, Array]:
     probe.kind, probe.size = int(HULL), wp.vec3(*(0.5 * (high - low)))
     probe.corner_count, probe.plane_count = len(corners), len(planes)
     return probe, pose, np.array([0.5 * (low + high), 0.5 * (high - low)]), corners, planes
-
-
-def _frame(normal: Array) -> Array:
-    """A right-handed frame (3, 3) whose first row is a normal."""
-    first = normal.astype(float)
-    other = np.array([0.0, 1.0, 0.0]) if abs(first[0]) > 0.5 else np.array([1.0, 0.0, 0.0])
-    second = other - (other @ first) * first
-    second /= np.linalg.norm(second)
-    return np.stack([first, second, np.cross(first, second)])
