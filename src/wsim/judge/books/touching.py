@@ -130,14 +130,35 @@ class Touching:
 
     def of_many(self, poses: Floats, reach: Floats, rows: Rows) -> Contacts:
         """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of `rows` (K,) by B."""
-        model, data, bodies = self._model, self._data, poses.shape[1]
+        geom, place, frame, gap, at = self._found(poses, reach)
+        shapes, normal = self._shape_of_geom[geom], frame[:, :3]
+        contacts = Contacts(
+            self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes, place, normal,
+            gap - self._margin[geom].sum(axis=1),
+        )  # fmt: skip
+        if self._meshes or self._flat:
+            places = self._places(poses)
+            others = [self._on_meshes(each, float(far)) for each, far in zip(places, reach, strict=True)]
+            further, of = self._flats(shapes, normal, at, places)
+            near = further.gap <= reach[of]
+            at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
+            order = np.argsort(at, kind="stable")  # what is of one pose stays together
+            contacts, at = together([contacts, *others, further.only(near)]).only(order), at[order]
+        by = rows[at] * poses.shape[1]
+        one, two = (np.where(row >= 0, row + by, row) for row in (contacts.one, contacts.two))
+        contacts = replace(contacts, one=one, two=two)
+        return contacts if self._meet.all() else contacts.only(self._meet[contacts.shapes[:, 0], contacts.shapes[:, 1]])
+
+    def _found(self, poses: Floats, reach: Floats) -> tuple[Rows, Floats, Floats, Floats, Rows]:
+        """What MuJoCo finds at poses (K, B, 7): geoms (n, 2), points (n, 3), frames (n, 9), gaps, and which pose."""
+        model, data, found = self._model, self._data, self._data.contact
         qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
         widest = self._margin.max(initial=0.0)
-        geoms, places, frames, gaps, others = [], [], [], [], []
-        for k, far in enumerate(reach):
+        geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
+        for pose, far in zip(qpos, reach, strict=True):
             model.geom_margin[:] = 0.5 * far + self._margin
             model.body_margin[:] = 0.5 * far + widest
-            data.qpos[:] = qpos[k]
+            data.qpos[:] = pose
             self._mujoco.mj_kinematics(model, data)
             self._mujoco.mj_comPos(model, data)
             self._mujoco.mj_collision(model, data)
@@ -146,24 +167,8 @@ class Touching:
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
-            if self._meshes or self._flat:
-                others.append(together([*self._on_meshes(poses[k], float(far)), *self._flats(poses[k], float(far))]))
-        geom = np.concatenate([NONE.shapes, *geoms])
-        shapes = self._shape_of_geom[geom]
-        contacts = Contacts(
-            self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes,
-            np.concatenate([_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
-            np.concatenate([np.zeros(0), *gaps]) - self._margin[geom].sum(axis=1),
-        )  # fmt: skip
-        by = np.repeat(rows, [len(gap) for gap in gaps])
-        if others:  # what is of one pose stays together
-            contacts = together([contacts, *others])
-            order = np.concatenate([by, np.repeat(rows, [len(other) for other in others])])
-            at = np.argsort(order, kind="stable")
-            contacts, by = contacts.only(at), order[at]
-        one, two = (np.where(row >= 0, row + by * bodies, row) for row in (contacts.one, contacts.two))
-        contacts = replace(contacts, one=one, two=two)
-        return contacts if self._meet.all() else contacts.only(self._meet[contacts.shapes[:, 0], contacts.shapes[:, 1]])
+        at = np.repeat(np.arange(len(poses)), [len(gap) for gap in gaps[1:]])
+        return np.concatenate(geoms), np.concatenate(places), np.concatenate(frames), np.concatenate(gaps), at
 
     @cached_property
     def _meet(self) -> NDArray[np.bool_]:
@@ -180,23 +185,18 @@ class Touching:
             shape.kind == "cylinder" for _, _, shape in self.shapes
         )
 
-    def _flats(self, pose: Floats, reach: float) -> list[Contacts]:
-        """Further points of what is flat among what MuJoCo has found last, at one pose of all bodies."""
+    def _flats(self, pairs: Rows, normal: Floats, at: Rows, places: Floats) -> tuple[Contacts, Rows]:
+        """Further points of what is flat among contacts, each at one of several poses; and at which these are."""
         if not self._flat:
-            return []
-        found = self._data.contact
-        pairs = self._shape_of_geom[np.array(found.geom).reshape(-1, 2)]
-        normal = np.array(found.frame).reshape(-1, 9)[:, :3]
-        further = flats(pairs, normal, [shape for _, _, shape in self.shapes], lambda k: self._placed(k, pose))
+            return NONE, NONE.one
+        further = flats(pairs, normal, at, [shape for _, _, shape in self.shapes], places)
         shapes = pairs[further.of]
         margin = np.array([shape.margin for _, _, shape in self.shapes])[shapes].sum(axis=1)
         one, two = self._row_of_shape[shapes].T
-        made = Contacts(one, two, shapes, further.point, further.normal, further.gap - margin)
-        return [made.only(made.gap <= reach)]
+        return Contacts(one, two, shapes, further.point, further.normal, further.gap - margin), at[further.of]
 
-    def _on_meshes(self, poses: Floats, reach: float) -> list[Contacts]:
-        """Contacts of all shapes with all meshes of other bodies; of two meshes, with the faces of both."""
-        places = [self._placed(k, poses) for k in range(len(self.shapes))]
+    def _on_meshes(self, places: Floats, reach: float) -> Contacts:
+        """Contacts of all shapes, where they are (S, 7), with all meshes of other bodies; of two, with both's faces."""
         found = []
         for m, mesh in self._meshes.items():
             row, pose = self.shapes[m][0], places[m]
@@ -212,16 +212,17 @@ class Touching:
                 point, normal = rotate(pose[3:], near.point) + pose[:3], rotate(pose[3:], near.normal)
                 rows = np.full(count, row, dtype=np.intp), np.full(count, other, dtype=np.intp)
                 found.append(Contacts(*rows, np.tile([m, k], (count, 1)), point, normal, near.gap))
-        return found
+        return together(found) if found else NONE
 
-    def _placed(self, k: int, poses: Floats) -> Floats:
-        """Where a shape is in the world, (7,)."""
-        row, _, shape = self.shapes[k]
-        own = np.concatenate([shape.position, shape.rotation])
-        if row < 0:
-            return own
-        q = poses[row]
-        return np.concatenate([q[:3] + rotate(q[3:], own[:3]), multiply(q[3:], own[3:])])
+    def _places(self, poses: Floats) -> Floats:
+        """Where all shapes are in the world at poses (K, B, 7), (K, S, 7)."""
+        own = np.array([(*shape.position, *shape.rotation) for _, _, shape in self.shapes]).reshape(-1, 7)
+        found = np.tile(own, (len(poses), 1, 1))
+        moving = self._row_of_shape >= 0
+        q, own = poses[:, self._row_of_shape[moving]], own[moving]
+        found[:, moving, :3] = q[..., :3] + rotate(q[..., 3:], own[:, :3])
+        found[:, moving, 3:] = multiply(q[..., 3:], own[:, 3:])
+        return found
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""
