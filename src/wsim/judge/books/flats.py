@@ -55,21 +55,21 @@ def flats(pairs: Rows, normal: Floats, at: Rows, shapes: Sequence[Shape], places
     Args:
         pairs: Of the shapes of each contact, (n, 2).
         normal: From the first to the second, (n, 3).
-        at: Which of K poses of all bodies each contact is at, (n,).
-        shapes: All that collide, S of them.
-        places: Where each is in the world, (K, S, 7) [m; xyzw].
+        at: Which of several poses of all bodies each contact is at, (n,).
+        shapes: All that collide.
+        places: Where both shapes of each contact are in the world, (n, 2, 7) [m; xyzw].
     """
     first, counts = np.unique((at * len(shapes) + pairs[:, 0]) * len(shapes) + pairs[:, 1], return_index=True,
                               return_counts=True)[1:]  # fmt: skip
     kinds = np.array([shape.kind for shape in shapes])[pairs[first]]
     boxes = np.all(kinds == "box", axis=1) & (counts < FACE)
-    parts = [_boxes(pairs, normal, at, first[boxes], shapes, places)]
-    for group, n in ((group, int(n)) for group, n in enumerate(first) if "cylinder" in kinds[group]):
+    parts = [_boxes(pairs, normal, first[boxes], shapes, places)]
+    for n in first[np.any(kinds == "cylinder", axis=1)].tolist():
         for side, sign in ((0, 1.0), (1, -1.0)):
             own, other = (int(s) for s in pairs[n, [side, 1 - side]])
             if (shapes[own].kind, shapes[other].kind) not in KINDS:
                 continue
-            ends = (shapes[own], places[at[n], own]), (shapes[other], places[at[n], other])
+            ends = (shapes[own], places[n, side]), (shapes[other], places[n, 1 - side])
             for point, way, gap in _shared(*ends, sign * normal[n]):
                 parts.append(Further(np.full(len(gap), n), point, sign * way, gap))
     rank = np.zeros(len(pairs), dtype=np.intp)
@@ -78,12 +78,12 @@ def flats(pairs: Rows, normal: Floats, at: Rows, shapes: Sequence[Shape], places
     return Further(*(np.concatenate([getattr(part, f.name) for part in parts])[order] for f in fields(Further)))
 
 
-def _boxes(pairs: Rows, normal: Floats, at: Rows, chosen: Rows, shapes: Sequence[Shape], places: Floats) -> Further:
+def _boxes(pairs: Rows, normal: Floats, chosen: Rows, shapes: Sequence[Shape], places: Floats) -> Further:
     """The corners of each of two boxes over the other's face, of some contacts."""
     size = np.array([shape.size if shape.kind == "box" else (0.0, 0.0, 0.0) for shape in shapes]).reshape(-1, 3)
     of, sign = np.repeat(chosen, 2), np.tile([1.0, -1.0], len(chosen))
     own, other = pairs[chosen].ravel(), pairs[chosen][:, ::-1].ravel()
-    pose, there = places[at[of], own][:, None], places[at[of], other]
+    pose, there = places[chosen].reshape(-1, 1, 7), places[chosen][:, ::-1].reshape(-1, 7)
     corners = pose[..., :3] + rotate(pose[..., 3:], CORNERS * size[own][:, None])
     way = rotate(conjugate(there[:, 3:]), -sign[:, None] * normal[of])
     k, row = np.argmax(np.abs(way), axis=1), np.arange(len(of))
