@@ -193,7 +193,8 @@ def sliding(edge: float, friction: float, ice: float, t: np.ndarray) -> tuple[Wo
     body_q[:, 0, 0], body_q[:, 0, 2], body_q[:, 0, 6] = 0.8 * moving - friction * G * moving**2 / 2, edge / 2, 1.0
     body_qd[:, 0, 0] = 0.8 - friction * G * moving
     box = Body(
-        prim="/World/box", mass=mass, volume=edge**3, inertia=tuple((np.eye(3) * mass * edge**2 / 6.0).ravel().tolist()),
+        prim="/World/box", mass=mass, volume=edge**3,
+        inertia=tuple((np.eye(3) * mass * edge**2 / 6.0).ravel().tolist()),
         position=(0.0, 0.0, edge / 2), rotation=(0.0, 0.0, 0.0, 1.0), velocity=(0.8, 0.0, 0.0),
         shapes=[Shape(prim="/World/box/geometry", kind="box", size=(edge,) * 3, friction=ice)],
     )  # fmt: skip

@@ -75,17 +75,18 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
 
 def _work_out(copies: Sequence[Evidence]) -> None:
     """At once what the checks ask of all copies of like worlds. What cannot be is left to each by itself, and told."""
-    joined = []
+    joined: list[tuple[Evidence, list[Evidence]]] = []
     for group in (group for group in groups(copies, _like) if len(group) > 1):
         with _left_to_each(group, "motion"):
-            joined.append((Evidence.join(group), group))
+            whole = Evidence.join(group)
+            joined += [(whole, group)] if whole is not None else []
     for group in groups(copies, similar):
         if len(group) > 1:
             with _left_to_each(group, "books"):
                 work_out(group)
     for whole, group in joined:
         asked = group[0].plan.objectives if group[0].plan is not None else []
-        for check in (*physics_checks(), *map(ObjectiveCheck, asked)) if whole is not None else ():
+        for check in (*physics_checks(), *map(ObjectiveCheck, asked)):
             with _left_to_each(group, check.name), contextlib.suppress(MissingError):
                 check.prepare(whole, group)
 

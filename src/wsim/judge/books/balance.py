@@ -5,8 +5,8 @@ sum of impulses that the world can exert: of contacts where shapes touch or may 
 and inside the cone of the pair's friction, on its edge against a slip that lasts; of joints and springs along what they
 hold. What no sum of them gives is the finding.
 
-The copies of a world, or of worlds that differ in sizes and coefficients alone, are worked out at once: their intervals stand one after another, N = W (T - 1) of them, and their
-frames, W T. A recording by itself is one copy.
+The copies of a world, or of worlds that differ in sizes and coefficients alone, are worked out at once: their intervals
+stand one after another, N = W (T - 1) of them, and their frames, W T. A recording by itself is one copy.
 """
 
 from __future__ import annotations

@@ -177,7 +177,8 @@ class Touching:
         """
         which = np.zeros(len(poses), dtype=np.intp) if worlds is None or len(self.worlds) == 1 else worlds
         shapes, place, normal, gap, at = self._found(poses, reach, which)
-        contacts = Contacts(*self._row_of_shape[shapes].T, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
+        one, two = self._row_of_shape[shapes].T
+        contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
             others = [self._on_meshes(each, float(far)) for each, far in zip(poses, reach, strict=True)]
             further, of = self._flats(shapes, normal, at, poses)
@@ -238,7 +239,8 @@ class Touching:
         further = flats(pairs, normal, at, [shape for _, _, shape in self.shapes], places)
         shapes = pairs[further.of]
         gap = further.gap - self._margin[shapes].sum(axis=1)
-        return Contacts(*self._row_of_shape[shapes].T, shapes, further.point, further.normal, gap), at[further.of]
+        one, two = self._row_of_shape[shapes].T
+        return Contacts(one, two, shapes, further.point, further.normal, gap), at[further.of]
 
     def _on_meshes(self, poses: Floats, reach: float) -> Contacts:
         """Contacts of all shapes with all meshes of other bodies at poses (B, 7); of two meshes, with both's faces."""
