@@ -9,6 +9,7 @@ import pytest
 from tests.sim.cord_runs import period, run
 from wsim.geometry.catenary import hanging
 from wsim.geometry.ropes import Stop, path_length, strayed
+from wsim.geometry.rotations import rotate
 from wsim.judge import judge
 from wsim.recording import read
 from wsim.scene import Scene
@@ -92,6 +93,28 @@ def test_a_cable_hangs_in_a_catenary(simulate, worlds):
     _, q, _ = simulate(build, 0.2 if worlds == 1 else 0.03, worlds)
     lowest = hanging(np.array([-0.5, 0, 2.0]), np.array([0.5, 0, 2.0]), 1.5, 10001)[:, 2].min()
     assert q["c_15"][:, 2] == pytest.approx(lowest, abs=1e-3)
+
+
+def test_a_cable_is_held_at_its_point_and_starts_at_rest(tmp_path):
+    """Thirty links: Newton worked the point that they close at, and their poses, out to 4 um."""
+
+    def build(scene):
+        scene.cable("c", None, None, anchor_a=(-0.8, 0, 1.6), anchor_b=(0.8, 0, 1.6), length=2.0, links=30)
+
+    scene = Scene()
+    build(scene)
+    simulation = Simulation(scene.save(tmp_path / "stage.usda"), "cpu")
+    last = simulation.built.bodies[-1]
+    closing = simulation.world.joints[-1]
+
+    def off():
+        pose = simulation.state.body_q.numpy()[last].astype(float)
+        return np.linalg.norm(pose[:3] + rotate(pose[3:], np.array(closing.child_anchor)) - closing.parent_anchor)
+
+    assert off() < 5e-7
+    for _ in range(3):
+        simulation.advance_frame()
+        assert off() < 1e-6
 
 
 @BOTH

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,30 @@ def constraint_rows(world: World) -> int:
     return ROWS_A_JOINT * closing + len(world.gears) + sum(joint.friction > 0.0 for joint in world.joints)
 
 
+def held_points(world: World) -> np.ndarray:
+    """Where each point-to-point constraint holds its child, in the child's axes [m], (rows, 3); NaN of the others.
+
+    Newton works it out from the pose at the start, in single precision: what a chain of thirty links is then off by
+    would stay, and so would the gap of a loop that does not close.
+    """
+    rows: list[np.ndarray] = []
+    for joint in world.joints:
+        if joint.closing:
+            rows += (
+                [np.full(3, np.nan)] if joint.kind == "fixed" else _points(joint, joint.child_anchor, joint.child_turn)
+            )
+    return np.array(rows + [np.full(3, np.nan)] * len(world.gears)).reshape(-1, 3)
+
+
+def _points(joint: Joint, anchor: Sequence[float] | None, turn: Sequence[float]) -> list[np.ndarray]:
+    """What holds a joint on one of its sides: the anchor of a ball joint, two points on the axis of a hinge."""
+    place = np.array(anchor, dtype=float)
+    if joint.kind == "spherical":
+        return [place]
+    arm = HALF_SPAN * rotate(np.array(turn), np.eye(3)["XYZ".index(joint.axis)])
+    return [place - arm, place + arm]
+
+
 def _add(builder: Any, joint: Joint, index: dict[str, int]) -> list[int]:
     """A joint's rows of `mujoco:equality_constraint`."""
     parent = -1 if joint.parent is None else index[joint.parent]
@@ -59,9 +84,5 @@ def _add(builder: Any, joint: Joint, index: dict[str, int]) -> list[int]:
         # A weld holds the child's anchor, about which its torque is then.
         builder.custom_attributes["mujoco:equality_constraint_anchor"].values[row] = joint.child_anchor
         return [row]
-    anchor = np.array(joint.parent_anchor)
-    if joint.kind == "spherical":
-        return [mujoco.add_equality_connect(builder, parent, child, anchor=tuple(anchor), label=joint.prim)]
-    arm = HALF_SPAN * rotate(np.array(joint.parent_turn), np.eye(3)["XYZ".index(joint.axis)])
-    points = (anchor - arm, anchor + arm)
+    points = _points(joint, joint.parent_anchor, joint.parent_turn)
     return [mujoco.add_equality_connect(builder, parent, child, anchor=tuple(p), label=joint.prim) for p in points]

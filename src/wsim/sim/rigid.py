@@ -14,7 +14,7 @@ from wsim.kernels.overflow import accumulate_overflow
 from wsim.recording.contacts import Pushes
 from wsim.recording.ties import Ties
 from wsim.scene.world import World
-from wsim.sim.constraints import constraint_rows
+from wsim.sim.constraints import constraint_rows, held_points
 from wsim.sim.contacts import shape_numbers, surface_velocities, surfaces_of
 from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
@@ -106,6 +106,7 @@ class RigidBodies:
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
         found = surfaces_of(model, worlds)
         self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, **sizes)
+        self.solver.hold_points(np.array([held_points(each) for each in worlds]))
         self.solver.move_surfaces(surface_velocities(model, worlds))
         kinds: set[Any] = set()
         if not self.on_c:

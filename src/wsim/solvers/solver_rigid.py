@@ -86,6 +86,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
         mujoco = self.import_mujoco()[0]
+        self._free_bodies = self._not_led()
         self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data, self._hosts())
         driven = drive_rows(mujoco, self.mj_model)
         self._law_warp: ContactLawWarp | None = None
@@ -147,6 +148,24 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if not self.use_mujoco_cpu:
             self._give_warp("geom_surfacevel", moving)
             self.mjw_model.flg_surfacevel = True
+
+    def hold_points(self, points: Array) -> None:
+        """Have constraints hold their children where they say, also where the start is off it: that gap fades.
+
+        Args:
+            points: Of each of Newton's equality constraints of all worlds alike, or of each, in the child's axes [m],
+                (N, rows, 3); NaN of what is held by other than a point.
+        """
+        rows = self.mjc_eq_to_newton_eq.numpy()[0]
+        chosen = np.flatnonzero(rows >= 0)
+        chosen = chosen[np.isfinite(points[0, rows[chosen], 0])]
+        if not len(chosen):
+            return
+        held = np.array([host.eq_data.copy() for host in self._hosts()])[: len(points)]
+        held[:, chosen, 3:6] = points[:, rows[chosen]]
+        self.mj_model.eq_data[:] = held[0]
+        if not self.use_mujoco_cpu:
+            self._give_warp("eq_data", held)
 
     def _harden_constraints(self, h: float) -> None:
         """Loops, gears and what may break are as hard as contacts, the welds that drive kinematic bodies nearly so.
@@ -274,6 +293,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         super().reset(state, *args, **options)
         if self._flight:
             self._flight.forget()
+        if self.use_mujoco_cpu:
+            self._update_mjc_data(self.mj_data, self.model, state)
+            self._place_bodies(state)
 
     def _update_mjc_data(self, mj_data: Any, model: Any, state: Any = None, *args: Any, **options: Any) -> None:
         super()._update_mjc_data(mj_data, model, state, *args, **options)
@@ -286,6 +308,27 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         super()._update_newton_state(model, state, mj_data, *args, **options)
         if self._flight:
             self._flight.tell(state)
+            if self.use_mujoco_cpu:
+                self._place_bodies(state)
+
+    def _place_bodies(self, state: Any) -> None:
+        """Put bodies where MuJoCo in C has them, in double precision.
+
+        Newton works poses out of joint coordinates in single precision, by turns that lose their length from joint to
+        joint: the end of a chain of 30 links of 7 cm is 4 um off.
+        """
+        self._mujoco.mj_kinematics(self.mj_model, self.mj_data)
+        ours, newtons = self._free_bodies
+        poses = state.body_q.numpy()  # of a CPU's array it is the array
+        poses[newtons, :3] = self.mj_data.xpos[ours]
+        poses[newtons, 3:] = self.mj_data.xquat[ours][:, [1, 2, 3, 0]]
+
+    def _not_led(self) -> tuple[Array, Array]:
+        """MuJoCo's and Newton's numbers of the bodies of the first world that hang on no kinematic one."""
+        newtons, flags = self.mjc_body_to_newton.numpy()[0], self.model.body_flags.numpy()
+        led = (newtons >= 0) & ((flags[newtons] & int(newton.BodyFlags.KINEMATIC)) != 0)
+        ours = np.flatnonzero((newtons >= 0) & ~led[self.mj_model.body_rootid])
+        return ours, newtons[ours]
 
     def _mujoco_warp_step(self) -> None:
         """MuJoCo Warp's step under the law; by itself where nothing touches and steps are smooth."""
