@@ -55,6 +55,7 @@ def _panel(axes: Axes, run: Result) -> None:
     axes.tick_params(labelsize=6, length=2, pad=1)
     axes.ticklabel_format(useOffset=False)
     axes.locator_params(nbins=4)
+    axes.yaxis.get_offset_text().set_fontsize(6)  # a power of ten above the axis, beside the title
     color = MEASURED if run.reached else MISSED
     if run.curve is None:
         _point(axes, run, color)
@@ -69,7 +70,7 @@ def _panel(axes: Axes, run: Result) -> None:
     low = min(known.min(), float(np.nanmin(curve.measured))) - room
     axes.set_ylim(low, max(known.max(), float(np.nanmax(curve.measured))) + room)
     axes.set_xlabel(curve.names[0], fontsize=6, labelpad=1)
-    axes.set_ylabel(curve.names[1], fontsize=6, labelpad=1)
+    axes.set_ylabel(curve.names[1], fontsize=6, labelpad=3)
 
 
 def _point(axes: Axes, run: Result, color: str) -> None:
@@ -80,4 +81,4 @@ def _point(axes: Axes, run: Result, color: str) -> None:
     axes.plot([0.0], [run.value], "o", color=color, markersize=4)
     far = 2.0 * max(bound, abs(run.value - run.expected) if np.isfinite(run.value) else 0.0)
     axes.set(xlim=(-1, 1), ylim=(run.expected - far, run.expected + far), xticks=[])
-    axes.set_ylabel(run.case.unit or "–", fontsize=6, labelpad=1)
+    axes.set_ylabel(run.case.unit or "–", fontsize=6, labelpad=3)

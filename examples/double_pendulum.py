@@ -10,7 +10,7 @@ def build(scene: Scene) -> None:
     scene.simulation(duration=5.0, frame_rate=60.0)
     scene.ground()
     density = scene.param("arm_density", 2700.0, low=500.0, high=8000.0, unit="kg/m^3")
-    aluminium = scene.material("aluminium", density=density, color=(0.6, 0.62, 0.65))
+    aluminium = scene.material("aluminium", density=density, color=(0.1, 0.2, 0.45))
     upper = scene.box("upper", size=(ARM, 0.04, 0.04), position=(ARM / 2, 0.0, PIVOT), material=aluminium)
     lower = scene.box("lower", size=(ARM, 0.04, 0.04), position=(1.5 * ARM, 0.0, PIVOT), material=aluminium)
     scene.joint_revolute("shoulder", None, upper, anchor=(0.0, 0.0, PIVOT), axis="Y")

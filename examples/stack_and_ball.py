@@ -17,7 +17,7 @@ def build(scene: Scene) -> None:
     scene.sphere("ball", radius=0.1, position=(-1.2, 0.0, 0.9), velocity=(speed, 0.0, 0.0), material=iron)
 
     scene.light("sun", direction=(-0.4, 0.6, -1.0))
-    scene.camera("side", eye=(0.3, -4.0, 1.4), target=(0.3, 0.0, 0.5))
+    scene.camera("side", eye=(1.15, -6.0, 1.8), target=(1.15, 0.0, 0.5))
 
 
 if __name__ == "__main__":

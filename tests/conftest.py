@@ -1,5 +1,10 @@
 """Tests marked `cuda` are skipped where there is no CUDA device, and none hangs on the clock. Long files come first."""
 
+# ruff: noqa: E402
+from wsim.threads import one_thread
+
+one_thread()  # before anything loads NumPy: the tests have a process for each core
+
 from pathlib import Path
 
 import pytest
@@ -16,7 +21,11 @@ settings.load_profile("any_machine")
 
 # A worker takes a file at a time (`--dist loadfile`): a long one that is taken last leaves the other cores idle. Left
 # to itself xdist begins with the files of most tests, which are quick ones: `make test` has it keep this order.
-LONG = ("loop/test_transcripts.py", "cli/test_generate.py", "sim/", "mcp/", "cli/", "loop/", "solvers/", "benchmarks/")
+LONG = (
+    "loop/test_transcripts.py", "benchmarks/test_sph", "program/test_hostile.py", "skills/", "sim/", "test_examples",
+    "cli/", "sweep/", "runs/", "mcp/", "judge/checks/test_heaps.py", "loop/", "solvers/", "kernels/",
+    "assets/test_standing.py", "judge/", "rules/", "tools/", "agents/", "benchmarks/", "program/",
+)  # fmt: skip
 HERE = Path(__file__).parent
 
 

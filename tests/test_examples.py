@@ -16,6 +16,8 @@ from pxr import Usd
 
 from tests.patience import STUCK
 from wsim.judge.verdict import Verdict
+from wsim.plan.layout.boxes import Box
+from wsim.plan.views import _sees as sees
 from wsim.recording import Recording, read
 from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
@@ -82,6 +84,20 @@ def run(command: list[str], folder: Path) -> tuple[str, Path]:
     assert {path.name for path in (made / "accepted").iterdir()} == {"program.py", "stage.usda", "SHA256SUMS"}
     assert (made / "report.html").is_file()
     return ended.stdout, made
+
+
+def out_of_picture(recording: Recording) -> set[str]:
+    """Bodies whose middle the first camera does not have in its picture at some frame."""
+    camera = recording.world.cameras[0]
+    places = {body.prim: recording.position(body.prim) for body in recording.world.bodies}
+    points = {prim: {tuple(map(float, point)) for point in np.unique(way, axis=0)} for prim, way in places.items()}
+    return {prim for prim, way in points.items() if not all(sees(camera.eye, camera.target, Box(p, p)) for p in way)}
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_what_it_shows_stays_in_the_picture(judged, name) -> None:
+    _, recording = judged(name)
+    assert out_of_picture(recording) == set()
 
 
 @pytest.mark.parametrize("name", SHORT)
@@ -158,6 +174,7 @@ def test_stack_is_knocked_over_by_wsim_run(tmp_path: Path) -> None:
     moved = [float(np.linalg.norm(box[-1] - box[0])) for box in boxes]
     assert sum(distance > 0.3 for distance in moved) >= 2, moved
     assert all(box[:, 2].min() > 0.09 for box in boxes)  # none sinks into the ground
+    assert out_of_picture(recording) == set()
     assert (made / "accepted" / "program.py").read_text() == program.read_text()
 
 

@@ -1,5 +1,6 @@
 """Imports point down, and what starts first is light."""
 
+import os
 import subprocess
 import sys
 
@@ -58,3 +59,21 @@ finally:
     brought = set(done.stderr.split())
     assert {"wsim", "typer"} <= brought
     assert HEAVY.isdisjoint(brought)
+
+
+@pytest.mark.parametrize(("said", "threads"), [(None, "1"), ("2", "2")])
+def test_the_command_line_shares_out_no_small_matrices(said, threads):
+    """Judging a heap takes several times as long on two threads, which wait for each other, as on one."""
+    script = """
+import os
+import wsim.cli
+import numpy
+
+print(os.environ["OPENBLAS_NUM_THREADS"], len(os.listdir("/proc/self/task")))
+"""
+    others = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    environment = others | ({"OPENBLAS_NUM_THREADS": said} if said else {})
+    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    told, running = done.stdout.split()
+    assert told == threads
+    assert running == threads or os.cpu_count() == 1

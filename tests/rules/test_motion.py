@@ -99,6 +99,34 @@ def test_a_row_that_is_hit_is_in_the_picture_as_it_lies():
     assert seen(made, "domino_8", [(0.4, 0.0, 0.0)])
 
 
+@pytest.mark.parametrize(
+    "prompt",
+    [
+        "A concrete block slides across the floor at 3 m/s and hits a wall",
+        "A steel ball rolls at 3 m/s and hits a wall",
+    ],
+)
+def test_a_wall_that_is_hit_stands_and_the_picture_is_of_it_and_of_what_hits_it(prompt):
+    made = plan(prompt)
+    (thing,) = (item for item in made.objects if item.state == "dynamic")
+    low, high = around(thing).low[0], around(made.object("wall")).high[0]
+    assert made.cameras[0].target[0] == pytest.approx(0.5 * (low + high), abs=0.01)
+    assert seen(made, thing.name, [(0.0, 0.0, 0.0)]) and seen(made, "wall", [(0.0, 0.0, 0.0)])
+
+
+def test_what_a_wall_throws_back_behind_its_start_is_in_the_picture():
+    """After the blow (0.9 - 0.4) / 1.4 of its speed, 1.07 m/s, and more until it rolls."""
+    made = plan("A rubber ball with a restitution of 0.9 rolls at 3 m/s and hits a wall for 6 seconds.")
+    assert seen(made, "rubber_ball", [(0.0, 0.0, 0.0), (1.8 - 1.07 * (6.0 - 0.6), 0.0, 0.0)])
+
+
+def test_what_nothing_rubs_comes_back_as_far_as_time_lets_it():
+    """0.6 m there at 1 m/s, and back at half of that for what is left of 4 s."""
+    made = plan("A steel block with a friction of 0 and a restitution of 0.5 slides at 1 m/s and hits a wall for 4 s.")
+    assert seen(made, "steel_block", [(0.0, 0.0, 0.0), (0.6 - 0.5 * (4.0 - 0.6), 0.0, 0.0)])
+    assert made.cameras[0].target[0] > -1.5
+
+
 # ---- what topples, what is hit
 @pytest.mark.parametrize(
     "prompt",

@@ -21,7 +21,7 @@ Build = Callable[[Scene, np.random.Generator], None]
 
 
 def loose(scene: Scene, draw: np.random.Generator) -> None:
-    """Sizes, masses, starts, friction, restitution, rolling resistance, a belt, a pair's own law, gravity."""
+    """Sizes, masses, starts, friction, restitution, gravity; what tumbles."""
     scene.simulation(duration=DURATION, gravity=(0.0, 0.0, -float(draw.uniform(3.0, 15.0))))
     surface = {"friction": draw.uniform(0.1, 0.9), "restitution": draw.uniform(0.1, 0.9)}
     scene.ground(**surface)
@@ -29,13 +29,20 @@ def loose(scene: Scene, draw: np.random.Generator) -> None:
     edges = (size, 0.8 * size, 0.6 * size)
     scene.box("slider", size=edges, mass=draw.uniform(1, 9), position=(0, 0, edges[2] / 2), velocity=(speed, 0, 0))
     scene.sphere("ball", radius=0.1 + size / 5, position=(0, 2, 1), density=draw.uniform(200, 5000), **surface)
-    scene.sphere(
-        "roller", radius=size / 2, mass=1.0, position=(0, 4, size / 2), velocity=(speed, 0, 0), rolling=True,
-        rolling_friction=draw.uniform(0.01, 0.05), **surface,
-    )  # fmt: skip
     scene.box(
         "tumbler", size=(0.3, 0.2, size / 4), mass=1.0, position=(0, 6, 2), angular_velocity_deg=(300, 60 * speed, 500)
     )
+
+
+def carried(scene: Scene, draw: np.random.Generator) -> None:
+    """Rolling resistance, a belt, a pair's own law."""
+    scene.simulation(duration=DURATION)
+    size, speed = draw.uniform(0.2, 0.5), draw.uniform(1.0, 3.0)
+    scene.ground(friction=draw.uniform(0.1, 0.9))
+    scene.sphere(
+        "roller", radius=size / 2, mass=1.0, position=(0, 4, size / 2), velocity=(speed, 0, 0), rolling=True,
+        rolling_friction=draw.uniform(0.01, 0.05),
+    )  # fmt: skip
     belt = scene.box("belt", size=(3, 1, 0.1), position=(0, 8, 0.05), static=True)
     scene.surface_velocity(belt, velocity=(speed, 0.0, 0.0))
     load = scene.box("load", size=(0.2, 0.2, 0.2), mass=2.0, position=(0, 8, 0.2))
@@ -64,7 +71,7 @@ def held(scene: Scene, draw: np.random.Generator) -> None:
     scene.joint_fixed("glue", None, "hung", anchor=(0, 4, 1.05), break_force=draw.choice([10.0, 40.0]))
 
 
-@pytest.mark.parametrize("build", [loose, held])
+@pytest.mark.parametrize("build", [loose, carried, held])
 def test_each_world_moves_as_among_copies_of_itself(tmp_path: Path, build: Build) -> None:
     stages = _stages(tmp_path, build, 3)
     batch = collect(Simulation(stages, "cpu"))
@@ -77,6 +84,37 @@ def test_each_world_moves_as_among_copies_of_itself(tmp_path: Path, build: Build
             np.testing.assert_allclose(batch.scalars[name][k], values[0], rtol=1e-3, atol=1e-2, err_msg=name)
     assert np.abs(batch.body_q[1:] - batch.body_q[:1]).max(axis=(0, 1, 3)).min() > 1e-3  # they do differ
     assert np.abs(batch.body_q - batch.body_q[:, :1]).max(axis=(0, 1, 3)).min() > 1e-2  # and move
+
+
+def led(scene: Scene, draw: np.random.Generator) -> None:
+    """A path, and triangles to roll on; both are of the world, not its numbers."""
+    scene.ground()
+    lift = scene.box("lift", size=(1, 1, 0.1), position=(0, 0, 0.5), kinematic=True)
+    scene.path(lift, times=(0, 0.1, 0.2), positions=((0, 0, 0.5), (0, 0, 0.56), (0, 0, 0.5)))
+    scene.box("load", size=(0.3,) * 3, density=600.0, position=(0, 0, 0.7))
+    scene.height_field("slope", heights=lambda x, y: 0.3 * x, size=(2, 2), cells=(8, 8), position=(0, 3, 1))
+    scene.sphere("ball", radius=0.1, density=600.0, position=(0, 3, 1.12), velocity=(draw.uniform(1.0, 2.0), 0, 0))
+
+
+@pytest.mark.parametrize("pushed", [False, True])
+@pytest.mark.parametrize("build", [loose, carried, held, led])
+def test_steps_that_are_replayed_are_the_steps(tmp_path: Path, build: Build, pushed: bool) -> None:
+    """Bit for bit, and with what a controller has pushed with at the time."""
+    stages = _stages(tmp_path, build, 2)
+    replayed, one_by_one = (Simulation(stages, "cpu") for _ in range(2))
+    for k in range(40):
+        if pushed and k % 10 == 5:
+            for simulation in (replayed, one_by_one):
+                force = simulation.control_force.numpy()
+                force[..., 2] = 1e-2 * k
+                simulation.control_force.assign(force)
+                simulation._controller = lambda t, simulation: None
+        replayed.step()
+        one_by_one._push_and_move()
+    for array in ("body_q", "body_qd", "joint_q"):
+        ours, theirs = (getattr(simulation.state, array).numpy() for simulation in (replayed, one_by_one))
+        assert np.abs(theirs).max() > 0.0
+        assert (ours == theirs).all(), array
 
 
 def test_a_world_that_breaks_leaves_the_others_as_they_are(tmp_path: Path) -> None:

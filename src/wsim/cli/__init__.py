@@ -11,7 +11,9 @@ import typer
 from wsim import __version__
 from wsim.cli.verbs import Verbs
 from wsim.errors import UserError
+from wsim.threads import one_thread
 
+one_thread()
 app = typer.Typer(
     name="wsim",
     help="A sentence becomes a physical world: planned, built as OpenUSD, simulated on Newton, judged against physics.",

@@ -137,16 +137,17 @@ class Simulation:
         self._control_every = max(1, round(control_interval / self.dt))
         self._graph: Any = None
         self._warm_up()
+        # What a batch of bodies costs on a CPU is the launches of its kernels, a few hundred a step. In C there are
+        # none; and whether a fluid on a CPU sorts its particles anew is asked step by step.
+        self._replays = not (self.device.is_cuda or self.fluid) and self.rigid is not None and not self.rigid.on_c
         progress("compiling kernels", 3, 3)
 
     def _warm_up(self) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""
         kept, self.state = self.state, self.model.state()
-        controller, self._controller = self._controller, None  # it may count its calls
         self.state.assign(kept)
-        self.step()
-        self.state, self.time, self.step_count = kept, 0.0, 0
-        self._controller = controller
+        self._push_and_move()
+        self.state = kept
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
@@ -156,40 +157,49 @@ class Simulation:
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
+        if self._controller is not None and self.step_count % self._control_every == 0:
+            self._controller(self.time, self)
+        if self._replays:
+            wp.capture_launch(self._captured(1))
+        else:
+            self._push_and_move()
+        self._count(1)
+
+    def _push_and_move(self) -> None:
         self.state.clear_forces()
-        if self._controller is not None:
-            if self.step_count % self._control_every == 0:
-                self._controller(self.time, self)
-            if self.control_force is not None:
-                wp.copy(self.state.body_f, self.control_force)
+        if self._controller is not None and self.control_force is not None:
+            wp.copy(self.state.body_f, self.control_force)
         if self.fluid:
             self.fluid.step(self.state, self.state, self.control, None, self.dt)
         if self.rigid:
             self.rigid.step(self.state, self.state, self.control, self.dt)
-        self.step_count += 1
-        self.time = self.step_count * self.dt
 
     def advance_frame(self) -> None:
         """Advance by one recorded frame; on CUDA its steps are captured in a graph once and replayed."""
         if self.rigid and self.rigid.alone and not self.fluid and self._controller is None:
             self.state.clear_forces()
             self.rigid.steps(self.state, self.control, self.dt, self.substeps)
-            self.step_count += self.substeps
-            self.time = self.step_count * self.dt
-            return
-        if not self.device.is_cuda or self._controller is not None:
+            self._count(self.substeps)
+        elif self.device.is_cuda and self._controller is None:
+            wp.capture_launch(self._captured(self.substeps))
+            self._count(self.substeps)
+        else:
             for _ in range(self.substeps):
                 self.step()
-            return
-        if self._graph is None:
-            before = self.step_count
-            with wp.ScopedCapture(self.device) as capture:
-                for _ in range(self.substeps):
-                    self.step()
-            self._graph, self.step_count = capture.graph, before
-        wp.capture_launch(self._graph)
-        self.step_count += self.substeps
+
+    def _count(self, steps: int) -> None:
+        self.step_count += steps
         self.time = self.step_count * self.dt
+
+    def _captured(self, steps: int) -> Any:
+        """A graph of some steps as they are asked for now."""
+        asked = (steps, self.state, self.control, self.dt, self._controller is None)
+        if self._graph is None or self._graph[0] != asked:
+            with wp.ScopedCapture(self.device) as capture:
+                for _ in range(steps):
+                    self._push_and_move()
+            self._graph = asked, capture.graph
+        return self._graph[1]
 
     def problems(self) -> list[str]:
         """What went wrong so far: non-finite states, buffer overflows, solver warnings."""
@@ -233,6 +243,7 @@ class Simulation:
         problems: list[str] = []
         if self.rigid:
             self.rigid.keep_contacts()
+            self._graph = None  # a step sums them from here on
         with ExitStack() as stack:
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
             pictures = None

@@ -25,9 +25,15 @@ class ContactConfig:
     batched, 0.2 % of g [m/s^2]. Rounding alone leaves 0.1 to 0.4 in a heap of boxes; but MuJoCo Warp ends where one
     turn gains little, also where its search along a line gets stuck: at 0.4 a stack that a ball hits was left with 3.5
     to 5 m/s^2 in every third step, after one turn of two that are needed."""
-    most_factored: int = 1000
+    most_factored: int = 3000
     """Degrees of freedom of a world that Newton's method takes where worlds are batched; beyond, conjugate gradients.
-    MuJoCo Warp factors a world's Hessian whole, with one block of threads."""
+    MuJoCo Warp keeps a world's Hessian and its factor whole, 72 MB here, and factors it with one block of threads. But
+    contacts are hard: 27 boxes in a heap take Newton's method up to 10 turns and conjugate gradients up to 900, 64
+    boxes up to 30 and beyond 3000. On a core of a CPU one of Newton's turns took 17 ms at 384 degrees of freedom and
+    0.8 s at 1536, one of the other's 3 ms at 384."""
+    most_conjugate: int = 3000
+    """Turns of conjugate gradients there at most. MuJoCo's 100 leave 13 to 34 m/s^2 in those 27 boxes, a fall's and
+    more; these leave 0.01 in them, and 0.04 in 64."""
     last_turns: int = 25
     """Newton's iterations in the last solution at most. Where boxes tumble over each other Newton's method in double
     precision needs up to 18 from the solution before; ten left 12 to 23 m/s^2 in some steps."""
@@ -45,8 +51,8 @@ class ContactConfig:
     """Solutions of a step after which the slip need only be known roughly."""
     most_solutions: int = 20
     """Solutions of a step at most."""
-    solutions_cuda: int = 6
-    """The same on CUDA, always: MuJoCo Warp's solution allocates, which a loop in a CUDA graph may not."""
+    solutions_unrolled: int = 6
+    """The same, always, where CUDA graphs know no loops: drivers before 12.4."""
     tolerance: float = 3e-4
     """Change of the slip, times friction, below which it stays [m/s]."""
     rough: float = 3e-3

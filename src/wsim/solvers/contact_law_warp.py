@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from wsim.kernels import slips
 from wsim.kernels.contact_law import aim, stop, strike, vec5
 from wsim.kernels.round_on_flat import settle_round_on_flat
 from wsim.kernels.slips import go_on_from, guess, settle, weigh
@@ -14,6 +15,7 @@ from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesWarp
 from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
+from wsim.solvers.kept_memory import KeptMemory
 from wsim.solvers.ropes import RopesWarp
 from wsim.solvers.single_precision import last_tolerance
 from wsim.solvers.smooth_steps import Owners, SmoothStepsWarp
@@ -58,11 +60,11 @@ class ContactLawWarp:
         self._mujoco, self._model, self._data, self._flight, self._config = mujoco, model, data, flight, config
         self._breaking, self._touching, self._drives = breaking, touching, drives
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
-        # With a guess: where something hits, one solution has none.
-        self._most = config.solutions_cuda - 1 if data.qpos.device.is_cuda else config.most_solutions
         groups = tied_groups(mujoco, host)
         moves_as_one = mechanisms(mujoco, host, groups, flight.stated) if smooth else np.zeros(host.nbody, dtype=int)
         owners = Owners(mujoco, host, moves_as_one)
+        self._memory = KeptMemory(data.qpos.device)
+        wp.load_module(slips, device=data.qpos.device)  # before a graph is captured: a first step may touch nothing
         with wp.ScopedDevice(data.qpos.device):
             self._geom_class = wp.array(surfaces.classes, dtype=int)
             self._law = wp.array(surfaces.law, dtype=wp.vec3)
@@ -110,7 +112,7 @@ class ContactLawWarp:
             self._drives.aim(model, data)
         self._seek(model, data)
         if self._breaking is not None:
-            warp.solve(model, data)
+            self._solve(model, data)
             self._breaking.give_way(model, data)
         self._solve_last(model, data)
         if self.impulses is not None:
@@ -138,6 +140,10 @@ class ContactLawWarp:
         if self._touching:
             self._touching.add_to_warp(model, data, self._bow)
 
+    def _solve(self, model: Any, data: Any) -> None:
+        with self._memory.used():
+            self._mujoco_warp.solve(model, data)
+
     def _solve_last(self, model: Any, data: Any) -> None:
         """The solution whose forces move the bodies, and are recorded."""
         option = model.opt
@@ -145,7 +151,7 @@ class ContactLawWarp:
         option.tolerance = self._last_tolerance
         if option.solver == int(self._mujoco.mjtSolver.mjSOL_NEWTON):
             option.iterations = self._config.last_turns
-        self._mujoco_warp.solve(model, data)
+        self._solve(model, data)
         option.tolerance, option.iterations = usual
 
     def _implicit(self, model: Any, data: Any) -> None:
@@ -205,17 +211,19 @@ class ContactLawWarp:
         )  # fmt: skip
 
     def _seek(self, model: Any, data: Any) -> None:
-        """Solve until all worlds' slips are what they were guessed to be, on CUDA a given number of times."""
-        if not data.qpos.device.is_cuda:
-            wp.capture_while(self._seeking, self._seek_slip, model=model, data=data)
+        """Solve until all worlds' slips are what they were guessed to be, or a given number of times."""
+        if model.opt.graph_conditional:
+            most = self._config.most_solutions
+            wp.capture_while(self._seeking, self._seek_slip, model=model, data=data, most=most)
             return
-        for _ in range(self._config.solutions_cuda):
-            self._seek_slip(model, data)
+        solutions = self._config.solutions_unrolled
+        for _ in range(solutions):
+            self._seek_slip(model, data, solutions - 1)  # with a guess: where something hits, one has none
 
-    def _seek_slip(self, model: Any, data: Any) -> None:
-        """A solution, and from what slips it leaves what they are guessed to be."""
+    def _seek_slip(self, model: Any, data: Any, most: int) -> None:
+        """A solution, and from what slips it leaves what they are guessed to be; `most` of them with a guess."""
         config, efc, contact = self._config, data.efc, data.contact
-        self._mujoco_warp.solve(model, data)
+        self._solve(model, data)
         wp.launch(go_on_from, dim=data.qacc.shape, inputs=[self._search, data.qacc], outputs=[data.qacc_warmstart])
         self._sums.zero_()
         self._seeking.zero_()
@@ -233,7 +241,7 @@ class ContactLawWarp:
         wp.launch(
             settle,
             dim=data.nworld,
-            inputs=[config.solutions, self._most, config.tolerance, config.rough],
+            inputs=[config.solutions, most, config.tolerance, config.rough],
             outputs=[self._change, self._nearest, self._search, self._seeking],
         )
         wp.launch(
@@ -241,7 +249,7 @@ class ContactLawWarp:
             dim=data.naconmax,
             inputs=[
                 *touching, self._friction, efc.vel, h, model.geom_bodyid, self._remaining, self._sums, self._target,
-                self._blow, efc.D, efc.force, self._most, self._search,
+                self._blow, efc.D, efc.force, most, self._search,
             ],
             outputs=[contact.friction, self._slip, self._before, self._best, efc.aref],
         )  # fmt: skip

@@ -241,12 +241,17 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _prepare_warp(self, gives: Array) -> None:
         """What of MuJoCo Warp's model the law needs otherwise than Newton gives it."""
         self.mjw_model.opt.warn_overflow &= ~int(OverflowType.LS_ITERATIONS | OverflowType.ITERATIONS)
+        if self.model.device.is_cuda and not wp.is_conditional_graph_supported():
+            self.mjw_model.opt.graph_conditional = False
         # Boxes meet boxes by MuJoCo's own clipping, as in C: in single precision the general search for the depth loses
         # the contacts of a box that slides, on an H200 in one step of some 300.
         self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
         ill = soften_contacts_for_single_precision(self._mujoco, self.mj_model, self.contact_config)
-        if ill or self.mj_model.nv > self.contact_config.most_factored:
+        too_many = self.mj_model.nv > self.contact_config.most_factored
+        if ill or too_many:
             self.mjw_model.opt.solver = int(self._mujoco.mjtSolver.mjSOL_CG)
+        if too_many:
+            self.mjw_model.opt.iterations = self.contact_config.most_conjugate
         self._tell_warp("geom_solimp")
         weights = self.mjw_model.body_invweight0.numpy()[: len(gives)]
         weights[..., 0] = gives

@@ -9,7 +9,7 @@ from wsim.errors import UserError
 from wsim.plan.schema import Objective, PlanObject, Relation, Vec3
 from wsim.rules.cast import ROUND, Cast, Thing
 from wsim.rules.materials import GROUND_LOOK
-from wsim.rules.scenes.bounce import returned
+from wsim.rules.scenes.bounce import restitution, returned
 from wsim.rules.scenes.lasting import stops
 from wsim.rules.scenes.part import DIRECTIONS, MOST_SPEED, Part, pair_friction, stopping_distance, tall, tidy, times
 from wsim.rules.sizes import bodies
@@ -151,9 +151,15 @@ def hit(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
         return
     if "throw" not in thing.does:
         aimed = _met(item, [first, *rest], target, part)
-        stop = stopping_distance(item.velocity[0], pair_friction(item, _GROUND, thing.said("friction", None)))
-        last = [first, *rest][-1]
-        part.goes[last] = [(round(tall(_item(last, part)) + min(GOES_ON, stop), 3), 0.0, 0.0)]
+        friction, last = pair_friction(item, _GROUND, thing.said("friction", None)), _item([first, *rest][-1], part)
+        if last.state == "dynamic":
+            stop = stopping_distance(item.velocity[0], friction)
+            part.goes[last.name] = [(round(tall(last) + min(GOES_ON, stop), 3), 0.0, 0.0)]
+        else:
+            said = thing.said("restitution", target)
+            bounce = restitution(item, _item(first, part)) if said is None else said
+            back = _thrown_back(item, bounce, friction, distance, cast.duration or part.duration)
+            part.goes[item.name] = [(-round(max(back - distance, 0.0), 3), 0.0, 0.0)]
     if "bounce" in thing.does:
         returned(thing, item, _item(aimed, part), target, cast)
     if "topple" not in target.does:  # which says more than that it is hit
@@ -165,6 +171,23 @@ def _run_up(slides: bool, speed: float, friction: float) -> float:
     if slides:
         return max(SLIDE_DISTANCE, round(min(APPROACH * speed, SLIDE_SHARE * stopping_distance(speed, friction)), 2))
     return max(ROLL_DISTANCE, round(APPROACH * speed, 2))
+
+
+def _thrown_back(item: PlanObject, bounce: float, friction: float, distance: float, duration: float) -> float:
+    """How far something comes back from what stands, by which it was stopped after a way [m].
+
+    What slides is at v^2 - 2 mu g s there, and goes back until it stops. What rolls keeps its spin in the blow: by
+    friction it comes to (e - k) / (1 + k) v, k = I / (m R^2), and (dv)^2 / (2 mu g) farther on the way to that.
+    """
+    speed = item.velocity[0]
+    left = max(duration - distance / speed, 0.0)
+    if not item.rolling:
+        off = bounce * math.sqrt(max(speed**2 - 2 * friction * GRAVITY * distance, 0.0))
+        return min(stopping_distance(off, friction), off * left)
+    k = 0.4 if item.primitive == "sphere" else 0.5
+    rolls = (bounce - k) / (1 + k) * speed
+    slips = stopping_distance(bounce * speed - rolls, friction)
+    return min(max(rolls, 0.0) * left + slips, bounce * speed * left)
 
 
 def struck(thing: Thing, part: Part, ramps: Part) -> None:
