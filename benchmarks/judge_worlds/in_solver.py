@@ -74,20 +74,23 @@ class SoftContacts(Tamper):
 
 @dataclass
 class NoContact(Tamper):
-    """From some time on, an object touches nothing."""
+    """From some time on, or for some time, an object touches nothing."""
 
     name: str
     start: float = 0.0  # [s]
-    done: bool = field(default=False, repr=False)
+    end: float = math.inf  # [s]
+    kept: dict[int, tuple[int, int]] = field(default_factory=dict, repr=False)  # what its geoms collide with
 
     def stepped(self, simulation: Any) -> None:
-        """Take the object out of the collisions once it is time."""
-        if self.done or simulation.time < self.start:
+        """Take the object out of the collisions once it is time, and put it back."""
+        off = self.start <= simulation.time < self.end
+        if off == bool(self.kept):
             return
-        self.done = True
         model = simulation.rigid.solver.mj_model
         for geom in _geoms(simulation, self.name):
-            model.geom_contype[geom] = model.geom_conaffinity[geom] = 0
+            if off:
+                self.kept[geom] = int(model.geom_contype[geom]), int(model.geom_conaffinity[geom])
+            model.geom_contype[geom], model.geom_conaffinity[geom] = (0, 0) if off else self.kept.pop(geom)
 
 
 @dataclass

@@ -18,7 +18,7 @@ from wsim.judge.checks.rest import CheckJitter
 from wsim.judge.decide import judge_copies
 from wsim.judge.evidence.alike import alike
 from wsim.judge.evidence.evidence import Evidence
-from wsim.judge.worlds import judge_worlds, weigh
+from wsim.judge.worlds import judge_worlds, verdicts_of, weigh
 from wsim.plan.schema import Plan
 from wsim.recording.trajectories import Trajectories
 from wsim.scene import Scene
@@ -183,6 +183,69 @@ def test_copies_may_differ_in_how_they_start_and_in_their_masses(worlds: Traject
             wrong = k in (3, 5) or (k >= 6 and given is not copies)
             assert found.status[k] == alone.status == ("rejected" if wrong else "accepted"), alone.summary
             assert sorted(found.failures(k)) == sorted({f.objective or f.check for f in alone.failures})
+
+
+def sliding(edge: float, friction: float, ice: float, t: np.ndarray) -> tuple[World, np.ndarray, np.ndarray]:
+    """A box of an edge thrown at 0.8 m/s that friction slows down, in a world that states another; place, velocity."""
+    mass = 500.0 * edge**3
+    body_q, body_qd = np.zeros((len(t), 1, 7)), np.zeros((len(t), 1, 6))
+    moving = np.minimum(t, 0.8 / (friction * G))
+    body_q[:, 0, 0], body_q[:, 0, 2], body_q[:, 0, 6] = 0.8 * moving - friction * G * moving**2 / 2, edge / 2, 1.0
+    body_qd[:, 0, 0] = 0.8 - friction * G * moving
+    box = Body(
+        prim="/World/box", mass=mass, volume=edge**3,
+        inertia=tuple((np.eye(3) * mass * edge**2 / 6.0).ravel().tolist()),
+        position=(0.0, 0.0, edge / 2), rotation=(0.0, 0.0, 0.0, 1.0), velocity=(0.8, 0.0, 0.0),
+        shapes=[Shape(prim="/World/box/geometry", kind="box", size=(edge,) * 3, friction=ice)],
+    )  # fmt: skip
+    floor = Static(prim="/World/ground", shapes=[Shape(prim="/World/ground/geometry", kind="plane", size=())])
+    return World(duration=0.6, frame_rate=50.0, bodies=[box], statics=[floor]), body_q, body_qd
+
+
+def differing() -> Trajectories:
+    """Boxes of six sizes and frictions; the third slides as on another floor, the fifth half its size in the ground."""
+    t = np.arange(31) / 50.0
+    edges, frictions = np.linspace(0.05, 0.6, 6), np.linspace(0.25, 0.5, 6)
+    said = np.where(np.arange(6) == 2, 0.6, frictions)
+    made = [sliding(*each, t) for each in zip(edges, frictions, said, strict=True)]
+    worlds, body_q, body_qd = (list(part) for part in zip(*made, strict=True))
+    body_q[4][:, 0, 2] = 0.0
+    force = np.zeros((6, 31, 1, 3))
+    force[..., 2] = G * 500.0 * edges[:, None, None] ** 3
+    return Trajectories(
+        worlds[0], t, np.array(body_q), np.array(body_qd), force, metadata={"time_step": 1 / 800}, worlds=worlds
+    )
+
+
+def test_worlds_of_other_sizes_and_frictions_are_worked_out_at_once(monkeypatch) -> None:
+    """Their books are one call, and each has its own shapes and laws in it."""
+    worlds, calls, every = differing(), [], Balance.every
+    monkeypatch.setattr(Balance, "every", lambda self: calls.append(len(self._copies)) or every(self))
+    verdicts = verdicts_of(worlds)
+    assert calls == [6]
+    assert [verdict.status for verdict in verdicts] == ["rejected" if k in (2, 4) else "accepted" for k in range(6)]
+    for k, verdict in enumerate(verdicts):
+        alone = judge(worlds.recording(k))
+        assert [(f.check, f.passed, f.message) for f in verdict.findings] == [
+            (f.check, f.passed, f.message) for f in alone.findings
+        ]
+        values, own = ([f.value for f in each.findings if f.value is not None] for each in (verdict, alone))
+        assert values == pytest.approx(own, abs=1e-12, nan_ok=True)
+
+
+def test_what_cannot_be_worked_out_at_once_is_told(monkeypatch) -> None:
+    """The verdicts are those of each world by itself, and somebody learns of it."""
+    worlds, every = differing(), Balance.every
+
+    def one_alone(self):
+        if len(self._copies) > 1:
+            raise ZeroDivisionError("planted")
+        return every(self)
+
+    sound = [verdict.summary for verdict in verdicts_of(worlds)]
+    monkeypatch.setattr(Balance, "every", one_alone)
+    with pytest.warns(RuntimeWarning, match="books of 6 worlds cannot .* by itself: ZeroDivisionError: planted"):
+        assert [verdict.summary for verdict in verdicts_of(worlds)] == sound
 
 
 def test_a_formula_is_weighed_on_all_worlds_at_once(planted: Trajectories) -> None:

@@ -45,6 +45,8 @@ def test_together_is_as_one_by_one(folder: Path) -> None:
     assert [outcome.status for outcome in together] == [outcome.status for outcome in one_by_one]
     assert [outcome.candidate for outcome in together] == list(candidates)
     assert together[4].reason == one_by_one[4].reason
+    assert [outcome.together for outcome in together] == [3, 3, 2, 3, 1, 2]
+    assert not any(outcome.note for outcome in together)
 
 
 def test_cores_change_nothing_but_the_time(folder: Path) -> None:
@@ -71,6 +73,21 @@ def test_what_finds_no_room_is_split_and_not_lost(folder: Path, monkeypatch: pyt
     found = work(Shard(candidates, folder, Spec(worlds=8)))
     assert [outcome.status for outcome in found] == ["accepted"] * 3
     assert sizes == [3, 1, 2]
+
+
+def test_a_batch_that_cannot_be_run_as_one_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each has its verdict by itself, and why it took so long is beside it."""
+
+    def broken(simulation: Any) -> Any:
+        raise RuntimeError("planted")
+
+    monkeypatch.setattr(batched, "collect", broken)
+    candidates = tuple(Candidate(number=k, params={"friction": 0.1 * k}) for k in range(3))
+    found = work(Shard(candidates, folder, Spec(worlds=8)))
+    assert [(outcome.status, outcome.together) for outcome in found] == [("accepted", 1)] * 3
+    assert {outcome.note for outcome in found} == {
+        "run by itself, as 3 worlds could not be at once: RuntimeError: planted"
+    }
 
 
 def test_who_shares_a_shard_with_a_killer_is_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

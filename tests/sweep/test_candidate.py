@@ -72,7 +72,7 @@ def test_the_table_has_a_row_a_candidate_and_a_column_a_number() -> None:
     made = table([outcome(1, "rejected", finding(-0.5)), outcome(4, "accepted", finding(0.5)), outcome(0, "failed")])
     assert made.column_names == [
         "rank", "candidate", "program", "seed", "speed", "status", "slack", "decided_by",
-        "value: the ball flies", "margin: the ball flies", "failures", "reason", "seconds",
+        "value: the ball flies", "margin: the ball flies", "failures", "reason", "seconds", "together", "note",
     ]  # fmt: skip
     assert made["candidate"].to_pylist() == [4, 1, 0]
     assert made["margin: the ball flies"].to_pylist() == [0.5, -0.5, None]

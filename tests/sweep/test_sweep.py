@@ -13,7 +13,7 @@ import pytest
 from wsim.errors import UserError
 from wsim.program.compose import compose
 from wsim.rules.planner import plan as make_plan
-from wsim.sweep.again import run_again, telling
+from wsim.sweep.again import in_full, run_again, telling
 from wsim.sweep.axis import Axis
 from wsim.sweep.declared import axes_of
 from wsim.sweep.folder import SweepFolder
@@ -74,9 +74,29 @@ def test_what_tells_most_is_run_again_and_is_the_same(swept: SweepFolder) -> Non
     chosen = telling(rows)
     assert chosen[0] == rows[0]
     assert {row.candidate.params.get("friction") for row in chosen} >= {0.2, 0.25, 0.8}
-    run = run_again(swept, next(row for row in chosen if row.candidate.params.get("friction") == 0.25), pictures=False)
+    asked = next(row for row in chosen if row.candidate.params.get("friction") == 0.25)
+    run, own = run_again(swept, asked, pictures=False)
     assert run.facts()["same"] is True
+    assert (own.status, own.values, own.note) == (asked.status, asked.values, "")
     assert (run.last_iteration() / "recording.rrd").is_file()
+
+
+def test_the_verdict_of_its_own_run_is_the_one_that_counts(swept: SweepFolder, tmp_path: Path) -> None:
+    """A batch that had accepted, as its best, a crate which does not slide: its own run says so, and ranks it."""
+    folder = SweepFolder(shutil.copytree(swept.path, tmp_path / "batch"))
+    rows = list(folder.outcomes().values())
+    wrong = next(row for row in rows if row.candidate.params.get("friction") == 0.8)
+    praised = wrong.model_copy(update={"status": "accepted", "slack": 0.99, "together": 64})
+    found = in_full(folder, [praised if row is wrong else row for row in rows], pictures=False)
+    assert [row.candidate.number for row in found] == [row.candidate.number for row in ranked(rows)]
+    own = next(row for row in found if row.candidate == wrong.candidate)
+    assert (own.status, own.together) == ("rejected", 1)
+    assert own.note == "accepted when it was simulated with 63 others"
+    assert found[0].status == "accepted" and found[0].together == 1
+    assert (folder.path / "candidates" / f"{found[0].candidate.number:04d}" / "run.json").is_file()
+    table = pyarrow.parquet.read_table(folder.path / "table.parquet")
+    assert table["note"].to_pylist()[[row.candidate for row in found].index(wrong.candidate)] == own.note
+    assert folder.outcomes()[wrong.candidate.number] == own
 
 
 def test_a_picture_has_a_panel_for_the_parameter(swept: SweepFolder) -> None:

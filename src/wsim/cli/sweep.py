@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from pathlib import Path
 from typing import Annotated, get_args
 
@@ -17,7 +18,7 @@ from wsim.cli.show import STATUS_STYLE, ConsoleProgress, console
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.program.sandbox.isolation import choose
-from wsim.sweep.again import run_again, telling
+from wsim.sweep.again import in_full
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Outcome
 from wsim.sweep.declared import axes_of, check, parameters_of
@@ -103,8 +104,7 @@ def sweep(
         with ConsoleProgress() as progress:
             outcomes = run_sweep(folder, workers, progress)
             if full:
-                for outcome in telling(outcomes):
-                    run_again(folder, outcome, progress=progress)
+                outcomes = in_full(folder, outcomes, progress=progress)
     except KeyboardInterrupt:
         console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
         raise typer.Exit(130) from None
@@ -158,3 +158,7 @@ def _show(outcomes: list[Outcome]) -> None:
     console.print(table)
     counts = {status: sum(o.status == status for o in outcomes) for status in {o.status: 0 for o in outcomes}}
     console.print(", ".join(f"{count} {status}" for status, count in counts.items()) + f" of {len(outcomes)}")
+    for note, count in Counter(outcome.note for outcome in outcomes if outcome.note).most_common():
+        console.print(f"{count} {note}", soft_wrap=True)
+    if outcomes and outcomes[0].status == "accepted" and outcomes[0].together > 1:
+        console.print("the best was judged in its batch alone, without contacts and ties; --full runs it by itself")

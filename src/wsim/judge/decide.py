@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterable, Sequence
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from wsim.judge.books.copies import work_out
+from wsim.judge.books.copies import similar, work_out
 from wsim.judge.checks.registry import physics_checks, run_checks
-from wsim.judge.evidence.alike import groups
+from wsim.judge.evidence.alike import alike, groups
 from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.objective import ObjectiveCheck
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Crash, Finding, RepairTarget, Verdict, status_of, unjudged
@@ -54,8 +56,9 @@ def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
 def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
     """Judge several copies of one world, over the same times and by the same plan, each as by itself.
 
-    They may differ in how they move, and in their descriptions; only those are worked out at once whose descriptions
-    differ in masses and inertias alone (`wsim.judge.evidence.alike`).
+    They may differ in how they move, and in their descriptions. All that checks ask is worked out at once of those
+    that differ in masses and inertias alone (`wsim.judge.evidence.alike`), and the books of those that differ in sizes,
+    places and coefficients, too (`wsim.judge.books.copies`).
     """
     if len(copies[0].time) == 0:
         return [_nothing() for _ in copies]
@@ -66,24 +69,40 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         answers.ask(run_checks(), evidence)
     broken = [next((f for f in run.findings if f.check == "CheckFinite" and not f.passed), None) for run in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
-    for group in groups(sound):
-        if len(group) > 1:
-            _work_out(group)
+    _work_out(sound)
     return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
 
 
 def _work_out(copies: Sequence[Evidence]) -> None:
-    """At once what the checks ask of all copies. What cannot be is left to each by itself, whose check tells of it."""
-    joined = None
-    with contextlib.suppress(Exception):
-        joined = Evidence.join(copies)
-    with contextlib.suppress(Exception):
-        work_out(copies)
-    if joined is not None:
-        asked = copies[0].plan.objectives if copies[0].plan is not None else []
+    """At once what the checks ask of all copies of like worlds. What cannot be is left to each by itself, and told."""
+    joined: list[tuple[Evidence, list[Evidence]]] = []
+    for group in (group for group in groups(copies, _like) if len(group) > 1):
+        with _left_to_each(group, "motion"):
+            whole = Evidence.join(group)
+            joined += [(whole, group)] if whole is not None else []
+    for group in groups(copies, similar):
+        if len(group) > 1:
+            with _left_to_each(group, "books"):
+                work_out(group)
+    for whole, group in joined:
+        asked = group[0].plan.objectives if group[0].plan is not None else []
         for check in (*physics_checks(), *map(ObjectiveCheck, asked)):
-            with contextlib.suppress(Exception):
-                check.prepare(joined, copies)
+            with _left_to_each(group, check.name), contextlib.suppress(MissingError):
+                check.prepare(whole, group)
+
+
+def _like(one: Evidence, other: Evidence) -> bool:
+    return alike(one.world, other.world)
+
+
+@contextlib.contextmanager
+def _left_to_each(copies: Sequence[Evidence], what: str) -> Iterator[None]:
+    """Verdicts stay what they are if it cannot be worked out at once, but slower: that is a fault of the judge's."""
+    try:
+        yield
+    except Exception as error:  # noqa: BLE001 - a check that crashes for one world alone tells of it there
+        told = f"{what} of {len(copies)} worlds cannot be worked out at once, and is of each by itself"
+        warnings.warn(f"{told}: {type(error).__name__}: {error}", RuntimeWarning, stacklevel=2)
 
 
 def _conclusion(evidence: Evidence, answers: Answers, broken: Finding | None) -> Verdict:

@@ -109,10 +109,7 @@ def _judged(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator
     chunks = [range(k, min(k + size, count)) for k in range(0, count, size)]
 
     def judged(chunk: range) -> list[Verdict]:
-        copies = [Evidence(worlds.recording(k), plan) for k in chunk]
-        # Each of its own shapes, or all of the same.
-        together = [[each] for each in copies] if worlds.worlds else [copies]
-        return [verdict for some in together for verdict in judge_copies(some)]
+        return judge_copies([Evidence(worlds.recording(k), plan) for k in chunk])
 
     yield from shared_out(judged, chunks, processes)
 

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.alone import run_in_folder
-from wsim.sweep.work import settings
+from wsim.sweep.candidate import Outcome
+from wsim.sweep.table import ranked, write
+from wsim.sweep.work import as_varied, settings
 
 if TYPE_CHECKING:
     from wsim.runs.folder import RunFolder
-    from wsim.sweep.candidate import Outcome
     from wsim.sweep.folder import SweepFolder
 
 
@@ -29,10 +31,41 @@ def telling(outcomes: Sequence[Outcome]) -> list[Outcome]:
     return list({outcome.candidate.number: outcome for outcome in chosen}.values())
 
 
-def run_again(folder: SweepFolder, outcome: Outcome, pictures: bool = True, progress: Progress = silent) -> RunFolder:
+def in_full(
+    folder: SweepFolder, outcomes: Sequence[Outcome], pictures: bool = True, progress: Progress = silent
+) -> list[Outcome]:
+    """Run the telling ones again, each by itself; what that run's verdict says is what counts, and ranks them.
+
+    Args:
+        folder: The sweep's, whose table is written anew.
+        outcomes: All of them.
+        pictures: Whether pictures are taken.
+        progress: Told how each run goes.
+
+    Returns:
+        All outcomes, the best first: what is best now has been run by itself.
+    """
+    best_first, done = ranked(outcomes), set[int]()
+    while left := [outcome for outcome in telling(best_first) if outcome.candidate.number not in done]:
+        _, own = run_again(folder, left[0], pictures, progress)
+        done.add(own.candidate.number)
+        folder.add(own)
+        best_first = ranked([own if each.candidate == own.candidate else each for each in best_first])
+    write(best_first, folder.path)
+    folder.finish(best_first)
+    return best_first
+
+
+def run_again(
+    folder: SweepFolder, outcome: Outcome, pictures: bool = True, progress: Progress = silent
+) -> tuple[RunFolder, Outcome]:
     """Run a candidate alone, with its parameters and seed, into candidates/NNNN.
 
-    Its run.json says whether the verdict is the one that it had in the sweep.
+    What was simulated with others is run on the CPU, where contacts and what joints, springs and ropes give are
+    recorded. Its run.json says whether the verdict is the one that it had in the sweep.
+
+    Returns:
+        The run, and what came of the candidate by it.
     """
     candidate, spec = outcome.candidate, folder.spec
     run = folder.run_of(candidate.number)
@@ -42,6 +75,14 @@ def run_again(folder: SweepFolder, outcome: Outcome, pictures: bool = True, prog
         (run.path / "plan.json").write_text(plan_file.read_text(encoding="utf-8"), encoding="utf-8")
     run.record(prompt=plan.prompt if plan else None, program=candidate.program, params=candidate.params)
     program = folder.path / candidate.program
-    verdict = run_in_folder(run, program, plan, settings(spec, candidate, pictures), progress)
-    run.record(seed=candidate.seed, in_sweep=outcome.status, same=verdict.status == outcome.status)
-    return run
+    own = settings(spec, candidate, pictures)
+    if outcome.together > 1:
+        own = replace(own, device="cpu")
+    verdict = run_in_folder(run, program, plan, own, progress)
+    said = as_varied(verdict) if candidate.params else verdict
+    same = said.status == outcome.status
+    run.record(seed=candidate.seed, in_sweep=outcome.status, same=same)
+    found = Outcome.of(candidate, said, outcome.seconds)
+    of = f" with {outcome.together - 1} others" if outcome.together > 1 else ""
+    note = outcome.note if same else f"{outcome.status} when it was simulated{of}"
+    return run, found.model_copy(update={"note": note})

@@ -45,6 +45,9 @@ class Outcome(BaseModel):
         failures: What did not pass.
         crashes: What could not be evaluated.
         seconds: What it took [s].
+        together: Worlds that were simulated at once: of more than one neither contacts nor what ties gave are recorded,
+            so that less is asked of it than of a run of its own.
+        note: Why it was not simulated with others, or what was said of it before it was run by itself.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -59,6 +62,8 @@ class Outcome(BaseModel):
     failures: list[str] = Field(default_factory=list)
     crashes: list[Crash] = Field(default_factory=list, exclude_if=lambda crashes: not crashes)
     seconds: float = 0.0
+    together: int = 1
+    note: str = Field(default="", exclude_if=lambda note: not note)
 
     @property
     def rank(self) -> tuple[int, float, int]:

@@ -25,12 +25,12 @@ def parameters(outcomes: Sequence[Outcome]) -> list[str]:
 
 def table(outcomes: Sequence[Outcome]) -> pa.Table:
     """Columns: rank, candidate, program, seed, each parameter, status, slack, decided_by, each objective's value and
-    margin, failures, reason, seconds. Nothing stands where a candidate has none."""
+    margin, failures, reason, seconds, how many were simulated together, note. Nothing stands where one has none."""
     best_first = ranked(outcomes)
     rows = [_row(rank, outcome) for rank, outcome in enumerate(best_first, start=1)]
     names = list(dict.fromkeys(name for row in rows for name in row))
     params, objectives = parameters(outcomes), _objectives(outcomes)
-    last = ["failures", "reason", "seconds"]
+    last = ["failures", "reason", "seconds", "together", "note"]
     order = [*[name for name in names if name not in (*params, *last) and name not in objectives]]
     at = order.index("status")
     order = [*order[:at], *params, *order[at:], *objectives, *last]
@@ -59,4 +59,5 @@ def _row(rank: int, outcome: Outcome) -> dict[str, Any]:
     row |= {"status": outcome.status, "slack": outcome.slack, "decided_by": outcome.decided_by}
     row |= {f"value: {name}": value for name, value in outcome.values.items()}
     row |= {f"margin: {name}": value for name, value in outcome.margins.items()}
-    return row | {"failures": "; ".join(outcome.failures), "reason": outcome.reason, "seconds": outcome.seconds}
+    row |= {"failures": "; ".join(outcome.failures), "reason": outcome.reason, "seconds": outcome.seconds}
+    return row | {"together": outcome.together, "note": outcome.note}

@@ -81,12 +81,19 @@ def work(shard: Shard) -> list[Outcome]:
             for candidate, each in zip(shard.candidates, build(shard, Path(scratch), plan), strict=True)
         ]
         found: dict[int, Outcome] = {}
+        notes: dict[int, str] = {}
         if shard.spec.together > 1:
             runnable = [(candidate, iteration) for candidate, iteration, built in made if built.ok]
             for batch in batches(runnable, shard.spec.together, shard.cores):
-                found |= _together(batch, plan, shard.cores)
+                try:
+                    found |= _together(batch, plan, shard.cores)
+                except FAILURES as error:  # each is run by itself, which says whose it is; what it costs is not hidden
+                    why = f"run by itself, as {len(batch)} worlds could not be at once: {told(error)}"
+                    notes |= {member.candidate.number: why for member in batch}
         return [
-            found[candidate.number] if candidate.number in found else _alone(candidate, iteration, built)
+            found[candidate.number]
+            if candidate.number in found
+            else _alone(candidate, iteration, built).model_copy(update={"note": notes.get(candidate.number, "")})
             for candidate, iteration, built in made
         ]
 
@@ -138,17 +145,15 @@ def _alone(candidate: Candidate, iteration: Iteration, built: BuildResult) -> Ou
 
 
 def _together(batch: Sequence[Member], plan: Plan | None, cores: int) -> dict[int, Outcome]:
-    """The outcomes of a batch, by candidate; none where it cannot be simulated as one: each is run alone then."""
+    """The outcomes of a batch, by candidate. Raises what `verdicts` does where it cannot be simulated as one."""
     started = time.perf_counter()
-    try:
-        found = verdicts(batch, plan, cores)
-    except FAILURES:
-        return {}
+    found = verdicts(batch, plan, cores)
     seconds = (time.perf_counter() - started) / len(batch)
-    return {
-        member.candidate.number: _outcome(member.candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
+    outcomes = [
+        _outcome(member.candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
         for member, verdict in zip(batch, found, strict=True)
-    }
+    ]
+    return {each.candidate.number: each.model_copy(update={"together": len(batch)}) for each in outcomes}
 
 
 def _outcome(candidate: Candidate, run: Callable[[], Verdict], seconds: Callable[[], float]) -> Outcome:

@@ -66,7 +66,7 @@ def test_a_face_on_a_face_bears_at_its_corners(apart):
     below, above = solid("box", (0.2, 0.2, 0.1), "below"), solid("box", (0.1, 0.1, 0.02), "above")
     places = [np.array((0.0, 0.0, 0.0, *UPRIGHT)), np.array((0.02, 0.0, 0.06 + apart, *UPRIGHT))]
     shapes = [below.shapes[0], above.shapes[0]]
-    found = flats(np.array([[0, 1]]), np.array([[0.0, 0.0, 1.0]]), shapes, places.__getitem__)
+    found = flats(np.array([[0, 1]]), np.array([[0.0, 0.0, 1.0]]), np.array([0]), shapes, np.array([places]))
     touch = found.gap < REACH
     corners = {tuple(point) for point in found.point[touch][:, :2].round(6)}
     assert corners == {(x, y) for x in (-0.03, 0.07) for y in (-0.05, 0.05)}

@@ -5,8 +5,8 @@ sum of impulses that the world can exert: of contacts where shapes touch or may 
 and inside the cone of the pair's friction, on its edge against a slip that lasts; of joints and springs along what they
 hold. What no sum of them gives is the finding.
 
-The copies of a world are worked out at once: their intervals stand one after another, N = W (T - 1) of them, and their
-frames, W T. A recording by itself is one copy.
+The copies of a world, or of worlds that differ in sizes and coefficients alone, are worked out at once: their intervals
+stand one after another, N = W (T - 1) of them, and their frames, W T. A recording by itself is one copy.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
 from wsim.judge.books.struck import Struck
 from wsim.judge.books.ties import Ties
-from wsim.judge.books.touching import Contacts, Touching, together
+from wsim.judge.books.touching import Contacts, together, touching_of
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
@@ -74,11 +74,11 @@ class Books:
 
 
 class Balance:
-    """Works the books out, of one recording or of several copies of one world over the same times."""
+    """Works the books out, of one recording or of several over the same times, of worlds that are `similar`."""
 
     def __init__(self, *copies: Evidence) -> None:
         self._copies, self._world = copies, copies[0].world
-        self._touching = Touching.of(copies[0])
+        self._touching = touching_of(copies)
         self._ties = [Ties(evidence) for evidence in copies]
         self._struck: list[Struck] = []  # of each copy, as soon as it is known what was hit
         motions = [evidence.motion for evidence in copies]
@@ -88,7 +88,7 @@ class Balance:
         self._jointed = motions[0].jointed
         self._mass = np.stack([motion.mass for motion in motions])  # (W, B)
         held = np.stack([ties.arms for ties in self._ties])
-        self._sizes = np.maximum(np.maximum(motions[0].radius, held), 1e-4)  # (W, B)
+        self._sizes = np.maximum(np.maximum(np.stack([motion.radius for motion in motions]), held), 1e-4)  # (W, B)
         # Frames, (W T, B, ...), and intervals, (N, ...)
         self._q = np.concatenate([evidence.body_q for evidence in copies])
         self._com, self._v, self._w = (
@@ -216,7 +216,7 @@ class Balance:
                 break
             moved = _moved(ends[side], np.repeat((share if side == 0 else -share) * h, hit.shape[1]))
             poses = moved.q.reshape(len(ks), -1, 7)[some]
-            contacts = self._touching.of_many(poses, reach[some], some)
+            contacts = self._touching.of_many(poses, reach[some], some, self._copy[ks[some]])
             contacts = contacts.only(_any(asked, contacts))
             contacts = contacts.only(self._within_reach(contacts, moved, h, share, between))
             if len(contacts):
@@ -238,7 +238,8 @@ class Balance:
         far, sides = np.zeros(len(frames)), which.reshape(2, -1)
         np.maximum.at(far, which.ravel(), np.tile(reach, 2))
         bodies = self._q.shape[1]
-        every = self._touching.of_many(self._q[frames], far, np.arange(len(frames)))
+        copies = frames // len(self._copies[0].time)
+        every = self._touching.of_many(self._q[frames], far, np.arange(len(frames)), copies)
         frame = np.maximum(every.one, every.two) // max(bodies, 1)
         first = np.searchsorted(frame, np.arange(len(frames) + 1))
         found = []

@@ -11,7 +11,7 @@ than a face has, each is held against the other's corners. Each point has its ow
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +19,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, rotate
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -33,10 +33,10 @@ LEANS = 0.1  # [rad]: an end, a side or a face that leans by more touches with o
 RIM = 16  # points of a rim,
 ALONG = 9  # and of a line
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
-BOXES, FACE = ("box", "box"), 4  # corners
-KINDS = {BOXES, *(("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder", "plane"))}
+FACE = 4  # corners of a box's face
+KINDS = {("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder", "plane")}
 Z = np.array([0.0, 0.0, 1.0])
-_NONE, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+_POINTS = np.zeros((0, 3))
 
 
 @dataclass(frozen=True)
@@ -49,36 +49,58 @@ class Further:
     gap: Floats  # (m,) [m]
 
 
-def flats(pairs: Rows, normal: Floats, shapes: Sequence[Shape], placed: Callable[[int], Floats]) -> Further:
+def flats(pairs: Rows, normal: Floats, at: Rows, shapes: Sequence[Shape], places: Floats) -> Further:
     """Further points of the contacts that cylinders take part in, and of boxes.
 
     Args:
-        pairs: Of the shapes of each contact at one pose of all bodies, (n, 2).
+        pairs: Of the shapes of each contact, (n, 2).
         normal: From the first to the second, (n, 3).
+        at: Which of several poses of all bodies each contact is at, (n,).
         shapes: All that collide.
-        placed: Where a shape is in the world, (7,) [m; xyzw].
+        places: Where both shapes of each contact are in the world, (n, 2, 7) [m; xyzw].
     """
-    rows, points, ways, gaps = [_NONE], [_POINTS], [_POINTS], [np.zeros(0)]
-    for n, count in zip(*np.unique(pairs, axis=0, return_index=True, return_counts=True)[1:], strict=True):
+    first, counts = np.unique((at * len(shapes) + pairs[:, 0]) * len(shapes) + pairs[:, 1], return_index=True,
+                              return_counts=True)[1:]  # fmt: skip
+    kinds = np.array([shape.kind for shape in shapes])[pairs[first]]
+    boxes = np.all(kinds == "box", axis=1) & (counts < FACE)
+    parts = [_boxes(pairs, normal, first[boxes], shapes, places)]
+    for n in first[np.any(kinds == "cylinder", axis=1)].tolist():
         for side, sign in ((0, 1.0), (1, -1.0)):
-            own, other = pairs[n, side], pairs[n, 1 - side]
-            kinds = shapes[own].kind, shapes[other].kind
-            if kinds not in KINDS or (kinds == BOXES and count >= FACE):
+            own, other = (int(s) for s in pairs[n, [side, 1 - side]])
+            if (shapes[own].kind, shapes[other].kind) not in KINDS:
                 continue
-            ends = (shapes[own], placed(own)), (shapes[other], placed(other))
+            ends = (shapes[own], places[n, side]), (shapes[other], places[n, 1 - side])
             for point, way, gap in _shared(*ends, sign * normal[n]):
-                rows.append(np.full(len(gap), n))
-                points.append(point)
-                ways.append(sign * way)
-                gaps.append(gap)
-    return Further(np.concatenate(rows), np.concatenate(points), np.concatenate(ways), np.concatenate(gaps))
+                parts.append(Further(np.full(len(gap), n), point, sign * way, gap))
+    rank = np.zeros(len(pairs), dtype=np.intp)
+    rank[first] = np.arange(len(first))
+    order = np.argsort(rank[np.concatenate([part.of for part in parts])], kind="stable")
+    return Further(*(np.concatenate([getattr(part, f.name) for part in parts])[order] for f in fields(Further)))
+
+
+def _boxes(pairs: Rows, normal: Floats, chosen: Rows, shapes: Sequence[Shape], places: Floats) -> Further:
+    """The corners of each of two boxes over the other's face, of some contacts."""
+    size = np.array([shape.size if shape.kind == "box" else (0.0, 0.0, 0.0) for shape in shapes]).reshape(-1, 3)
+    of, sign = np.repeat(chosen, 2), np.tile([1.0, -1.0], len(chosen))
+    own, other = pairs[chosen].ravel(), pairs[chosen][:, ::-1].ravel()
+    pose, there = places[chosen].reshape(-1, 1, 7), places[chosen][:, ::-1].reshape(-1, 7)
+    corners = pose[..., :3] + rotate(pose[..., 3:], CORNERS * size[own][:, None])
+    way = rotate(conjugate(there[:, 3:]), -sign[:, None] * normal[of])
+    k, row = np.argmax(np.abs(way), axis=1), np.arange(len(of))
+    edges, inner = 0.5 * size[other], rotate(conjugate(there[:, None, 3:]), corners - there[:, None, :3])
+    out = np.sign(way[row, k])
+    normals = -rotate(there[:, 3:], out[:, None] * np.eye(3)[k])
+    gap = out[:, None] * inner[row, :, k] - edges[row, k][:, None]
+    over = np.all((np.abs(inner) <= edges[:, None]) | (np.arange(3) == k[:, None])[:, None], axis=2)
+    over &= (np.abs(way[row, k]) >= np.cos(LEANS))[:, None]
+    points = corners + 0.5 * gap[..., None] * normals[:, None]
+    which = np.nonzero(over)[0]
+    return Further(of[which], points[over], (sign[:, None] * normals)[which], gap[over])
 
 
 def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Floats) -> list[Points]:
-    """What an end or a side of a cylinder that faces another shape shares with it, or a box with another's face."""
+    """What an end or a side of a cylinder that faces another shape shares with it."""
     (shape, pose), (against, there) = own, other
-    if shape.kind == "box":
-        return [_on_face(_facing(shape, pose, outwards), against, there, outwards)]
     axis = rotate(pose[3:], Z)
     upright, lies = abs(axis @ outwards) >= np.cos(LEANS), abs(axis @ outwards) <= np.sin(LEANS)
     if against.kind == "plane":  # of a side MuJoCo finds both ends

@@ -54,15 +54,17 @@ def _projected(unit: csr_matrix, wanted: Floats, enough: float) -> Floats:
     gram[np.diag_indices(len(gram))] += RIDGE * np.trace(gram) / len(gram)
     inverse = np.linalg.inv(gram)
     strength = ahead = np.zeros(unit.shape[1])
-    pace = 1.0
+    made, there, pace = np.zeros(len(wanted)), np.zeros(len(wanted)), 1.0  # what strengths make, and those ahead
     for _ in range(ROUNDS):
-        before, strength = strength, np.maximum(ahead + across @ (inverse @ (wanted - unit @ ahead)), 0.0)
-        if _most(wanted - unit @ strength) <= enough:
+        before, strength = strength, np.maximum(ahead + across @ (inverse @ (wanted - there)), 0.0)
+        last_made, made = made, unit @ strength
+        if _most(wanted - made) <= enough:
             break
         if (ahead - strength) @ (strength - before) > 0.0:
             pace = 1.0
         pace, last = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * pace * pace)), pace
         ahead = strength + (last - 1.0) / pace * (strength - before)
+        there = made + (last - 1.0) / pace * (made - last_made)
     return np.asarray(strength)
 
 

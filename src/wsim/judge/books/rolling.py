@@ -50,6 +50,28 @@ class Rolls:
     unsure: float  # by rounding [m]
 
 
+@dataclass(frozen=True)
+class Near:
+    """What touches in a frame, or may in the intervals about it, looked for once for all that rolls."""
+
+    poses: Poses
+    contacts: Contacts
+    slip: Floats  # (n, 3) [m/s], of each contact
+
+    @classmethod
+    def at(cls, evidence: Evidence, frame: int) -> Near:
+        """All of one frame."""
+        motion, touching = evidence.motion, Touching.of(evidence)
+        poses = Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
+        intervals = slice(max(frame - 1, 0), frame + 1)
+        h, far = float(motion.h[intervals].max()), 2.0 * float(motion.reach[intervals].max())
+        contacts = touching.at(poses.q, NEAR + far)
+        over = slip(touching, contacts, poses)
+        apart = np.einsum("ni,ni->n", over, contacts.normal)
+        close = contacts.gap <= NEAR + np.abs(apart) * h
+        return cls(poses, contacts.only(close), over[close])
+
+
 def rolls(evidence: Evidence) -> list[Rolls]:
     """All of a recording, in spans that overlap by a half."""
     motion, found = evidence.motion, []
@@ -60,11 +82,12 @@ def rolls(evidence: Evidence) -> list[Rolls]:
         odd |= np.any(given[1:] != 0.0, axis=2)
     free = ~motion.jointed & ~motion.kinematic & np.array([_round(body) for body in evidence.world.bodies], dtype=bool)
     turning = np.linalg.norm(motion.w, axis=2) * motion.radius > STILL
+    near: dict[int, Near] = {}
     for first in range(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2):
         span = slice(first, first + INTERVALS)
         calm = free & turning[first : first + INTERVALS + 1].all(axis=0) & ~odd[span].any(axis=0)
         for row in np.flatnonzero(calm):
-            each = _of_span(evidence, int(row), first)
+            each = _of_span(evidence, near, int(row), first)
             found += [each] if each is not None else []
     return found
 
@@ -74,7 +97,7 @@ def _round(body: Body) -> bool:
     return len(solid) == 1 and solid[0].kind in ("sphere", "cylinder", "capsule")
 
 
-def _of_span(evidence: Evidence, row: int, first: int) -> Rolls | None:
+def _of_span(evidence: Evidence, near: dict[int, Near], row: int, first: int) -> Rolls | None:
     motion, touching, last = evidence.motion, Touching.of(evidence), first + INTERVALS
     middle = (first + last) // 2
     frames = [middle, first, last]
@@ -82,7 +105,9 @@ def _of_span(evidence: Evidence, row: int, first: int) -> Rolls | None:
         frames += list(range(first + 1, last))
     ends: list[Contacts] = []
     for frame in frames:
-        contacts = _touches(evidence, touching, row, frame)
+        if frame not in near:
+            near[frame] = Near.at(evidence, frame)
+        contacts = _touches(evidence, near[frame], row)
         if contacts is None:
             return None
         ends.append(contacts)
@@ -130,26 +155,20 @@ def _other(contacts: Contacts, row: int) -> tuple[int, float]:
     return (int(contacts.one[0]), 1.0) if contacts.two[0] == row else (int(contacts.two[0]), -1.0)
 
 
-def _touches(evidence: Evidence, touching: Touching, row: int, frame: int) -> Contacts | None:
+def _touches(evidence: Evidence, near: Near, row: int) -> Contacts | None:
     """The contacts of a body that rolls on one thing, along one line, without slipping; None where it does not."""
-    motion = evidence.motion
-    poses = Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
-    intervals = slice(max(frame - 1, 0), frame + 1)
-    h, far = float(motion.h[intervals].max()), 2.0 * float(motion.reach[intervals].max())
-    contacts = touching.at(poses.q, NEAR + far)
-    contacts = contacts.only((contacts.one == row) | (contacts.two == row))
-    apart = np.einsum("ni,ni->n", slip(touching, contacts, poses), contacts.normal)
-    contacts = contacts.only(contacts.gap <= NEAR + np.abs(apart) * h)
+    ours = (near.contacts.one == row) | (near.contacts.two == row)
+    contacts, over = near.contacts.only(ours), near.slip[ours]
     if not len(contacts) or np.any(contacts.shapes != contacts.shapes[0]):
         return None
     if np.any(contacts.normal @ contacts.normal[0] < 1.0 - FLAT):
         return None
-    if np.linalg.norm(slip(touching, contacts, poses), axis=1).max() > STILL:
+    if np.linalg.norm(over, axis=1).max() > STILL:
         return None
     body = evidence.world.bodies[row]
     shape = next(shape for shape in body.shapes if shape.collides)
     if shape.kind != "sphere":
-        turn = multiply(poses.q[row, 3:], np.array(shape.rotation))
+        turn = multiply(near.poses.q[row, 3:], np.array(shape.rotation))
         if abs(float(rotate(turn, np.array([0.0, 0.0, 1.0])) @ contacts.normal[0])) > LYING:
             return None
     return contacts

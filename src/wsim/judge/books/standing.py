@@ -14,7 +14,7 @@ from wsim.judge.books.admissible import explain
 from wsim.judge.books.balance import Books
 from wsim.judge.books.creep import ENOUGH, INTERVALS, NEAR, Lacking
 from wsim.judge.books.forces import Poses, pushes
-from wsim.judge.books.touching import Touching
+from wsim.judge.books.touching import touching_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,7 +36,7 @@ def standing(copies: Sequence[Evidence]) -> list[list[Lacking]]:
     """What is missing to all that stands, of each copy, in spans that overlap by a half; a longer stand in the first.
 
     Args:
-        copies: W of one world, T frames of B bodies each.
+        copies: W of one world or of similar ones, T frames of B bodies each.
     """
     motion = copies[0].motion
     firsts = np.arange(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2)
@@ -81,16 +81,18 @@ def _left(copies: Sequence[Evidence], copy: Rows, first: Rows, stands: Bools) ->
 
     A body in a span is one of K B.
     """
-    evidence, touching, middle = copies[0], Touching.of(copies[0]), first + INTERVALS // 2
+    touching, middle = touching_of(copies), first + INTERVALS // 2
     motions, bodies = [one.motion for one in copies], stands.shape[1]
     size = np.stack([Books.of(one).size for one in copies])[copy]
     arrays = [[one.body_q for one in copies]]
     arrays += [[getattr(motion, name) for motion in motions] for name in ("com", "v", "w")]
     poses = Poses(*(np.concatenate([array[n][k] for n, k in zip(copy, middle, strict=True)]) for array in arrays))
-    contacts = touching.of_many(poses.q.reshape(len(copy), -1, 7), np.full(len(copy), NEAR), np.arange(len(copy)))
+    spans = np.arange(len(copy))
+    contacts = touching.of_many(poses.q.reshape(len(copy), -1, 7), np.full(len(copy), NEAR), spans, copy)
     meshes = np.array([shape.kind == "mesh" for _, _, shape in touching.shapes], dtype=bool)
     rows = np.stack([contacts.one, contacts.two])
-    reach = np.where(rows >= 0, _hair(evidence)[rows % bodies], 0.0).max(axis=0, initial=HAIR)
+    hair = np.stack([_hair(one) for one in copies])[copy].ravel()
+    reach = np.where(rows >= 0, hair[rows], 0.0).max(axis=0, initial=HAIR)
     reach = np.where(meshes[contacts.shapes].any(axis=1), NEAR, reach)  # a mesh may stand for what is round
     contacts = contacts.only(contacts.gap <= reach)
     scale = np.repeat(1.0 / np.stack([motion.mass for motion in motions])[copy].reshape(-1, 1), 6, axis=1)
@@ -103,7 +105,7 @@ def _left(copies: Sequence[Evidence], copy: Rows, first: Rows, stands: Bools) ->
         columns = pushes(
             contacts, poses, friction, none, rolling * size.ravel()[np.maximum(contacts.one, contacts.two)]
         )
-        rest, _ = explain(columns, stands.ravel(), rest, scale, ENOUGH * max(evidence.gravity, 1.0))
+        rest, _ = explain(columns, stands.ravel(), rest, scale, ENOUGH * max(copies[0].gravity, 1.0))
     return rest.reshape(len(copy), bodies, 6)[..., :3]
 
 

@@ -6,6 +6,7 @@ serves the trajectories of any engine. Bodies are without mass there; nothing is
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,8 @@ from wsim.judge.books.meshes import Triangles, colliding, touching
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -78,6 +81,7 @@ class Touching:
         import mujoco  # heavy, and wanted where there are bodies alone
 
         self.world = world
+        self.worlds = [world]
         self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
         self._laws: dict[tuple[int, int], Pair] = {}
         self._meshes: dict[int, Triangles] = {}
@@ -94,12 +98,46 @@ class Touching:
             for shape in static.shapes:
                 self._add(mujoco, spec, spec.worldbody, WORLD, static.prim, shape)
         self._mujoco = mujoco
-        self._model = spec.compile()
-        self._data = mujoco.MjData(self._model)
-        names = [self._model.geom(k).name for k in range(self._model.ngeom)]
+        self._models = [spec.compile()]
+        self._data = [mujoco.MjData(self._models[0])]
+        names = [self._models[0].geom(k).name for k in range(self._models[0].ngeom)]
         self._shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
-        self._margin = np.array([self.shapes[k][2].margin for k in self._shape_of_geom], dtype=np.float64)
-        self._row_of_shape = np.array([row for row, _, _ in self.shapes], dtype=np.intp)
+
+    @staticmethod
+    def join(parts: Sequence[Touching]) -> Touching:
+        """That of several worlds whose shapes are alike but in their sizes, places and laws.
+
+        Shapes are counted on from world to world, S in each.
+        """
+        joined = copy(parts[0])
+        joined._meet, joined._flat = parts[0]._meet, parts[0]._flat  # of the kinds alone
+        joined.worlds = [world for part in parts for world in part.worlds]
+        joined.shapes = [shape for part in parts for shape in part.shapes]
+        joined._models = [model for part in parts for model in part._models]
+        joined._data = [data for part in parts for data in part._data]
+        joined._laws = {}
+        for name in ("_margin", "_row_of_shape", "_own", "surface_velocity"):
+            joined.__dict__.pop(name, None)
+        return joined
+
+    def like(self, other: Touching) -> bool:
+        """Whether both can be joined: their shapes are of the same kinds, on the same bodies, and none is a mesh."""
+        kinds, others = ([(row, shape.kind) for row, _, shape in each.shapes] for each in (self, other))
+        return kinds == others and not self._meshes and np.array_equal(self._meet, other._meet)
+
+    @cached_property
+    def _margin(self) -> Floats:
+        """Of each shape [m], (shapes,)."""
+        return np.array([shape.margin for _, _, shape in self.shapes], dtype=np.float64)
+
+    @cached_property
+    def _row_of_shape(self) -> Rows:
+        return np.array([row for row, _, _ in self.shapes], dtype=np.intp)
+
+    @cached_property
+    def _own(self) -> Floats:
+        """Where each shape is on its body, (shapes, 7)."""
+        return np.array([(*shape.position, *shape.rotation) for _, _, shape in self.shapes]).reshape(-1, 7)
 
     def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
         if not shape.collides:
@@ -128,16 +166,44 @@ class Touching:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
         return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp))
 
-    def of_many(self, poses: Floats, reach: Floats, rows: Rows) -> Contacts:
-        """Contacts at several poses (K, B, 7), each with its reach (K,); a body's row is that of `rows` (K,) by B."""
-        model, data, bodies = self._model, self._data, poses.shape[1]
+    def of_many(self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None) -> Contacts:
+        """Contacts at several poses.
+
+        Args:
+            poses: (K, B, 7).
+            reach: Of each pose, (K,) [m].
+            rows: A body's row is that of these by B, (K,).
+            worlds: Which of the joined worlds each is a pose of, (K,); None: all of the first.
+        """
+        which = np.zeros(len(poses), dtype=np.intp) if worlds is None or len(self.worlds) == 1 else worlds
+        shapes, place, normal, gap, at = self._found(poses, reach, which)
+        one, two = self._row_of_shape[shapes].T
+        contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
+        if self._meshes or self._flat:
+            others = [self._on_meshes(each, float(far)) for each, far in zip(poses, reach, strict=True)]
+            further, of = self._flats(shapes, normal, at, poses)
+            near = further.gap <= reach[of]
+            at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
+            order = np.argsort(at, kind="stable")  # what is of one pose stays together
+            contacts, at = together([contacts, *others, further.only(near)]).only(order), at[order]
+        by = rows[at] * poses.shape[1]
+        one, two = (np.where(row >= 0, row + by, row) for row in (contacts.one, contacts.two))
+        contacts = replace(contacts, one=one, two=two)
+        if self._meet.all():
+            return contacts
+        own = contacts.shapes % len(self._meet)
+        return contacts.only(self._meet[own[:, 0], own[:, 1]])
+
+    def _found(self, poses: Floats, reach: Floats, worlds: Rows) -> tuple[Rows, Floats, Floats, Floats, Rows]:
+        """What MuJoCo finds at poses (K, B, 7): shapes (n, 2), points and normals (n, 3), gaps, and at which pose."""
         qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
-        widest = self._margin.max(initial=0.0)
-        geoms, places, frames, gaps, others = [], [], [], [], []
-        for k, far in enumerate(reach):
-            model.geom_margin[:] = 0.5 * far + self._margin
-            model.body_margin[:] = 0.5 * far + widest
-            data.qpos[:] = qpos[k]
+        margins = self._margin.reshape(len(self.worlds), -1)
+        geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
+        for pose, far, world in zip(qpos, reach, worlds, strict=True):
+            model, data, margin = self._models[world], self._data[world], margins[world]
+            model.geom_margin[:] = 0.5 * far + margin[self._shape_of_geom]
+            model.body_margin[:] = 0.5 * far + margin.max(initial=0.0)
+            data.qpos[:] = pose
             self._mujoco.mj_kinematics(model, data)
             self._mujoco.mj_comPos(model, data)
             self._mujoco.mj_collision(model, data)
@@ -146,24 +212,9 @@ class Touching:
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
-            if self._meshes or self._flat:
-                others.append(together([*self._on_meshes(poses[k], float(far)), *self._flats(poses[k], float(far))]))
-        geom = np.concatenate([NONE.shapes, *geoms])
-        shapes = self._shape_of_geom[geom]
-        contacts = Contacts(
-            self._row_of_shape[shapes[:, 0]], self._row_of_shape[shapes[:, 1]], shapes,
-            np.concatenate([_POINTS, *places]), np.concatenate([np.zeros((0, 9)), *frames])[:, :3],
-            np.concatenate([np.zeros(0), *gaps]) - self._margin[geom].sum(axis=1),
-        )  # fmt: skip
-        by = np.repeat(rows, [len(gap) for gap in gaps])
-        if others:  # what is of one pose stays together
-            contacts = together([contacts, *others])
-            order = np.concatenate([by, np.repeat(rows, [len(other) for other in others])])
-            at = np.argsort(order, kind="stable")
-            contacts, by = contacts.only(at), order[at]
-        one, two = (np.where(row >= 0, row + by * bodies, row) for row in (contacts.one, contacts.two))
-        contacts = replace(contacts, one=one, two=two)
-        return contacts if self._meet.all() else contacts.only(self._meet[contacts.shapes[:, 0], contacts.shapes[:, 1]])
+        at = np.repeat(np.arange(len(poses)), [len(gap) for gap in gaps[1:]])
+        shapes = self._shape_of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
+        return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
     @cached_property
     def _meet(self) -> NDArray[np.bool_]:
@@ -180,23 +231,22 @@ class Touching:
             shape.kind == "cylinder" for _, _, shape in self.shapes
         )
 
-    def _flats(self, pose: Floats, reach: float) -> list[Contacts]:
-        """Further points of what is flat among what MuJoCo has found last, at one pose of all bodies."""
+    def _flats(self, pairs: Rows, normal: Floats, at: Rows, poses: Floats) -> tuple[Contacts, Rows]:
+        """Further points of what is flat among contacts, each at one of several poses; and at which these are."""
         if not self._flat:
-            return []
-        found = self._data.contact
-        pairs = self._shape_of_geom[np.array(found.geom).reshape(-1, 2)]
-        normal = np.array(found.frame).reshape(-1, 9)[:, :3]
-        further = flats(pairs, normal, [shape for _, _, shape in self.shapes], lambda k: self._placed(k, pose))
+            return NONE, NONE.one
+        places = self._placed(pairs, poses[at])
+        further = flats(pairs, normal, at, [shape for _, _, shape in self.shapes], places)
         shapes = pairs[further.of]
-        margin = np.array([shape.margin for _, _, shape in self.shapes])[shapes].sum(axis=1)
+        gap = further.gap - self._margin[shapes].sum(axis=1)
         one, two = self._row_of_shape[shapes].T
-        made = Contacts(one, two, shapes, further.point, further.normal, further.gap - margin)
-        return [made.only(made.gap <= reach)]
+        return Contacts(one, two, shapes, further.point, further.normal, gap), at[further.of]
 
-    def _on_meshes(self, poses: Floats, reach: float) -> list[Contacts]:
-        """Contacts of all shapes with all meshes of other bodies; of two meshes, with the faces of both."""
-        places = [self._placed(k, poses) for k in range(len(self.shapes))]
+    def _on_meshes(self, poses: Floats, reach: float) -> Contacts:
+        """Contacts of all shapes with all meshes of other bodies at poses (B, 7); of two meshes, with both's faces."""
+        if not self._meshes:
+            return NONE
+        places = self._placed(np.arange(len(self.shapes)), poses)
         found = []
         for m, mesh in self._meshes.items():
             row, pose = self.shapes[m][0], places[m]
@@ -212,16 +262,18 @@ class Touching:
                 point, normal = rotate(pose[3:], near.point) + pose[:3], rotate(pose[3:], near.normal)
                 rows = np.full(count, row, dtype=np.intp), np.full(count, other, dtype=np.intp)
                 found.append(Contacts(*rows, np.tile([m, k], (count, 1)), point, normal, near.gap))
-        return found
+        return together(found)
 
-    def _placed(self, k: int, poses: Floats) -> Floats:
-        """Where a shape is in the world, (7,)."""
-        row, _, shape = self.shapes[k]
-        own = np.concatenate([shape.position, shape.rotation])
-        if row < 0:
+    def _placed(self, shapes: Rows, poses: Floats) -> Floats:
+        """Where shapes are in the world, (..., 7), each at poses of its own (..., B, 7) or at the same (B, 7)."""
+        own, rows = self._own[shapes], self._row_of_shape[shapes]
+        if not poses.shape[-2]:
             return own
-        q = poses[row]
-        return np.concatenate([q[:3] + rotate(q[3:], own[:3]), multiply(q[3:], own[3:])])
+        body = np.maximum(rows, 0)
+        q = poses[body] if poses.ndim == 2 else poses[np.arange(len(poses))[:, None], body]
+        place = q[..., :3] + rotate(q[..., 3:], own[..., :3])
+        moved = np.concatenate([place, multiply(q[..., 3:], own[..., 3:])], axis=-1)
+        return np.where((rows >= 0)[..., None], moved, own)
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""
@@ -239,7 +291,8 @@ class Touching:
 
     def _law(self, one: int, two: int) -> Pair:
         if (one, two) not in self._laws:
-            self._laws[one, two] = pair_law(self.world, self.shapes[one][2], self.shapes[two][2])
+            world = self.worlds[one // max(len(self.shapes) // len(self.worlds), 1)]
+            self._laws[one, two] = pair_law(world, self.shapes[one][2], self.shapes[two][2])
         return self._laws[one, two]
 
     @cached_property
@@ -247,6 +300,12 @@ class Touching:
         """Of each shape [m/s], in its body's axes, (shapes, 3)."""
         stated = [shape.surface_velocity for _, _, shape in self.shapes]
         return np.array(stated, dtype=np.float64).reshape(-1, 3)
+
+
+def touching_of(copies: Sequence[Evidence]) -> Touching:
+    """The shapes of several recordings' worlds: those of one world, or joined."""
+    every = [Touching.of(evidence) for evidence in copies]
+    return every[0] if all(each is every[0] for each in every) else Touching.join(every)
 
 
 def _tied(world: World) -> set[frozenset[str]]:

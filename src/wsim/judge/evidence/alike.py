@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from wsim.scene.world import Body, World
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from wsim.judge.evidence.evidence import Evidence
 
@@ -25,11 +25,11 @@ def alike(one: World, other: World) -> bool:
     return all(_same(a, b, OF_BODY) for a, b in zip(one.bodies, other.bodies, strict=True))
 
 
-def groups(copies: Sequence[Evidence]) -> list[list[Evidence]]:
-    """Those of like worlds together."""
+def groups(copies: Sequence[Evidence], together: Callable[[Evidence, Evidence], bool]) -> list[list[Evidence]]:
+    """Those together of which the first says that they belong together."""
     found: list[list[Evidence]] = []
     for copy in copies:
-        group = next((group for group in found if alike(group[0].world, copy.world)), None)
+        group = next((group for group in found if together(group[0], copy)), None)
         if group is None:
             found.append([copy])
         else:
