@@ -14,6 +14,7 @@ def find_touching(
     rows: wp.array(dtype=int),
     kind: wp.array2d(dtype=int),
     which: wp.array2d(dtype=int),  # joint, degree of freedom, tendon or contact
+    force: wp.array2d(dtype=float),
     contact_geom: wp.array(dtype=wp.vec2i),
     geom_owner: wp.array(dtype=int),
     joint_owner: wp.array(dtype=int),
@@ -22,7 +23,7 @@ def find_touching(
     # Data out:
     touches: wp.array2d(dtype=int),
 ):
-    """Mark the mechanisms with dry friction, a stop or a contact among their constraint rows, and the first for any."""
+    """Mark the mechanisms that dry friction, a stop or a contact pushes, and the first where there is any such row."""
     world, row = wp.tid()
     if row >= rows[world]:
         return
@@ -30,6 +31,8 @@ def find_touching(
     if what < DRY or what == DRIVE:
         return
     touches[world, 0] = 1
+    if force[world, row] == 0.0:
+        return
     if what == DRY:
         touches[world, freedom_owner[k]] = 1
     elif what == STOP:
@@ -57,15 +60,15 @@ def count_touching(
 
 
 @wp.kernel(enable_backward=False)
-def take_where_free(
+def keep_where_touched(
     # Data in:
     touches: wp.array2d(dtype=int),
     owner: wp.array(dtype=int),
-    smooth: wp.array2d(dtype=float),
+    end: wp.array2d(dtype=float),  # of the law's step
     # Data out:
-    taken: wp.array2d(dtype=float),
+    state: wp.array2d(dtype=float),  # of the smooth one
 ):
-    """Take the values of the smooth step where a mechanism touches nothing, or, of what is none, its whole world."""
+    """Go by the law's step where a mechanism is pushed, or, of what is none, anything in its world touches."""
     world, k = wp.tid()
-    if touches[world, owner[k]] == 0:
-        taken[world, k] = smooth[world, k]
+    if touches[world, owner[k]] > 0:
+        state[world, k] = end[world, k]

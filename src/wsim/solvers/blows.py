@@ -104,6 +104,10 @@ class BlowsC:
             data.efc_force[:] += self._forces
             data.qacc[:] += self.jump / self._model.opt.timestep
 
+    def forces_after(self, data: Any) -> Array:
+        """Of the constraints in the step after the blows, which `data` have together with those, (rows,)."""
+        return np.asarray(data.efc_force - self._forces if self.struck else data.efc_force)
+
     def take_from(self, data: Any) -> None:
         """Leave `data` the accelerations after the blows."""
         if self.struck:

@@ -132,9 +132,9 @@ class ContactLawC:
             touching = self._forward(data)
         mujoco.mj_checkAcc(model, data)
         whole = self.smooth and not touching
-        free = self.smooth_steps.free(data, whole)
+        free = self.smooth_steps.free(data, whole, self.blows.forces_after(data))
         if self.ties is not None:
-            self.ties.add(data, free)
+            self.ties.add(data, free & ~self.owners.with_motion(self.blows.jump))
         self.blows.take_from(data)
         if whole:
             self.smooth_steps.step(data)

@@ -100,13 +100,13 @@ class ContactLawWarp:
     def step(self, h: float) -> None:
         """Advance by `h` [s]: MuJoCo Warp's step, with the law between its halves."""
         model, data, warp = self._model, self._data, self._mujoco_warp
-        if self._smooth_steps:
-            self._smooth_steps.before(model, data)
         if self._ropes:
             self._ropes.look_back(model, data)
         warp.fwd_position(model, data)
         self._accelerate(model, data, h)
         self._strike(model, data, h)
+        if self._smooth_steps:
+            self._smooth_steps.begin()
         self._aim(model, data, instant=False)
         if self._drives:
             self._drives.aim(model, data)
@@ -118,7 +118,7 @@ class ContactLawWarp:
         self._implicit(model, data)
         self._flight.fly(h)
         if self._smooth_steps:
-            self._smooth_steps.after(model, data, self._breaking.anew if self._breaking else None)
+            self._smooth_steps.end(model, data, self._breaking.anew if self._breaking else None)
         if model.nu:
             self._tell_efforts(model, data)
 
