@@ -23,7 +23,7 @@ def find_touching(
     # Data out:
     touches: wp.array2d(dtype=int),
 ):
-    """Mark the mechanisms that dry friction, a stop or a contact pushes, and the first where there is any such row."""
+    """Mark mechanisms with dry friction, a stop or a contact that pushes, and the first where there is any such row."""
     world, row = wp.tid()
     if row >= rows[world]:
         return
@@ -31,15 +31,13 @@ def find_touching(
     if what < DRY or what == DRIVE:
         return
     touches[world, 0] = 1
-    if force[world, row] == 0.0:
-        return
     if what == DRY:
         touches[world, freedom_owner[k]] = 1
     elif what == STOP:
         touches[world, joint_owner[k]] = 1
     elif what == TAUT:
         touches[world, tendon_owner[k]] = 1
-    else:
+    elif force[world, row] != 0.0:
         for side in range(2):
             touches[world, geom_owner[contact_geom[k][side]]] = 1
 
