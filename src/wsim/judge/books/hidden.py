@@ -14,9 +14,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from wsim.geometry.rotations import lengths
 from wsim.judge.books.balance import Books
-from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,23 +23,18 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-ROUNDINGS = 8.0  # of single precision, in a speed: what changes by less does not
-
 
 def hidden(evidence: Evidence) -> Floats:
     """The speed that each body may have had in an interval beyond those at its ends, (T - 1, B) [m/s].
 
-    That of what hangs together, by contacts that there may have been, with what was hit, or changed its velocity
-    otherwise than by falling: a knock may be less than gravity gives in an interval. In any what `landing` tells.
+    In an interval with a blow that of what hangs together with what was hit, by contacts that there may have been; in
+    any what `landing` tells.
     """
     books, motion = Books.of(evidence), evidence.motion
     found = np.where(motion.kinematic, 0.0, books.landed)
-    gained = np.diff(motion.v, axis=0)
-    changed = np.minimum(lengths(gained), lengths(gained - motion.gravity * motion.h[:, None, None]))
-    changed = np.where(motion.kinematic | (changed < ROUNDINGS * FLOAT32 * motion.speed[1:]), 0.0, changed)
-    passed = motion.mass * np.where(books.hit, books.blow, changed)
+    passed = np.where(books.hit, motion.mass * books.blow, 0.0)
     fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
-    for k in np.flatnonzero(passed.any(axis=1)):
+    for k in np.flatnonzero(books.hit.any(axis=1)):
         near = motion.radius + motion.reach[k]
         apart = np.linalg.norm(motion.com[k][:, None] - motion.com[k][None], axis=2)
         count, group = connected_components(csr_matrix(apart < near[:, None] + near[None]), directed=False)
