@@ -1,4 +1,4 @@
-"""Mechanisms that balls hit, and the books of their steps: energy, momentum, angular momentum, from the bodies alone."""
+"""Mechanisms that balls hit, and the books of their steps: energy and both momenta, from the bodies alone."""
 
 import math
 
@@ -58,7 +58,7 @@ class Books:
 
     @property
     def drift(self):
-        """What momentum and angular momentum ever differ by from the start's, over what the fastest step has of each."""
+        """What momentum and angular momentum are off the start by, over what the fastest step has of each."""
         pairs = ((self.momentum, self._mass.sum() ** 0.5), (self.spin, LINK * self._mass.sum() ** 0.5))
         return [np.abs(each - each[0]).max() / (size * math.sqrt(2.0 * self.kinetic.max())) for each, size in pairs]
 
@@ -124,7 +124,7 @@ def at_random(scene, seed):
 
 
 def placed(rng):
-    """Links in a row that do not overlap: where each begins and has its middle [m], its turn [degrees], its size [m]."""
+    """Links in a row that do not overlap: where each begins and is [m], its turn [degrees], its size [m]."""
     while True:
         end, links = np.array([0.0, 0.0, 2.0]), []
         for _ in range(int(rng.integers(2, 7))):

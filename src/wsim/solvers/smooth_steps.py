@@ -1,9 +1,10 @@
 """Steps of Runge and Kutta's fourth order for those mechanisms that touch nothing, and for worlds that do not.
 
 A mechanism keeps its energy only with a higher order, and contacts and stops know none: each takes the one step or the
-other as it has, at the step's start, a stop or dry friction, or a contact that pushes. Beside a crate that rests a double pendulum
-gained 1.8 % of its energy in 5 s by steps of the first order, and a hinged pair that tumbled blew up. What is hit flies
-on from the speeds after its blows: by the first order a chain that a ball hit gained up to two thirds of its energy.
+other as it has, at the step's start, a stop or dry friction, or a contact that pushes. Beside a crate that rests a
+double pendulum gained 1.8 % of its energy in 5 s by steps of the first order, and a hinged pair that tumbled blew up.
+What is hit flies on from the speeds after its blows: by the first order a chain that a ball hit gained up to two thirds
+of its energy.
 """
 
 from __future__ import annotations
@@ -69,8 +70,8 @@ class SmoothStepsC:
         self.since = np.zeros(owners.count, dtype=int)  # steps of the first order since the last smooth one
 
     def free(self, data: Any, whole: bool, force: Array) -> Array:
-        """Mechanisms that have no stop or dry friction now, and no contact that pushes by its row's `force`, (mechanisms,);
-        in a `whole` world all."""
+        """Mechanisms without a stop or dry friction now, and without a contact that pushes by its row's `force`,
+        (mechanisms,); in a `whole` world all."""
         touched, contact = np.full(self._owners.count, not whole), data.contact
         if not whole and self._owners.count > 1:
             touched[1:] = False
