@@ -251,6 +251,19 @@ def test_a_start_that_the_joints_forbid_is_refused(simulate):
         simulate(build, 0.01)
 
 
+@pytest.mark.parametrize("welds", [1, 2])
+def test_a_start_of_a_world_of_welds_alone_is_refused(simulate, welds):
+    def build(scene):
+        held = None
+        for k in range(welds):
+            body = scene.box(f"b{k}", size=(0.1,) * 3, position=(0, 0, 1 + k), velocity=(float(k + 1 == welds), 0, 0))
+            scene.joint_fixed(f"weld{k}", held, body)
+            held = body
+
+    with pytest.raises(UserError, match=rf"/World/b{welds - 1}: its joints do not let it start with the velocity"):
+        simulate(build, 0.01)
+
+
 def test_a_seed_turns_a_hinge(tmp_path):
     scene = Scene()
     bob = scene.sphere("bob", radius=0.1, position=(0, 0, 1))

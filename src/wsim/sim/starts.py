@@ -38,7 +38,9 @@ def start_joints(model: Any, worlds: Sequence[World], bodies: Array, state: Any)
     ):
         return
     count, dofs = len(worlds), model.joint_dof_count // max(1, model.world_count)
-    response = np.stack([_velocities(model, state, row[None], count)[:, bodies] for row in np.eye(dofs)], axis=-1)
+    response = np.zeros((count, len(bodies), 6, dofs))  # welds alone have no speeds: nothing moves
+    for k, row in enumerate(np.eye(dofs)):
+        response[..., k] = _velocities(model, state, row[None], count)[:, bodies]
     speeds = np.array([_speeds(world, jointed, own) for world, own in zip(worlds, response, strict=True)])
     reached = _velocities(model, state, speeds, count)
     for world, velocities in zip(worlds, reached[:, bodies], strict=True):
