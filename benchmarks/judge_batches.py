@@ -4,8 +4,8 @@
     .venv/bin/python benchmarks/judge_batches.py --count 64 --docs docs/judge.md
 
 The worlds of a sweep are simulated as one batch, whose recordings hold neither contacts nor what joints, springs and
-ropes give. Here faults of `benchmarks/judge_faults.py` are drawn, of any family without fluid and of any of its sizes. Each is put
-into a world that is drawn as well, recorded by wsim's own run, and judged twice: with all that was recorded, and as a
+ropes give. Here faults of `benchmarks/judge_faults.py` are drawn, of any family without fluid and of any of its sizes.
+Each is put into a world that is drawn as well, recorded by wsim's own run, and judged twice: with all that was recorded, and as a
 batch would have recorded it. A fault that only the first judgement finds is one
 that a sweep accepts in its batch, and rejects when it runs its best by themselves.
 """
@@ -67,7 +67,7 @@ def table(found: list[Found]) -> str:
     return "\n".join([
         "| worlds with a wrong number | found with contacts and ties | found as in a batch | found alone only |",
         "| --- | --- | --- | --- |",
-        f"| {len(found)} | {alone} | {batch} | {len(missed)}{": " if missed else ""}{named} |",
+        f"| {len(found)} | {alone} | {batch} | {len(missed)}{': ' if missed else ''}{named} |",
     ])  # fmt: skip
 
 
