@@ -5,8 +5,8 @@
 
 The worlds of a sweep are simulated as one batch, whose recordings hold neither contacts nor what joints, springs and
 ropes give. Here faults of `benchmarks/judge_faults.py` are drawn, of any family without fluid and of any of its sizes.
-Each is put into a world that is drawn as well, recorded by wsim's own run, and judged twice: with all that was recorded, and as a
-batch would have recorded it. A fault that only the first judgement finds is one
+Each is put into a world that is drawn as well, recorded by wsim's own run, and judged twice: with all that was
+recorded, and as a batch would have recorded it. A fault that only the first judgement finds is one
 that a sweep accepts in its batch, and rejects when it runs its best by themselves.
 """
 

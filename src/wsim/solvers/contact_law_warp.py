@@ -98,7 +98,13 @@ class ContactLawWarp:
         model.callback.contactfilter = self._add_contacts
 
     def step(self, h: float) -> None:
-        """Advance by `h` [s]: MuJoCo Warp's step, with the law between its halves."""
+        """Advance by `h` [s]."""
+        # What MuJoCo Warp makes anew in the rounds of blows, a loop of the graph, it makes outside of them as well.
+        with self._memory.used():
+            self._advance(h)
+
+    def _advance(self, h: float) -> None:
+        """MuJoCo Warp's step, with the law between its halves."""
         model, data, warp = self._model, self._data, self._mujoco_warp
         if self._ropes:
             self._ropes.look_back(model, data)
@@ -164,8 +170,7 @@ class ContactLawWarp:
         if self.impulses is not None:
             self.impulses.add(data, h)
         self._flight.jump(search, model.opt.timestep)
-        with self._memory.used():
-            self._mujoco_warp.make_constraint(model, data)
+        self._mujoco_warp.make_constraint(model, data)
         self._look(model, data, instant=True)
 
     def _go_on(self, model: Any, data: Any, h: float) -> None:
@@ -185,8 +190,7 @@ class ContactLawWarp:
             self._touching.add_to_warp(model, data, self._bow)
 
     def _solve(self, model: Any, data: Any) -> None:
-        with self._memory.used():
-            self._mujoco_warp.solve(model, data)
+        self._mujoco_warp.solve(model, data)
 
     def _solve_last(self, model: Any, data: Any) -> None:
         """The solution whose forces move the bodies, and are recorded."""
