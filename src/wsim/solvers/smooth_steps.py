@@ -38,6 +38,10 @@ class Owners:
         self.of_place = np.repeat(self.of_joint, np.diff(ends))
         pulled = [tendon_bodies(mujoco, model, k) for k in range(model.ntendon)]
         self.of_tendon = np.array([of_body[bodies].max(initial=0) for bodies in pulled], dtype=int)
+        self.closed = np.zeros(self.count, dtype=bool)  # what point-to-point constraints or welds hold
+        bodies = model.eq_objtype == int(mujoco.mjtObj.mjOBJ_BODY)
+        for ends_of in (model.eq_obj1id, model.eq_obj2id):
+            self.closed[of_body[ends_of[bodies & (model.eq_active0 != 0)]]] = True
 
     def with_motion(self, speed: Array) -> Array:
         """Mechanisms of which a degree of freedom has some `speed`, (nv,); (mechanisms,)."""
