@@ -100,16 +100,16 @@ class RigidBodies:
         smooth = swings and model.particle_count == 0 and not any(is_overdamped(each, dt) for each in worlds)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
-        round = CylinderContacts(cylinders, ContactConfig().reach) if cylinders else None
+        rims = CylinderContacts(cylinders, ContactConfig().reach) if cylinders else None
         self._touching = touching
-        may_touch = _may_touch(model) or bool(world.ropes or touching or round) or jumps
+        may_touch = _may_touch(model) or bool(world.ropes or touching or rims) or jumps
         if touching:
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
         rows_a_contact = int(model.mujoco.condim.numpy().max(initial=ROWS_A_CONTACT))
         rows = rows_a_contact * capacity + constraint_rows(world) + drive_count(world) + len(world.ropes) + 64
         sizes: dict[str, Any] = {} if self.on_c else {"nconmax": capacity, "njmax": rows}
         found = surfaces_of(model, worlds)
-        self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, round, **sizes)
+        self.solver = SolverRigid(model, found, self.on_c, smooth, may_touch, dt, breakable, touching, rims, **sizes)
         self.solver.hold_points(np.array([held_points(each) for each in worlds]))
         self.solver.move_surfaces(surface_velocities(model, worlds))
         kinds: set[Any] = set()

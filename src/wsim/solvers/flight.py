@@ -3,10 +3,11 @@
 MuJoCo takes a body's gyroscopic torque at the step's start and makes it implicit, which costs a body that tumbles its
 energy, by the square of what it turns in a step. Here the spin of the step's end follows from the free motion over the
 step; contacts see it as a smooth force. Where gravity, and what touches a body, are all that acts on it after the
-step's blows, the step goes the way of the mean of its first and last velocities: falls, throws, slides and rolling are
-exact, where v += a h, x += v h would come a t h / 2 too far. Newton's state is in single precision, where a kilometre
-has steps of 0.06 mm: what is true between two steps is kept beside it in double, for as long as nobody else writes the
-state.
+step's blows, and it accelerates evenly, the step goes the way of the mean of its first and last velocities: falls,
+throws, slides and rolling are exact, where v += a h, x += v h would come a t h / 2 too far. What a contact leads to and
+fro, or round a bend, goes by the latter, which is symplectic: by the mean it would gain energy. Newton's state is in
+single precision, where a kilometre has steps of 0.06 mm: what is true between two steps is kept beside it in double, for
+as long as nobody else writes the state.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from wsim.kernels.flight import fly, keep, recall, tumble
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
 NEVER = 2**30  # steps
-EVEN = 0.1  # change of an acceleration that is none [m/s^2]: what rounding of a gap makes in a step is a fifth of it
+EVEN = 0.1  # change of an acceleration that is none [m/s^2]: five times what a gap of 3e-8 m, rounding, makes of it
 PATIENCE = 0.2  # for which an acceleration must have been even [s]: at the ends of a swing it is for a while
 
 
