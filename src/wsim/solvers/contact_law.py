@@ -134,8 +134,8 @@ class ContactLawC:
         whole = self.smooth and not touching
         free = self.smooth_steps.free(data, whole, self.blows.forces_after(data))
         struck = self.owners.with_motion(self.blows.jump)
-        # Rows that close a loop ask that a speed be gone by the step's end, as the first order has it; of what they then
-        # push with at its start Runge and Kutta's stages give 5/8, and that is not what is recorded.
+        # Rows that close a loop ask that a speed be gone by the step's end, as the first order has it; of what they
+        # then push with at its start Runge and Kutta's stages give 5/8, and that is not what is recorded.
         free &= ~(struck & self.owners.closed)
         if self.ties is not None:
             self.ties.add(data, free & ~struck)

@@ -6,8 +6,8 @@ step; contacts see it as a smooth force. Where gravity, and what touches a body,
 step's blows, and it accelerates evenly, the step goes the way of the mean of its first and last velocities: falls,
 throws, slides and rolling are exact, where v += a h, x += v h would come a t h / 2 too far. What a contact leads to and
 fro, or round a bend, goes by the latter, which is symplectic: by the mean it would gain energy. Newton's state is in
-single precision, where a kilometre has steps of 0.06 mm: what is true between two steps is kept beside it in double, for
-as long as nobody else writes the state.
+single precision, where a kilometre has steps of 0.06 mm: what is true between two steps is kept beside it in double,
+for as long as nobody else writes the state.
 """
 
 from __future__ import annotations
