@@ -69,7 +69,7 @@ class Simulation:
 
     Args:
         stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else. Several, of one topology
-            (`wsim.sim.alike`) and without fluid, are a batch of as many worlds.
+            (`wsim.sim.alike`), are a batch of as many worlds.
         device: "cpu", "cuda:0", or "auto": CUDA where there is any.
         world_count: Copies of one stage simulated at once.
         time_step: Upper bound of the step [s]; chosen from the stage by default.
@@ -218,10 +218,7 @@ class Simulation:
         """What went wrong so far: non-finite states, buffer overflows, solver warnings."""
         found = self.rigid.problems() if self.rigid else []
         if self.fluid:
-            try:
-                self.fluid.check(self.state)
-            except RuntimeError as error:
-                found.append(str(error))
+            found += filter(None, self.fluid.faults(self.state))
         arrays = {"body_q": self.state.body_q, "body_qd": self.state.body_qd, "particle_q": self.state.particle_q}
         for name, array in arrays.items():
             if array is not None and not np.isfinite(array.numpy()).all():
@@ -328,16 +325,17 @@ class Simulation:
             "particles": self.model.particle_count,
             "controlled": self._controller is not None,
             "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
-            "sph": self._method_of_fluid(),
+            "sph": self.method_of_fluid(0),
             "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},
         }
 
-    def _method_of_fluid(self) -> dict[str, Any] | None:
-        """What, beside the fluids' own numbers, their push on bodies follows from; None without them."""
+    def method_of_fluid(self, w: int) -> dict[str, Any] | None:
+        """What, beside the fluids' own numbers, their push on bodies of world w follows from; None without them."""
         config = self.built.sph
         if config is None or self.fluid is None:
             return None
-        counts = np.diff(self.fluid.body_first.numpy())[self.built.bodies].tolist()
+        worlds = max(1, self.model.world_count)
+        counts = np.diff(self.fluid.body_first.numpy()).reshape(worlds, -1)[w, self.built.bodies].tolist()
         return {
             "smoothing_length": config.smoothing_length,
             "artificial_viscosity": config.artificial_viscosity,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from wsim.forks import shared_out
 from wsim.judge.worlds import verdicts_of
+from wsim.memory import free_memory
 from wsim.runs.simulation import is_controlled
 from wsim.scene.describe import describe
 from wsim.scene.usd_threads import forks
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import World
     from wsim.sweep.candidate import Candidate
 
+BYTES_OF_A_PARTICLE = 28  # seven numbers in single precision
 NO_ROOM = ("out of memory", "failed to allocate", "memory allocation")
 
 
@@ -37,7 +40,8 @@ class Member:
 def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: int = 1) -> list[list[Member]]:
     """Those that can be simulated together, at most so many at a time; who must go alone is in none.
 
-    A program with a `control` is asked world by world, and worlds with fluid are not batched.
+    A program with a `control` is asked world by world. Of worlds with fluid there are no more to a batch than fit, with
+    all that their particles do, into half the memory that is free.
 
     Args:
         built: Candidates that have a stage.
@@ -48,12 +52,19 @@ def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: 
     free = [each for each in built if not controlled[each[1].program]]
     worlds = shared_out(describe, [iteration.stage for _, iteration in free], forks(processes))
     members = [Member(*each, world) for each, world in zip(free, worlds, strict=True)]
-    dry = [member for member in members if not member.world.fluids and member.world.bodies]
-    found = []
-    for group in alike([member.world for member in dry]):
-        own = [dry[k] for k in group]
-        found += [own[first : first + most] for first in range(0, len(own), most)]
+    moving = [member for member in members if member.world.fluids or member.world.bodies]
+    found, room = [], free_memory() / 2
+    for group in alike([member.world for member in moving]):
+        own = [moving[k] for k in group]
+        size = max(1, min(most, int(room / max(1, *(bytes_of_particles(member.world) for member in own)))))
+        found += [own[first : first + size] for first in range(0, len(own), size)]
     return [batch for batch in found if len(batch) > 1]
+
+
+def bytes_of_particles(world: World) -> float:
+    """What the places, velocities and densities of a world's fluids take through all of its frames."""
+    count = sum(math.prod(fluid.size) / fluid.spacing**3 for fluid in world.fluids)
+    return count * (world.duration * world.frame_rate + 1.0) * BYTES_OF_A_PARTICLE
 
 
 def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> list[Verdict]:
