@@ -73,6 +73,47 @@ def test_worlds_with_fluid_go_together(tmp_path: Path) -> None:
     assert [outcome.status for outcome in together] == [outcome.status for outcome in one_by_one]
 
 
+HELD = """
+import numpy as np
+
+total = 0.0
+
+def build(scene):
+    scene.simulation(duration=0.5)
+    mass = scene.param("mass", 2.0, low=0.5, high=8.0)
+    scene.box("kite", size=(0.2, 0.2, 0.2), mass=mass, position=(0, 0, 1))
+
+def control(world, t):
+    "A spring, a damper and an integral that is the program's own."
+    global total
+    kite = world.body("kite")
+    off = 1.0 - float(kite.position[0, 2])
+    total += 0.01 * off
+    world.apply_force("kite", (0.0, 0.0, 80.0 * off - 5.0 * float(kite.velocity[0, 2]) + 40.0 * total))
+    if t > 0.3 and world.body("kite").position[0, 2] < LEAST:
+        raise ValueError("too low")
+"""
+
+
+def test_worlds_under_control_go_together(tmp_path: Path) -> None:
+    """Each as if it were the only one that the program knows."""
+    (tmp_path / "program.py").write_text(HELD.replace("LEAST", "0.0"))
+    candidates = tuple(Candidate(number=k, params={"mass": 0.5 + k}) for k in range(4))
+    together = work(Shard(candidates, tmp_path, Spec(worlds=8)))
+    assert [outcome.together for outcome in together] == [4] * 4
+    assert [outcome.status for outcome in together] == ["accepted"] * 4
+    assert [outcome.status for outcome in work(Shard(candidates, tmp_path, Spec()))] == ["accepted"] * 4
+
+
+def test_control_that_fails_in_one_world_fails_that_one(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(HELD.replace("LEAST", "0.6"))
+    candidates = tuple(Candidate(number=k, params={"mass": mass}) for k, mass in enumerate((0.5, 1.0, 8.0)))
+    found = work(Shard(candidates, tmp_path, Spec(worlds=8)))
+    assert [outcome.status for outcome in found] == ["accepted", "accepted", "rejected"]
+    assert "too low" in found[2].reason
+    assert "run by itself, as 3 worlds could not be at once" in found[0].note
+
+
 def test_no_more_fluid_to_a_batch_than_memory_holds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "program.py").write_text(WET)
     candidates = tuple(Candidate(number=k, params={"density": 200.0 + 50.0 * k}) for k in range(3))

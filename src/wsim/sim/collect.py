@@ -9,6 +9,7 @@ import numpy as np
 from wsim.progress import Progress, silent
 from wsim.recording.trajectories import Trajectories
 from wsim.sim.fluid_tracks import FluidTracks
+from wsim.sim.ledger_tracks import LedgerTracks
 
 if TYPE_CHECKING:
     from wsim.sim.simulation import Simulation
@@ -35,6 +36,9 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
     deepest = np.zeros((worlds, frames))
     scalars: dict[str, np.ndarray] = {}
     wet = FluidTracks(simulation, simulation.fluid, time) if simulation.fluid else None
+    # What drives alone give is worked out by their law.
+    asked = simulation.fluid is not None or simulation.controlled
+    pushed = LedgerTracks(built, rigid.ledger, frames) if rigid and rigid.ledger and asked else None
     for frame in range(frames):
         if frame:
             simulation.advance_frame()
@@ -48,6 +52,8 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
             force[:, frame] = pushes[:, built.bodies]
         if wet:
             wet.take(frame)
+        if pushed:
+            pushed.take(frame)
         progress("simulating", frame, frames - 1)
     mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
     problems = _problems(simulation, q, qd)
@@ -59,11 +65,11 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
         contact_force=force,
         penetration=deepest,
         mass=mass,
-        scalars=scalars | (wet.scalars if wet else {}),
+        scalars=scalars | (wet.scalars if wet else {}) | (pushed.scalars if pushed else {}),
         problems=[a + b for a, b in zip(problems, wet.problems, strict=True)] if wet else problems,
         metadata=simulation.facts(),
         worlds=built.worlds if len(built.worlds) > 1 else (),
-        applied=wet.applied if wet else {},
+        applied=({"wall_impulse": wet.wall_impulse} if wet else {}) | (pushed.applied if pushed else {}),
         fluids=wet.tracks if wet else (),
         own_metadata=[{"sph": simulation.method_of_fluid(w)} for w in range(worlds)] if wet else (),
     )

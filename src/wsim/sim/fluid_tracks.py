@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.recording.recording import FluidTrack
-from wsim.sim.measure import applied_of, drive_scalars, measure_fluids
+from wsim.sim.measure import measure_fluids
 
 if TYPE_CHECKING:
     from wsim.sim.simulation import Simulation
@@ -17,7 +17,7 @@ Array = np.ndarray
 
 
 class FluidTracks:
-    """Particles of every world, what they and the drives push, and what went wrong.
+    """Particles of every world, what they give to the walls, and what went wrong.
 
     Args:
         simulation: At its start.
@@ -27,18 +27,18 @@ class FluidTracks:
     Attributes:
         tracks: Of each world, by the fluid's prim.
         scalars: By the name that a recording has for it, (W, T).
-        applied: By a recording's field, (W, T, ...).
+        wall_impulse: On all that stands still since the frame before, (W, T, 3) [N s].
     """
 
     def __init__(self, simulation: Simulation, solver: SolverSPH, time: Array) -> None:
-        self._simulation, self._solver, self._frames = simulation, solver, len(time)
+        self._simulation, self._solver, self._time = simulation, solver, time
         self.tracks = [
             {prim: _empty(time, part.stop - part.start) for prim, part in fluids.items()}
             for fluids in simulation.built.fluids
         ]
         self._faults = [""] * len(self.tracks)
         self.scalars: dict[str, Array] = {}
-        self.applied: dict[str, Array] = {}
+        self.wall_impulse = np.zeros((len(self.tracks), len(time), 3), dtype=np.float32)
 
     def take(self, frame: int) -> None:
         """Keep the present state as a frame."""
@@ -51,27 +51,14 @@ class FluidTracks:
                     made.position, made.velocity, made.density,
                 )  # fmt: skip
             for name, number in told.items():
-                self._row(name)[w, frame] = number
-        self._add("wall_impulse", frame, self._solver.take_wall_impulse())
-        if simulation.rigid and (ledger := simulation.rigid.ledger):
-            entry = ledger.take()
-            for name, values in drive_scalars(built, ledger, entry).items():
-                self._row(name)[:, frame] = values
-            for name, values in applied_of(built, ledger, entry).items():
-                self._add(name, frame, values)
+                self.scalars.setdefault(name, np.zeros((len(self.tracks), len(self._time))))[w, frame] = number
+        self.wall_impulse[:, frame] = self._solver.take_wall_impulse()
         self._faults = [a or b for a, b in zip(self._faults, self._solver.faults(simulation.state), strict=True)]
 
     @property
     def problems(self) -> list[list[str]]:
         """What went wrong in each world's fluid first."""
         return [[fault] if fault else [] for fault in self._faults]
-
-    def _row(self, name: str) -> Array:
-        return self.scalars.setdefault(name, np.zeros((len(self.tracks), self._frames)))
-
-    def _add(self, name: str, frame: int, values: Array) -> None:
-        shape = (len(values), self._frames, *values.shape[1:])
-        self.applied.setdefault(name, np.zeros(shape, dtype=np.float32))[:, frame] = values
 
 
 def _empty(time: Array, count: int) -> FluidTrack:

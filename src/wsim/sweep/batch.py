@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from wsim.forks import shared_out
 from wsim.judge.worlds import verdicts_of
 from wsim.memory import free_memory
-from wsim.runs.simulation import is_controlled
+from wsim.runs.simulation import is_controlled, open_controller
 from wsim.scene.describe import describe
 from wsim.scene.usd_threads import forks
 from wsim.sim import Simulation
@@ -18,6 +18,8 @@ from wsim.sim.alike import alike
 from wsim.sim.collect import collect
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from wsim.judge.verdict import Verdict
     from wsim.plan.schema import Plan
     from wsim.runs.iteration import Iteration
@@ -40,25 +42,34 @@ class Member:
 def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: int = 1) -> list[list[Member]]:
     """Those that can be simulated together, at most so many at a time; who must go alone is in none.
 
-    A program with a `control` is asked world by world. Of worlds with fluid there are no more to a batch than fit, with
-    all that their particles do, into half the memory that is free.
+    A program with a `control` goes with its own kind: that may be another for each program, and knows no parameters. Of
+    worlds with fluid there are no more to a batch than fit, with all that their particles do, into half of the memory
+    that is free.
 
     Args:
         built: Candidates that have a stage.
         most: Worlds of a batch.
         processes: That stages are read in, side by side.
     """
-    controlled = {program: is_controlled(program) for program in {iteration.program for _, iteration in built}}
-    free = [each for each in built if not controlled[each[1].program]]
-    worlds = shared_out(describe, [iteration.stage for _, iteration in free], forks(processes))
-    members = [Member(*each, world) for each, world in zip(free, worlds, strict=True)]
+    worlds = shared_out(describe, [iteration.stage for _, iteration in built], forks(processes))
+    members = [Member(*each, world) for each, world in zip(built, worlds, strict=True)]
     moving = [member for member in members if member.world.fluids or member.world.bodies]
     found, room = [], free_memory() / 2
-    for group in alike([member.world for member in moving]):
-        own = [moving[k] for k in group]
-        size = max(1, min(most, int(room / max(1, *(bytes_of_particles(member.world) for member in own)))))
-        found += [own[first : first + size] for first in range(0, len(own), size)]
+    for kind in _by_control(moving):
+        for group in alike([member.world for member in kind]):
+            own = [kind[k] for k in group]
+            size = max(1, min(most, int(room / max(1, *(bytes_of_particles(member.world) for member in own)))))
+            found += [own[first : first + size] for first in range(0, len(own), size)]
     return [batch for batch in found if len(batch) > 1]
+
+
+def _by_control(members: Sequence[Member]) -> list[list[Member]]:
+    """Those that nothing controls, and those of each program that has a `control`."""
+    controlled = {program: is_controlled(program) for program in {member.iteration.program for member in members}}
+    kinds: dict[Path | None, list[Member]] = {}
+    for member in members:
+        kinds.setdefault(member.iteration.program if controlled[member.iteration.program] else None, []).append(member)
+    return list(kinds.values())
 
 
 def bytes_of_particles(world: World) -> float:
@@ -80,15 +91,17 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
     """
     settings = batch[0].iteration.settings
     try:
-        simulation = Simulation(
-            [member.iteration.stage for member in batch],
-            device=settings.device,
-            time_step=settings.time_step,
-            seeds=[member.candidate.seed for member in batch],
-            worlds=[member.world for member in batch],
-            processes=processes,
-        )
-        worlds = collect(simulation)
+        with open_controller(batch[0].iteration.program, batch[0].world, settings, len(batch)) as controller:
+            simulation = Simulation(
+                [member.iteration.stage for member in batch],
+                device=settings.device,
+                time_step=settings.time_step,
+                controller=controller,
+                seeds=[member.candidate.seed for member in batch],
+                worlds=[member.world for member in batch],
+                processes=processes,
+            )
+            worlds = collect(simulation)
     except (MemoryError, RuntimeError) as error:
         if len(batch) < 2 or not _is_no_room(error):
             raise
