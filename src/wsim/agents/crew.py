@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 from wsim.agents import coder, judge, planner, reviewer
 from wsim.agents.ask import Desk
+from wsim.agents.budget import BudgetError
 from wsim.agents.failures import ModelError
 from wsim.agents.models import BUILTIN
 from wsim.judge.repair.order import suggestions
+from wsim.judge.repair.steps import steps
 from wsim.program.mend import NotMendedError, mended
 from wsim.rules.planner import plan
 from wsim.runs.attempt import Attempt, Reached
@@ -105,49 +108,72 @@ class Crew:
     def _history(self, undone: Sequence[Attempt]) -> list[str]:
         return [_told(tried, self.reasons.get(tried.number, "")) for tried in undone]
 
-    def repair(self, best: Attempt, undone: Sequence[Attempt], plan: Plan) -> str:
-        """The best program so far, with the coder's edits made.
+    def repairs(self, best: Attempt, undone: Sequence[Attempt], plan: Plan, count: int = 1) -> list[str]:
+        """The best program so far with the coder's edits made: up to so many programs, each of other edits.
 
         Raises:
             ModelError: If no answer became a program.
-            BudgetError: If tokens or time ran out.
+            BudgetError: If tokens or time ran out before one did.
         """
         self.tried |= {tried.program: tried.number for tried in (best, *undone)}
-        situation = coder.Situation(
-            program=best.program,
-            verdict=[*verdict_lines(best.folder / "verdict.json"), *_quoted(best)],
-            plan=plan_lines(plan),
-            repair=best.repair,
-            review=best.review,
-            history=self._history(undone),
-            tried=self.tried,
-        )
-        number = max(tried.number for tried in (best, *undone)) + 1
-        self.skills[number] = [skill.name for skill in coder.pick(situation)]
-        made = coder.repair(self.desk, situation, plan, self.workspace)
-        if not made.program:
-            raise ModelError("gave up", made.why, "coder")
-        self.reasons[number] = made.why
-        return made.program
-
-    def mend(self, best: Attempt, undone: Sequence[Attempt], plan: Plan) -> str:
-        """The best program so far with the first of the judge's suggestions applied that makes one not tried yet.
-
-        What stands in for a coder: nothing is weighed, and what cannot be applied as it stands is left out. Empty where
-        none is left.
-        """
-        self.tried |= {tried.program: tried.number for tried in (best, *undone)}
-        number = max(self.tried.values()) + 1
-        for finding in suggestions(best.verdict):
-            assert finding.target is not None
+        made: dict[str, str] = {}  # programs, with what their edits are for
+        while len(made) < max(1, count):
+            number = max(self.tried.values()) + 1
+            situation = coder.Situation(
+                program=best.program,
+                verdict=[*verdict_lines(best.folder / "verdict.json"), *_quoted(best)],
+                plan=plan_lines(plan),
+                repair=best.repair,
+                review=best.review,
+                history=[
+                    *self._history(undone),
+                    *(f"is tried beside yours; give other edits: {w}" for w in made.values()),
+                ],
+                tried=self.tried,
+            )
+            self.skills[number] = [skill.name for skill in coder.pick(situation)]
             try:
-                program = mended(best.program, finding.target, plan)
+                found = coder.repair(self.desk, situation, plan, self.workspace)
+            except (ModelError, BudgetError):
+                if made:
+                    break
+                raise
+            if not found.program:
+                if made:
+                    break
+                raise ModelError("gave up", found.why, "coder")
+            self.reasons[number] = found.why
+            self.tried[found.program] = number
+            made[found.program] = found.why
+        return list(made)
+
+    def mends(self, best: Attempt, undone: Sequence[Attempt], plan: Plan, count: int = 1) -> list[str]:
+        """The best program so far with one of the judge's suggestions applied: up to so many not tried yet.
+
+        What stands in for a coder: nothing is weighed, and what cannot be applied as it stands is left out. Where
+        several are asked for, values along the way that a suggestion points are tried, too (`wsim.judge.repair.steps`):
+        a search, of which the best goes on. Empty where none is left.
+        """
+        self.tried |= {tried.program: tried.number for tried in (best, *undone)}
+        made: list[str] = []
+        asked = suggestions(best.verdict)
+        ways = [(each, each.target) for each in asked]
+        if count > 1:
+            for along in zip_longest(*(steps(each.target) for each in asked if each.target is not None)):
+                ways += [(each, step) for each, step in zip(asked, along, strict=True) if step is not None]
+        for finding, target in ways:
+            assert target is not None
+            try:
+                program = mended(best.program, target, plan)
             except NotMendedError:
                 continue
             if program not in self.tried:
-                self.reasons[number] = f"{finding.check}: {finding.target.sentence}"
-                return program
-        return ""
+                number = max(self.tried.values()) + 1
+                self.reasons[number], self.tried[program] = f"{finding.check}: {target.sentence}", number
+                made.append(program)
+                if len(made) == count:
+                    break
+        return made
 
     def facts(self) -> dict[str, Any]:
         """For run.json."""

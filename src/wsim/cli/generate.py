@@ -46,6 +46,10 @@ Seconds = Annotated[float, typer.Option("--max-seconds", min=1.0, help="Time of 
 ModelSeconds = Annotated[
     float, typer.Option("--model-timeout", min=0.1, help="Time of one request to a model [s]; it is sent three times.")
 ]
+Candidates = Annotated[
+    int,
+    typer.Option("--candidates", min=1, max=64, help="Patches that are tried side by side; the best of them goes on."),
+]
 Confirm = Annotated[
     bool, typer.Option("--confirm/--no-confirm", help="Run an accepted program once more, bare, and compare.")
 ]
@@ -62,6 +66,7 @@ def generate(
     coder_model: CoderModel = None,
     reviewer_model: ReviewerModel = None,
     judge_model: JudgeModel = None,
+    candidates: Candidates = 1,
     max_iterations: Iterations = 8,
     max_tokens: Tokens = 200_000,
     max_seconds: Seconds = 3600.0,
@@ -102,6 +107,7 @@ def generate(
         models=choose(model, planner=planner_model, coder=coder_model, reviewer=reviewer_model, judge=judge_model),
         budget=Budget(max_iterations, max_tokens, max_seconds, model_timeout),
         image=image,
+        candidates=candidates,
         confirm=confirm,
     )
     options.settings.check()

@@ -69,11 +69,11 @@ def _world(making: Making) -> Verdict:
     programs = [making.first_draft()]  # plan → program
     try:
         while True:
-            tried = max((making.attempt(program) for program in programs), key=lambda one: one.rank)
-            making.keep(tried)  # program → stage → recording → verdict
+            tried = making.attempts(programs)  # programs → stages → recordings → verdicts
+            making.keep(tried)
             if making.ends:
                 return making.verdict
-            programs = making.repairs(tried)  # verdict → programs
+            programs = making.repairs(tried[0])  # verdict → programs
             if not programs:
                 return making.verdict
     except (ModelError, BudgetError) as error:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from wsim.agents.budget import BudgetError
 from wsim.agents.crew import Crew
 from wsim.judge.verdict import Verdict
 from wsim.loop.options import Options
+from wsim.loop.side_by_side import side_by_side
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.runs.accept import accept
@@ -80,14 +82,29 @@ class Making:
         self.crew.desk.transcript.builtin("coder", "plan.json", program)
         return program
 
-    def attempt(self, program: str) -> Attempt:
-        """A program, as a new iteration, through all passes, the review, the judge, and acceptance."""
+    def attempts(self, programs: Sequence[str]) -> list[Attempt]:
+        """Programs, each as a new iteration, the best first.
+
+        Of several the physics are tried side by side, without pictures, and the best of them goes on as one alone does.
+        """
+        iterations = [self._iteration(program) for program in programs]
+        if len(iterations) == 1:
+            return [self._through(iterations[0])]
+        tried = side_by_side(iterations, self.crew.workspace.progress)
+        best = max(range(len(tried)), key=lambda k: tried[k].rank)
+        tried[best] = self._through(iterations[best])
+        return sorted(tried, key=lambda one: one.rank, reverse=True)
+
+    def _iteration(self, program: str) -> Iteration:
         folder = self.run.add(program, self.best.program if self.best else None)
         settings = self.options.settings
         if self.best is not None and numerics(program) != numerics(Iteration(self.run.iteration(1)).text):
             # A world that a finer computation made right must stand a still finer one.
             settings = replace(settings, verify=True)
-        iteration = Iteration(folder, self.plan, settings, self.crew.workspace.progress)
+        return Iteration(folder, self.plan, settings, self.crew.workspace.progress)
+
+    def _through(self, iteration: Iteration) -> Attempt:
+        """All passes, the review, the judge, and acceptance."""
         tried = attempt(iteration, cheap_first=self.crew.has("coder") or self.best is not None)
         try:
             self._assess(tried, replace(iteration, settings=self.options.settings))
@@ -112,13 +129,21 @@ class Making:
         elif tried.verdict.status == "accepted":
             self.run.stamp(tried.folder)
 
-    def keep(self, tried: Attempt) -> None:
-        """Go on from an attempt if it is the best; run.json has a row for it either way."""
-        if self.best is None or tried.rank > self.best.rank:
-            self.best, self.undone = tried, []
+    def keep(self, attempts: Sequence[Attempt]) -> None:
+        """Go on from the best of some attempts if none was better before; run.json has a row for each either way.
+
+        Args:
+            attempts: The best first.
+        """
+        if self.best is None or attempts[0].rank > self.best.rank:
+            self.best, self.undone = attempts[0], list(attempts[1:])
         else:
-            self.undone.append(tried)
-        row = Tried(
+            self.undone += attempts
+        rows = [*self.run.facts().get("iterations", []), *(self._row(tried).model_dump() for tried in attempts)]
+        self.run.record(iterations=sorted(rows, key=lambda row: row["number"]), best=self.best.number)
+
+    def _row(self, tried: Attempt) -> Tried:
+        return Tried(
             number=tried.number,
             reached=tried.reached.name.lower(),
             status=tried.verdict.status,
@@ -127,18 +152,16 @@ class Making:
             kept=tried is self.best,
             repair=tried.repair,
         )
-        rows = self.run.facts().get("iterations", [])
-        self.run.record(iterations=[*rows, row.model_dump()], best=self.best.number)
 
     def repairs(self, last: Attempt) -> list[str]:
-        """Programs to try next: patches of the best. One; where several are tried, the best of them goes on.
+        """Programs to try next: patches of the best, as many as are tried side by side and the budget leaves.
 
         None where no model is there to write one, and no suggestion of the judge is left that can be applied as it is.
         """
         assert self.best is not None
+        count = min(self.options.candidates, self.options.budget.iterations - self.tried)
         if not self.crew.has("coder"):
-            made = self.crew.mend(self.best, self.undone, self.plan)
-            return [made] if made else []
+            return self.crew.mends(self.best, self.undone, self.plan, count)
         if last is not self.best:
             self.crew.judge(self.best, self.plan, self.undone)  # what it asked for did not help
-        return [self.crew.repair(self.best, self.undone, self.plan)]
+        return self.crew.repairs(self.best, self.undone, self.plan, count)

@@ -26,6 +26,7 @@ class Options:
         models: Who fills which role.
         budget: What may be used.
         image: A picture of what it must look like, for a planner that sees.
+        candidates: Patches of an iteration that are tried side by side; the best of them goes on.
         confirm: Run the accepted program once more, bare, and compare.
         replay: A recorded run that answers in place of the models.
     """
@@ -34,6 +35,7 @@ class Options:
     models: Models = field(default_factory=Models)
     budget: Budget = field(default_factory=Budget)
     image: Path | None = None
+    candidates: int = 1
     confirm: bool = True
     replay: Replay | None = None
 

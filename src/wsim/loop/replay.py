@@ -65,6 +65,7 @@ def replay(recorded: Path, runs: Path, progress: Progress = silent, device: str 
         models=models,
         budget=Budget(**_known(Budget, facts["budget"])),
         image=reference if reference.is_file() else None,
+        candidates=facts.get("candidates", 1),
         confirm=facts.get("confirm", True),
         replay=answers,
     )

@@ -45,6 +45,7 @@ def start(prompt: str, runs: Path, plan: Plan | None, options: Options, progress
         settings=asdict(options.settings),
         budget=asdict(options.budget),
         confirm=options.confirm,
+        candidates=options.candidates,
     )
     return run, crew
 
