@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -265,15 +264,3 @@ def test_arrays_that_do_not_fit_are_refused(worlds: Trajectories) -> None:
         replace(worlds, body_qd=worlds.body_qd[..., :5])
     with pytest.raises(ValueError, match="one for each of 8 worlds"):
         replace(worlds, problems=[[]])
-
-
-def test_a_world_with_fluid_is_not_collected(tmp_path: Path) -> None:
-    from wsim.errors import UserError
-    from wsim.sim import Simulation
-    from wsim.sim.collect import collect
-
-    scene = Scene()
-    tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.3))
-    scene.fluid("water", fills=tank, level=0.12, spacing=0.06)
-    with pytest.raises(UserError, match="/World/water"):
-        collect(Simulation(scene.save(tmp_path / "stage.usda"), device="cpu"))

@@ -145,3 +145,22 @@ def test_the_repair_states_what_happened(tmp_path, program, check, stated, happe
         program = mended(program, check.repair(failed[0], evidence_of))
     assert found and not failed, failed
     assert stated not in program
+
+
+def hung(scene, speed=0.0, spin=0.0):
+    scene.simulation(duration=0.2, frame_rate=30)
+    scene.sphere("bob", radius=0.1, position=(0, 0, 1), density=500, velocity=(speed, 0, 0))
+    scene.joint_revolute("hinge", None, "bob", anchor=(0, 0, 2), axis="Y")
+    scene.sphere("tethered", radius=0.1, position=(3, 0, 1), density=500, angular_velocity_deg=(0, 0, spin))
+    scene.rope("rope", None, "tethered", anchor_a=(3, 0, 2))
+    scene.box("weight", size=(0.1,) * 3, position=(6, 0, 1), mass=1.0, angular_velocity_deg=(0, 0, spin))
+    scene.spring("coil", None, "weight", stiffness=100, anchor_a=(6, 0, 2))
+
+
+@pytest.mark.parametrize("moved", [{"speed": 0.5}, {"spin": 5.0}])
+def test_what_hangs_and_is_stated_to_stand_stands(tmp_path, moved):
+    """Where nothing of a mechanism is stated to move, joints make no speed of it; ropes and springs never do."""
+    stated, other = (evidence(tmp_path, hung, **given) for given in ({}, moved))
+    assert all(finding.passed for finding in CheckStart().run(stated))
+    spoiled = Evidence(dataclasses.replace(other.recording, world=stated.world))
+    assert not all(finding.passed for finding in CheckStart().run(spoiled))

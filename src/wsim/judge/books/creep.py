@@ -102,7 +102,7 @@ def _drifts(evidence: Evidence, touching: Touching, contacts: Contacts, first: i
     drift = apart[:, -1] - apart[:, 0]
     length = np.linalg.norm(drift, axis=1)
     gone = np.einsum("nfi,ni->nf", np.diff(apart, axis=1), drift / np.maximum(length, 1e-300)[:, None])
-    rounding = 16.0 * FLOAT32 * float(np.abs(evidence.body_q[frames, :, :3]).max(initial=0.0))
+    rounding = 2.0 * FLOAT32 * float(np.abs(evidence.body_q[frames, :, :3]).max(initial=0.0))  # of both ends
     rate = length / (time[-1] - time[0])
     steady = gone.min(axis=1) > EACH * length / INTERVALS
     steady &= (rate > np.maximum(CREEP, _soft(evidence, touching, contacts))) & (rate < 2.0 * STILL)

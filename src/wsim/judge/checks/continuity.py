@@ -89,8 +89,10 @@ class CheckContinuity(Check):
         # Within a frame the velocity may be anything between its ends, a body may fall and be caught, one that is hit
         # may hand it on, and a drive that is faster than the frames may have come and gone.
         pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + handed + driven)
-        return np.asarray(h * (0.5 * _around(motion.v) + pulled) + self._rounding(evidence)[..., 1:, :]
-                          + self._by_hand(evidence))  # fmt: skip
+        places = self._rounding(evidence)
+        rounding = np.maximum(places[..., 1:, :], places[..., :-1, :])
+        rounding = rounding + h * FLOAT32 * np.maximum(motion.speed[..., 1:, :], motion.speed[..., :-1, :])
+        return np.asarray(h * (0.5 * _around(motion.v) + pulled) + rounding + self._by_hand(evidence))
 
     def _turns(self, evidence: Evidence, handed: Floats, driven: Floats) -> Pair:
         motion, h = evidence.motion, evidence.motion.h[:, None]

@@ -9,7 +9,7 @@ import numpy as np
 
 from wsim.geometry.rotations import lengths
 from wsim.judge.checks.check import Check, Checks, worst
-from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.motion import FLOAT32, OURS
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -34,7 +34,8 @@ class CheckRestForce(Check):
         """The body at rest whose contact forces are farthest from that, over the final window."""
         motion, recording = evidence.motion, evidence.recording
         wet = bool(evidence.world.fluids or recording.metadata.get("controlled")) and recording.applied_impulse is None
-        if wet or not np.any(recording.contact_force) or evidence.gravity <= 0.0 or int(evidence.window.sum()) < 2:
+        told = np.any(recording.contact_force) or OURS in recording.metadata
+        if wet or not told or evidence.gravity <= 0.0 or int(evidence.window.sum()) < 2:
             return []
         span = float(evidence.time[-1] - evidence.time[evidence.window][0])
         force = np.asarray(recording.contact_force[evidence.window], dtype=np.float64).mean(axis=0)
@@ -57,8 +58,10 @@ class CheckRestForce(Check):
     def _rests(self, evidence: Evidence, i: int) -> bool:
         limit = self.still * evidence.velocity_scale(evidence.solid(i).smallest)
         here = evidence.window
-        touched = bool(evidence.motion.touched[here, i].all())
-        return touched and float(evidence.motion.speed[here, i].max()) < limit
+        touched = evidence.motion.touched[here, i]
+        # What is at rest is carried by something: no force at all is none that was seen in another phase.
+        carried = bool(touched.all()) or (OURS in evidence.recording.metadata and not touched.any())
+        return carried and float(evidence.motion.speed[here, i].max()) < limit
 
     def _finding(self, evidence: Evidence, i: int, lacking: Floats, force: Floats, hidden: float) -> Finding:
         body = evidence.world.bodies[i]

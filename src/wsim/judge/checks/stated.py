@@ -11,7 +11,7 @@ import numpy as np
 from wsim.geometry.paths import exponential
 from wsim.geometry.rotations import lengths, multiply, rotate
 from wsim.judge.checks.check import Check, Checks, worst
-from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.motion import FLOAT32, OURS
 from wsim.judge.repair.start import start_taken, way_taken
 from wsim.scene.usd_motion import curve_of
 
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from wsim.scene.world import Body
 
     Floats = NDArray[np.float64]
-
-OURS = "loose_order"  # what wsim's simulator says of itself: another engine's model may start anywhere
 
 
 @dataclass
@@ -40,17 +38,17 @@ class CheckStart(Check):
         """What starts most unlike what is stated, of places, turns and speeds."""
         if OURS not in evidence.recording.metadata or not len(evidence.motion.mass):
             return []
-        found = []
+        found, free = [], _free(evidence)
         for k, body in enumerate(evidence.world.bodies):
             if not body.kinematic:
-                found += self._of(evidence, k, body)
+                found += self._of(evidence, k, body, bool(free[k]))
         return worst(found)
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
         """The start that was taken."""
         return start_taken(evidence, finding)
 
-    def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
+    def _of(self, evidence: Evidence, k: int, body: Body, free: bool) -> list[Finding]:
         motion = evidence.motion
         start, radius = motion.q[0, k], float(motion.radius[k])
         rounding = 8.0 * FLOAT32 * float(np.linalg.norm(body.position))
@@ -65,7 +63,7 @@ class CheckStart(Check):
             ("moves", "m/s", motion.v[0, k], np.array(body.velocity)),
             ("turns", "rad/s", motion.w[0, k], np.array(body.angular_velocity)),
         ):
-            if stated.any() or not motion.jointed[k]:  # what joints make of a speed that nobody states is theirs
+            if stated.any() or free:  # what joints make of a speed that nobody states is theirs
                 off = float(np.linalg.norm(has - stated))
                 message = f"{body.prim} {name} at the start by {off:.3g} {unit} otherwise than stated"
                 limit = self.share * float(np.linalg.norm(stated)) + self.still
@@ -137,6 +135,21 @@ def _led(body: Body, time: Floats) -> tuple[Floats, Floats]:
     arm = np.array(body.com)
     centre = np.array(body.position) + rotate(start, arm) + since * np.array(body.velocity)
     return centre - rotate(turns, np.broadcast_to(arm, centre.shape)), turns
+
+
+def _free(evidence: Evidence) -> NDArray[np.bool_]:
+    """Whether a body starts as it is stated, at rest where nothing is, (B,): joints give it no speed of another's."""
+    world = evidence.world
+    row = {body.prim: i for i, body in enumerate(world.bodies)}
+    unit = np.arange(len(row))
+    for joint in world.joints:
+        if joint.parent in row and joint.child in row:
+            unit[unit == unit[row[joint.child]]] = unit[row[joint.parent]]
+    moves = [any((*body.velocity, *body.angular_velocity)) or body.path is not None for body in world.bodies]
+    ends = {end for joint in world.joints for end in (joint.parent, joint.child)}
+    tied = np.array([prim in ends for prim in row], dtype=bool)
+    free: NDArray[np.bool_] = ~tied | ~np.isin(unit, unit[np.array(moves, dtype=bool)])
+    return free
 
 
 def _angle(a: Floats, b: Floats) -> float:

@@ -26,11 +26,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
 
+OURS = "loose_order"  # what wsim's simulator says of itself: another engine's model may start anywhere
 CHUNK = 64  # frames whose distances between all bodies are held at once
 OF_FRAMES = (
     "com", "speed", "rate", "surface_speed", "acceleration", "touched", "spin", "angular_momentum", "torque", "kinetic",
     "potential", "reach", "meets",
 )  # fmt: skip
+ROUNDED_SQUARES = 8.0  # of the largest square, that a squared distance of two may be off by, in their precision
 FLOAT32 = float(np.finfo(np.float32).eps)  # a recording's rounding, relative
 
 
@@ -115,7 +117,7 @@ class Motion:
         Nothing of what gravity and contacts alone move, where the simulator says that its steps are of second order.
         """
         world, metadata = self._recorded.world, self._recorded.recording.metadata
-        if metadata.get("loose_order") != 2 or world.fluids or metadata.get("controlled"):
+        if metadata.get(OURS) != 2 or world.fluids or metadata.get("controlled"):
             return np.full(len(self.jointed), self.dt)
         return np.where(self.jointed | self.kinematic, self.dt, 0.0)
 
@@ -236,12 +238,15 @@ class Motion:
             return met
         for start in range(0, len(self.h), CHUNK):
             part = slice(start, min(start + CHUNK, len(self.h)))
-            c = self.com[..., part, :, :].astype(np.float32)
+            # From their middle: a square of a kilometre in single precision is known to 0.1 m^2.
+            com = self.com[..., part, :, :]
+            c = (com - com.mean(axis=-2, keepdims=True)).astype(np.float32)
             square = np.einsum("...i,...i->...", c, c)
             distance2 = square[..., None] + square[..., None, :] - 2.0 * c @ c.swapaxes(-1, -2)
+            rounding = ROUNDED_SQUARES * FLOAT32 * square.max(axis=-1)[..., None, None]
             range_ = (self.radius + self.reach[..., part, :]).astype(np.float32)
             bound = range_[..., None] + range_[..., None, :]
-            met[..., part, :] = np.any((distance2 < bound * bound) & other, axis=-1)
+            met[..., part, :] = np.any((distance2 < bound * bound + rounding) & other, axis=-1)
         return met
 
     def near(self, i: int, intervals: NDArray[np.intp]) -> Bools:
