@@ -17,6 +17,7 @@ import warp as wp
 
 from wsim.kernels.smooth_steps import count_touching, find_touching, keep_where_touched
 from wsim.solvers.groups import tendon_bodies
+from wsim.solvers.led import Led
 
 Array = np.ndarray
 LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
@@ -73,6 +74,7 @@ class SmoothStepsC:
         self._state = np.zeros(mujoco.mj_stateSize(model, self._all))
         self._beside: Any = mujoco.MjData(model) if owners.count > 1 else None
         turns = np.isin(model.jnt_type, [int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL)])
+        self._led = Led(model, owners.of_geom)
         self._turning = turns[model.dof_jntid] & (owners.of_dof > 0)
         self.since = np.zeros(owners.count, dtype=int)  # steps of the first order since the last smooth one
 
@@ -80,24 +82,31 @@ class SmoothStepsC:
         """Mechanisms that go by the fourth order, and those of them that contacts push, (mechanisms,) each.
 
         That is all of a `whole` world, and else those without a stop, a taut rope or dry friction now. What contacts
-        push by their rows' `force` does where nothing closes a loop in it.
+        push by their rows' `force` does where they do not lead it, and nothing closes a loop in it.
         """
         smooth, pushed = np.full(self._owners.count, whole), np.zeros(self._owners.count, dtype=bool)
         if not whole and self._owners.count > 1:
-            smooth[1:], pushed = True, self.pressed(data, force)
+            rows = self._pushing(data, force)
+            smooth[1:], pushed = True, self._of_contacts(data, rows)
             for kind, owner in self._of_rows:
                 smooth[owner[data.efc_id[data.efc_type == kind]]] = False
-            smooth &= ~(pushed & self._owners.closed)
+            smooth &= ~(pushed & (self._owners.closed | self._led.mechanisms(data, rows)))
             smooth[0] = False
         self.since = np.where(smooth, 0, self.since + 1)
         return smooth, pushed & smooth
 
     def pressed(self, data: Any, force: Array) -> Array:
         """Mechanisms that a contact pushes by its row's `force`, (mechanisms,)."""
-        found, contact = np.zeros(self._owners.count, dtype=bool), data.contact
-        rows = np.flatnonzero(contact.efc_address[: data.ncon] >= 0)
-        pushing = rows[force[contact.efc_address[rows]] > 0.0]
-        found[self._owners.of_geom[contact.geom[pushing]]] = True
+        return self._of_contacts(data, self._pushing(data, force))
+
+    @staticmethod
+    def _pushing(data: Any, force: Array) -> Array:
+        rows = np.flatnonzero(data.contact.efc_address[: data.ncon] >= 0)
+        return np.asarray(rows[force[data.contact.efc_address[rows]] > 0.0])
+
+    def _of_contacts(self, data: Any, rows: Array) -> Array:
+        found = np.zeros(self._owners.count, dtype=bool)
+        found[self._owners.of_geom[data.contact.geom[rows]]] = True
         return found
 
     def parts(self, data: Any, which: Array) -> int:
