@@ -22,6 +22,7 @@ from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.landing import keeps_way, landing
+from wsim.judge.books.recorded import told_by_record
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
@@ -163,11 +164,12 @@ class Balance:
             if strange.any():  # they may have touched between the frames alone
                 some = ks[strange], wanted[ks[strange]], asked[strange], hit[ks[strange]], between[strange]
                 left[some[0]], turned[some[0]] = self._explained(*some)
-            struck = (much & hit[ks] & self._jointed).any(axis=1)
+            struck = much.any(axis=1) & (hit[ks] & self._jointed).any(axis=1)
             if struck.any():  # and ties may have passed on all that they did as their arms were at one instant
                 some = ks[struck], wanted[ks[struck]], asked[struck], hit[ks[struck]], between[struck]
-                for course in (0, 1):
-                    tried, missing = self._explained(*some, course=course)
+                of_record = told_by_record(self._copies, self._sizes[0], ks[struck], asked[struck])
+                tries = [self._explained(*some, course=course) for course in (0, 1)]
+                for tried, missing in [*tries, *of_record]:
                     less = np.sum(tried**2, axis=(1, 2)) < np.sum(left[some[0]] ** 2, axis=(1, 2))
                     left[some[0][less]], turned[some[0][less]] = tried[less], missing[less]
         self._landed = again(anew, self._landed)
