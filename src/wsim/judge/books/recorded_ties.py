@@ -151,6 +151,10 @@ class RecordedTies:
             own = np.einsum("ti,ti->t", push if joint.kind == "prismatic" else about, axis)
             gap = np.abs(own - track.along[1:, k])
             off = np.maximum(off, gap * (np.linalg.norm(about, axis=1) + reach) / np.maximum(reach, 1e-30))
+            # What a blow twists a joint by, the whirl after it may twist back: each is about the axis of its own time.
+            row = self.pairs[k][1]
+            twisted = self._uneven[:, row] * motion.radius[row]
+            moved = np.maximum(moved, np.linalg.norm(np.diff(axes, axis=0), axis=1) * twisted)
         return off, self._turned(k) * reach + moved
 
     @cached_property
