@@ -22,7 +22,7 @@ from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.landing import keeps_way, landing
-from wsim.judge.books.recorded import told_by_record
+from wsim.judge.books.recorded import plain, told_by_record
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
@@ -100,8 +100,9 @@ class Balance:
             np.concatenate([getattr(motion, name) for motion in motions]) for name in ("h", "reach")
         )
         self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
-        self._turns = np.concatenate(self._angles)  # (N, B)
-        self._bent = self._turns**2 / 12.0  # share that is wrong of what an arm taken halfway gives
+        self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
+        self._whips = np.concatenate([plain(evidence) for evidence in copies]) & (np.concatenate(self._angles) > WHIPS)
+        self._bent = np.concatenate(self._angles) ** 2 / 12.0  # share that is wrong of what an arm taken halfway gives
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
@@ -170,7 +171,7 @@ class Balance:
                 some = ks[struck], wanted[ks[struck]], asked[struck], hit[ks[struck]], between[struck]
                 for course in (0, 1):
                     self._where_less(some[0], self._explained(*some, course=course), left, turned)
-            whips = struck | (much.any(axis=1) & (self._turns[ks] > WHIPS).any(axis=1))
+            whips = much.any(axis=1) & (self._whips[ks] | self._pressed[ks] & hit[ks]).any(axis=1)
             if whips.any():
                 for told in told_by_record(self._copies, self._sizes[0], ks[whips], asked[whips]):
                     self._where_less(ks[whips], told, left, turned)
