@@ -31,6 +31,7 @@ the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -118,41 +119,99 @@ class ContactLawC:
         self.owners = Owners(mujoco, model, moves_as_one)
         self.smooth_steps = SmoothStepsC(mujoco, model, self.owners)
         self.blows = BlowsC(mujoco, model, config, self._aim_others)
+        self._divides = touching is None and not flight.stated[1:].any()
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
-        """Advance `data` by the model's time step."""
-        mujoco, model = self.mujoco, self.model
-        mujoco.mj_checkPos(model, data)
-        mujoco.mj_checkVel(model, data)
+        """Advance `data` by the model's time step, in parts where a mechanism that is hit or pressed whirls."""
+        touching, model = self._begin(data), self.model
+        parts, h = self._parts(data), model.opt.timestep
+        if parts == 1:
+            self._end(data, touching)
+            return
+        model.opt.timestep = h / parts
+        for k in range(parts):
+            if k == 0:
+                self.blows.undo(data)
+            self.flight.keep()
+            self._end(data, self._begin(data))
+        model.opt.timestep = h
+
+    def _begin(self, data: Any) -> bool:
+        """The blows of a step and the accelerations after them; whether a contact, a stop or dry friction may be among
+        their causes."""
+        self.mujoco.mj_checkPos(self.model, data)
+        self.mujoco.mj_checkVel(self.model, data)
         touching = self._forward(data)
         while self.breaking is not None and self.breaking.give_way(data):
             self.blows.undo(data)
             self.flight.keep()
             touching = self._forward(data)
-        mujoco.mj_checkAcc(model, data)
+        self.mujoco.mj_checkAcc(self.model, data)
+        return touching
+
+    def _parts(self, data: Any) -> int:
+        """In how many parts a step is made, that of a mechanism which is hit, or which a contact presses.
+
+        What whirls changes the force that it is pressed with within the step. What goes as stated, and meshes, are
+        found once a step.
+        """
+        if not self._divides or self.owners.count == 1:
+            return 1
+        force = self.blows.forces_after(data)
+        which = self.owners.with_motion(self.blows.jump) | self.smooth_steps.pressed(data, force)
+        return self.smooth_steps.parts(data, which)
+
+    def _end(self, data: Any, touching: bool) -> None:
+        """Move by the time step."""
+        model = self.model
         whole = self.smooth and not touching
-        free = self.smooth_steps.free(data, whole, self.blows.forces_after(data))
+        force = self.blows.forces_after(data)
+        smooth, pushed = self.smooth_steps.choose(data, whole, force)
         struck = self.owners.with_motion(self.blows.jump)
         # Rows that close a loop ask that a speed be gone by the step's end, as the first order has it; of what they
         # then push with at its start Runge and Kutta's stages give 5/8, and that is not what is recorded.
-        free &= ~(struck & self.owners.closed)
-        if self.ties is not None:
-            self.ties.add(data, free & ~struck)
+        smooth &= ~(struck & self.owners.closed)
+        parts = self.smooth_steps.parts(data, smooth)
+        alone = smooth & (pushed | struck | (parts > 1))  # of which all of the step is recorded by itself
+        note = self._tell_ties(data, force, smooth, struck, alone)
         self.blows.take_from(data)
-        if whole:
+        if whole and parts == 1:
             self.smooth_steps.step(data)
         else:
-            if free.any():
-                self.smooth_steps.make(data)
-            self._implicit(data)
-            if self.impulses is not None:
-                self.impulses.add(data, model.opt.timestep)
-            self.flight.fly(model.opt.timestep)
-            if free.any():
-                self.smooth_steps.take(data, free)
+            if smooth.any():
+                self.smooth_steps.make(data, force, pushed, parts, note)
+            if whole:
+                data.time += model.opt.timestep
+            else:
+                self._implicit(data)
+                if self.impulses is not None:
+                    self.impulses.add(data, model.opt.timestep)
+                self.flight.fly(model.opt.timestep)
+            if smooth.any():
+                self.smooth_steps.take(data, smooth)
         if model.nu:
             self._tell_efforts(data)
+
+    def _tell_ties(
+        self, data: Any, force: Array, smooth: Array, struck: Array, alone: Array
+    ) -> Callable[[Any, float], None] | None:
+        """Record what ties give, but for that which is left to whom it returns: what they give in the smooth steps of
+        some mechanisms `alone`."""
+        ties = self.ties
+        if ties is None:
+            return None
+        h = self.model.opt.timestep
+        ties.add(data, h * (~alone | struck), smooth & ~alone)
+        if (alone & struck).any():  # of what they gave the blow alone
+            both, acceleration = data.efc_force.copy(), data.qacc.copy()
+            data.efc_force[:] = force
+            self.blows.take_from(data)
+            ties.add(data, -h * (alone & struck))
+            data.efc_force[:], data.qacc[:] = both, acceleration
+        if not alone.any():
+            return None
+        return lambda beside, span: ties.add(beside, span * alone)
 
     def _forward(self, data: Any) -> bool:
         """The blows of the step, and accelerations after them; whether a contact, a stop or dry friction may be among

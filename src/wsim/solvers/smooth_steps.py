@@ -9,7 +9,7 @@ of its energy.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,10 @@ import warp as wp
 
 from wsim.kernels.smooth_steps import count_touching, find_touching, keep_where_touched
 from wsim.solvers.groups import tendon_bodies
+from wsim.solvers.led import Led
 
 Array = np.ndarray
+LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
 
 
 class Owners:
@@ -71,22 +73,50 @@ class SmoothStepsC:
         self._all = int(mujoco.mjtState.mjSTATE_INTEGRATION)
         self._state = np.zeros(mujoco.mj_stateSize(model, self._all))
         self._beside: Any = mujoco.MjData(model) if owners.count > 1 else None
+        turns = np.isin(model.jnt_type, [int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL)])
+        self._led = Led(model, owners.of_geom)
+        self._turning = turns[model.dof_jntid] & (owners.of_dof > 0)
         self.since = np.zeros(owners.count, dtype=int)  # steps of the first order since the last smooth one
 
-    def free(self, data: Any, whole: bool, force: Array) -> Array:
-        """Mechanisms without a stop or dry friction now, and without a contact that pushes by its row's `force`,
-        (mechanisms,); in a `whole` world all."""
-        touched, contact = np.full(self._owners.count, not whole), data.contact
+    def choose(self, data: Any, whole: bool, force: Array) -> tuple[Array, Array]:
+        """Mechanisms that go by the fourth order, and those of them that contacts push, (mechanisms,) each.
+
+        That is all of a `whole` world, and else those without a stop, a taut rope or dry friction now. What contacts
+        push by their rows' `force` does where they do not lead it, and nothing closes a loop in it.
+        """
+        smooth, pushed = np.full(self._owners.count, whole), np.zeros(self._owners.count, dtype=bool)
         if not whole and self._owners.count > 1:
-            touched[1:] = False
-            rows = np.flatnonzero(contact.efc_address[: data.ncon] >= 0)
-            pushing = rows[force[contact.efc_address[rows]] > 0.0]
-            touched[self._owners.of_geom[contact.geom[pushing]]] = True
+            rows = self._pushing(data, force)
+            smooth[1:], pushed = True, self._of_contacts(data, rows)
             for kind, owner in self._of_rows:
-                touched[owner[data.efc_id[data.efc_type == kind]]] = True
-            touched[0] = True
-        self.since = np.where(touched, self.since + 1, 0)
-        return ~touched
+                smooth[owner[data.efc_id[data.efc_type == kind]]] = False
+            smooth &= ~(pushed & (self._owners.closed | self._led.mechanisms(data, rows)))
+            smooth[0] = False
+        self.since = np.where(smooth, 0, self.since + 1)
+        return smooth, pushed & smooth
+
+    def pressed(self, data: Any, force: Array) -> Array:
+        """Mechanisms that a contact pushes by its row's `force`, (mechanisms,)."""
+        return self._of_contacts(data, self._pushing(data, force))
+
+    @staticmethod
+    def _pushing(data: Any, force: Array) -> Array:
+        rows = np.flatnonzero(data.contact.efc_address[: data.ncon] >= 0)
+        return np.asarray(rows[force[data.contact.efc_address[rows]] > 0.0])
+
+    def _of_contacts(self, data: Any, rows: Array) -> Array:
+        found = np.zeros(self._owners.count, dtype=bool)
+        found[self._owners.of_geom[data.contact.geom[rows]]] = True
+        return found
+
+    def parts(self, data: Any, which: Array) -> int:
+        """In how many parts a step is made in which no joint of some mechanisms turns far in one, (mechanisms,)."""
+        ours = self._turning & which[self._owners.of_dof]
+        if not ours.any():
+            return 1
+        h = self._model.opt.timestep
+        turn = h * np.abs(data.qvel[ours]) + h * h * np.abs(data.qacc[ours])
+        return int(min(max(1.0, np.ceil(turn.max() / LARGEST_TURN)), MOST_PARTS))
 
     def step(self, data: Any) -> None:
         """Advance all of `data`, whose forces are known."""
@@ -96,16 +126,50 @@ class SmoothStepsC:
         self._mujoco.mj_RungeKutta(self._model, data, 4)
         self._model.opt.disableflags = flags
 
-    def make(self, data: Any) -> None:
-        """Make the step from the state of `data` beside it, and keep it."""
-        mujoco, model = self._mujoco, self._model
+    def make(
+        self, data: Any, force: Array, pushed: Array, parts: int, note: Callable[[Any, float], None] | None = None
+    ) -> None:
+        """Make the step from the state of `data` beside it, and keep it.
+
+        Args:
+            data: MuJoCo's.
+            force: Of its constraint rows, of which those of contacts are held over the step.
+            pushed: Mechanisms that they push, (mechanisms,).
+            parts: By how many steps.
+            note: Told of what acts at the ends of each of these, and for how long that counts [s].
+        """
+        mujoco, model, beside = self._mujoco, self._model, self._beside
         mujoco.mj_getState(model, data, self._state, self._all)
-        mujoco.mj_setState(model, self._beside, self._state, self._all)
-        flags = model.opt.disableflags
-        model.opt.disableflags = flags | self._unilateral
-        mujoco.mj_forward(model, self._beside)
-        model.opt.disableflags = flags
-        self.step(self._beside)
+        mujoco.mj_setState(model, beside, self._state, self._all)
+        if pushed.any():
+            beside.xfrc_applied[:] += np.where(pushed[self._owners.of_body, None], self._pushes(data, force), 0.0)
+        flags, h = model.opt.disableflags, model.opt.timestep
+        model.opt.disableflags, model.opt.timestep = flags | self._unilateral, h / parts
+        mujoco.mj_forward(model, beside)
+        for k in range(parts):
+            if note is not None:
+                note(beside, (0.5 if k == 0 else 1.0) * h / parts)
+            mujoco.mj_RungeKutta(model, beside, 4)
+            if note is not None or k + 1 < parts:
+                mujoco.mj_forward(model, beside)
+        model.opt.disableflags, model.opt.timestep = flags, h
+        if note is not None:
+            note(beside, 0.5 * h / parts)
+
+    def _pushes(self, data: Any, force: Array) -> Array:
+        """What contacts give each body, about its centre of mass, (bodies, 6)."""
+        contact, found = data.contact, np.zeros((self._model.nbody, 6))
+        rows = np.flatnonzero(contact.efc_address[: data.ncon] >= 0)
+        at = contact.efc_address[rows, None] + np.arange(6)
+        each = np.where(np.arange(6) < contact.dim[rows, None], force[np.minimum(at, len(force) - 1)], 0.0)
+        push, spin = np.moveaxis(
+            np.einsum("nri,nsr->nsi", contact.frame[rows].reshape(-1, 3, 3), each.reshape(-1, 2, 3)), 1, 0
+        )
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            bodies = self._model.geom_bodyid[contact.geom[rows, side]]
+            turn = np.cross(contact.pos[rows] - data.xipos[bodies], push) + spin
+            np.add.at(found, bodies, sign * np.concatenate([push, turn], axis=1))
+        return found
 
     def take(self, data: Any, which: Array) -> None:
         """Take what was made for some mechanisms, (mechanisms,)."""

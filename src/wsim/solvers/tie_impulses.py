@@ -49,9 +49,11 @@ class TiedCord:
 
 @dataclass(frozen=True)
 class _Step:
-    """What is kept of a step."""
+    """What is kept of a step's start, or of an instant of it."""
 
+    starts: bool
     smooth: Array  # whether the step of a joint or a cord is one of Runge and Kutta's, (joints + ends,)
+    span: Array  # for which it counts there, likewise [s]
     state: Array  # what does not change its size, one after another
     told: Array  # the drives' targets
     rows: tuple[Array, ...]  # of the constraints: kind, number, force, place
@@ -62,7 +64,9 @@ class _Frame:
     """The kept steps of a frame, S of them."""
 
     smooth: Array
-    jumps: Array  # (S,) whether drives were set, or something broke, since the step before
+    span: Array
+    starts: Array  # which are steps' starts, n of them
+    jumps: Array  # (n,) whether drives were set, or something broke, since the step before
     parts: dict[str, Array]
     step: Array  # of each constraint row
     kind: Array
@@ -124,7 +128,7 @@ class TieImpulsesC:
         self._mechanism = np.array([mechanism[list(bodies)].max(initial=0) for bodies in tied], dtype=int)
         self._widths = [JOINT_WIDTH] * len(joints) + [CORD_WIDTH] * (len(tied) - len(joints))
         self._parts = self.OF_BODIES + (self.OF_CORDS if cords else ())
-        self._views: list[Array] = []
+        self._sizes: list[int] = []  # of these
         self._kept: list[_Step] = []
         self._frames: list[tuple[int, TieSumsLater]] = []  # that wait: where their steps end
         self._before: Array | None = None  # what joints and cords gave at the last step's start; NaN where not smooth
@@ -142,20 +146,23 @@ class TieImpulsesC:
         ]
 
     # ---- step by step
-    def add(self, data: Any, smooth: Array) -> None:
-        """Keep what acts in a step, once it is solved and before it is made.
+    def add(self, data: Any, span: Array, smooth: Array | None = None) -> None:
+        """Keep what acts in a step, once it is solved and before it is made, or at an instant of it.
 
         Args:
             data: MuJoCo's.
-            smooth: Which mechanisms go by a step of Runge and Kutta's, (mechanisms,).
+            span: For which it counts, of each mechanism, (mechanisms,) [s]; less than none takes it back.
+            smooth: At a step's start: those that go on from it by Runge and Kutta's, (mechanisms,).
         """
         self._mujoco.mj_rnePostConstraint(self._model, data)
-        if not self._views:
-            self._views = [getattr(data, name).ravel() for name in self._parts]  # not copied
+        views = [getattr(data, name).ravel() for name in self._parts]  # not copied
+        self._sizes = [len(view) for view in views]
         rows: tuple[Array, ...] = ()
+        own, starts = self._mechanism, smooth is not None
+        smooth = np.zeros(len(span), dtype=bool) if smooth is None else smooth
         if data.nefc:
             rows = tuple(array.copy() for array in (data.efc_type, data.efc_id, data.efc_force, data.efc_pos))
-        self._kept.append(_Step(smooth[self._mechanism], np.concatenate(self._views), data.ctrl.copy(), rows))
+        self._kept.append(_Step(starts, smooth[own], span[own], np.concatenate(views), data.ctrl.copy(), rows))
 
     def take(self) -> TieSumsLater:
         """The sums since the last call, which start anew."""
@@ -180,7 +187,7 @@ class TieImpulsesC:
         if last:
             frame = self._frame(kept[:last])
             parts = [part.reshape(last, -1) for part in (self._of_joints(frame), self._of_cords(frame))]
-            given = self._model.opt.timestep * self._means(np.concatenate(parts, axis=1), frame)
+            given = self._means(np.concatenate(parts, axis=1), frame)
             total = np.concatenate([total, np.cumsum(given, axis=0)])
         start = 0
         for end, later in frames:
@@ -188,32 +195,38 @@ class TieImpulsesC:
             later.tell(sums[:width].reshape(joints, JOINT_WIDTH), sums[width:].reshape(ends, CORD_WIDTH))
 
     def _means(self, acting: Array, frame: _Frame) -> Array:
-        """Over each step of what acts at its start, (S, n)."""
-        smooth, jumps = np.repeat(frame.smooth, self._widths, axis=1), frame.jumps[:, None]
-        none = np.full(acting.shape[1], np.nan)
+        """Impulses of each step by what acts at its start, or of what acts in its midst for a while, (S, n)."""
+        span = np.repeat(frame.span, self._widths, axis=1)
+        found = span * acting
+        starts = frame.starts
+        smooth, jumps = np.repeat(frame.smooth, self._widths, axis=1)[starts], frame.jumps[:, None]
+        acting, none = acting[starts], np.full(acting.shape[1], np.nan)
         known = np.where(smooth, acting, np.nan)
         before = np.concatenate([[none if self._before is None else self._before], known[:-1]])
         after = np.where(jumps | np.isnan(before), acting, 2.0 * acting - before)
         follows = np.concatenate([np.where(jumps[1:], np.nan, known[1:]), [none]])
         after = np.where(np.isnan(follows), after, follows)
         self._before = known[-1]
-        return np.where(smooth, 0.5 * (acting + after), acting)
+        found[starts] = np.where(smooth, 0.5 * span[starts] * (acting + after), found[starts])
+        return found
 
     def _frame(self, kept: list[_Step]) -> _Frame:
         values, at, parts = np.stack([step.state for step in kept]), 0, {}
-        for name, view in zip(self._parts, self._views, strict=True):
-            parts[name] = values[:, at : at + len(view)]
-            at += len(view)
+        for name, size in zip(self._parts, self._sizes, strict=True):
+            parts[name] = values[:, at : at + size]
+            at += size
         steps = [(k, step.rows) for k, step in enumerate(kept) if step.rows]
         if steps:
             columns = [np.concatenate(column) for column in zip(*(rows for _, rows in steps), strict=True)]
         else:
             columns = [np.zeros(0, dtype=int), np.zeros(0, dtype=int), np.zeros(0), np.zeros(0)]
-        told = np.array([(len(step.rows[0]) if step.rows else 0, *step.told) for step in kept])
+        starts = np.flatnonzero([step.starts for step in kept])
+        told = np.array([(len(kept[k].rows[0]) if kept[k].rows else 0, *kept[k].told) for k in starts])
         jumps = np.any(told != np.concatenate([told[:1] if self._told is None else self._told, told[:-1]]), axis=1)
         self._told = told[-1:]
         number = np.repeat([k for k, _ in steps], [len(rows[0]) for _, rows in steps]).astype(int)
-        return _Frame(np.array([step.smooth for step in kept]), jumps, parts, number, *columns)
+        smooth, span = (np.array([getattr(step, name) for step in kept]) for name in ("smooth", "span"))
+        return _Frame(smooth, span, starts, jumps, parts, number, *columns)
 
     # ---- cords
     def _of_cords(self, frame: _Frame) -> Array:

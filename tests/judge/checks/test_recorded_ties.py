@@ -215,7 +215,7 @@ def test_blows_within_a_frame_act_with_the_arms_of_their_instants(hit):
     evidence = Evidence(hit)
     ties = RecordedContacts(evidence, hit.contacts).ties
     row = evidence.index("/World/ball_1")
-    taken = ties._taken_back[:, row]
+    taken = ties._uneven[:, row]
     assert taken.max() > 2.0  # of 4 kg at 0.6 m/s
     assert all(finding.passed for finding in ask(CheckRecordedTies(), hit))
     k, hold = int(np.argmax(taken)), joint(hit, "hold_1")

@@ -22,6 +22,7 @@ from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
 from wsim.judge.books.landing import keeps_way, landing
+from wsim.judge.books.recorded import plain, told_by_record
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.sharing import of_contacts
 from wsim.judge.books.steps import step_error
@@ -46,6 +47,7 @@ ENOUGH = 0.001  # of gravity: a rest that is as good as none
 AGAIN = 0.003  # of gravity: where more is left, contacts are looked for between the frames
 CHUNK = 4000  # bodies times intervals worked out at once
 LOADS = 3.0  # of its weight, that a body in motion may press with
+WHIPS = 0.05  # [rad]: what turns farther between frames passes on more than they tell
 FAST = 0.3  # [m]: no blow is looked for beyond
 
 
@@ -98,8 +100,9 @@ class Balance:
             np.concatenate([getattr(motion, name) for motion in motions]) for name in ("h", "reach")
         )
         self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
-        # (N, B) share that is wrong of what an arm taken halfway gives
-        self._bent = np.concatenate(self._angles) ** 2 / 12.0
+        self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
+        self._whips = np.concatenate([plain(evidence) for evidence in copies]) & (np.concatenate(self._angles) > WHIPS)
+        self._bent = np.concatenate(self._angles) ** 2 / 12.0  # share that is wrong of what an arm taken halfway gives
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
@@ -163,15 +166,23 @@ class Balance:
             if strange.any():  # they may have touched between the frames alone
                 some = ks[strange], wanted[ks[strange]], asked[strange], hit[ks[strange]], between[strange]
                 left[some[0]], turned[some[0]] = self._explained(*some)
-            struck = (much & hit[ks] & self._jointed).any(axis=1)
+            struck = much.any(axis=1) & (hit[ks] & self._jointed).any(axis=1)
             if struck.any():  # and ties may have passed on all that they did as their arms were at one instant
                 some = ks[struck], wanted[ks[struck]], asked[struck], hit[ks[struck]], between[struck]
                 for course in (0, 1):
-                    tried, missing = self._explained(*some, course=course)
-                    less = np.sum(tried**2, axis=(1, 2)) < np.sum(left[some[0]] ** 2, axis=(1, 2))
-                    left[some[0][less]], turned[some[0][less]] = tried[less], missing[less]
+                    self._where_less(some[0], self._explained(*some, course=course), left, turned)
+            whips = much.any(axis=1) & (self._whips[ks] | self._pressed[ks] & hit[ks]).any(axis=1)
+            if whips.any():
+                for told in told_by_record(self._copies, self._sizes[0], ks[whips], asked[whips]):
+                    self._where_less(ks[whips], told, left, turned)
         self._landed = again(anew, self._landed)
         return again(anew, left, wanted), again(anew, turned)
+
+    @staticmethod
+    def _where_less(ks: Rows, tried: tuple[Floats, Floats], left: Floats, turned: Floats) -> None:
+        """Take what is left of some intervals by another explanation, and may be missing, where that is less."""
+        less = np.sum(tried[0] ** 2, axis=(1, 2)) < np.sum(left[ks] ** 2, axis=(1, 2))
+        left[ks[less]], turned[ks[less]] = tried[0][less], tried[1][less]
 
     def _explained(
         self, ks: Rows, change: Floats, judged: Bools, hit: Bools, between: Bools, *, course: int | None = None

@@ -21,15 +21,18 @@ from wsim.recording.contacts import shapes_of
 from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
-    from wsim.judge.books.balance import Books
     from wsim.judge.evidence.evidence import Evidence
     from wsim.recording.contacts import ContactTrack
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
     Rows = NDArray[np.intp]
+
+SOLVED = 0.005  # of what moved a body: what a solver in double precision leaves of it
 
 
 @dataclass(frozen=True)
@@ -171,12 +174,16 @@ class RecordedContacts:
         step = np.int64(len(self.shapes)) ** 2
         return np.asarray(np.isin(key - step, key) & np.isin(key + step, key))
 
-    def landed(self, books: Books) -> Floats:
-        """By how much the slip of each row may change, and back, as points land in its interval, (n,) [m/s]."""
+    def landed(self, landed: Floats) -> Floats:
+        """By how much the slip of each row may change, and back, as points land in its interval, (n,) [m/s].
+
+        Args:
+            landed: By how much each body's velocity may, (T - 1, B) [m/s].
+        """
         interval, changes = np.maximum(self.track.frame - 1, 0), np.zeros(len(self.track.frame))
         for side in (0, 1):
             rows = self.body[:, side]
-            changes += np.where(rows >= 0, books.landed[interval, np.maximum(rows, 0)], 0.0)
+            changes += np.where(rows >= 0, landed[interval, np.maximum(rows, 0)], 0.0)
         return changes
 
     def knocked(self, rows: Rows, normal: Floats, change: Floats) -> Floats:
@@ -308,3 +315,37 @@ class RecordedContacts:
                 taken = rows[worse]
                 worst[taken], most[taken], farthest[taken] = off[worse], limit[worse], ratio[worse]
         return worst, most
+
+
+def plain(evidence: Evidence) -> Bools:
+    """Bodies of mechanisms of plain joints alone, without a law that a record could break, (T - 1, B)."""
+    world, motion = evidence.world, evidence.motion
+    bound = [guide.body for cord in world.cords for guide in cord.path if guide.body]
+    for joint in world.joints:
+        stops = joint.low is not None or joint.high is not None
+        if joint.drive or joint.friction or joint.moves or stops or world.gears:
+            bound.append(joint.child)
+    units = motion.unit[[i for i, body in enumerate(world.bodies) if body.prim in bound]]
+    return np.tile(motion.jointed & ~np.isin(motion.unit, units), (len(motion.h), 1))
+
+
+def told_by_record(copies: Sequence[Evidence], size: Floats, ks: Rows, judged: Bools) -> list[tuple[Floats, Floats]]:
+    """What recorded impulses leave of some intervals, (K, B, 6), and may, (K, B, 2) [m/s^2]; none of several copies.
+
+    How links whip after a blow frames do not tell, and what they pass on then has the arms of each instant. Whether
+    contacts and ties can give what is recorded is asked by itself (`wsim.judge.checks.recorded`, `.recorded_ties`).
+
+    Args:
+        copies: One, if there is to be a record.
+        size: That torques are counted by, (B,) [m].
+        ks: The intervals, (K,).
+        judged: Bodies of these, (K, B).
+    """
+    recording = copies[0].recording
+    if len(copies) > 1 or recording.contacts is None or recording.ties is None:
+        return []
+    books = RecordedContacts(copies[0], recording.contacts).balanced()
+    torque = books.torque * (np.maximum(copies[0].motion.radius, 1e-9) / size)[:, None]
+    left = np.concatenate([books.force, torque], axis=2)[ks]
+    may = SOLVED * books.moved[..., None] + np.stack([books.stepped, books.lagging], axis=2)
+    return [(np.where(judged[..., None], left, 0.0), may[ks])]

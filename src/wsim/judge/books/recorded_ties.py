@@ -141,7 +141,7 @@ class RecordedTies:
             arm = 0.5 * (arms[1:] + arms[:-1])
             expected = sign * (about + np.cross(arm, push))
             off = np.maximum(off, np.linalg.norm(track.turn[1:, k, side] - expected, axis=1))
-            uneven = self._taken_back[:, row] + 0.5 * _turn(push)
+            uneven = self._uneven[:, row] + 0.5 * _turn(push)
             moved = np.maximum(moved, np.linalg.norm(np.diff(arms, axis=0), axis=1) * uneven)
             reach = np.maximum(reach, np.linalg.norm(arms, axis=1).max() * np.linalg.norm(push, axis=1))
         if joint.kind in OWN:
@@ -151,15 +151,20 @@ class RecordedTies:
             own = np.einsum("ti,ti->t", push if joint.kind == "prismatic" else about, axis)
             gap = np.abs(own - track.along[1:, k])
             off = np.maximum(off, gap * (np.linalg.norm(about, axis=1) + reach) / np.maximum(reach, 1e-30))
+            # What a blow twists a joint by, the whirl after it may twist back: each is about the axis of its own time.
+            row = self.pairs[k][1]
+            twisted = self._uneven[:, row] * motion.radius[row]
+            moved = np.maximum(moved, np.linalg.norm(np.diff(axes, axis=0), axis=1) * twisted)
         return off, self._turned(k) * reach + moved
 
     @cached_property
-    def _taken_back(self) -> Floats:
-        """What contacts gave each body's mechanism and took again in an interval, (T - 1, B) [N s].
+    def _uneven(self) -> Floats:
+        """What of contacts' impulses on each body's mechanism counts as if all came at an end, (T - 1, B) [N s].
 
         A ball that is hit and hits the next one shows next to nothing of either blow on the whole, and each passed
         through its joints with the arms of its own instant. Of impulses whose sizes add up to s and whose sum is p,
-        no part is more than (s + p) / 2, and (s - p) / 2 of it is taken back.
+        no part is more than (s + p) / 2, and (s - p) / 2 of it is taken back. Of a blow, which is what s is more than
+        before or after, the sum as well has the arms of one instant, which are half of their way off at most.
         """
         motion, contacts = self._evidence.motion, self._evidence.recording.contacts
         sums, sizes = np.zeros((len(motion.h), len(motion.mass), 3)), np.zeros((len(motion.h), len(motion.mass)))
@@ -175,7 +180,10 @@ class RecordedTies:
         for unit in np.unique(motion.unit):
             rows = np.flatnonzero(motion.unit == unit)
             whole = np.linalg.norm(sums[:, rows].sum(axis=1), axis=1)
-            sizes[:, rows] = 0.5 * (sizes[:, rows].sum(axis=1) - whole)[:, None]
+            size = sizes[:, rows].sum(axis=1)
+            around = np.pad(size, 1)
+            blow = np.minimum(np.maximum(size - np.minimum(around[:-2], around[2:]), 0.0), whole)
+            sizes[:, rows] = 0.5 * (size - whole + blow)[:, None]
         return sizes
 
     def _turned(self, k: int) -> Floats:

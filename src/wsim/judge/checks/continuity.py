@@ -71,10 +71,11 @@ class CheckContinuity(Check):
         """How far off places, turns and sums of ways are, and by how much they may be, (T - 1, B) each."""
         strayed = self._strayed(evidence)
         going, turning = _driven(evidence)
+        faster, spinning = _whirling(evidence)
         handed = self._handed_on(evidence)
         return (
-            (lengths(strayed), self._place_limit(evidence, handed, going)),
-            self._turns(evidence, handed, turning),
+            (lengths(strayed), self._place_limit(evidence, handed, going + faster)),
+            self._turns(evidence, handed, turning + spinning),
             self._drift(evidence, strayed, going),
         )
 
@@ -162,10 +163,17 @@ class CheckContinuity(Check):
 
     @staticmethod
     def _handed_on(evidence: Evidence) -> Floats:
-        """The speed of the fastest body, where another may hit a body within an interval, (T - 1, B) [m/s]."""
+        """The speed of the fastest body, where another may hit a body within an interval, (T - 1, B) [m/s].
+
+        Or what hangs together with it: joints hand on at once what hits one link.
+        """
         motion = evidence.motion
         fastest = np.maximum(motion.speed[..., 1:, :], motion.speed[..., :-1, :]).max(axis=-1, keepdims=True)
-        handed: Floats = np.where(motion.meets, fastest, 0.0)
+        meets = motion.meets.copy()
+        for unit in np.unique(motion.unit[motion.jointed]):
+            rows = np.flatnonzero(motion.unit == unit)
+            meets[..., rows] = meets[..., rows].any(axis=-1, keepdims=True)
+        handed: Floats = np.where(meets, fastest, 0.0)
         if evidence.world.stepped == "joints":  # a stop or a contact of one link catches the others within a step
             for unit in np.unique(motion.unit[motion.jointed]):
                 rows = np.flatnonzero(motion.unit == unit)
@@ -236,6 +244,29 @@ def _driven(evidence: Evidence) -> tuple[Floats, Floats]:
         arms = np.linalg.norm(motion.com[:, rows] - motion.com[:, [child]], axis=2) + np.linalg.norm(anchor)
         going[:, rows] += rate[:, None] * np.maximum(arms[1:], arms[:-1])
         turning[:, rows] += rate[:, None]
+    return going, turning
+
+
+def _whirling(evidence: Evidence) -> tuple[Floats, Floats]:
+    """How much faster bodies on joints may have gone and turned between frames as links whip, (T - 1, B) each.
+
+    The velocities of a mechanism's bodies against each other turn by as much as its fastest link does, and so does what
+    they hand on: by all of it where that is a radian or more.
+    """
+    motion, world = evidence.motion, evidence.world
+    going, turning = (np.zeros((len(motion.h), len(world.bodies))) for _ in range(2))
+    if not world.joints:
+        return going, turning
+    rate, hung = np.maximum(motion.rate[1:], motion.rate[:-1]), {j.child for j in world.joints if j.parent is None}
+    for unit in np.unique(motion.unit[motion.jointed]):
+        rows = np.flatnonzero(motion.unit == unit)
+        v = motion.v[:, rows]
+        apart = np.linalg.norm(v[:, :, None] - v[:, None], axis=3).max(axis=2)
+        if any(world.bodies[row].prim in hung for row in rows):
+            apart = np.maximum(apart, motion.speed[:, rows])
+        fastest = rate[:, rows].max(axis=1, keepdims=True)
+        share = np.minimum(fastest * motion.h[:, None], 1.0)
+        going[:, rows], turning[:, rows] = share * np.maximum(apart[1:], apart[:-1]), share * fastest
     return going, turning
 
 

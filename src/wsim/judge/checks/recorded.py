@@ -9,7 +9,7 @@ import numpy as np
 
 from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import ONE_WAY, STILL
-from wsim.judge.books.recorded import RecordedContacts
+from wsim.judge.books.recorded import SOLVED, RecordedContacts
 from wsim.judge.checks.check import Check, Checks, listed
 from wsim.judge.verdict import RepairTarget
 
@@ -32,7 +32,7 @@ class CheckRecordedForces(Check):
     are. Where they are not recorded nothing is asked: then `CheckForces` looks for some that would do.
     """
 
-    share: float = 0.005  # of gravity and of what contacts gave
+    share: float = SOLVED  # of gravity and of what contacts gave
     single: float = 0.02  # likewise, of a solver in single precision
     cone: float = 0.001  # of the normal impulse: the solver's tolerance
     edge: float = 0.02  # of the friction of a slip that lasts
@@ -114,7 +114,7 @@ class CheckRecordedForces(Check):
         lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
         lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
         # Landings that turn a slip turn its friction: they change it by at most the sine of that of its speed.
-        aside = contacts.landed(Books.of(evidence))
+        aside = contacts.landed(Books.of(evidence).landed)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         aside[rows] += contacts.knocked(rows, normal, change[rows])
         aside /= np.maximum(slowest, 1e-30)

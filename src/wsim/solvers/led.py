@@ -1,0 +1,52 @@
+"""Contacts that lead a mechanism round: those whose normals turn for as long as they press.
+
+A push that is held over a step lags behind what it does, by half a step. Where its normal stays as it is, as on a
+floor, that is nothing, since what it presses does not move along it. Where the normal turns at w, as across a gutter,
+it gives w^2 h / 2 of the energy a second, as with loose bodies (`wsim.solvers.flight`); steps of the first order keep
+it. A blow, and what presses for an instant, have no time to.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray
+FAR = 0.2  # that a normal has turned by since its contact presses, of what is led [rad]
+LASTS = 0.1  # for which it has pressed then [s]: what a cable throws off is not led
+AGAIN = 0.02  # for which a contact may let go and still be the same [s]
+
+
+class Led:
+    """Of one world on the CPU: which contacts lead.
+
+    Args:
+        model: MuJoCo's model.
+        of_geom: The mechanism of each geom, 0 for none.
+    """
+
+    def __init__(self, model: Any, of_geom: Array) -> None:
+        self._of_geom, self._count = of_geom, int(of_geom.max(initial=0)) + 1
+        self._seen: dict[tuple[int, int], tuple[float, float, float, Array]] = {}
+        # since when each presses, until when, how far it turned, its normal
+
+    def mechanisms(self, data: Any, rows: Array) -> Array:
+        """Mechanisms that contacts lead, (mechanisms,); these are `rows` of MuJoCo's that push now."""
+        found, now = np.zeros(self._count, dtype=bool), float(data.time)
+        geoms = data.contact.geom[rows]
+        ours = self._of_geom[geoms].any(axis=1)
+        normals: dict[tuple[int, int], Array] = {}
+        for (one, two), normal in zip(geoms[ours].tolist(), data.contact.frame[rows[ours], :3], strict=True):
+            normals[one, two] = normals.get((one, two), 0.0) + normal
+        for pair, normal in normals.items():
+            normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
+            since, last, turned, before = self._seen.get(pair, (now, -math.inf, 0.0, normal))
+            if not 0.0 <= now - last <= AGAIN:
+                since, turned, before = now, 0.0, normal
+            turned += 2.0 * math.asin(min(0.5 * float(np.linalg.norm(normal - before)), 1.0))
+            self._seen[pair] = since, now, turned, normal
+            if turned > FAR and now - since > LASTS:
+                found[self._of_geom[list(pair)]] = True
+        return found
