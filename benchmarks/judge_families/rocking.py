@@ -48,8 +48,9 @@ def valley(scene: Scene, draw: Draw) -> None:
     wide, lean = _begin(scene, draw)
     radius, half = wide * draw.between(0.1, 0.3), 70.0
     turn, arm = math.radians(half), wide - radius
-    scene.track("valley", pieces=[("up", wide, 2.0 * half)], start=(-wide * math.sin(turn), 0, wide * (1 - math.cos(turn))),
-                slope_deg=-half, width=3 * radius, thickness=0.15 * wide, friction=1.0)  # fmt: skip
+    start = (-wide * math.sin(turn), 0, wide * (1 - math.cos(turn)))
+    scene.track("valley", pieces=[("up", wide, 2.0 * half)], start=start, slope_deg=-half, width=3 * radius,
+                thickness=0.15 * wide, friction=1.0)  # fmt: skip
     scene.sphere("ball", radius=radius, density=draw.density(radius), friction=draw.between(0.6, 1.0),
                  position=(arm * math.sin(lean), 0, wide - arm * math.cos(lean)))  # fmt: skip
 

@@ -41,6 +41,16 @@ def sinking(evidence: Evidence) -> Floats:
     return found
 
 
+def turned_over(evidence: Evidence, sinks: Floats) -> Floats:
+    """What mechanisms gain where steps change from one order to the other once, (n,) [J], of their -dV/dt (T, n).
+
+    As those of the simulator do at a start; what it does again and again adds up, and is a gain. None where a
+    recording does not say that steps are of both orders.
+    """
+    orders = evidence.recording.metadata.get("loose_order") == 2
+    return np.asarray(np.abs(sinks).max(axis=0) * latest(evidence) * orders)
+
+
 def least(gain: Callable[[Floats], Floats], count: int, most: float) -> tuple[Floats, Floats]:
     """The t from 0 to `most` at which some mechanisms gain least, and that gain, (count,) each [s], [J].
 

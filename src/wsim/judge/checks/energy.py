@@ -9,7 +9,7 @@ import numpy as np
 
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.losses import Losses
-from wsim.judge.books.phases import hidden, latest, least, sinking
+from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
@@ -140,14 +140,17 @@ class CheckEnergy(Check):
     def _stored(self, evidence: Evidence) -> Floats:
         """What contacts and joint stops may hold as springs and give back, (T, B) [J].
 
-        Of a contact that is its force times the depth to which it gives, as far as a time step can tell.
+        Of a contact that is its force times the depth to which it gives, as far as a time step can tell: by as much as
+        it comes nearer in one. Along what a ball lies on it does not, and its turning brings no point of it nearer.
         """
         motion, recording = evidence.motion, evidence.recording
         deepest = recording.scalars.get("contact/penetration")
         size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
-        force = lengths(np.asarray(recording.contact_force, dtype=np.float64))
-        stored = force * (give + motion.speed * motion.dt)
+        push = np.asarray(recording.contact_force, dtype=np.float64)
+        force = lengths(push)
+        turns = motion.rate * np.where(self._balls(evidence), 0.0, motion.radius)
+        stored = force * (give + turns * motion.dt) + np.abs(np.sum(push * motion.v, axis=-1)) * motion.dt
         if evidence.world.give.time > 0.0:
             stored = stored + self._pressed_in(evidence)
         for joint in evidence.world.joints:
@@ -156,6 +159,14 @@ class CheckEnergy(Check):
                 rows = motion.unit == motion.unit[evidence.index(joint.child)]
                 stored[np.ix_(beyond(joint, track) > 0.0, rows)] = np.inf
         return stored
+
+    @staticmethod
+    def _balls(evidence: Evidence) -> NDArray[np.bool_]:
+        """Which bodies are balls about their centre of mass, (B,)."""
+        bodies = evidence.world.bodies
+        return np.array(
+            [all(s.kind == "sphere" and np.allclose(s.position, body.com) for s in body.shapes) for body in bodies]
+        )
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
@@ -192,6 +203,7 @@ class CheckEnergy(Check):
 
         late, gains = least(gain, len(units), latest(evidence))
         limit, scale = self._limit(evidence, of)
+        limit = limit + turned_over(evidence, sinks)
         worst = int(np.argmax(np.maximum(gains, 0.0) / np.where(limit > 0.0, limit, 1.0)))
         rows = np.flatnonzero(of[:, worst])
         unseen = phase[:, worst], held[:, worst]
@@ -210,6 +222,7 @@ class CheckEnergy(Check):
                 1, latest(evidence),
             )  # fmt: skip
             balance = balance + late * sinks
+            limit += float(turned_over(evidence, sinks[:, None])[0])
         else:
             limit += float(self._late(evidence)[rows].sum())
         return self._finding(evidence, rows, balance, (phase, held), (limit, scale))
@@ -241,7 +254,7 @@ class CheckEnergy(Check):
             time=time,
             span=(float(evidence.time[start]), float(evidence.time[end])),
             limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, "
-            + ("" if alone else "what one time step cannot resolve, and ")
+            + "what one time step cannot resolve, and "
             + f"a lift by at most {self.settling:g} of the size of what may touch something",
             target=RepairTarget(
                 kind="time step", prim=body.prim, parameter="time_step", direction="lower",
@@ -268,7 +281,7 @@ class CheckEnergy(Check):
             found = np.minimum(found, float(np.nan_to_num(deepest).max(initial=0.0)))
         if any(shape.shape.kind == "mesh" for shape in evidence.placed):
             return found  # how deep something is in one poses do not tell
-        balls = np.array([all(shape.kind == "sphere" for shape in body.shapes) for body in evidence.world.bodies])
+        balls = [all(shape.kind == "sphere" for shape in body.shapes) for body in evidence.world.bodies]
         deep = np.zeros(len(size) + 1)
         for pair in overlaps(evidence):
             for row in (pair.a.body, pair.b.body):
