@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.judge.theory import G, RADIUS, ask, ball, record
+from tests.judge.theory import RADIUS, G, ask, ball, record
 from wsim.importers.trajectory import from_arrays
 from wsim.judge import judge
 from wsim.judge.checks.energy import CheckEnergy
@@ -97,9 +97,8 @@ def rolling(draw, gain, seconds=3.0):
     way = np.stack([none, np.cos(angle), np.sin(angle)], axis=1)
     pushed = 4.0 * arm * (faster[:, None] * way - turning[:, None] ** 2 * out) + 4.0 * np.array([0.0, 0.0, G])
     spin = np.stack([-arm * turning / RADIUS, none, none], axis=1)
-    recording = record([ball()], arm * out, arm * turning[:, None] * way, np.arange(count + 1) / rate, spin=spin,
-                       force=pushed)  # fmt: skip
-    return recording
+    return record([ball()], arm * out, arm * turning[:, None] * way, np.arange(count + 1) / rate, spin=spin,
+                  force=pushed)  # fmt: skip
 
 
 @pytest.mark.parametrize("pushes", [True, False], ids=["with forces", "poses and velocities"])

@@ -52,18 +52,17 @@ class CheckEnergy(Check):
         none = np.zeros(len(evidence.time))
         worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
         # The work on joints, by drives or by a controller, is not known of each mechanism.
-        found = (
-            []
-            if any(joint.drive for joint in evidence.world.joints) or np.any(worked) or self._one(evidence)
-            else self._by_mechanism(evidence, energy, stored)
-        )
+        driven, one = any(joint.drive for joint in evidence.world.joints) or bool(np.any(worked)), self._one(evidence)
+        found = [] if driven or one else self._by_mechanism(evidence, energy, stored)
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
         rows = np.flatnonzero(~motion.kinematic)
         if any(not finding.passed for finding in found):
             return found  # what one gains all have together
         losses = Losses.of(evidence)
-        if len(rows) and not (losses and losses.whole):
-            found.append(self._together(evidence, rows, together, stored))
+        if len(rows) and (losses is None or not losses.whole or (one and not driven)):
+            gained = self._together(evidence, rows, together, stored)
+            if losses is None or not losses.whole or not gained.passed:
+                found.append(gained)
         return found if losses is None else [*found, *self._accounted(evidence, losses, stored)]
 
     def _accounted(self, evidence: Evidence, losses: Losses, stored: Floats) -> list[Finding]:
