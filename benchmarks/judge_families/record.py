@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.judge_families.stepping import Push, Stepper
+from benchmarks.judge_families.stepping import MeanSteps, Push, Stepper
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.importers.trajectory import from_arrays
 from wsim.recording.contacts import ContactTrack
@@ -64,8 +64,8 @@ def world_of(stage: str) -> World:
         source.unlink()
 
 
-def simulated(stage: str, push: Push | None = None) -> Track:
-    """Simulate a stage with wsim on the CPU, pushed by nothing that the stage has; kept once it is done.
+def simulated(stage: str, push: Push | MeanSteps | None = None) -> Track:
+    """Simulate a stage with wsim on the CPU, pushed by nothing that the stage has, or in wrong steps; it is kept.
 
     Raises:
         RuntimeError: If the run broke.
@@ -78,13 +78,16 @@ def simulated(stage: str, push: Push | None = None) -> Track:
     return _load(path)
 
 
-def _simulate(stage: Path, push: Push | None) -> Track:
+def _simulate(stage: Path, push: Push | MeanSteps | None) -> Track:
     from wsim.sim import Simulation
     from wsim.sim.measure import measure
 
     simulation = Simulation(stage, device="cpu")
     if simulation.rigid:
         simulation.rigid.keep_contacts()
+    if isinstance(push, MeanSteps):
+        push.spoil(simulation)
+        push = None
     advance = Stepper(simulation, push).frame
     frames: list[Frame] = []
     times: list[float] = []

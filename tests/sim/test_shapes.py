@@ -211,6 +211,19 @@ def test_a_compound_weighs_and_turns_as_its_parts():
     assert np.diag(np.array(body.inertia).reshape(3, 3)) == pytest.approx([along, about, about], rel=1e-5)
 
 
+def test_what_is_small_turns_as_its_parts_together_do():
+    """By the theorem of parallel axes: a hollow ball of 5 cm with a weight of steel low in it, 6e-6 kg m^2."""
+    from wsim.scene.describe import describe
+
+    scene, radius, low = Scene(), 0.025, 0.015
+    scene.compound("tumbler", parts=[Part("sphere", radius=radius, mass=0.014),
+                                     Part("sphere", radius=0.008, mass=0.016, position=(0, 0, -low))])  # fmt: skip
+    along = 0.4 * (0.014 * radius**2 + 0.016 * 0.008**2)
+    about = along + low**2 * 0.014 * 0.016 / 0.03
+    moments = np.diag(np.array(describe(scene.stage).bodies[0].inertia).reshape(3, 3))
+    assert moments == pytest.approx([about, about, along], rel=1e-5)
+
+
 @pytest.mark.parametrize("worlds", [1, 2])
 def test_a_marble_keeps_its_energy_across_a_gutter(simulate, worlds):
     """Rolling to and fro at w, steps by the mean of two velocities would add w^2 h / 2 of it a second: 58 % in 3 s."""

@@ -55,6 +55,11 @@ def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:
     mass, diagonal, com, axes = UsdPhysics.RigidBodyAPI(prim).ComputeMassProperties(information)
     if not (math.isfinite(mass) and mass > 0.0):
         return _without_geometry(prim)
+    given = UsdPhysics.MassAPI(prim)
+    stated = given.GetDiagonalInertiaAttr().Get()
+    if stated is not None and any(stated):  # USD takes what is stated for none below 1e-5 kg m^2
+        diagonal, turned = stated, given.GetPrincipalAxesAttr().Get()
+        axes = turned if turned is not None and turned.GetLength() > 0.0 else Gf.Quatf(1.0)
     turn = matrices(np.array(to_quat(axes)))
     inertia = turn @ np.diag(np.array(diagonal, dtype=np.float64)) @ turn.T
     return Mass(float(mass), np.array(com, dtype=np.float64), inertia, volume)

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.losses import Losses
+from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
@@ -45,24 +46,23 @@ class CheckEnergy(Check):
         energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
-        energy = energy - self._chattered(evidence) - carried_work(evidence)
+        energy = energy - carried_work(evidence)
         energy[:, motion.kinematic] = 0.0  # they go where they are told to
         stored = self._stored(evidence)
         none = np.zeros(len(evidence.time))
         worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
         # The work on joints, by drives or by a controller, is not known of each mechanism.
-        found = (
-            []
-            if any(joint.drive for joint in evidence.world.joints) or np.any(worked) or self._one(evidence)
-            else self._by_mechanism(evidence, energy, stored)
-        )
+        driven, one = any(joint.drive for joint in evidence.world.joints) or bool(np.any(worked)), self._one(evidence)
+        found = [] if driven or one else self._by_mechanism(evidence, energy, stored)
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
         rows = np.flatnonzero(~motion.kinematic)
         if any(not finding.passed for finding in found):
             return found  # what one gains all have together
         losses = Losses.of(evidence)
-        if len(rows) and not (losses and losses.whole):
-            found.append(self._finding(evidence, rows, together, stored))
+        if len(rows) and (losses is None or not losses.whole or (one and not driven)):
+            gained = self._together(evidence, rows, together, stored)
+            if losses is None or not losses.whole or not gained.passed:
+                found.append(gained)
         return found if losses is None else [*found, *self._accounted(evidence, losses, stored)]
 
     def _accounted(self, evidence: Evidence, losses: Losses, stored: Floats) -> list[Finding]:
@@ -71,31 +71,32 @@ class CheckEnergy(Check):
         energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
-        chattered, held = self._chattered(evidence), np.where(np.isfinite(stored), stored, 0.0)
+        unseen, held = hidden(evidence), np.where(np.isfinite(stored), stored, 0.0)
         found: list[tuple[float, Finding]] = []
         for rows in losses.groups:
             taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
             limit, scale = (float(each[0]) for each in self._limit(evidence, of))
-            limit += self.share * (max(scale, taken.held) - scale) - float((self._late(evidence) @ of)[0])
+            limit += self.share * (max(scale, taken.held) - scale)
             limit += losses.give(rows)
             limits = limit, max(scale, taken.held)
             ahead, stray = losses.ahead(rows)
             known = energy[:, rows].sum(axis=1) + ahead - taken.driven + taken.damped
-            doubt = taken.unsure + stray + chattered[:, rows].sum(axis=1)
+            doubt, phase = taken.unsure + stray, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
             found += [
-                self._changed(evidence, rows, known - doubt, gives, limits, "gains"),
-                self._changed(evidence, rows, -known - doubt - taken.most, gives, limits, "loses"),
+                self._changed(evidence, rows, known - doubt, (gives, phase), limits, "gains"),
+                self._changed(evidence, rows, -known - doubt - taken.most, (gives, phase), limits, "loses"),
             ]
         return [max(found, key=lambda each: each[0])[1]] if found else []
 
     def _changed(
-        self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, gives: Floats, limits: tuple[float, float],
-        verb: str,
+        self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, unseen: tuple[Floats, Floats],
+        limits: tuple[float, float], verb: str,
     ) -> tuple[float, Finding]:  # fmt: skip
-        """How far a balance rises, by its limit; contacts and stops may have held a part at either end."""
-        had = balance + (gives if verb == "gains" else 0.0)
-        rise = balance - (0.0 if verb == "gains" else gives) - np.minimum.accumulate(had)
+        """How far a balance rises, by its limit; contacts and stops may have held, or hidden, a part at either end."""
+        gives, phase = unseen
+        had = balance + phase + (gives if verb == "gains" else 0.0)
+        rise = balance - phase - (0.0 if verb == "gains" else gives) - np.minimum.accumulate(had)
         end = int(np.argmax(rise))
         start, value, (limit, scale) = int(np.argmin(had[: end + 1])), max(float(rise[end]), 0.0), limits
         over = np.flatnonzero(rise > limit)
@@ -135,32 +136,20 @@ class CheckEnergy(Check):
             or (driven and "work/drives" not in recording.scalars)
         )
 
-    @staticmethod
-    def _chattered(evidence: Evidence) -> Floats:
-        """What contacts that flip from step to step may have given since the start, (T, B) [J].
-
-        Frames see one phase of them: where places do not follow velocities while a body is in contact, the contact's
-        work is known no better than its force times that.
-        """
-        motion = evidence.motion
-        force = lengths(np.asarray(evidence.recording.contact_force, dtype=np.float64))
-        told = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
-        hidden = lengths(np.diff(motion.com, axis=0) - told)
-        work = np.minimum(force[1:], force[:-1]) * hidden
-        chattered: Floats = np.concatenate([np.zeros((1, work.shape[1])), np.cumsum(work, axis=0)])
-        return chattered
-
     def _stored(self, evidence: Evidence) -> Floats:
         """What contacts and joint stops may hold as springs and give back, (T, B) [J].
 
-        Of a contact that is its force times the depth to which it gives, as far as a time step can tell.
+        Of a contact that is its force times the depth to which it gives, as far as a time step can tell: by as much as
+        it comes nearer in one. Along what a ball lies on it does not, and its turning brings no point of it nearer.
         """
         motion, recording = evidence.motion, evidence.recording
         deepest = recording.scalars.get("contact/penetration")
         size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
-        force = lengths(np.asarray(recording.contact_force, dtype=np.float64))
-        stored = force * (give + motion.speed * motion.dt)
+        push = np.asarray(recording.contact_force, dtype=np.float64)
+        force = lengths(push)
+        turns = motion.rate * np.where(self._balls(evidence), 0.0, motion.radius)
+        stored = force * (give + turns * motion.dt) + np.abs(np.sum(push * motion.v, axis=-1)) * motion.dt
         if evidence.world.give.time > 0.0:
             stored = stored + self._pressed_in(evidence)
         for joint in evidence.world.joints:
@@ -169,6 +158,14 @@ class CheckEnergy(Check):
                 rows = motion.unit == motion.unit[evidence.index(joint.child)]
                 stored[np.ix_(beyond(joint, track) > 0.0, rows)] = np.inf
         return stored
+
+    @staticmethod
+    def _balls(evidence: Evidence) -> NDArray[np.bool_]:
+        """Which bodies are balls about their centre of mass, (B,)."""
+        bodies = evidence.world.bodies
+        return np.array(
+            [all(s.kind == "sphere" and np.allclose(s.position, body.com) for s in body.shapes) for body in bodies]
+        )
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
@@ -192,23 +189,52 @@ class CheckEnergy(Check):
             return []
         of = motion.unit[:, None] == units  # (B, mechanisms)
         meets = (motion.meets @ of.astype(np.float32)) > 0.0
-        gained = np.where(meets, 0.0, np.diff(energy @ of, axis=0))
-        # What a contact took up while it met another, it may give back after.
-        held = _summed(stored, of)
-        gained[1:] -= np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
-        balance = np.concatenate([np.zeros((1, len(units))), np.cumsum(gained, axis=0)])
-        gain = np.max(balance - np.minimum.accumulate(balance + held, axis=0), axis=0)
-        limit, _ = self._limit(evidence, of)
-        worst = int(np.argmax(np.maximum(gain, 0.0) / np.where(limit > 0.0, limit, 1.0)))
-        return [self._finding(evidence, np.flatnonzero(of[:, worst]), balance[:, worst], stored)]
+        held, phase, sinks = _summed(stored, of), hidden(evidence) @ of, sinking(evidence) @ of
+        gave = np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
 
-    def _finding(self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, stored: Floats) -> Finding:
+        def balance(late: Floats) -> Floats:
+            gained = np.where(meets, 0.0, np.diff(energy @ of + late * sinks, axis=0))
+            gained[1:] -= gave  # what a contact took up while it met another, it may give back after
+            return np.concatenate([np.zeros((1, len(units))), np.cumsum(gained, axis=0)])
+
+        def gain(late: Floats) -> Floats:
+            return np.max(_risen(balance(late), phase, held), axis=0)
+
+        late, gains = least(gain, len(units), latest(evidence))
+        limit, scale = self._limit(evidence, of)
+        limit = limit + turned_over(evidence, sinks)
+        worst = int(np.argmax(np.maximum(gains, 0.0) / np.where(limit > 0.0, limit, 1.0)))
+        rows = np.flatnonzero(of[:, worst])
+        unseen = phase[:, worst], held[:, worst]
+        return [
+            self._finding(evidence, rows, balance(late)[:, worst], unseen, (float(limit[worst]), float(scale[worst])))
+        ]
+
+    def _together(self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, stored: Floats) -> Finding:
+        """What all bodies gain: where they are one mechanism, by the phase of its steps at which that is least."""
+        phase, held = hidden(evidence)[:, rows].sum(axis=1), stored[:, rows].sum(axis=1)
+        limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(evidence.motion.mass))))
+        if self._one(evidence):
+            sinks = sinking(evidence)[:, rows].sum(axis=1)
+            late, _ = least(
+                lambda t: np.max(_risen(balance[:, None] + t * sinks[:, None], phase[:, None], held[:, None]), axis=0),
+                1, latest(evidence),
+            )  # fmt: skip
+            balance = balance + late * sinks
+            limit += float(turned_over(evidence, sinks[:, None])[0])
+        else:
+            limit += float(self._late(evidence)[rows].sum())
+        return self._finding(evidence, rows, balance, (phase, held), (limit, scale))
+
+    def _finding(
+        self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, unseen: tuple[Floats, Floats],
+        limits: tuple[float, float],
+    ) -> Finding:  # fmt: skip
         motion = evidence.motion
-        had = balance + stored[:, rows].sum(axis=1)
-        gain = np.maximum(balance - np.minimum.accumulate(had), 0.0)
+        gain, had = np.maximum(_risen(balance, *unseen), 0.0), balance + unseen[0] + unseen[1]
         end = int(np.argmax(gain))
         start = int(np.argmin(had[: end + 1]))
-        limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(motion.mass))))
+        limit, scale = limits
         wrong = gain[end] > limit
         alone = len(np.unique(motion.unit[rows])) == 1
         body = evidence.world.bodies[rows[int(np.argmax(motion.kinetic[end, rows]))]]
@@ -226,8 +252,9 @@ class CheckEnergy(Check):
             prim=body.prim if alone or wrong else None,
             time=time,
             span=(float(evidence.time[start]), float(evidence.time[end])),
-            limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, what one time step cannot resolve, and "
-            f"a lift by {self.settling:g} of the size of what may touch something",
+            limit_from=f"{self.share:g} of the {scale:.3g} J that change hands, "
+            + "what one time step cannot resolve, and "
+            + f"a lift by at most {self.settling:g} of the size of what may touch something",
             target=RepairTarget(
                 kind="time step", prim=body.prim, parameter="time_step", direction="lower",
                 why="an integrator that gains energy gains less of it in shorter steps, unless something pushes unseen"
@@ -242,16 +269,36 @@ class CheckEnergy(Check):
         size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
         height = (np.abs(motion.com) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
-        settles = self.settling * size * (motion.touched.any(axis=0) | ~motion.jointed)
+        settles = self._give(evidence, size) * (motion.touched.any(axis=0) | ~motion.jointed)
         lift = weight * (settles + 4.0 * FLOAT32 * height)
-        return self.share * scale + (lift + self._late(evidence)) @ of, scale
+        return self.share * scale + lift @ of, scale
+
+    def _give(self, evidence: Evidence, size: Floats) -> Floats:
+        """How far bodies may be lifted out of what they stand in, (B,) [m]: as deep as they are said to be, or are."""
+        found, deepest = self.settling * size, evidence.recording.scalars.get("contact/penetration")
+        if deepest is not None:
+            found = np.minimum(found, float(np.nan_to_num(deepest).max(initial=0.0)))
+        if any(shape.shape.kind == "mesh" for shape in evidence.placed):
+            return found  # how deep something is in one poses do not tell
+        balls = [all(shape.kind == "sphere" for shape in body.shapes) for body in evidence.world.bodies]
+        deep = np.zeros(len(size) + 1)
+        for pair in overlaps(evidence):
+            for row in (pair.a.body, pair.b.body):
+                deep[row] = max(deep[row], float(pair.depth.max()))
+        return np.where(balls, np.minimum(found, deep[:-1]), found)
 
     @staticmethod
     def _late(evidence: Evidence) -> Floats:
         """A first-order step leaves positions behind velocities by up to half a step's fall, (B,) [J]."""
         motion = evidence.motion
-        late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * 0.5 * min(motion.dt, 0.005)
+        late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * latest(evidence)
         return late
+
+
+def _risen(balance: Floats, phase: Floats, held: Floats) -> Floats:
+    """How far a balance has risen over its least, less what a phase hides at both ends and contacts held before."""
+    risen: Floats = balance - phase - np.minimum.accumulate(balance + phase + held, axis=0)
+    return risen
 
 
 def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:
