@@ -82,7 +82,8 @@ def saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
     if count < LEAST_ROWS * each:
         raise UserError(
             f"--samples {count}: --method saltelli takes {each} candidates a row for {dimensions} parameters, and "
-            f"{LEAST_ROWS} rows or more; give --samples {LEAST_ROWS * each} (256 rows, --samples {256 * each}, tell much more)"
+            f"{LEAST_ROWS} rows or more; give --samples {LEAST_ROWS * each} "
+            f"(256 rows, --samples {256 * each}, tell much more)"
         )
     power = (count // each).bit_length() - 1
     a, b = np.split(qmc.Sobol(2 * dimensions, rng=seed).random_base2(power), 2, axis=1)
