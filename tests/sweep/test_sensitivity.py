@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy import stats
+from typer.testing import CliRunner
 
+from wsim.cli import app
 from wsim.errors import UserError
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Outcome
@@ -20,6 +23,14 @@ V1, V2, V13 = 0.5 * (1.0 + B * math.pi**4 / 5.0) ** 2, A**2 / 8.0, 8.0 * B**2 * 
 V = V1 + V2 + V13
 FIRST = {"x": V1 / V, "y": V2 / V, "z": 0.0}  # 0.314, 0.442, 0
 TOTAL = {"x": (V1 + V13) / V, "y": V2 / V, "z": V13 / V}  # 0.558, 0.442, 0.244
+
+FALL = """
+from wsim.scene import Scene
+def build(scene: Scene) -> None:
+    scene.simulation(duration=0.1)
+    scene.ground()
+    scene.sphere("ball", radius=0.1, density=500.0, position=(0, 0, scene.param("height", 0.5, low=0.2, high=1.0)))
+"""
 
 
 def spec_of(samples: int, repeats: int = 1) -> Spec:
@@ -81,3 +92,12 @@ def test_too_few_are_refused_with_how_many_it_takes() -> None:
     with pytest.raises(UserError, match=r"--samples 39: .* --samples 40 "):
         spec_of(39).candidates()
     assert spec_of(100).count == 1 + 16 * 5 == len(spec_of(100).candidates())
+
+
+def test_the_command_refuses_too_few_before_it_makes_a_folder(tmp_path: Path) -> None:
+    program = tmp_path / "fall.py"
+    program.write_text(FALL, encoding="utf-8")
+    command = ["sweep", str(program), "--method", "saltelli", "-n", "20", "--runs", str(tmp_path / "runs")]
+    ended = CliRunner().invoke(app, command)
+    assert isinstance(ended.exception, UserError) and "give --samples 24" in str(ended.exception)
+    assert not (tmp_path / "runs").exists()

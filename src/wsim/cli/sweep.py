@@ -142,6 +142,7 @@ def _ask(
             axes = axes_of(program, axes, spec.isolation)
     chosen = load(plans.pop()) if plans else None
     asked = spec.model_copy(update={"axes": axes, "points": given})
+    _ = asked.count  # too few for the method is said before there is a folder
     text = chosen.model_dump_json(indent=2) + "\n" if chosen else None
     return SweepFolder.create(runs, chosen.title if chosen else programs[0].stem, asked, programs, text)
 
