@@ -51,3 +51,24 @@ def test_a_folder_without_runs_has_no_latest(tmp_path: Path) -> None:
     assert folders(tmp_path / "runs") == []
     with pytest.raises(UserError, match="holds no run yet"):
         named(Path("latest"), tmp_path / "runs")
+
+
+def test_what_lies_in_a_run_is_named_by_the_run(tmp_path: Path) -> None:
+    first, second = tmp_path / "20260101-120000-sweep-ball", tmp_path / "20260102-120000-sweep-box"
+    for sweep in (first, second):
+        (sweep / "candidates" / "0007").mkdir(parents=True)
+        (sweep / "sweep.json").write_text("{}", encoding="utf-8")
+    inside = Path("candidates/0007")
+    assert named("latest" / inside, tmp_path) == second / inside
+    assert named("ball" / inside, tmp_path) == first / inside
+    for path in ("sweep" / inside, Path("ball/candidates/0008"), Path("../ball") / inside, Path("nothing") / inside):
+        assert named(path, tmp_path) == path  # of none, or of several: left to who asked, who says that it is not there
+
+
+def test_where_a_run_is_meant_a_sweep_is_called_one(tmp_path: Path) -> None:
+    (tmp_path / "sweep.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(UserError, match="is a sweep, not a run: none of it was run in full"):
+        RunFolder.open(tmp_path)
+    (tmp_path / "candidates" / "0012").mkdir(parents=True)
+    with pytest.raises(UserError, match=r"name a candidate's, such as .*candidates/0012;"):
+        RunFolder.open(tmp_path)

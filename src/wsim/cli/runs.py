@@ -25,7 +25,7 @@ def runs(
 ) -> None:
     """List runs and sweeps, the newest first, with their verdicts.
 
-    Wherever a run is named, `latest` and any part of its name will do.
+    Wherever a run is named, `latest` and any part of its name will do, also in `latest/candidates/0007`.
     """
     known = folders(base)
     rows = [_sweep(path) if (path / "sweep.json").is_file() else _run(path) for path in known[:count]]

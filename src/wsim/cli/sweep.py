@@ -18,6 +18,7 @@ from wsim.cli.show import STATUS_STYLE, ConsoleProgress, console
 from wsim.errors import UserError
 from wsim.plan.store import load
 from wsim.program.sandbox.isolation import choose
+from wsim.report.sweep_page import write as write_page
 from wsim.sweep.again import in_full
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Outcome
@@ -26,6 +27,7 @@ from wsim.sweep.folder import SweepFolder
 from wsim.sweep.picture import draw
 from wsim.sweep.run import sweep as run_sweep
 from wsim.sweep.sampling import Method, Point, read_points
+from wsim.sweep.sensitivity import sensitivities
 from wsim.sweep.spec import Spec
 from wsim.sweep.table import parameters
 
@@ -44,7 +46,7 @@ def sweep(
         Path | None, typer.Option("--points", metavar="FILE.csv", help="Values: a line of names, a line a candidate.")
     ] = None,
     method: Annotated[
-        str, typer.Option("--method", help="How values are drawn: sobol, latin, random, grid; cma searches.")
+        str, typer.Option("--method", help="How values are drawn: sobol, latin, random, grid, saltelli; cma searches.")
     ] = "sobol",
     samples: Annotated[int, typer.Option("--samples", "-n", min=1, max=1_000_000, help="How many are drawn.")] = 16,
     repeats: Annotated[
@@ -83,7 +85,7 @@ def sweep(
         folder = SweepFolder.open(resume)
     else:
         if method not in get_args(Method):
-            raise UserError(f"--method {method}: expected sobol, latin, random, grid or cma")
+            raise UserError(f"--method {method}: expected sobol, latin, random, grid, saltelli or cma")
         choose(isolation)
         if device != "cpu":
             sim.pick_device(device)
@@ -110,7 +112,9 @@ def sweep(
         raise typer.Exit(130) from None
     picture = draw(outcomes, folder.path)
     _show(outcomes)
-    for path in [folder.path / "table.parquet", *([picture] if picture else [])]:
+    _show_sensitivity(folder.spec, outcomes)
+    page = write_page(folder)
+    for path in [folder.path / "table.parquet", *([picture] if picture else []), page]:
         console.print(f"{path.stem}: {path}", soft_wrap=True)
     raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
 
@@ -138,6 +142,7 @@ def _ask(
             axes = axes_of(program, axes, spec.isolation)
     chosen = load(plans.pop()) if plans else None
     asked = spec.model_copy(update={"axes": axes, "points": given})
+    _ = asked.count  # too few for the method is said before there is a folder
     text = chosen.model_dump_json(indent=2) + "\n" if chosen else None
     return SweepFolder.create(runs, chosen.title if chosen else programs[0].stem, asked, programs, text)
 
@@ -162,3 +167,17 @@ def _show(outcomes: list[Outcome]) -> None:
         console.print(f"{count} {note}", soft_wrap=True)
     if outcomes and outcomes[0].status == "accepted" and outcomes[0].together > 1:
         console.print("the best was judged in its batch alone, without contacts and ties; --full runs it by itself")
+
+
+def _show_sensitivity(spec: Spec, outcomes: list[Outcome]) -> None:
+    """Which parameter the room to the limit hangs on, where the points tell."""
+    for each in sensitivities(spec, outcomes)[:1]:
+        table = Table(show_edge=False, pad_edge=False)
+        for column in (f"{each.result} hangs on", "by itself", "95 %", "with others", "95 %"):
+            table.add_column(column, justify="left" if column.startswith(each.result) else "right")
+        for index in each.indices:
+            low, high = index.first_between
+            own = [f"{index.first:.2f}", f"{low:.2f} … {high:.2f}"]
+            low, high = index.total_between
+            table.add_row(index.name, *own, f"{index.total:.2f}", f"{low:.2f} … {high:.2f}")
+        console.print(table)

@@ -87,6 +87,14 @@ class RunFolder:
         for folder in (start, *start.resolve().parents):
             if (folder / "run.json").is_file() or (folder / "iterations").is_dir():
                 return cls(folder)
+        if (start / "sweep.json").is_file():
+            runs = sorted(each.name for each in (start / "candidates").glob("[0-9]*"))
+            own = (
+                f"name a candidate's, such as {start / 'candidates' / runs[0]}"
+                if runs
+                else "none of it was run in full"
+            )
+            raise UserError(f"{path} is a sweep, not a run: {own}; `wsim view` shows all, its report.html tells of it")
         raise UserError(f"{path} is not in a run's folder (no run.json beside it or above it)")
 
     def iteration(self, number: int) -> Path:

@@ -24,26 +24,33 @@ def folders(base: Path = RUNS) -> list[Path]:
 
 
 def named(target: Path, base: Path = RUNS) -> Path:
-    """What a target means: itself if it is there, else the run whose name has these letters.
+    """What a target means: itself if it is there, else the run whose name has these letters, or what lies in it.
 
     Args:
-        target: A path, `latest`, or a part of the name of one run in `base`.
+        target: A path, `latest`, or a part of the name of one run in `base`; also a path that begins with either, such
+            as `latest/candidates/0007`.
         base: Folder of runs.
 
     Raises:
         UserError: If there is no such path or run, or more than one run.
     """
-    text = str(target)
-    if target.exists() or len(target.parts) != 1:
+    if target.exists() or not target.parts or target.is_absolute() or ".." in target.parts:
         return target
-    known = folders(base)
-    if text == LATEST:
-        if not known:
-            raise UserError(f"{base} holds no run yet; `wsim generate` or `wsim run` makes one")
-        return known[0]
-    found = [path for path in known if text.lower() in path.name.lower()]
+    text, rest = target.parts[0], target.parts[1:]
+    if rest:  # of a name that many runs have one cannot be meant by a path: it may be a path that is not there
+        inside = [found for found in _matching(text, base) if found.joinpath(*rest).exists()]
+        return inside[0].joinpath(*rest) if len(inside) == 1 else target
+    found = _matching(text, base)
+    if text == LATEST and not found:
+        raise UserError(f"{base} holds no run yet; `wsim generate` or `wsim run` makes one")
     if len(found) > 1:
         names = ", ".join(path.name for path in found[:SHOWN])
         more = f" and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
         raise UserError(f"{text} may be any of {names}{more}; give more of the name")
     return found[0] if found else target
+
+
+def _matching(text: str, base: Path) -> list[Path]:
+    """The runs that a name may mean, the newest first; `latest` means one."""
+    known = folders(base)
+    return known[:1] if text == LATEST else [path for path in known if text.lower() in path.name.lower()]

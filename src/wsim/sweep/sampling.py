@@ -15,24 +15,27 @@ from scipy.stats import qmc
 from wsim.errors import UserError
 from wsim.sweep.axis import Axis
 
-Method = Literal["sobol", "latin", "random", "grid", "cma"]
+Method = Literal["sobol", "latin", "random", "grid", "saltelli", "cma"]
 Point = dict[str, float]
+LEAST_ROWS = 8  # of Saltelli's design: of fewer the indices say nothing
 
 
 def sample(axes: Sequence[Axis], method: Method, count: int, seed: int = 0) -> list[Point]:
     """Points of the space.
 
     Sobol' numbers are scrambled (Owen 1998, "Scrambling Sobol' and Niederreiter-Xing points"), Latin hypercubes
-    as McKay, Beckman and Conover (1979) draw them. Both fill the space more evenly than random points do.
+    as McKay, Beckman and Conover (1979) draw them. Both fill the space more evenly than random points do. What
+    Saltelli draws tells which parameter a result hangs on (`wsim.sweep.sensitivity`).
 
     Args:
         axes: At least one.
         method: A grid has as many values along each axis as make `count` points in all, or the axis' own list; the
             number of its points is then that of their product.
-        count: How many.
+        count: How many; of "saltelli" at most.
         seed: Of the draw; the same points for the same seed.
 
     Raises:
+        UserError: If `count` is too few for the method.
         ValueError: If the method draws from what it is told: that is `wsim.sweep.search`'s.
     """
     if method == "cma":
@@ -55,9 +58,37 @@ def _shares(method: Method, dimensions: int, count: int, seed: int) -> np.ndarra
         # Balanced in powers of two; the first of them are as even as can be.
         drawn = qmc.Sobol(dimensions, rng=seed).random_base2(max(0, math.ceil(math.log2(count))))
         return np.asarray(drawn[:count])
+    if method == "saltelli":
+        return saltelli(dimensions, count, seed)
     if method == "latin":
         return np.asarray(qmc.LatinHypercube(dimensions, rng=seed).random(count))
     return np.random.default_rng(seed).random((count, dimensions))
+
+
+def saltelli(dimensions: int, count: int, seed: int) -> np.ndarray:
+    """Points in [0, 1) whose rows of d + 2 are a point, a second one, and the first with each coordinate of the second.
+
+    A. Saltelli et al. (2010), "Variance based sensitivity analysis of model output", Comput. Phys. Commun. 181.
+
+    Args:
+        dimensions: d.
+        count: Points in all, at most; as many rows as a power of two are drawn, of Sobol' numbers.
+        seed: Of the scrambling.
+
+    Raises:
+        UserError: If they are too few.
+    """
+    each = dimensions + 2
+    if count < LEAST_ROWS * each:
+        raise UserError(
+            f"--samples {count}: --method saltelli takes {each} candidates a row for {dimensions} parameters, and "
+            f"{LEAST_ROWS} rows or more; give --samples {LEAST_ROWS * each} "
+            f"(256 rows, --samples {256 * each}, tell much more)"
+        )
+    power = (count // each).bit_length() - 1
+    a, b = np.split(qmc.Sobol(2 * dimensions, rng=seed).random_base2(power), 2, axis=1)
+    swapped = [np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]
+    return np.stack([a, b, *swapped], axis=1).reshape(-1, dimensions)
 
 
 def read_points(path: Path) -> list[Point]:

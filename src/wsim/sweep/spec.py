@@ -65,7 +65,7 @@ class Spec(BaseModel):
 
     @property
     def _points(self) -> int:
-        if self.points or self.method == "grid":
+        if self.points or self.method in ("grid", "saltelli"):
             return len(self._drawn())
         return self.samples if self.axes else 0
 
