@@ -3,6 +3,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +71,24 @@ def test_control_reads_states_and_sets_targets_and_forces(start) -> None:
         np.testing.assert_allclose(out["body_force"][:, 0, 2], (-2.0, -4.0, -6.0))
         np.testing.assert_allclose(out["body_force"][:, 0, 5], 1.0)
         np.testing.assert_allclose(out["body_force"][:, 1, :3], [(1.5, 0.5, 0.5)] * W)
+
+
+def test_worlds_that_are_apart_have_the_program_to_themselves(start) -> None:
+    """Each is the only one that its call sees, and what the program remembers is of that one alone."""
+    process = start(
+        "seen = []\n"
+        "def control(world, t):\n"
+        "    block = world.body('block')\n"
+        "    assert world.world_count == 1 and block.position.shape == (1, 3)\n"
+        "    seen.append(float(block.position[0, 2]))\n"
+        "    world.joint('hinge').target = sum(seen)\n"
+        "    world.apply_force('block', (0.0, 0.0, seen[-1]))\n",
+        layout=replace(LAYOUT, apart=True),
+    )
+    for call in (1, 2):
+        out = process.step(0.1 * call, _state())
+        np.testing.assert_allclose(out["joint_target"][:, 0], [call * 1.0, call * 2.0, call * 3.0])
+        np.testing.assert_allclose(out["body_force"][:, 0, 2], (1.0, 2.0, 3.0))
 
 
 def test_a_target_stays_and_a_force_does_not(start) -> None:

@@ -57,7 +57,7 @@ def test_the_softer_surface_resists(scene):
     [
         ("bal", "ground", {"friction": 0.1}, 'a = "bal" is not in the scene; did you mean "ball"?'),
         ("ball", "ball", {"friction": 0.1}, 'a = "ball", b = "ball": a pair is two objects'),
-        ("wall", "ground", {"friction": 0.1}, 'b = "ground" is static, as a is; they never meet'),
+        ("wall", "ground", {"friction": 0.1}, 'a = "wall", b = "ground": both are static or kinematic'),
         ("ball", "wall", {"rolling": -0.1}, "rolling = -0.1 must be >= 0"),
         ("ball", "wall", {"restitution": 1.2}, "restitution = 1.2 must be <= 1"),
         ("ball", "wall", {"friction": float("nan")}, "friction = nan must be finite"),
@@ -83,7 +83,7 @@ def test_a_mistake_is_one_clear_line(scene, a, b, given, says):
         ("second = </World/ground>", "second = </World/marble>", "the pair is stated in"),
         ("second = </World/ground>", "second = [</World/wall>, </World/ground>]", "names 2 objects; it must name one"),
         ("second = </World/ground>", "second = </World/Looks/steel>", "is a Material; it must be something that"),
-        ("first = </World/ball>\n", "first = </World/wall>\n", "is static, as wsim:first is; they never meet"),
+        ("first = </World/ball>\n", "first = </World/wall>\n", "is static or kinematic, as wsim:first is"),
         ("wsim:restitution = 0.9", "wsim:spring = 0.9", "states nothing; give wsim:friction"),
     ],
 )

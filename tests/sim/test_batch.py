@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wsim.errors import UserError
 from wsim.scene import Drive, Scene
 from wsim.scene.describe import describe
 from wsim.sim import Simulation
@@ -150,15 +149,6 @@ def test_other_worlds_are_no_batch(tmp_path: Path) -> None:
         Simulation(stages, "cpu")
     with pytest.raises(ValueError, match="world_count=3: 2 stages are as many worlds"):
         Simulation(stages, "cpu", world_count=3)
-
-
-def test_fluids_are_no_batch(tmp_path: Path) -> None:
-    scene = Scene()
-    tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.3), position=(0, 0, 0))
-    scene.fluid("water", fills=tank, level=0.1, spacing=0.05)
-    scene.save(tmp_path / "wet.usda")
-    with pytest.raises(UserError, match="worlds with fluid are not batched"):
-        Simulation([tmp_path / "wet.usda"] * 2, "cpu")
 
 
 def _stages(folder: Path, build: Build, count: int) -> list[Path]:

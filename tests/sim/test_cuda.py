@@ -58,6 +58,30 @@ def test_a_frame_in_one_graph_is_its_steps(tmp_path, build):
     assert graph.state.body_qd.numpy() == pytest.approx(steps.state.body_qd.numpy(), abs=1e-2)
 
 
+@pytest.mark.parametrize("worlds", [1, 3])
+def test_a_frame_under_control_is_its_steps(tmp_path, worlds):
+    """The controller is asked at the same times, every 0.01 s, which is no frame."""
+    stage, asked = stage_of(tmp_path, arm), ([], [])
+    made = []
+    for told in asked:
+
+        def push(t, simulation, told=told):
+            told.append(t)
+            force = simulation.control_force.numpy()
+            force[:, 2] = 5.0 * np.sin(20.0 * t)
+            simulation.control_force.assign(force)
+
+        made.append(Simulation(stage, device=GPU, world_count=worlds, controller=push))
+    graph, steps = made
+    for _ in range(12):
+        graph.advance_frame()
+        for _ in range(steps.substeps):
+            steps.step()
+    assert asked[0] == asked[1] and len(asked[0]) > 15
+    assert graph.state.body_q.numpy() == pytest.approx(steps.state.body_q.numpy(), abs=1e-4)
+    assert graph.state.body_qd.numpy() == pytest.approx(steps.state.body_qd.numpy(), abs=1e-2)
+
+
 def test_a_block_slides_as_far_as_on_the_cpu_and_presses_with_its_weight(tmp_path):
     stage = stage_of(tmp_path, slider)
     found = {}

@@ -49,6 +49,79 @@ def test_together_is_as_one_by_one(folder: Path) -> None:
     assert not any(outcome.note for outcome in together)
 
 
+WET = """
+def build(scene):
+    scene.simulation(duration=0.4)
+    level = scene.param("level", 0.12, low=0.05, high=0.3)
+    tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.4), position=(0, 0, 0))
+    scene.fluid("water", fills=tank, level=level, spacing=0.03)
+    density = scene.param("density", 500.0, low=100.0, high=3000.0)
+    draught = 0.12 * min(density / 1000.0, 1.0)
+    scene.box("block", size=(0.12, 0.12, 0.12), density=density, position=(0, 0, level + 0.06 - draught))
+"""
+
+
+def test_worlds_with_fluid_go_together(tmp_path: Path) -> None:
+    """Other levels, other blocks: the verdicts are those that they have one by one."""
+    (tmp_path / "program.py").write_text(WET)
+    points = [{}, {"level": 0.09}, {"density": 300.0}, {"level": 0.15, "density": 800.0}]
+    candidates = tuple(Candidate(number=k, params=point) for k, point in enumerate(points))
+    together = work(Shard(candidates, tmp_path, Spec(worlds=8)))
+    assert [outcome.together for outcome in together] == [4] * 4
+    assert not any(outcome.note for outcome in together)
+    one_by_one = work(Shard(candidates, tmp_path, Spec()))
+    assert [outcome.status for outcome in together] == [outcome.status for outcome in one_by_one]
+
+
+HELD = """
+import numpy as np
+
+total = 0.0
+
+def build(scene):
+    scene.simulation(duration=0.5)
+    mass = scene.param("mass", 2.0, low=0.5, high=8.0)
+    scene.box("kite", size=(0.2, 0.2, 0.2), mass=mass, position=(0, 0, 1))
+
+def control(world, t):
+    "A spring, a damper and an integral that is the program's own."
+    global total
+    kite = world.body("kite")
+    off = 1.0 - float(kite.position[0, 2])
+    total += 0.01 * off
+    world.apply_force("kite", (0.0, 0.0, 80.0 * off - 5.0 * float(kite.velocity[0, 2]) + 40.0 * total))
+    if t > 0.3 and world.body("kite").position[0, 2] < LEAST:
+        raise ValueError("too low")
+"""
+
+
+def test_worlds_under_control_go_together(tmp_path: Path) -> None:
+    """Each as if it were the only one that the program knows."""
+    (tmp_path / "program.py").write_text(HELD.replace("LEAST", "0.0"))
+    candidates = tuple(Candidate(number=k, params={"mass": 0.5 + k}) for k in range(4))
+    together = work(Shard(candidates, tmp_path, Spec(worlds=8)))
+    assert [outcome.together for outcome in together] == [4] * 4
+    assert [outcome.status for outcome in together] == ["accepted"] * 4
+    assert [outcome.status for outcome in work(Shard(candidates, tmp_path, Spec()))] == ["accepted"] * 4
+
+
+def test_control_that_fails_in_one_world_fails_that_one(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(HELD.replace("LEAST", "0.6"))
+    candidates = tuple(Candidate(number=k, params={"mass": mass}) for k, mass in enumerate((0.5, 1.0, 8.0)))
+    found = work(Shard(candidates, tmp_path, Spec(worlds=8)))
+    assert [outcome.status for outcome in found] == ["accepted", "accepted", "rejected"]
+    assert "too low" in found[2].reason
+    assert "run by itself, as 3 worlds could not be at once" in found[0].note
+
+
+def test_no_more_fluid_to_a_batch_than_memory_holds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "program.py").write_text(WET)
+    candidates = tuple(Candidate(number=k, params={"density": 200.0 + 50.0 * k}) for k in range(3))
+    need = 0.3 * 0.3 * 0.12 / 0.03**3 * (0.4 * 30 + 1) * 28  # [bytes] of a world
+    monkeypatch.setattr(batched, "free_memory", lambda: 4.5 * need)
+    assert [outcome.together for outcome in work(Shard(candidates, tmp_path, Spec(worlds=8)))] == [2, 2, 1]
+
+
 def test_cores_change_nothing_but_the_time(folder: Path) -> None:
     points = [{}, {"edge": 0.1}, {"friction": 0.1}, {"edge": 0.5}, {"edge": 0.3, "friction": 0.7}]
     candidates = tuple(Candidate(number=k, params=point, seed=k % 2) for k, point in enumerate(points))

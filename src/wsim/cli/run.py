@@ -16,6 +16,7 @@ from wsim.plan.store import load
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.runs.named import named
 from wsim.runs.settings import Settings
+from wsim.sweep.declared import check, parameters_of
 
 
 def run(
@@ -53,6 +54,10 @@ def run(
         build_memory=int(memory * 2**30),
     )
     settings.check()
+    if settings.params:
+        known = {parameter.name: parameter for parameter in parameters_of(program, isolation)}
+        for name, value in settings.params.items():
+            check(name, [], known, f"--set {name}={value:g}")  # a range bounds a search, and no user
     folder = RunFolder.create(runs, chosen.title if chosen and target.is_dir() else program.stem)
     folder.record(prompt=chosen.prompt if chosen else None, program=str(program), params=settings.params)
     if chosen:

@@ -6,10 +6,13 @@ whole loads none of them.
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Sequence
 from typing import Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
+from typer.exceptions import TyperException
 
 from wsim.door import load_module
 
@@ -46,6 +49,33 @@ class Verbs(TyperGroup):
             **{name: Verb(name, callback=None, help=text) for name, text in VERBS.items()},
             **self.commands,
         }
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        windows_expand_args: bool = True,
+        **extra: Any,
+    ) -> Any:
+        """Run it. A mistake in the words that it is given is one line, as any mistake of a user's is."""
+        run = super().main
+        if not standalone_mode:
+            return run(args, prog_name, complete_var, False, windows_expand_args, **extra)
+        try:
+            sys.exit(run(args, prog_name, complete_var, False, windows_expand_args, **extra) or 0)
+        except typer.Abort:
+            sys.exit(1)
+        except TyperException as error:
+            context = getattr(error, "ctx", None)
+            if context is not None and type(error).__name__ == "NoArgsIsHelpError":  # nothing was asked
+                context.get_help()  # which prints it
+            else:
+                said = " ".join(error.format_message().split()) if hasattr(error, "format_message") else str(error)
+                command = context.command_path if context is not None else "wsim"
+                print(f"wsim: {said.rstrip('.')}; {command} --help says more", file=sys.stderr)
+            sys.exit(2)
 
 
 def load(name: str) -> Any:

@@ -11,7 +11,7 @@ Imported in the sandbox beside the program: NumPy alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -32,11 +32,14 @@ class ControlLayout:
         bodies: Prim paths of the bodies, in the order of `body_q`.
         joints: Prim paths of the joints with one degree of freedom, in the order of `joint_q`.
         world_count: Worlds that run side by side: the leading axis of every array.
+        apart: Each world has the program to itself, loaded for it alone, and is asked by itself as the only one;
+            without, one call is asked about all of them.
     """
 
     bodies: list[str]
     joints: list[str] = field(default_factory=list)
     world_count: int = 1
+    apart: bool = False
 
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """The shape of each array by name; all are float32, but for `t`, float64."""
@@ -64,6 +67,14 @@ class ControlLayout:
             arrays[name] = np.ndarray(shape, _dtype(name), buffer, offset)
             offset += _padded(name, shape)
         return arrays
+
+    def worlds(self, arrays: dict[str, NDArray[Any]]) -> list[ControlWorld]:
+        """What each call is given: all worlds, or each `apart`."""
+        if not self.apart:
+            return [ControlWorld(self, arrays)]
+        one = replace(self, world_count=1)
+        names = (*INPUTS, *OUTPUTS)
+        return [ControlWorld(one, {name: arrays[name][k : k + 1] for name in names}) for k in range(self.world_count)]
 
 
 def _dtype(name: str) -> type[np.floating[Any]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wsim.recording.frames import LogLine
-from wsim.recording.recording import Recording
+from wsim.recording.recording import FluidTrack, Recording
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Trajectories:
-    """W copies of one world of B rigid bodies over T frames; rows follow `world.bodies`. Fluids are not kept.
+    """W copies of one world of B rigid bodies over T frames; rows follow `world.bodies`.
 
     Attributes:
         world: What the copies share.
@@ -34,7 +34,11 @@ class Trajectories:
         mass: (W, B) [kg], where the copies differ from `world`; None where they do not.
         scalars: (W, T) each: what else a recording keeps of a copy, by its name there.
         problems: (W,) lists of what went wrong in a copy, as its log would say it; empty: nothing in any.
+        applied: What fluid and control gave to bodies and walls since the frame before, by a recording's field, each
+            with the copies' axis first, as `applied_impulse` (W, T, B, 3) [N s]; empty where nothing did.
+        fluids: (W,) the particles of each copy by the fluid's prim; empty without any.
         metadata: As of a recording.
+        own_metadata: (W,) what a copy has of its own beside it; empty where none has.
         worlds: (W,) what each copy's own stage states, where they differ in more than masses; empty where they do not.
     """
 
@@ -49,6 +53,9 @@ class Trajectories:
     problems: list[list[str]] = field(default_factory=list)
     metadata: dict[str, Any] = field(default_factory=dict)
     worlds: Sequence[World] = ()
+    applied: dict[str, Array] = field(default_factory=dict)
+    fluids: Sequence[dict[str, FluidTrack]] = ()
+    own_metadata: Sequence[dict[str, Any]] = ()
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit one another.
@@ -69,10 +76,13 @@ class Trajectories:
             shape = wanted.get(name, (worlds, frames))
             if array is not None and array.shape != shape:
                 raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
-        if self.problems and len(self.problems) != worlds:
-            raise ValueError(f"problems has {len(self.problems)} entries; it must have one for each of {worlds} worlds")
-        if self.worlds and len(self.worlds) != worlds:
-            raise ValueError(f"worlds has {len(self.worlds)} entries; it must have one for each of {worlds} worlds")
+        for name in ("problems", "worlds", "fluids", "own_metadata"):
+            count = len(getattr(self, name))
+            if count not in (0, worlds):
+                raise ValueError(f"{name} has {count} entries; it must have one for each of {worlds} worlds")
+        for name, array in self.applied.items():
+            if array.shape[:2] != (worlds, frames):
+                raise ValueError(f"{name} has shape {array.shape}; it must begin with {(worlds, frames)}")
 
     @property
     def world_count(self) -> int:
@@ -102,13 +112,18 @@ class Trajectories:
         return Recording(
             path=Path(f"world-{k}"),
             world=self.world_of(k),
-            metadata={"complete": not problems, **self.metadata},
+            metadata={
+                "complete": not problems,
+                **self.metadata,
+                **(self.own_metadata[k] if self.own_metadata else {}),
+            },
             time=np.asarray(self.time, dtype=np.float64),
             body_q=self.body_q[k],
             body_qd=self.body_qd[k],
             contact_force=self.contact_force[k],
-            fluids={},
+            fluids=self.fluids[k] if self.fluids else {},
             scalars=scalars,
             log=[LogLine(end, "ERROR", problem) for problem in problems],
             images={},
+            **{name: array[k] for name, array in self.applied.items()},
         )

@@ -15,6 +15,7 @@ from wsim.scene.describe import describe
 from wsim.sim.control import ArrayController, driven_joints
 
 if TYPE_CHECKING:
+    from wsim.scene.world import World
     from wsim.sim import Simulation
 
 
@@ -23,7 +24,7 @@ def open_simulation(
     stage: Path, program: Path, settings: Settings, progress: Progress = silent, seeds: Sequence[int] = (0,)
 ) -> Iterator[Simulation]:
     """A simulation of a stage, a copy of the world for each seed, with the program's own `control` if it has one."""
-    with _controller(program, stage, settings) as controller:
+    with open_controller(program, describe(stage), settings, len(seeds)) as controller:
         yield sim.Simulation(
             stage,
             device=settings.device,
@@ -41,12 +42,13 @@ def is_controlled(program: Path) -> bool:
 
 
 @contextlib.contextmanager
-def _controller(program: Path, stage: Path, settings: Settings) -> Iterator[ArrayController | None]:
-    """The program's `control`, if it has one, running in the sandbox."""
+def open_controller(
+    program: Path, world: World, settings: Settings, world_count: int = 1
+) -> Iterator[ArrayController | None]:
+    """The program's `control`, if it has one, running in the sandbox; each world has it to itself."""
     if not is_controlled(program):
         yield None
         return
-    world = describe(stage)
-    layout = ControlLayout([body.prim for body in world.bodies], driven_joints(world))
+    layout = ControlLayout([body.prim for body in world.bodies], driven_joints(world), world_count, apart=True)
     with ControlProcess(program, layout, settings.limits(), settings.isolation) as process:
         yield ArrayController(process.step)

@@ -170,6 +170,9 @@ class Bodies(Materials):
         density = None if options.density is None else call.density(options.density)
         if mass is not None and density is not None:
             call.fail(f"mass = {mass:g} kg and density = {density:g} kg/m^3 are both given; give one")
+        if options.static and not (mass is None and density is None):
+            said = f"density = {density:g} kg/m^3" if mass is None else f"mass = {mass:g} kg"
+            call.fail(f"{said} on a static object, which nothing moves; leave it out, or static=True")
         return mass, density
 
     def _moving(self, call: Call, options: BodyOptions, velocity: Vec3, spin: Vec3) -> bool:
@@ -198,8 +201,12 @@ def _make_rigid(prim: Usd.Prim, turn: Gf.Quatd, velocity: Vec3, spin: Vec3, *, k
     body = UsdPhysics.RigidBodyAPI.Apply(prim)
     if kinematic:
         body.CreateKinematicEnabledAttr(True)
-    # UsdPhysics states velocities in the body's own axes; the calls take them in the world's.
-    back = turn.GetInverse()
+    set_start(prim, turn, velocity, spin)
+
+
+def set_start(prim: Usd.Prim, turn: Gf.Quatd, velocity: Vec3, spin: Vec3) -> None:
+    """State how a body starts, in the world [m/s, deg/s]: UsdPhysics has it in the body's own axes."""
+    body, back = UsdPhysics.RigidBodyAPI(prim), turn.GetInverse()
     if any(velocity):
         body.CreateVelocityAttr(Gf.Vec3f(back.Transform(Gf.Vec3d(*velocity))))
     if any(spin):

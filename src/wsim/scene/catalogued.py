@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from pxr import Sdf, Usd, UsdPhysics
 
-from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose
+from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose, world_pose
+from wsim.scene.bodies import set_start
 from wsim.scene.validate import Call
 
 _HERE = (0.0, 0.0, 0.0)
@@ -22,6 +23,8 @@ class Catalogued(Author):
         *,
         position: Sequence[float] = _HERE,
         rotation_deg: Sequence[float] = _HERE,
+        velocity: Sequence[float] = _HERE,
+        angular_velocity_deg: Sequence[float] = _HERE,
         static: bool = False,
     ) -> Handle:
         """Place an object of the catalogue.
@@ -31,10 +34,13 @@ class Catalogued(Author):
             id: Of the asset, such as "desk"; `wsim.assets.search` finds it by other words.
             position: Of the centre of its bottom face [m].
             rotation_deg: Roll, pitch, yaw about the world's X, Y, Z, in this order [deg].
+            velocity: Of the centre of mass, in the world, of what is one body [m/s].
+            angular_velocity_deg: [deg/s].
             static: Never moves.
 
         Raises:
-            SceneError: If the catalogue has no such asset, or it has joints and is to be static.
+            SceneError: If the catalogue has no such asset, it has joints and is to be static, or it is static or of
+                several bodies and is to start with a velocity.
         """
         from wsim.assets import AssetError, get  # with pydantic, and few programs name an asset
 
@@ -46,10 +52,17 @@ class Catalogued(Author):
             call.fail(str(error))
         if static and entry.articulated:
             call.fail(f"static = True on {id!r}, whose parts move on a joint; leave it out")
+        place, start = call.position("position", position), call.velocity(velocity)
+        spin = call.spin(angular_velocity_deg)
+        if any((*start, *spin)) and (static or entry.articulated):
+            field, value = ("velocity", start) if any(start) else ("angular_velocity_deg", spin)
+            why = "a static object" if static else f"{id!r}, which is several bodies: only one body starts with one"
+            call.fail(f"{field} = {value} on {why}; leave it out")
         layer = Sdf.Layer.OpenAsAnonymous(str(entry.path))
         Sdf.CopySpec(layer, Sdf.Path(f"/{layer.defaultPrim}"), self._stage.GetRootLayer(), Sdf.Path(path))
         prim = self._stage.GetPrimAtPath(path)
-        set_pose(prim, call.position("position", position), rotation(call.angles(rotation_deg)))
+        turn = rotation(call.angles(rotation_deg))
+        set_pose(prim, place, turn)
         bodies = [part for part in Usd.PrimRange(prim) if part.HasAPI(UsdPhysics.RigidBodyAPI)]
         for part in {prim, *bodies}:
             note_line(part)
@@ -57,4 +70,6 @@ class Catalogued(Author):
             for part in bodies:
                 part.RemoveAPI(UsdPhysics.RigidBodyAPI)
                 part.RemoveAPI(UsdPhysics.MassAPI)
+        elif any((*start, *spin)):
+            set_start(bodies[0], world_pose(bodies[0])[1], start, spin)
         return Handle(name=prim.GetName(), path=path, kind="static" if static else "body")

@@ -9,7 +9,7 @@ from pxr import Sdf, Usd
 
 from wsim.scene import schema
 from wsim.scene.limits import MAX_FRICTION
-from wsim.scene.usd_contacts import COEFFICIENTS, ends, moves, stated
+from wsim.scene.usd_contacts import COEFFICIENTS, ends, stated, tied, yields
 
 _MOST = {"friction": MAX_FRICTION, "restitution": 1.0, "rolling": 1.0}
 
@@ -27,12 +27,16 @@ def surface_problems(prim: Usd.Prim) -> Iterator[str]:
 def contact_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
     """Pairs that are none, never meet, state nothing, or are stated twice."""
     seen: dict[frozenset[Sdf.Path], Sdf.Path] = {}
-    for prim in prims:
-        if schema.has(prim, schema.CONTACT):
-            yield from _pair(prim, seen)
+    listed = list(prims)
+    pairs = [prim for prim in listed if schema.has(prim, schema.CONTACT)]
+    joints = tied(listed) if pairs else {}
+    for prim in pairs:
+        yield from _pair(prim, seen, joints)
 
 
-def _pair(prim: Usd.Prim, seen: dict[frozenset[Sdf.Path], Sdf.Path]) -> Iterator[str]:
+def _pair(
+    prim: Usd.Prim, seen: dict[frozenset[Sdf.Path], Sdf.Path], joints: dict[frozenset[Sdf.Path], Sdf.Path]
+) -> Iterator[str]:
     for name in ("first", "second"):
         relation = prim.GetRelationship(f"wsim:{name}")
         count = len(relation.GetTargets()) if relation else 0
@@ -44,8 +48,16 @@ def _pair(prim: Usd.Prim, seen: dict[frozenset[Sdf.Path], Sdf.Path]) -> Iterator
     pair = frozenset(paths)
     if paths[0].HasPrefix(paths[1]) or paths[1].HasPrefix(paths[0]):
         yield f"{prim.GetPath()}.wsim:second: <{paths[1]}> is wsim:first, or a part of it; a pair is two objects"
-    elif not any(moves(each) for each in found):
-        yield f"{prim.GetPath()}.wsim:second: <{paths[1]}> is static, as wsim:first is; they never meet"
+    elif not any(yields(each) for each in found):
+        yield (
+            f"{prim.GetPath()}.wsim:second: <{paths[1]}> is static or kinematic, as wsim:first is; no contact moves "
+            "either"
+        )
+    elif pair in joints:
+        yield (
+            f"{prim.GetPath()}: <{paths[0]}> and <{paths[1]}> never touch: the joint <{joints[pair]}> ties them; leave "
+            "the pair out"
+        )
     elif not stated(prim):
         yield f"{prim.GetPath()}: states nothing; give {', '.join(f'wsim:{name}' for name in COEFFICIENTS)}"
     elif pair in seen:

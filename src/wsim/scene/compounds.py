@@ -13,6 +13,7 @@ from wsim.defaults import BODY_DENSITY
 from wsim.geometry.rotations import matrices
 from wsim.scene.authoring import Handle, note_line, rotation, set_pose
 from wsim.scene.bodies import BodyOptions, MassProperties, finish_collider
+from wsim.scene.limits import MAX_DENSITY, MAX_MASS, MIN_DENSITY, MIN_MASS
 from wsim.scene.tracks import Tracks
 from wsim.scene.validate import Call, shown
 
@@ -130,15 +131,15 @@ class Compounds(Tracks):
         if needs is None:
             call.fail(f"{where}.shape = {shown(part.shape)} must be one of {', '.join(_SHAPES)}")
         for field in ("size", "radius", "height"):
-            given = getattr(part, field) is not None
-            if given != (field in needs):
-                call.fail(f"{where}.{field}: a {part.shape} takes {' and '.join(needs)}")
+            given = getattr(part, field)
+            if (given is not None) != (field in needs):
+                call.fail(f"{where}.{field} = {shown(given)}: a {part.shape} takes {' and '.join(needs)}")
         if part.mass is not None and part.density is not None:
-            call.fail(f"{where}: mass and density are both given; give one")
+            call.fail(f"{where}.mass = {part.mass!r} and {where}.density = {part.density!r} are both given; give one")
         if part.mass is not None:
-            call.mass(part.mass)
+            call.positive(f"{where}.mass", part.mass, MAX_MASS, "kg", low=MIN_MASS)
         if part.density is not None:
-            call.density(part.density)
+            call.positive(f"{where}.density", part.density, MAX_DENSITY, "kg/m^3", low=MIN_DENSITY)
         place = call.position(f"{where}.position", part.position)
         turn = rotation(call.angles(part.rotation_deg))
         axis = call.axis(part.axis)

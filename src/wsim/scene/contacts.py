@@ -6,7 +6,7 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.authoring import CONTACTS, Author, Handle, note_line
-from wsim.scene.usd_contacts import ends, moves, owner
+from wsim.scene.usd_contacts import ends, owner, yields
 from wsim.scene.validate import Call, shown
 
 
@@ -62,8 +62,11 @@ class Contacts(Author):
         one, other = first.GetPath(), second.GetPath()
         if one.HasPrefix(other) or other.HasPrefix(one):
             call.fail(f"a = {shown(first.GetName())}, b = {shown(second.GetName())}: a pair is two objects")
-        if not moves(first) and not moves(second):
-            call.fail(f"b = {shown(second.GetName())} is static, as a is; they never meet")
+        if not yields(first) and not yields(second):
+            call.fail(
+                f"a = {shown(first.GetName())}, b = {shown(second.GetName())}: both are static or kinematic; no "
+                "contact moves either: name a loose body"
+            )
         scope = self._stage.GetPrimAtPath(CONTACTS)
         if scope and any(set(ends(pair)) == {one, other} for pair in scope.GetChildren()):
             call.fail("the pair is stated a second time; give all its coefficients in one call")

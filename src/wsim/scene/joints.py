@@ -25,8 +25,9 @@ class Drive:
 
     A revolute joint: `position` [deg], `velocity` [deg/s], `stiffness` [N m/rad], `damping` [N m s/rad],
     `max_force` [N m]. A prismatic joint: [m], [m/s], [N/m], [N s/m], [N]. Zero is where the joint starts.
-    With a `velocity` alone give `damping` alone; with a `position` give both. A stiffness shortens the time step, and
-    one that would need less than 10 microseconds is refused.
+    With a `velocity` alone give `damping` alone; with a `position` give both. A target beyond a stop of the joint
+    presses against that stop, as a gripper does. A stiffness shortens the time step, and one that would need less than
+    10 microseconds is refused.
     """
 
     position: float = 0.0
@@ -142,9 +143,12 @@ class Joints(Author):
         *,
         anchor: Sequence[float] | None = None,
         break_force: float | None = None,
+        break_torque: None = None,
     ) -> Handle:
-        """Hold two bodies at one point, free to turn. For the arguments see `Joints`."""
+        """Hold two bodies at one point, free to turn: it bears no torque to break by. For the rest see `Joints`."""
         call = Call("joint_spherical", name)
+        if break_torque is not None:
+            call.fail(f"break_torque = {shown(break_torque)}: a ball joint bears no torque; give a break_force")
         strength = _Strength.of(call, break_force, None)
         prim = self._joint(call, UsdPhysics.SphericalJoint, parent, child, anchor, "X")
         strength.write(prim)
@@ -329,7 +333,10 @@ def _checked(call: Call, drive: Drive | None, bound: float) -> Drive | None:
     if checked.position != 0.0 and checked.stiffness == 0.0:
         call.fail(f"drive.position = {checked.position:g} needs drive.stiffness > 0")
     if checked.velocity != 0.0 and checked.damping == 0.0:
-        call.fail(f"drive.velocity = {checked.velocity:g} needs drive.damping > 0")
+        call.fail(
+            f"drive.velocity = {checked.velocity:g} needs drive.damping > 0: the force is stiffness (position - q) + "
+            "damping (velocity - q'), and without damping nothing follows a velocity"
+        )
     return checked
 
 

@@ -99,9 +99,8 @@ def _find(call: Call, file: str | Path, folder: Path | None) -> Path:
     for place in places:
         if place.is_file():
             return place
-    return call.fail(
-        f"file = {shown(str(file))} is not there; looked at {', '.join(str(p.absolute()) for p in places)}"
-    )
+    looked = dict.fromkeys(str(place.absolute()) for place in places)
+    return call.fail(f"file = {shown(str(file))} is not there; looked at {' and '.join(looked)}")
 
 
 def _factors(call: Call, scale: float | Sequence[float]) -> np.ndarray:

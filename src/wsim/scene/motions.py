@@ -17,6 +17,9 @@ from wsim.scene.validate import Call, Vec3, shown
 _MOST_SAMPLES = 5000  # of a path, for other tools
 _LARGEST_TURN = 170.0  # [deg], from key to key: of more than half a turn the way round could not be told
 
+_SAME_PLACE = 1e-6  # [m]
+_SAME_TURN = 1e-3  # [deg]
+
 
 class Motions(Author):
     """The calls that state a motion."""
@@ -36,13 +39,17 @@ class Motions(Author):
                 (1, 0, 0) on a box moves its top, its bottom and two of its sides. Zeros stop it.
 
         Raises:
-            SceneError: If there is no such object, nothing of it collides, or the velocity is out of range.
+            SceneError: If there is no such object, nothing of it collides, it has a surface velocity already, or the
+                velocity is out of range.
         """
         call = Call("surface_velocity", getattr(body, "name", body))
         prim = self._find(call, "body", body)
         speed = call.velocity(velocity)
         if not any(part.HasAPI(UsdPhysics.CollisionAPI) for part in Usd.PrimRange(prim)):
             call.fail(f'body = "{prim.GetName()}" has nothing that collides; name a solid')
+        if schema.has(prim, schema.SURFACE_VELOCITY):
+            now = tuple(prim.GetAttribute("wsim:surfaceVelocity").Get())
+            call.fail(f'body = "{prim.GetName()}" has a surface velocity already, {now} m/s; give it one')
         value = Gf.Vec3f(*speed)
         schema.apply(prim, schema.SURFACE_VELOCITY, {"surfaceVelocity": (Sdf.ValueTypeNames.Vector3f, value)})
 
@@ -58,7 +65,8 @@ class Motions(Author):
         """Let a kinematic body go through key frames, whatever it meets; it pushes, carries and stops what it meets.
 
         It is where the keys have it at their times, goes smoothly from one to the next (its velocity never jumps, and
-        it never overshoots: between two equal keys it stands still), and starts where it is at time 0.
+        it never overshoots: between two equal keys it stands still). It waits where it stands until the first key's
+        time, and the first key is where it stands.
 
         Args:
             body: Made with kinematic=True and no velocity; a handle or a name.
@@ -68,8 +76,8 @@ class Motions(Author):
             repeat: Start anew after the last key, which must then equal the first; else it holds there.
 
         Raises:
-            SceneError: If the body is not kinematic, has a path already, keys are missing or out of order, or it would
-                jump.
+            SceneError: If the body is not kinematic, has a path already, stands elsewhere than the first key, keys are
+                missing or out of order, or it would jump.
         """
         call = Call("path", getattr(body, "name", body))
         prim = self._leads(call, body)
@@ -85,6 +93,7 @@ class Motions(Author):
             here = _turns(call, _vectors(call, "rotations_deg", rotations_deg, len(when)))
         if call.flag("repeat", repeat) and (places[0] != places[-1] or abs(Gf.Dot(here[0], here[-1])) < 1.0 - 1e-9):
             call.fail(f"repeat = True, and the last key, {places[-1]}, is not the first, {places[0]}; end as it begins")
+        self._check_start(call, prim, places[0], here[0])
         turned = [[*q.GetImaginary(), q.GetReal()] for q in here]
         curve = Curve.through(when, places, turned, repeat)
         _check_speed(call, curve)
@@ -110,12 +119,32 @@ class Motions(Author):
             call.fail(f'body = "{prim.GetName()}" has a velocity, too; leave it out: the path gives it')
         return prim
 
+    @staticmethod
+    def _check_start(call: Call, prim: Usd.Prim, first: Vec3, turn: Gf.Quatd) -> None:
+        """The first key is where the body stands, which was said of it where it was made."""
+        at, now = world_pose(prim)
+        if (Gf.Vec3d(*first) - at).GetLength() > _SAME_PLACE:
+            call.fail(
+                f'positions[0] = {shown(tuple(first))} is not where "{prim.GetName()}" stands, {_short(at)} m; make it '
+                "there, or begin with that key"
+            )
+        angle = math.degrees(2.0 * math.acos(min(1.0, abs(Gf.Dot(turn, now)))))
+        if angle > _SAME_TURN:
+            call.fail(
+                f'rotations_deg[0] turns "{prim.GetName()}" by {angle:.4g} deg from how it stands; make it so, or '
+                "begin with that key"
+            )
+
     def _bake_paths(self, duration: float, rate: float) -> None:
         """Author each path as time samples of the body's transform, one a frame, which every USD tool plays."""
         for path, curve in self._paths.items():
             prim = self._stage.GetPrimAtPath(path)
             if prim:
                 _bake(prim, curve, round(duration * rate), rate)
+
+
+def _short(place: Gf.Vec3d) -> str:
+    return f"({place[0]:.6g}, {place[1]:.6g}, {place[2]:.6g})"
 
 
 def _bake(prim: Usd.Prim, curve: Curve, frames: int, rate: float) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -112,7 +112,13 @@ class Tracks(Shapes):
         stretches = _line(call, pieces, points, start, heading_deg, slope_deg)
         sections = _sections(call, profile, width, wall, thickness)
         surface = self._surface(call, material, friction, restitution, color)
-        vertices, faces, normals = _swept(call, stretches, sections)
+
+        def said(k: int) -> str:
+            if pieces is not None:
+                return f"pieces[{k}] = {shown(pieces[k])}"
+            return f"points[{k}] to points[{k + 1}]"
+
+        vertices, faces, normals = _swept(call, stretches, sections, said)
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
         set_pose(prim, (0.0, 0.0, 0.0))
@@ -134,6 +140,15 @@ def _line(
     if (pieces is None) == (points is None):
         call.fail("give pieces or points, one of them")
     if points is not None:
+        for name, given, none in (
+            ("start", tuple(start) if isinstance(start, Sequence) else start, (0.0, 0.0, 0.0)),
+            ("heading_deg", heading_deg, 0.0),
+            ("slope_deg", slope_deg, 0.0),
+        ):
+            if given != none:
+                call.fail(
+                    f"{name} = {shown(given)} beside points, which say it themselves; leave it out, or give pieces"
+                )
         return _through(call, points)
     if isinstance(pieces, (str, bytes)) or not isinstance(pieces, (Sequence, np.ndarray)) or len(pieces) == 0:
         call.fail(f'pieces = {shown(pieces)} must be a list such as [("line", 1.0), ("up", 0.5, 30.0)]')
@@ -215,7 +230,7 @@ def _sections(call: Call, profile: str, width: float, wall: float | None, thickn
 
 
 def _swept(
-    call: Call, stretches: list[Stretch], sections: list[Section]
+    call: Call, stretches: list[Stretch], sections: list[Section], said: Callable[[int], str]
 ) -> tuple[Floats, list[NDArray[np.int64]], Floats]:
     """Points, faces of four and of three corners, and the normals of their corners."""
     cells = sum(stretch.cells for stretch in stretches) * sum(len(section.corner) for section in sections)
@@ -228,11 +243,14 @@ def _swept(
         size = len(section.corner)
         rings: list[Floats] = []
         station = 0
-        for stretch in stretches:
+        for k, stretch in enumerate(stretches):
             at, onward = sweep(stretch, section.corner)
             frames = stretch.at(stretch.stations())
             if (np.einsum("nmi,ni->nm", onward, frames.along) <= 0.05).any():
-                call.fail("a bend is tighter than the track is wide there; give it a larger radius, or a smaller width")
+                call.fail(
+                    f"{said(k)}: a bend is tighter than the track is wide there, {np.ptp(section.corner[:, 0]):.4g} m; "
+                    "give it a larger radius, or a smaller width"
+                )
             rings.append(at if not rings else at[1:])
             corners, normals = _quads(section, frames, onward, first + station * size)
             quads.append(corners)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pxr import Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
-from wsim.scene.articulation import WORLD_END, body_above
+from wsim.scene.articulation import WORLD_END, body_above, is_kinematic
 
 if TYPE_CHECKING:
     from wsim.scene.world import Contact
@@ -59,6 +59,19 @@ def owner(prim: Usd.Prim) -> Usd.Prim:
     return prim
 
 
-def moves(prim: Usd.Prim) -> bool:
-    """Whether an object is a body, or holds one."""
-    return any(part.HasAPI(UsdPhysics.RigidBodyAPI) for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()))
+def yields(prim: Usd.Prim) -> bool:
+    """Whether an object is a body that contacts move, or holds one."""
+    parts = Usd.PrimRange(prim, Usd.TraverseInstanceProxies())
+    return any(part.HasAPI(UsdPhysics.RigidBodyAPI) and not is_kinematic(part) for part in parts)
+
+
+def tied(prims: Iterable[Usd.Prim]) -> dict[frozenset[Sdf.Path], Sdf.Path]:
+    """The pairs that a joint ties, which never touch, and the joint."""
+    found: dict[frozenset[Sdf.Path], Sdf.Path] = {}
+    for prim in prims:
+        if prim.IsA(UsdPhysics.Joint):
+            names = ("physics:body0", "physics:body1", "wsim:fixture")
+            targets = [path for name in names if (to := prim.GetRelationship(name)) for path in to.GetTargets()]
+            ends = frozenset(owner(body).GetPath() for path in targets if (body := prim.GetStage().GetPrimAtPath(path)))
+            found.setdefault(ends, prim.GetPath())
+    return found

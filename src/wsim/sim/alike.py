@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from wsim.scene.world import Body, Contact, Gear, Guide, Joint, Motor, Rope, Shape, Spring, World
+from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Rope, Shape, Spring, World
 
 # Numbers that each world of a batch has of its own.
 FREE: dict[type[BaseModel], frozenset[str]] = {
@@ -24,6 +24,7 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     Guide: frozenset({"position", "axis", "side"}),
     Spring: frozenset({"stiffness", "damping", "rest_length"}),
     Rope: frozenset({"length"}),
+    Fluid: frozenset({"density", "viscosity", "size", "center"}),
 }
 # Bounds that the solver has a row for: all worlds state one or none does.
 STATED: dict[type[BaseModel], frozenset[str]] = {

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.errors import UserError
 from wsim.progress import Progress, silent
 from wsim.recording.trajectories import Trajectories
+from wsim.sim.fluid_tracks import FluidTracks
+from wsim.sim.ledger_tracks import LedgerTracks
 
 if TYPE_CHECKING:
     from wsim.sim.simulation import Simulation
@@ -22,15 +23,10 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
         progress: Told after each frame.
 
     Returns:
-        The bodies of all worlds. A world whose contact buffers overflow, or whose state is not finite, is told of in
-        `problems`; the others are none the worse.
-
-    Raises:
-        UserError: If the world has a fluid: its particles are for a recording.
+        The bodies and fluids of all worlds. A world whose contact buffers overflow, whose state is not finite or whose
+        fluid is beyond sense is told of in `problems`; the others are none the worse.
     """
     world, built, rigid = simulation.world, simulation.built, simulation.rigid
-    if world.fluids:
-        raise UserError(f"{world.fluids[0].prim}: worlds with fluid are not collected; record them one by one")
     frames = round(world.duration * world.frame_rate) + 1
     worlds, bodies = max(1, simulation.model.world_count), len(world.bodies)
     time = np.zeros(frames)
@@ -39,6 +35,10 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
     force = np.zeros((worlds, frames, bodies, 3), dtype=np.float32)
     deepest = np.zeros((worlds, frames))
     scalars: dict[str, np.ndarray] = {}
+    wet = FluidTracks(simulation, simulation.fluid, time) if simulation.fluid else None
+    # What drives alone give is worked out by their law.
+    asked = simulation.fluid is not None or simulation.controlled
+    pushed = LedgerTracks(built, rigid.ledger, frames) if rigid and rigid.ledger and asked else None
     for frame in range(frames):
         if frame:
             simulation.advance_frame()
@@ -50,8 +50,13 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
             q[:, frame] = simulation.state.body_q.numpy().reshape(worlds, -1, 7)[:, built.bodies]
             qd[:, frame] = simulation.state.body_qd.numpy().reshape(worlds, -1, 6)[:, built.bodies]
             force[:, frame] = pushes[:, built.bodies]
+        if wet:
+            wet.take(frame)
+        if pushed:
+            pushed.take(frame)
         progress("simulating", frame, frames - 1)
     mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
+    problems = _problems(simulation, q, qd)
     return Trajectories(
         world=world,
         time=time,
@@ -60,10 +65,13 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
         contact_force=force,
         penetration=deepest,
         mass=mass,
-        scalars=scalars,
-        problems=_problems(simulation, q, qd),
+        scalars=scalars | (wet.scalars if wet else {}) | (pushed.scalars if pushed else {}),
+        problems=[a + b for a, b in zip(problems, wet.problems, strict=True)] if wet else problems,
         metadata=simulation.facts(),
         worlds=built.worlds if len(built.worlds) > 1 else (),
+        applied=({"wall_impulse": wet.wall_impulse} if wet else {}) | (pushed.applied if pushed else {}),
+        fluids=wet.tracks if wet else (),
+        own_metadata=[{"sph": simulation.method_of_fluid(w)} for w in range(worlds)] if wet else (),
     )
 
 

@@ -52,7 +52,7 @@ class ArrayController:
             },
         )
         if simulation.rigid and simulation.rigid.ledger:
-            simulation.rigid.ledger.retarget(dof[0], answer["joint_target"][0] - targets[target][0])
+            simulation.rigid.ledger.retarget(dof.ravel(), (answer["joint_target"] - targets[target]).ravel())
         targets[target] = answer["joint_target"]
         control.joint_target_q.assign(targets)
         forces = control.joint_f.numpy()

@@ -81,13 +81,15 @@ def pick_device(name: str, world: World, world_count: int = 1, progress: Progres
 
 
 def known_device(name: str) -> str:
-    """The Warp device of a name that is not "auto".
+    """The Warp device of a name, whatever the world; "auto" is the first CUDA device, or the CPU.
 
     Raises:
         UserError: If there is no such device.
     """
     start_warp()
     known = [str(device) for device in wp.get_devices()]
+    if name == "auto":
+        return next((device for device in known if device.startswith("cuda")), "cpu")
     if name == "cuda":
         name = "cuda:0"
     if name not in known:

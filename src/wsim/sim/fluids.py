@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,9 @@ from wsim.geometry.shapes import into, kind_of
 from wsim.scene.world import Fluid, Shape, World
 from wsim.solvers.inside import depth_in, solid_of
 from wsim.solvers.shapes import OpenBox
+from wsim.solvers.sph_config import ConfigSPH
+
+SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
 Array = np.ndarray
 Depth = Callable[[Array], Array]
@@ -55,6 +58,40 @@ def common_fluid(world: World) -> Fluid:
                     f"{first.prim}; all fluids of a world must share it"
                 )
     return first
+
+
+def sph_config(worlds: Sequence[World]) -> ConfigSPH | None:
+    """The method's settings for worlds that are simulated at once; None without a fluid.
+
+    They share the spacing, and sound is as fast as the one of them that needs it fastest has it. What each has of its
+    own is in `of_worlds`.
+    """
+    if not worlds[0].fluids:
+        return None
+    fluids = [common_fluid(world) for world in worlds]
+    sound = [
+        fluid.speed_of_sound or SOUND_OVER_SPEED * expected_speed(world)
+        for fluid, world in zip(fluids, worlds, strict=True)
+    ]
+    return ConfigSPH(
+        spacing=fluids[0].spacing,
+        rest_density=fluids[0].density,
+        # The solver takes a world's 0 for "as the method has it", so that must be 0 if one world's is.
+        viscosity=min(fluid.viscosity for fluid in fluids),
+        speed_of_sound=max(sound),
+    )
+
+
+def of_worlds(worlds: Sequence[World]) -> dict[str, list[float]]:
+    """What the solver has of each world by itself, as `SolverSPH.register_custom_attributes` names it."""
+    fluids = [common_fluid(world) for world in worlds]
+    return {"rest_density": [fluid.density for fluid in fluids], "viscosity": [fluid.viscosity for fluid in fluids]}
+
+
+def largest_step(world: World, config: ConfigSPH) -> float:
+    """The longest step that a world's fluid can take under common settings [s]."""
+    fluid = common_fluid(world)
+    return replace(config, rest_density=fluid.density, viscosity=fluid.viscosity).max_time_step
 
 
 def expected_speed(world: World) -> float:

@@ -1,4 +1,4 @@
-"""What comes into the bodies of the first world from outside: impulses and work of fluid, control and drives."""
+"""What comes into the bodies of each world from outside: impulses and work of fluid, control and drives."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from wsim.kernels.work import accumulate_control, accumulate_drive, accumulate_p
 
 @dataclass(frozen=True)
 class Entry:
-    """The sums since the last entry.
+    """The sums of W worlds since the last entry, each with its own axis first.
 
-    `impulse` (bodies, 6) [N s, N m s about the centre of mass] and `work` (bodies,) [J] are those of `State.body_f`, by
-    the model's bodies; `control` is what of the impulse is the controller's. `drives` is the work of drives and joint
-    forces [J], and `unsure` how far it may be from that; `effort` is what each degree of freedom's drive gives now
-    [N m or N].
+    `impulse` (W, bodies, 6) [N s, N m s about the centre of mass] and `work` (W, bodies) [J] are those of
+    `State.body_f`, by the model's bodies; `control` is what of the impulse is the controller's. `drives` (W,) is the
+    work of drives and joint forces [J], and `unsure` (W,) how far it may be from that; `effort` (W, dofs) is what each
+    degree of freedom's drive gives now [N m or N].
     """
 
     impulse: np.ndarray
     control: np.ndarray
     work: np.ndarray
-    drives: float
-    unsure: float
+    drives: np.ndarray
+    unsure: np.ndarray
     effort: np.ndarray
 
 
@@ -33,7 +33,7 @@ class Ledger:
     """Keeps the books of a model's bodies, step by step.
 
     Args:
-        model: The Newton model; only its first world is read.
+        model: The Newton model.
         observables: The solver's, with `qfrc_actuator` at the end of a step, where the model has drives.
 
     Attributes:
@@ -41,10 +41,10 @@ class Ledger:
     """
 
     def __init__(self, model: Any, observables: Any | None) -> None:
-        worlds = max(1, model.world_count)
+        self.worlds = max(1, model.world_count)
         self.model, self.observables = model, observables
         self.control: Any | None = None
-        self.bodies, self.dofs = model.body_count // worlds, model.joint_dof_count // worlds
+        self.bodies, self.dofs = model.body_count, model.joint_dof_count
         with wp.ScopedDevice(model.device):
             self._twist = wp.zeros(model.body_count, dtype=wp.spatial_vector)
             self._rate = wp.zeros(model.joint_dof_count, dtype=wp.float32)
@@ -95,7 +95,7 @@ class Ledger:
         """Note that drives' targets jumped between two steps, and their efforts with them.
 
         Args:
-            dofs: Degrees of freedom of the first world.
+            dofs: Degrees of freedom of the model.
             moved: By how much each target did [rad or m].
         """
         if not len(dofs) or not moved.any():
@@ -111,15 +111,19 @@ class Ledger:
         """The sums since the last call, which start anew."""
         effort = self._none if self.observables is None else self.observables.qfrc_actuator
         entry = Entry(
-            self._impulse.numpy().astype(np.float64),
-            self._controlled.numpy().astype(np.float64),
-            self._work.numpy().astype(np.float64),
-            float(self._drives.numpy().sum(dtype=np.float64)),
-            float(self._unsure.numpy().sum(dtype=np.float64)),
-            effort.numpy()[: self.dofs].astype(np.float64),
+            self._by_world(self._impulse, 6),
+            self._by_world(self._controlled, 6),
+            self._by_world(self._work),
+            self._by_world(self._drives).sum(axis=1),
+            self._by_world(self._unsure).sum(axis=1),
+            self._by_world(effort),
         )
         self._empty()
         return entry
+
+    def _by_world(self, array: Any, *each: int) -> np.ndarray:
+        found: np.ndarray = array.numpy().astype(np.float64)
+        return found.reshape(self.worlds, len(found) // self.worlds, *each)
 
     def clear(self) -> None:
         """Forget the sums, and the last effort: the run starts anew."""

@@ -1,7 +1,8 @@
-"""What is measured of a state for the recording."""
+"""What is measured of a state for a recording."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.recording import FluidFrame, Frame
 from wsim.scene.cord_paths import spring_track
-from wsim.sim.ledger import Ledger
+from wsim.sim.ledger import Entry, Ledger
 from wsim.sim.model import Built
 from wsim.sim.rigid import RigidBodies
 from wsim.solvers.solver_sph import SolverSPH
@@ -23,7 +24,10 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
     Energies [J] are relative to z = 0. The fluid's density error is relative to its rest density.
     """
     scalars: dict[str, float] = {}
-    fluids = _fluids(built, state, scalars)
+    fluids: dict[str, FluidFrame] = {}
+    if fluid:
+        fluids, told = measure_fluids(built, state, fluid, [0])[0]
+        scalars |= told
     count = len(built.bodies)
     applied: dict[str, Array] = {}
     body_q, body_qd, force = np.zeros((0, 7)), np.zeros((0, 6)), np.zeros((0, 3))
@@ -39,7 +43,9 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
         if built.world.springs:
             scalars["energy/potential_springs"] = _spring_energy(built, body_q, body_qd)
         if rigid and rigid.ledger:
-            applied = _from_outside(built, rigid.ledger, scalars)
+            entry = rigid.ledger.take()
+            scalars.update({name: float(value[0]) for name, value in drive_scalars(built, rigid.ledger, entry).items()})
+            applied = {name: value[0] for name, value in applied_of(built, rigid.ledger, entry).items()}
     scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
     parts = ("bodies", "fluid", "springs")
     scalars["energy/potential"] = sum(scalars.get(f"energy/potential_{part}", 0.0) for part in parts)
@@ -49,52 +55,61 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
         contact_force=force.astype(np.float32),
         fluids=fluids,
         scalars=scalars,
-        wall_impulse=fluid.take_wall_impulse().astype(np.float32) if fluid else None,
+        wall_impulse=fluid.take_wall_impulse()[0].astype(np.float32) if fluid else None,
         contacts=rigid.take_contacts() if rigid else None,
         ties=rigid.take_ties() if rigid else None,
         **applied,
     )
 
 
-def _from_outside(built: Built, ledger: Ledger, scalars: dict[str, float]) -> dict[str, Array]:
-    """What was applied to each body since the last frame, by the frame's field; the drives' work and efforts."""
-    entry = ledger.take()
-    scalars["work/drives"] = entry.drives
-    scalars["work/drives_unsure"] = entry.unsure
+def drive_scalars(built: Built, ledger: Ledger, entry: Entry) -> dict[str, Array]:
+    """The drives' work and how unsure it is [J], and each one's effort [N m or N], of all worlds, (W,) by name."""
+    found = {"work/drives": entry.drives, "work/drives_unsure": entry.unsure}
     if ledger.observables is not None:
         labels = [str(label) for label in built.model.joint_label]
         starts = built.model.joint_qd_start.numpy()
         for joint in built.world.joints:
             if joint.drive is not None:
                 name = "drive" + joint.prim.removeprefix("/World")
-                scalars[name] = float(entry.effort[starts[labels.index(joint.prim)]])
-    impulse = entry.impulse[built.bodies].astype(np.float32)
-    applied = {"applied_impulse": impulse[:, :3], "applied_turn": impulse[:, 3:]}
-    applied["applied_work"] = entry.work[built.bodies].astype(np.float32)
+                found[name] = entry.effort[:, starts[labels.index(joint.prim)]]
+    return found
+
+
+def applied_of(built: Built, ledger: Ledger, entry: Entry) -> dict[str, Array]:
+    """What was applied to each body of all worlds since the last entry, (W, B, ...) by a frame's field."""
+    impulse = entry.impulse[:, built.bodies].astype(np.float32)
+    applied = {"applied_impulse": impulse[..., :3], "applied_turn": impulse[..., 3:]}
+    applied["applied_work"] = entry.work[:, built.bodies].astype(np.float32)
     if ledger.control is not None:
-        applied["control_impulse"] = entry.control[built.bodies, :3].astype(np.float32)
+        applied["control_impulse"] = entry.control[:, built.bodies, :3].astype(np.float32)
     return applied
 
 
-def _fluids(built: Built, state: Any, scalars: dict[str, float]) -> dict[str, FluidFrame]:
-    if not built.fluids:
-        return {}
-    position, velocity = state.particle_q.numpy(), state.particle_qd.numpy()
-    density = built.sph.rest_density + state.sph.pressure.numpy() / built.sph.speed_of_sound**2
-    mass = built.model.particle_mass.numpy()
-    frames = {
-        prim: FluidFrame(position[part].copy(), velocity[part].copy(), density[part].copy())
-        for prim, part in built.fluids.items()
-    }
-    part = slice(0, max(s.stop for s in built.fluids.values()))
-    error = np.abs(density[part] / built.sph.rest_density - 1.0)
-    speed2 = np.einsum("ij,ij->i", velocity[part].astype(np.float64), velocity[part].astype(np.float64))
-    scalars["fluid/density_error_mean"] = float(error.mean())
-    scalars["fluid/density_error_max"] = float(error.max())
-    scalars["fluid/speed_max"] = float(np.sqrt(speed2.max()))
-    scalars["energy/kinetic_fluid"] = float(0.5 * (mass[part] * speed2).sum())
-    scalars["energy/potential_fluid"] = float(-(mass[part] * (position[part] @ np.array(built.world.gravity))).sum())
-    return frames
+def measure_fluids(
+    built: Built, state: Any, solver: SolverSPH, worlds: Sequence[int]
+) -> list[tuple[dict[str, FluidFrame], dict[str, float]]]:
+    """The particles of some worlds by fluid, and what they come to: energies [J], the largest speed [m/s], the error
+    of the density over the one at rest."""
+    q, qd, p = (array.numpy() for array in (state.particle_q, state.particle_qd, state.sph.pressure))
+    at_rest, mass = solver.rest_density.numpy(), built.model.particle_mass.numpy()
+    found = []
+    for w in worlds:
+        density = {prim: at_rest[w] + p[part] / built.sph.speed_of_sound**2 for prim, part in built.fluids[w].items()}
+        frames = {
+            prim: FluidFrame(q[part].copy(), qd[part].copy(), density[prim]) for prim, part in built.fluids[w].items()
+        }
+        part = slice(min(s.start for s in built.fluids[w].values()), max(s.stop for s in built.fluids[w].values()))
+        error = np.abs(np.concatenate(list(density.values())) / at_rest[w] - 1.0)
+        speed2 = np.einsum("ij,ij->i", qd[part].astype(np.float64), qd[part].astype(np.float64))
+        scalars = {
+            "fluid/density_error_mean": float(error.mean()),
+            "fluid/density_error_max": float(error.max()),
+            "fluid/speed_max": float(np.sqrt(speed2.max())),
+            "energy/kinetic_fluid": float(0.5 * (mass[part] * speed2).sum()),
+            "energy/potential_fluid": float(-(mass[part] * (q[part] @ np.array(built.world_of(w).gravity))).sum()),
+        }
+        found.append((frames, scalars))
+    return found
 
 
 def _spring_energy(built: Built, body_q: Array, body_qd: Array) -> float:

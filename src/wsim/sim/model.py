@@ -22,7 +22,7 @@ from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
-from wsim.sim.fluids import Seeded, common_fluid, containers_of, expected_speed, mesh_depths, seed
+from wsim.sim.fluids import Seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import differences, texts, with_numbers
 from wsim.sim.pieces import with_pieces
@@ -37,7 +37,6 @@ from wsim.solvers.surface_contacts import SurfaceParts
 forward_only()
 
 LEAST_MOMENT = 1e-15  # [kg m^2]: MuJoCo takes nothing below
-SOUND_OVER_SPEED = 10.0  # keeps the density within 1 % (Monaghan 1994)
 
 
 @dataclass(frozen=True)
@@ -45,14 +44,14 @@ class Built:
     """A Newton model, with what the solvers need to know of the stage.
 
     `worlds` is what the stage of all worlds alike, or that of each, states. `bodies[k]` is the index of
-    `world.bodies[k]` in the first world of the model; `fluids[prim]` the range of its particles in the first world;
+    `world.bodies[k]` in the first world of the model; `fluids[w][prim]` the range of its particles in world w;
     `breakable` the joints that may break, of all worlds alike or of each.
     """
 
     model: Any
     worlds: tuple[World, ...]
     bodies: np.ndarray
-    fluids: dict[str, slice]
+    fluids: tuple[dict[str, slice], ...]
     sph: Any  # SolverSPH.Config, or None without a fluid
     containers: tuple[OpenBox, ...]
     time_step: TimeStep
@@ -64,6 +63,10 @@ class Built:
     def world(self) -> World:
         """What the stage of the first world states."""
         return self.worlds[0]
+
+    def world_of(self, w: int) -> World:
+        """What the stage of world w states."""
+        return self.worlds[w % len(self.worlds)]
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,7 @@ def build_model(stage: Path, world: World, device: Any, world_count: int = 1, ti
     Raises:
         UserError: If the stage holds what the solvers cannot simulate.
     """
-    config = _sph_config(world)
+    config = sph_config([world])
     one = _import(stage, world, config)
     step = _time_step([one.world], config, time_step)
     builder = one.builder
@@ -110,7 +113,9 @@ def build_batch(
     time_step: float | None = None,
     processes: int = 1,
 ) -> Built:
-    """Import checked stages of one topology (`wsim.sim.alike`) into one Newton model, a world each, without fluid.
+    """Import checked stages of one topology (`wsim.sim.alike`) into one Newton model, a world each.
+
+    Fluids share the largest speed of sound that one of them needs.
 
     Args:
         stages: USD files, two or more.
@@ -120,17 +125,20 @@ def build_batch(
         processes: That stages are read in, side by side (`wsim.scene.usd_threads`).
 
     Raises:
-        UserError: If a stage holds what the solvers cannot simulate, or a fluid.
+        UserError: If a stage holds what the solvers cannot simulate.
         ValueError: If worlds differ in more than numbers.
     """
     check_alike(stages, worlds)
-    if worlds[0].fluids:
-        raise UserError(f"{worlds[0].fluids[0].prim}: worlds with fluid are not batched; simulate them one by one")
-    ones = list(_imports(stages, worlds, processes))  # first: a builder that was added somewhere has notes of it
+    config = sph_config(worlds)
+    # First: a builder that was added somewhere has notes of it.
+    ones = list(_imports(stages, worlds, config, processes))
     builder = _builder(worlds[0])
     for one in ones:
         builder.add_world(one.builder)
-    return _finalized(builder, ones, None, _time_step(worlds, None, time_step), device)
+    if config:
+        for name, own in of_worlds(worlds).items():
+            builder.custom_attributes[f"sph:{name}"].values = dict(enumerate(own))
+    return _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
 
 
 def _import(stage: Path, world: World, config: Any | None) -> _One:
@@ -154,39 +162,43 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     return _One(single, world, fluids, breakable, surfaces, take_cylinders(single))
 
 
-def _imports(stages: Sequence[Path], worlds: Sequence[World], processes: int) -> Iterator[_One]:
+def _imports(stages: Sequence[Path], worlds: Sequence[World], config: Any | None, processes: int) -> Iterator[_One]:
     """Each world by itself; of all but the first, forks read the numbers (`wsim.sim.numbers`).
 
     Meshes are read here: Newton may work on them on a device, which a fork does not have.
     """
-    first = _import(stages[0], worlds[0], None)
+    first = _import(stages[0], worlds[0], config)
     yield first
     solids = [*(body.shapes for body in worlds[0].bodies), *(static.shapes for static in worlds[0].statics)]
     meshes = any(shape.kind == "mesh" for shapes in solids for shape in shapes)
 
-    def numbers(k: int) -> tuple[dict[str, Any], World, list[Breakable]] | None:
+    def numbers(k: int) -> tuple[dict[str, Any], _One] | None:
         with contextlib.suppress(Exception):  # what cannot be read there is read here, which says why
-            one = _import(stages[k], worlds[k], None)
-            return differences(one.builder, first.builder, known), one.world, one.breakable
+            one = _import(stages[k], worlds[k], config)
+            return differences(one.builder, first.builder, known), replace(one, builder=None, surfaces=None)
         return None
 
     rest, count = range(1, len(stages)), 1 if meshes else forks(processes)
     if count < 2:
-        yield from (_import(stages[k], worlds[k], None) for k in rest)
+        yield from (_import(stages[k], worlds[k], config) for k in rest)
         return
     known = texts(first.builder)
     for k, found in zip(rest, shared_out(numbers, rest, count), strict=True):
         if found is None:
-            yield _import(stages[k], worlds[k], None)
+            yield _import(stages[k], worlds[k], config)
         else:
-            told, world, breakable = found
-            yield replace(first, builder=with_numbers(first.builder, told), world=world, breakable=breakable)
+            told, one = found
+            yield replace(one, builder=with_numbers(first.builder, told), surfaces=first.surfaces)
 
 
 def _time_step(worlds: Sequence[World], config: Any | None, given: float | None) -> TimeStep:
     """The shortest of those that the worlds need."""
-    limit = config.max_time_step if config else None
-    own = (choose_time_step(world, limit, world.time_step or None if given is None else given) for world in worlds)
+    own = (
+        choose_time_step(
+            world, largest_step(world, config) if config else None, world.time_step or None if given is None else given
+        )
+        for world in worlds
+    )
     return min(own, key=_length)
 
 
@@ -200,9 +212,9 @@ def _finalized(builder: Any, ones: Sequence[_One], config: Any | None, step: Tim
         model=model,
         worlds=tuple(one.world for one in ones),
         bodies=_body_indices(model, first.world),
-        fluids=first.fluids,
+        fluids=_ranges(ones, max(1, model.world_count)),
         sph=config,
-        containers=containers_of(first.world),
+        containers=_containers(ones),
         time_step=step,
         breakable=[one.breakable for one in ones],
         surfaces=first.surfaces,
@@ -232,16 +244,21 @@ def _weigh_spins(world: World) -> None:
             )
 
 
-def _sph_config(world: World) -> Any | None:
-    if not world.fluids:
-        return None
-    fluid = common_fluid(world)
-    return SolverSPH.Config(
-        spacing=fluid.spacing,
-        rest_density=fluid.density,
-        viscosity=fluid.viscosity,
-        speed_of_sound=fluid.speed_of_sound or SOUND_OVER_SPEED * expected_speed(world),
-    )
+def _ranges(ones: Sequence[_One], count: int) -> tuple[dict[str, slice], ...]:
+    """Where the particles of each fluid are in the model, of each of `count` worlds, which follow one another."""
+    found, first = [], 0
+    for k in range(count):
+        own = ones[k % len(ones)].fluids
+        found.append({prim: slice(first + part.start, first + part.stop) for prim, part in own.items()})
+        first += max((part.stop for part in own.values()), default=0)
+    return tuple(found)
+
+
+def _containers(ones: Sequence[_One]) -> tuple[OpenBox, ...]:
+    """The tanks of all worlds alike, or those of each."""
+    if len(ones) == 1:
+        return containers_of(ones[0].world)
+    return tuple(replace(box, world=k) for k, one in enumerate(ones) for box in containers_of(one.world))
 
 
 def _add_fluids(builder: Any, world: World, config: Any) -> dict[str, slice]:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 CUSTOM = "custom_attributes"
+PARTICLES = "particle_"  # lists of which a world may have more than another, as it has more water
 
 
 class OtherThanNumbersError(ValueError):
@@ -98,8 +99,12 @@ def _like(first: Any, told: Any, name: str) -> Any:
     """Plain numbers in the form that the first builder has them in."""
     if isinstance(first, ctypes.Array):
         return type(first)(*told)
+    if name.startswith(PARTICLES) and isinstance(first, list) and isinstance(told, list) and first:
+        return [_like(first[0], other, "") for other in told]
     if isinstance(first, list | tuple) and isinstance(told, list | tuple) and len(first) == len(told):
         return type(first)(_like(one, other, name) for one, other in zip(first, told, strict=True))
+    if name == f"{CUSTOM}/sph:pressure" and isinstance(told, dict):
+        return dict(told)
     if isinstance(first, dict) and isinstance(told, dict) and first.keys() == told.keys():
         return {key: _like(one, told[key], name) for key, one in first.items()}
     if type(first) is type(told) and isinstance(told, bool | int | float | str | None):

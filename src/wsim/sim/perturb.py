@@ -33,8 +33,9 @@ def perturb(built: Built, state: Any, seeds: Sequence[int]) -> None:
     _perturb_joints(built, state, seeds)
     if built.sph is not None:
         position = state.particle_q.numpy()
-        for particles, seed in zip(np.split(position, len(seeds)), seeds, strict=True):
+        for fluids, seed in zip(built.fluids, seeds, strict=True):
             if seed:
+                particles = position[min(part.start for part in fluids.values()) : max(p.stop for p in fluids.values())]
                 noise = np.random.default_rng([seed, 1]).uniform(-1.0, 1.0, particles.shape)
                 particles += (LATTICE * built.sph.spacing * noise).astype(np.float32)
         state.particle_q.assign(position)

@@ -96,10 +96,10 @@ class Pictures:
                 self._keep(camera, time, image, shares)
 
     def _fluids(self, state: State) -> dict[str, np.ndarray]:
-        if not self.built.fluids:
+        if not self.built.fluids[0]:
             return {}
         position = state.particle_q.numpy()
-        return {prim: position[part] for prim, part in self.built.fluids.items()}
+        return {prim: position[part] for prim, part in self.built.fluids[0].items()}
 
     def _shares(self, image: CameraImage) -> dict[str, float]:
         """The share of a picture that each object takes up; 0 for one that is not to be seen."""

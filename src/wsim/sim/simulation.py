@@ -69,7 +69,7 @@ class Simulation:
 
     Args:
         stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else. Several, of one topology
-            (`wsim.sim.alike`) and without fluid, are a batch of as many worlds.
+            (`wsim.sim.alike`), are a batch of as many worlds.
         device: "cpu", "cuda:0", or "auto": what is quicker for this world (`wsim.sim.devices`).
         world_count: Copies of one stage simulated at once.
         time_step: Upper bound of the step [s]; chosen from the stage by default.
@@ -148,12 +148,18 @@ class Simulation:
             self.rigid.ledger.control = self.control_force
         self._controller = controller
         self._control_every = max(1, round(control_interval / self.dt))
-        self._graph: Any = None
+        self._graphs: dict[int, Any] = {}  # by how many steps they are
+        self._asked: tuple[Any, ...] = ()
         self._warm_up()
         # What a batch of bodies costs on a CPU is the launches of its kernels, a few hundred a step. In C there are
         # none; and whether a fluid on a CPU sorts its particles anew is asked step by step.
         self._replays = not (self.device.is_cuda or self.fluid) and self.rigid is not None and not self.rigid.on_c
         progress("compiling kernels", 3, 3)
+
+    @property
+    def controlled(self) -> bool:
+        """Whether a controller drives joints and pushes bodies."""
+        return self._controller is not None
 
     def _warm_up(self) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""
@@ -170,8 +176,7 @@ class Simulation:
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
-        if self._controller is not None and self.step_count % self._control_every == 0:
-            self._controller(self.time, self)
+        self._until_control()
         if self._replays:
             wp.capture_launch(self._captured(1))
         else:
@@ -188,17 +193,33 @@ class Simulation:
             self.rigid.step(self.state, self.state, self.control, self.dt)
 
     def advance_frame(self) -> None:
-        """Advance by one recorded frame; on CUDA its steps are captured in a graph once and replayed."""
+        """Advance by one recorded frame.
+
+        On CUDA its steps are captured in a graph once and replayed; with a controller, those between two of its calls.
+        """
         if self.rigid and self.rigid.alone and not self.fluid and self._controller is None:
             self.state.clear_forces()
             self.rigid.steps(self.state, self.control, self.dt, self.substeps)
             self._count(self.substeps)
-        elif self.device.is_cuda and self._controller is None:
-            wp.capture_launch(self._captured(self.substeps))
-            self._count(self.substeps)
+        elif self.device.is_cuda:
+            left = self.substeps
+            while left:
+                steps = min(left, self._until_control())
+                wp.capture_launch(self._captured(steps))
+                self._count(steps)
+                left -= steps
         else:
             for _ in range(self.substeps):
                 self.step()
+
+    def _until_control(self) -> int:
+        """Steps until the controller is asked again; it is, if its turn is now."""
+        if self._controller is None:
+            return self.substeps
+        past = self.step_count % self._control_every
+        if past == 0:
+            self._controller(self.time, self)
+        return self._control_every - past
 
     def _count(self, steps: int) -> None:
         self.step_count += steps
@@ -206,22 +227,22 @@ class Simulation:
 
     def _captured(self, steps: int) -> Any:
         """A graph of some steps as they are asked for now."""
-        asked = (steps, self.state, self.control, self.dt, self._controller is None)
-        if self._graph is None or self._graph[0] != asked:
+        asked = (self.state, self.control, self.dt, self._controller is None)
+        if self._asked != asked:
+            self._graphs.clear()
+            self._asked = asked
+        if steps not in self._graphs:
             with wp.ScopedCapture(self.device) as capture:
                 for _ in range(steps):
                     self._push_and_move()
-            self._graph = asked, capture.graph
-        return self._graph[1]
+            self._graphs[steps] = capture.graph
+        return self._graphs[steps]
 
     def problems(self) -> list[str]:
         """What went wrong so far: non-finite states, buffer overflows, solver warnings."""
         found = self.rigid.problems() if self.rigid else []
         if self.fluid:
-            try:
-                self.fluid.check(self.state)
-            except RuntimeError as error:
-                found.append(str(error))
+            found += filter(None, self.fluid.faults(self.state))
         arrays = {"body_q": self.state.body_q, "body_qd": self.state.body_qd, "particle_q": self.state.particle_q}
         for name, array in arrays.items():
             if array is not None and not np.isfinite(array.numpy()).all():
@@ -256,7 +277,7 @@ class Simulation:
         problems: list[str] = []
         if self.rigid:
             self.rigid.keep_contacts()
-            self._graph = None  # a step sums them from here on
+            self._graphs.clear()  # a step sums them from here on
         with ExitStack() as stack:
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
             pictures = None
@@ -326,18 +347,19 @@ class Simulation:
             "loose_order": 2,  # of the steps of bodies that gravity and contacts alone move
             "time_step_reason": self.built.time_step.reason,
             "particles": self.model.particle_count,
-            "controlled": self._controller is not None,
+            "controlled": self.controlled,
             "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
-            "sph": self._method_of_fluid(),
+            "sph": self.method_of_fluid(0),
             "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},
         }
 
-    def _method_of_fluid(self) -> dict[str, Any] | None:
-        """What, beside the fluids' own numbers, their push on bodies follows from; None without them."""
+    def method_of_fluid(self, w: int) -> dict[str, Any] | None:
+        """What, beside the fluids' own numbers, their push on bodies of world w follows from; None without them."""
         config = self.built.sph
         if config is None or self.fluid is None:
             return None
-        counts = np.diff(self.fluid.body_first.numpy())[self.built.bodies].tolist()
+        worlds = max(1, self.model.world_count)
+        counts = np.diff(self.fluid.body_first.numpy()).reshape(worlds, -1)[w, self.built.bodies].tolist()
         return {
             "smoothing_length": config.smoothing_length,
             "artificial_viscosity": config.artificial_viscosity,

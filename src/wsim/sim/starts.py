@@ -9,7 +9,8 @@ import newton
 import numpy as np
 
 from wsim.errors import UserError
-from wsim.scene.world import Body, World
+from wsim.geometry.rotations import rotate
+from wsim.scene.world import Body, Vec3, World
 
 Array = np.ndarray
 QUIET = 1e-3  # weight of standing still where nothing is said of a body's motion
@@ -47,6 +48,38 @@ def start_joints(model: Any, worlds: Sequence[World], bodies: Array, state: Any)
         for body, velocity in zip(world.bodies, velocities, strict=True):
             if body.prim in jointed and not body.kinematic and _moves(body):
                 _check(body, velocity)
+        _check_held(world, dict(zip((body.prim for body in world.bodies), velocities, strict=True)))
+
+
+def _check_held(world: World, velocities: dict[str, Array]) -> None:
+    """Refuse starts that a joint which may break would undo in its first step: it is a constraint, no tree's joint."""
+    bodies = {body.prim: body for body in world.bodies}
+    for joint in world.joints:
+        ends = [(joint.parent, joint.parent_anchor), (joint.child, joint.child_anchor)]
+        if not joint.may_break or any(end and bodies[end].kinematic for end, _ in ends):
+            continue
+        one, other = (_at(bodies[end], anchor, velocities[end]) if end else np.zeros(6) for end, anchor in ends)
+        apart, limit = other - one, CLOSE * max(float(np.linalg.norm(each)) for each in (one, other))
+        if joint.kind == "revolute":  # which turns about its axis
+            body = bodies[joint.child]
+            axis = rotate(
+                np.array(body.rotation), rotate(np.array(joint.child_turn), np.eye(3)["XYZ".index(joint.axis)])
+            )
+            apart[3:] -= (apart[3:] @ axis) * axis
+        elif joint.kind == "spherical":
+            apart[3:] = 0.0
+        if np.linalg.norm(apart) > limit:
+            way, turn = (tuple(round(float(x), 4) + 0.0 for x in part) for part in (apart[:3], apart[3:]))
+            raise UserError(
+                f"{joint.prim}: what it holds together starts apart, at {way} m/s and {turn} rad/s; give {joint.child} "
+                f"the velocity of {joint.parent or 'the world'} there, or leave the joint out"
+            )
+
+
+def _at(body: Body, anchor: Vec3 | None, velocity: Array) -> Array:
+    """The velocity of a point of a body, given in its frame, and its spin, (6,)."""
+    arm = rotate(np.array(body.rotation), np.array(anchor or body.com) - np.array(body.com))
+    return np.concatenate([velocity[:3] + np.cross(velocity[3:], arm), velocity[3:]])
 
 
 def _speeds(world: World, jointed: set[str], response: Array) -> Array:

@@ -65,8 +65,8 @@ class Stills:
 
     def draw_start(self) -> list[Still]:
         """The world as the stage states it, one still a camera."""
-        particles = self._state.particle_q.numpy() if self._built.fluids else np.zeros((0, 3))
-        return self._draw(0.0, {prim: particles[part] for prim, part in self._built.fluids.items()})
+        particles = self._state.particle_q.numpy() if self._built.fluids[0] else np.zeros((0, 3))
+        return self._draw(0.0, {prim: particles[part] for prim, part in self._built.fluids[0].items()})
 
     def draw(self, recording: Recording, time: float) -> list[Still]:
         """The world as a recording of it has it at its frame nearest to a time [s], one still a camera.

@@ -121,7 +121,6 @@ class SolverSPH(SolverBase):
         """Fill the solids with particles, and bring walls and worlds into order."""
         model = self.model
         place, world = model.particle_q.numpy(), np.maximum(model.particle_world.numpy(), 0)
-        self._first_world = int(np.count_nonzero(world == 0))  # Newton's worlds follow one another
         solids = sample_boundary(model, self.config, containers, place, world)
         fixed = int(solids.body_first[0])
         self.wall_count, self.body_particle_count = fixed, len(solids.local) - fixed
@@ -158,16 +157,19 @@ class SolverSPH(SolverBase):
         self.lane_wrench = wp.zeros((self.model.body_count, self.lanes), dtype=wp.spatial_vector)
         self.body_wrench = wp.zeros(self.model.body_count, dtype=wp.spatial_vector)
         self._on_walls = wp.zeros(self.fluid_count if self.wall_count else 0, dtype=wp.vec3)
-        self._wall_lanes = wp.zeros(max(LEAST_LANES, math.isqrt(self._first_world)), dtype=wp.vec3d)
-        self._wall_impulse = wp.zeros(1, dtype=wp.vec3d)
+        first = self.search.fluid.world_first  # Newton's worlds follow one another
+        own = [max(LEAST_LANES, math.isqrt(count)) for count in np.diff(first).tolist()]
+        self._world_first, self._lanes_of_walls = wp.array(first, dtype=int), wp.array(own, dtype=int)
+        self._wall_lanes = wp.zeros((self.world_count, max(own)), dtype=wp.vec3d)
+        self._wall_impulse = wp.zeros(self.world_count, dtype=wp.vec3d)
 
     def reset_search(self) -> None:
         """Forget the neighbour lists; for a state that did not come from the last step."""
         self.search.stale = True
 
     def take_wall_impulse(self) -> np.ndarray:
-        """Impulse that the fluid of the first world gave to all that stands still since the last call, (3,) [N s]."""
-        impulse: np.ndarray = self._wall_impulse.numpy()[0].astype(np.float64)
+        """Impulse that each world's fluid gave to all that stands still since the last call, (W, 3) [N s]."""
+        impulse: np.ndarray = self._wall_impulse.numpy().astype(np.float64)
         self._wall_impulse.zero_()
         return impulse
 
@@ -183,30 +185,58 @@ class SolverSPH(SolverBase):
         Raises:
             RuntimeError: If a value is not finite, a particle is faster than sound, or a neighbour list overflowed.
         """
+        broken, speeds, outside = self._inspected(state)
+        fault = next(filter(None, self._faults(broken, speeds)), None)
+        if fault:
+            raise RuntimeError(fault)
+        return int(outside.sum())
+
+    def faults(self, state: newton.State) -> list[str]:
+        """What makes each world's fluid worthless, (W,) texts; empty where it is sound. The others are as they are."""
+        broken, speeds, _ = self._inspected(state)
+        return self._faults(broken, speeds)
+
+    def _inspected(self, state: newton.State) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of each world the first particle that is not finite, the largest speed [m/s], and how many are outside."""
         with wp.ScopedDevice(self.model.device):
-            broken = wp.full(1, self.fluid_count, dtype=int)
-            fastest2, outside = wp.zeros(1, dtype=float), wp.zeros(1, dtype=int)
+            broken = wp.full(self.world_count, self.fluid_count, dtype=int)
+            fastest2, outside = wp.zeros(self.world_count, dtype=float), wp.zeros(self.world_count, dtype=int)
             wp.launch(
                 inspect,
                 dim=self.fluid_count,
-                inputs=[self.search.grid, state.particle_q, state.particle_qd, state.sph.pressure],
+                inputs=[
+                    self.search.grid,
+                    self.search.fluid.world,
+                    state.particle_q,
+                    state.particle_qd,
+                    state.sph.pressure,
+                ],
                 outputs=[broken, fastest2, outside],
             )
-        particle, speed = int(broken.numpy()[0]), math.sqrt(float(fastest2.numpy()[0]))
-        if particle < self.fluid_count:
-            world = int(self.search.fluid.world.numpy()[particle])
-            raise RuntimeError(
-                f"SolverSPH: fluid particle {particle} of world {world} is not finite; "
-                "use a smaller time step or a higher speed of sound"
-            )
-        if speed > self.config.speed_of_sound:
-            raise RuntimeError(
-                f"SolverSPH: a fluid particle moves at {speed:.4g} m/s, faster than sound at "
-                f"speed_of_sound = {self.config.speed_of_sound:.4g} m/s: the fluid is not nearly incompressible; "
-                "use a speed of sound ten times the largest expected speed"
-            )
-        self.search.check()
-        return int(outside.numpy()[0])
+        return broken.numpy(), np.sqrt(fastest2.numpy()), outside.numpy()
+
+    def _faults(self, broken: np.ndarray, speeds: np.ndarray) -> list[str]:
+        sound, room, found = self.config.speed_of_sound, self.search.fluid.species.capacity, []
+        for world, (particle, speed, most) in enumerate(zip(broken, speeds, self.search.crowd(), strict=True)):
+            told = ""
+            if particle < self.fluid_count:
+                told = (
+                    f"SolverSPH: fluid particle {particle} of world {world} is not finite; "
+                    "use a smaller time step or a higher speed of sound"
+                )
+            elif speed > sound:
+                told = (
+                    f"SolverSPH: a fluid particle moves at {speed:.4g} m/s, faster than sound at speed_of_sound = "
+                    f"{sound:.4g} m/s: the fluid is not nearly incompressible; use a speed of sound ten times the "
+                    "largest expected speed"
+                )
+            elif most:
+                told = (
+                    f"SolverSPH: {most} neighbours where {room} fit: the fluid has collapsed; "
+                    "use a smaller time step or a higher speed of sound"
+                )
+            found.append(told)
+        return found
 
     def bodies_outside(self, state: newton.State) -> list[int]:
         """Bodies whose origin is beside or below the domain, which spans the fluid's start and its tanks."""
@@ -341,13 +371,13 @@ class SolverSPH(SolverBase):
         if self.wall_count:
             wp.launch(
                 boundary_kernels.sum_wall_lanes,
-                dim=len(self._wall_lanes),
-                inputs=[self._on_walls, self._first_world],
+                dim=self._wall_lanes.shape,
+                inputs=[self._on_walls, self._world_first, self._lanes_of_walls],
                 outputs=[self._wall_lanes],
             )
             wp.launch(
                 boundary_kernels.add_wall_impulse,
-                dim=1,
+                dim=self.world_count,
                 inputs=[self._wall_lanes, dt],
                 outputs=[self._wall_impulse],
             )

@@ -71,18 +71,14 @@ class ParticleSearch:
         if self.cuda:
             self.walls.mark(wall_position)
         self.stale = True
-        self.overflow = wp.zeros(1, dtype=int)
+        self.overflow = wp.zeros(world_count, dtype=int)
         self.point_at_build = [wp.zeros(0 if self.cuda else kind.count, dtype=wp.vec4) for kind in self.moving]
         self.move2 = wp.zeros(world_count, dtype=float)
 
-    def check(self) -> None:
-        """Raise RuntimeError if a neighbour list has overflowed: the fluid was compressed beyond sense."""
-        most = int(self.overflow.numpy()[0])
-        if most:
-            raise RuntimeError(
-                f"SolverSPH: {most} neighbours where {self.fluid.species.capacity} fit: the fluid has collapsed; "
-                "use a smaller time step or a higher speed of sound"
-            )
+    def crowd(self) -> np.ndarray:
+        """The most neighbours that found no room in a list of each world, (W,): a fluid that collapsed."""
+        most: np.ndarray = self.overflow.numpy()
+        return most
 
     def update(self, fluid_position: wp.array, body_position: wp.array, gather: Callable[[], None]) -> None:
         """Bring the particles into order.
@@ -126,6 +122,7 @@ class ParticleSearch:
 
     def _list(self, world: int) -> None:
         """Find the neighbours of one world's particles."""
+        overflow = self.overflow[world : world + 1]
         fluid, walls, bodies = self.fluid.species, self.walls.species, self.bodies.species
         first, last = self.fluid.world_first[world : world + 2]
         launch_shared(
@@ -133,7 +130,7 @@ class ParticleSearch:
             dim=last - first,
             first=first,
             inputs=[self.grid, walls, bodies],
-            outputs=[fluid, self.overflow],
+            outputs=[fluid, overflow],
         )
         for kind in self.solid:
             first, last = kind.world_first[world : world + 2]
@@ -142,7 +139,7 @@ class ParticleSearch:
                 dim=last - first,
                 first=first,
                 inputs=[self.grid, fluid],
-                outputs=[kind.species, self.overflow],
+                outputs=[kind.species, overflow],
             )
         for kind, point_at_build in zip(self.moving, self.point_at_build, strict=True):
             first, last = kind.world_first[world : world + 2]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from wsim.forks import shared_out
 from wsim.judge.worlds import verdicts_of
-from wsim.runs.simulation import is_controlled
+from wsim.memory import free_memory
+from wsim.runs.simulation import is_controlled, open_controller
 from wsim.scene.describe import describe
 from wsim.scene.usd_threads import forks
 from wsim.sim import Simulation
@@ -16,12 +18,15 @@ from wsim.sim.alike import alike
 from wsim.sim.collect import collect
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from wsim.judge.verdict import Verdict
     from wsim.plan.schema import Plan
     from wsim.runs.iteration import Iteration
     from wsim.scene.world import World
     from wsim.sweep.candidate import Candidate
 
+BYTES_OF_A_PARTICLE = 28  # seven numbers in single precision
 NO_ROOM = ("out of memory", "failed to allocate", "memory allocation")
 
 
@@ -37,23 +42,40 @@ class Member:
 def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: int = 1) -> list[list[Member]]:
     """Those that can be simulated together, at most so many at a time; who must go alone is in none.
 
-    A program with a `control` is asked world by world, and worlds with fluid are not batched.
+    A program with a `control` goes with its own kind: that may be another for each program, and knows no parameters. Of
+    worlds with fluid there are no more to a batch than fit, with all that their particles do, into half of the memory
+    that is free.
 
     Args:
         built: Candidates that have a stage.
         most: Worlds of a batch.
         processes: That stages are read in, side by side.
     """
-    controlled = {program: is_controlled(program) for program in {iteration.program for _, iteration in built}}
-    free = [each for each in built if not controlled[each[1].program]]
-    worlds = shared_out(describe, [iteration.stage for _, iteration in free], forks(processes))
-    members = [Member(*each, world) for each, world in zip(free, worlds, strict=True)]
-    dry = [member for member in members if not member.world.fluids and member.world.bodies]
-    found = []
-    for group in alike([member.world for member in dry]):
-        own = [dry[k] for k in group]
-        found += [own[first : first + most] for first in range(0, len(own), most)]
+    worlds = shared_out(describe, [iteration.stage for _, iteration in built], forks(processes))
+    members = [Member(*each, world) for each, world in zip(built, worlds, strict=True)]
+    moving = [member for member in members if member.world.fluids or member.world.bodies]
+    found, room = [], free_memory() / 2
+    for kind in _by_control(moving):
+        for group in alike([member.world for member in kind]):
+            own = [kind[k] for k in group]
+            size = max(1, min(most, int(room / max(1, *(bytes_of_particles(member.world) for member in own)))))
+            found += [own[first : first + size] for first in range(0, len(own), size)]
     return [batch for batch in found if len(batch) > 1]
+
+
+def _by_control(members: Sequence[Member]) -> list[list[Member]]:
+    """Those that nothing controls, and those of each program that has a `control`."""
+    controlled = {program: is_controlled(program) for program in {member.iteration.program for member in members}}
+    kinds: dict[Path | None, list[Member]] = {}
+    for member in members:
+        kinds.setdefault(member.iteration.program if controlled[member.iteration.program] else None, []).append(member)
+    return list(kinds.values())
+
+
+def bytes_of_particles(world: World) -> float:
+    """What the places, velocities and densities of a world's fluids take through all of its frames."""
+    count = sum(math.prod(fluid.size) / fluid.spacing**3 for fluid in world.fluids)
+    return count * (world.duration * world.frame_rate + 1.0) * BYTES_OF_A_PARTICLE
 
 
 def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> list[Verdict]:
@@ -69,15 +91,17 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
     """
     settings = batch[0].iteration.settings
     try:
-        simulation = Simulation(
-            [member.iteration.stage for member in batch],
-            device=settings.device,
-            time_step=settings.time_step,
-            seeds=[member.candidate.seed for member in batch],
-            worlds=[member.world for member in batch],
-            processes=processes,
-        )
-        worlds = collect(simulation)
+        with open_controller(batch[0].iteration.program, batch[0].world, settings, len(batch)) as controller:
+            simulation = Simulation(
+                [member.iteration.stage for member in batch],
+                device=settings.device,
+                time_step=settings.time_step,
+                controller=controller,
+                seeds=[member.candidate.seed for member in batch],
+                worlds=[member.world for member in batch],
+                processes=processes,
+            )
+            worlds = collect(simulation)
     except (MemoryError, RuntimeError) as error:
         if len(batch) < 2 or not _is_no_room(error):
             raise

@@ -14,6 +14,7 @@ from wsim.errors import UserError
 from wsim.judge.verdict import Verdict, status_of, unjudged
 from wsim.plan.store import load
 from wsim.program import sandbox
+from wsim.program.control import ControlError
 from wsim.runs.iteration import Iteration, no_world
 from wsim.runs.settings import Settings
 from wsim.sweep.batch import Member, batches, verdicts
@@ -34,7 +35,7 @@ VARIED = (
     "CheckPlanJoints",
     "CheckPlanMotion",
 )
-FAILURES = (ValueError, RuntimeError, LookupError, ArithmeticError, MemoryError, OSError, UserError)
+FAILURES = (ValueError, RuntimeError, LookupError, ArithmeticError, MemoryError, OSError, UserError, ControlError)
 
 
 @dataclass(frozen=True)

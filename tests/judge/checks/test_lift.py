@@ -10,8 +10,11 @@ from tests.judge.theory import G, ask, box, only, slab, with_world
 from wsim.judge.books.lift import Surroundings, rising
 from wsim.judge.checks.lift import CheckLift
 from wsim.judge.evidence.evidence import Evidence
+from wsim.recording import read
 from wsim.recording.recording import FluidTrack, Recording
+from wsim.scene import Scene
 from wsim.scene.world import Container, Fluid, World
+from wsim.sim import Simulation
 
 SPACING, LEVEL, INNER, SOUND = 0.02, 0.3, (0.6, 0.4, 0.5), 30.0
 EDGES = (0.12, 0.08, 0.1)
@@ -103,6 +106,18 @@ def test_a_lift_that_no_particle_feels(said):
 @pytest.mark.parametrize("said", [0.93, 1.0, 1.07])
 def test_what_particles_do_not_resolve_is_let_pass(said):
     assert only(ask(CheckLift(), immersed(said=said))).passed
+
+
+@pytest.mark.parametrize("density", [600.0, 700.0])
+def test_half_a_second_of_bobbing_is_too_short_to_be_sure(tmp_path, density):
+    """A block let go two centimetres too deep: by sound in the water some frames in a row say half as much again."""
+    scene = Scene()
+    scene.simulation(duration=0.5)
+    tank = scene.tank("tank", inner_size=(0.3, 0.3, 0.4), position=(0, 0, 0))
+    scene.fluid("water", fills=tank, level=0.13, spacing=0.025)
+    scene.box("block", size=(0.12,) * 3, density=density, position=(0, 0, 0.19 - 0.12 * density / 1000.0))
+    Simulation(scene.save(tmp_path / "stage.usda"), device="cpu").run(tmp_path / "r.rrd")
+    assert only(ask(CheckLift(), read(tmp_path / "r.rrd"))).passed
 
 
 def test_a_body_on_or_near_the_floor_is_not_asked():

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import stdtrit
 
 from wsim.judge.books.fluids import fluid_impulse
 from wsim.judge.books.lift import Surroundings
@@ -36,7 +37,7 @@ class CheckLift(Check):
     # make up to 0.42 too much in 12 s, growing slowly to 0.57 there, and up to 0.21 too little.
     high: float = 0.6
     low: float = 0.4
-    errors: float = 2.0  # standard errors of the mean, from how the intervals scatter
+    sure: float = 0.95  # of the mean, from how the intervals scatter (Student's t)
     least: int = 4  # intervals
     most: int = 60  # of a body that are looked at
     spilled: float = 0.001  # share of the particles, beyond which what is left in the tank is not a whole pool
@@ -68,10 +69,11 @@ class CheckLift(Check):
         rows, felt = np.array(list(lifts)), np.array(list(lifts.values()))
         off, time = given[rows] - felt, evidence.track(fluid).time
         area = float(np.prod(2.0 * np.array([about.column(i, k).half for k in rows]).mean(axis=0)))
-        # Waves make errors last: as many are independent as there are times sqrt(H / g) in the span.
+        # Waves, of sound too, make errors last: as many are independent as there are times sqrt(H / g) in the span.
         span = float(np.diff(time)[rows].sum())
-        alike = min(1.0, math.sqrt(fluid.size[2] / evidence.gravity) / span)
-        noise = self.errors * float(off.std()) * math.sqrt(max(alike, 1.0 / len(rows)))
+        many = max(2.0, min(span / math.sqrt(fluid.size[2] / evidence.gravity), float(len(rows))))
+        spread = float(off.std()) * math.sqrt(many / (many - 1.0))
+        noise = float(stdtrit(many - 1.0, 0.5 + 0.5 * self.sure)) * spread / math.sqrt(many)
         layer = fluid.spacing * fluid.density * evidence.gravity * area
         said, told = float(given[rows].mean()), float(felt.mean())
         body, start, end = evidence.world.bodies[i], float(time[rows[0]]), float(time[rows[-1] + 1])
@@ -81,7 +83,7 @@ class CheckLift(Check):
             said, (told - self.low * layer - noise, told + self.high * layer + noise), "N", told, prim=body.prim,
             time=end, span=(start, end),
             limit_from=f"the fluid's momentum about it; {self.high:g} spacing of fluid over its area more, "
-            f"{self.low:g} less, as far as particles tell levels, and {self.errors:g} standard errors of the mean",
+            f"{self.low:g} less, as far as particles tell levels, and how sure the mean is, to {self.sure:.0%}",
             target=RepairTarget(
                 kind="program", prim=body.prim, direction="change",
                 why="something lifts it in the fluid's name that no particle feels",

@@ -175,34 +175,37 @@ def sum_body_lanes(
 def sum_wall_lanes(
     # Data in:
     force: wp.array(dtype=wp.vec3),
-    count: int,
+    world_first: wp.array(dtype=int),  # first particle of each world, and past the last one's
+    lanes: wp.array(dtype=int),  # that each world has
     # Data out:
-    lane_force: wp.array(dtype=wp.vec3d),
+    lane_force: wp.array2d(dtype=wp.vec3d),
 ):
-    """Each lane adds up every n-th of the first `count` particles' forces on the walls.
+    """Each of a world's n lanes adds up every n-th of its particles' forces on the walls.
 
     In double precision: what presses on the walls of a tank is many times what is left of it in sum.
     """
-    lane = wp.tid()
+    world, lane = wp.tid()
     total = wp.vec3d()
-    for i in range(lane, count, lane_force.shape[0]):
-        total += wp.vec3d(force[i])
-    lane_force[lane] = total
+    if lane < lanes[world]:
+        for i in range(world_first[world] + lane, world_first[world + 1], lanes[world]):
+            total += wp.vec3d(force[i])
+    lane_force[world, lane] = total
 
 
 @wp.kernel(enable_backward=False)
 def add_wall_impulse(
     # Data in:
-    lane_force: wp.array(dtype=wp.vec3d),
+    lane_force: wp.array2d(dtype=wp.vec3d),
     dt: float,
     # Data out:
     impulse: wp.array(dtype=wp.vec3d),
 ):
-    """Add the lanes' force over a step to the impulse on the walls [N s]."""
+    """Add the lanes' force over a step to the impulse on each world's walls [N s]."""
+    world = wp.tid()
     total = wp.vec3d()
-    for lane in range(lane_force.shape[0]):
-        total += lane_force[lane]
-    impulse[0] = impulse[0] + wp.float64(dt) * total
+    for lane in range(lane_force.shape[1]):
+        total += lane_force[world, lane]
+    impulse[world] = impulse[world] + wp.float64(dt) * total
 
 
 @wp.kernel(enable_backward=False)

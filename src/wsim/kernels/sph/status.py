@@ -1,4 +1,4 @@
-"""What went wrong, found on the device: one pass over the fluid, a few numbers out."""
+"""What went wrong, found on the device: one pass over the fluid, a few numbers of each world out."""
 
 import warp as wp
 
@@ -9,6 +9,7 @@ from wsim.kernels.sph.grid import Grid
 def inspect(
     # Data in:
     grid: Grid,
+    particle_world: wp.array(dtype=int),
     position: wp.array(dtype=wp.vec3),
     velocity: wp.array(dtype=wp.vec3),
     pressure: wp.array(dtype=float),
@@ -17,21 +18,22 @@ def inspect(
     fastest2: wp.array(dtype=float),
     outside: wp.array(dtype=int),
 ):
-    """First particle that is not finite, how many have left the grid, and the largest squared speed of the others.
+    """Of each world the first particle that is not finite, how many have left the grid, the others' largest speed².
 
     What has left the grid may fall for as long as it likes.
     """
     i = wp.tid()
+    world = particle_world[i]
     x = position[i]
     v = velocity[i]
     speed2 = wp.dot(v, v)
     if not wp.isfinite(wp.dot(x, x) + speed2 + pressure[i]):
-        wp.atomic_min(first_not_finite, 0, i)
+        wp.atomic_min(first_not_finite, world, i)
         return
     for axis in range(3):
         k = wp.floor((x[axis] - grid.offset[axis]) * grid.inv_cell[axis]) - float(grid.first[axis])
         if grid.reach[axis] > 0 and (k < 0.0 or k >= float(grid.count[axis])):
-            wp.atomic_add(outside, 0, 1)
+            wp.atomic_add(outside, world, 1)
             return
-    if speed2 > fastest2[0]:
-        wp.atomic_max(fastest2, 0, speed2)
+    if speed2 > fastest2[world]:
+        wp.atomic_max(fastest2, world, speed2)

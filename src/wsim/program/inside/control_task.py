@@ -7,7 +7,7 @@ import os
 import traceback
 from typing import Any
 
-from wsim.program.control_world import ControlLayout, ControlWorld
+from wsim.program.control_world import ControlLayout
 from wsim.program.inside.load import explain, function, load
 
 
@@ -17,12 +17,13 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     arrays = layout.views(mmap.mmap(job["memory_fd"], layout.size))
     program, ask, answer = job["program"], job["ask_fd"], job["answer_fd"]
     try:
-        call = function(load(program), "control", "world, t")
-        world = ControlWorld(layout, arrays)
+        worlds = layout.worlds(arrays)
+        calls = [(function(load(program), "control", "world, t"), world) for world in worlds]
         time = arrays["t"]
         os.write(answer, b"r")
         while os.read(ask, 1):
-            call(world, float(time[0]))
+            for call, world in calls:
+                call(world, float(time[0]))
             os.write(answer, b"d")
     except BaseException as error:  # noqa: BLE001 - whatever a program raises is a finding
         traceback.clear_frames(error.__traceback__)
