@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT)] if str(ROOT) not in sys.path else []
 
 from benchmarks.rigid_cases.case import Bench, Case, Curve  # noqa: E402
-from wsim.sim.devices import pick_device  # noqa: E402
+from wsim.sim.devices import known_device  # noqa: E402
 
 FOLDER = "benchmarks.rigid_cases"
 DOCUMENT = ROOT / "docs/rigid.md"
@@ -176,7 +176,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--plot", nargs="?", const=PICTURES, type=Path, metavar="FOLDER",
                         help="draw a picture of each case, on sheets in docs/images; needs matplotlib")  # fmt: skip
     args = parser.parse_args(arguments)
-    device, runs = pick_device(args.device), []
+    device, runs = known_device(args.device), []
     for case in find_cases(args.cases):
         runs.append(run_case(case, device, args.worlds))
         print_row(runs[-1])

@@ -23,7 +23,7 @@ import numpy as np
 
 from wsim.scene import Scene
 from wsim.sim import Simulation
-from wsim.sim.devices import pick_device
+from wsim.sim.devices import known_device
 
 Array = np.ndarray
 G, STEP = 9.81, 1e-3
@@ -166,7 +166,7 @@ def main(arguments: list[str] | None = None) -> int:
     args = parser.parse_args(arguments)
     if args.write and len(args.tests) < len(TESTS):
         parser.error("--write: the table is of all tests; leave out --tests")
-    device, measured = pick_device(args.device), {}
+    device, measured = known_device(args.device), {}
     for name in args.tests:
         started = time.perf_counter()
         measured[name] = TESTS[name](device)

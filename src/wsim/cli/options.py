@@ -13,7 +13,7 @@ from wsim.errors import UserError
 
 EXIT_CODES = {"accepted": 0, "rejected": 1, "blocked": 3}
 
-Device = Annotated[str, typer.Option("--device", help="auto (CUDA where there is any), cpu, cuda:0, …")]
+Device = Annotated[str, typer.Option("--device", help="auto (what is quicker for the world), cpu, cuda:0, …")]
 Runs = Annotated[Path, typer.Option("--runs", help="Folder that the run's folder goes into.")]
 Isolation = Annotated[
     str, typer.Option("--isolation", help="Sandbox of the program: auto, bubblewrap, landlock, or none (trust it).")

@@ -87,8 +87,8 @@ def sweep(
         if method not in get_args(Method):
             raise UserError(f"--method {method}: expected sobol, latin, random, grid, saltelli or cma")
         choose(isolation)
-        if device != "cpu":
-            sim.pick_device(device)
+        if device not in ("auto", "cpu"):
+            sim.known_device(device)
         spec = Spec(
             method=method,
             samples=samples,

@@ -13,8 +13,8 @@ from wsim.judge.verdict import Finding, RepairTarget, Verdict, status_of, unjudg
 from wsim.program.bare import bare
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.runs.iteration import Iteration
-from wsim.runs.settings import Settings
 from wsim.runs.trajectory import Trajectory
+from wsim.scene.describe import describe
 
 
 def accept(run: RunFolder, iteration: Iteration, earlier: Trajectory | None = None) -> Verdict:
@@ -53,7 +53,7 @@ def _confirmed(run: RunFolder, iteration: Iteration, folder: Path, earlier: Traj
             return verdict
         second = Trajectory.of(again.recording)
     apart = first.distance(second)
-    found = _reproduced(apart, exact=_on_cpu(iteration.settings))
+    found = _reproduced(apart, exact=_on_cpu(iteration))
     if verdict.status != "accepted" or not found.passed:
         findings = [*verdict.findings, found]
         failed = sum(not finding.passed for finding in findings)
@@ -82,5 +82,5 @@ def _reproduced(apart: float, exact: bool) -> Finding:
     )
 
 
-def _on_cpu(settings: Settings) -> bool:
-    return sim.pick_device(settings.device) == "cpu"
+def _on_cpu(iteration: Iteration) -> bool:
+    return sim.pick_device(iteration.settings.device, describe(iteration.stage)) == "cpu"

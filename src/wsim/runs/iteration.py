@@ -23,6 +23,7 @@ from wsim.runs.folder import write_json, write_whole
 from wsim.runs.settings import Settings
 from wsim.runs.simulation import is_controlled, open_simulation
 from wsim.runs.verify import Verification
+from wsim.scene.describe import describe
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -175,7 +176,8 @@ class Iteration:
         def again(stage: Path, time_step: float | None, seeds: Sequence[int]) -> AbstractContextManager[Simulation]:
             return open_simulation(stage, program, replace(settings, time_step=time_step), progress, seeds)
 
-        side_by_side = sim.pick_device(settings.device).startswith("cuda") and not is_controlled(program)
+        on_cuda = sim.pick_device(settings.device, describe(self.stage)).startswith("cuda")
+        side_by_side = on_cuda and not is_controlled(program)
         return Verification(self.folder, self.plan, again, side_by_side, settings.time_step, progress)
 
 

@@ -35,4 +35,4 @@ class Settings:
         """
         choose(self.isolation)
         if self.device not in ("auto", "cpu"):
-            sim.pick_device(self.device)
+            sim.known_device(self.device)

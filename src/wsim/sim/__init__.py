@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from wsim.door import door
 
 if TYPE_CHECKING:
-    from wsim.sim.devices import pick_device, start_warp
+    from wsim.sim.devices import known_device, pick_device, start_warp
     from wsim.sim.simulation import Simulation, SimulationResult
     from wsim.sim.stills import Stills, cameras_of
 
-__all__ = ["Simulation", "SimulationResult", "Stills", "cameras_of", "pick_device", "start_warp"]
+__all__ = ["Simulation", "SimulationResult", "Stills", "cameras_of", "known_device", "pick_device", "start_warp"]
 
 __getattr__ = door(
     __name__,
@@ -20,6 +20,7 @@ __getattr__ = door(
         "SimulationResult": "simulation",
         "Stills": "stills",
         "cameras_of": "stills",
+        "known_device": "devices",
         "pick_device": "devices",
         "start_warp": "devices",
     },

@@ -70,7 +70,7 @@ class Simulation:
     Args:
         stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else. Several, of one topology
             (`wsim.sim.alike`), are a batch of as many worlds.
-        device: "cpu", "cuda:0", or "auto": CUDA where there is any.
+        device: "cpu", "cuda:0", or "auto": what is quicker for this world (`wsim.sim.devices`).
         world_count: Copies of one stage simulated at once.
         time_step: Upper bound of the step [s]; chosen from the stage by default.
         controller: Called every `control_interval` seconds.
@@ -112,12 +112,12 @@ class Simulation:
             raise ValueError(f"seeds: {len(seeds)} were given for {world_count} worlds; give one for each")
         progress("compiling kernels", 0, 3)
         self.stage = stages[0]
-        self.device = wp.get_device(pick_device(device))
+        described = worlds or [describe(each) for each in stages]
+        self.device = wp.get_device(pick_device(device, described[0], world_count, progress))
         if len(stages) > 1:
-            described = worlds or [describe(each) for each in stages]
             self.built = build_batch(stages, described, self.device, time_step, processes)
         else:
-            self.built = build_model(self.stage, describe(self.stage), self.device, world_count, time_step)
+            self.built = build_model(self.stage, described[0], self.device, world_count, time_step)
         self.world: World = self.built.world
         self.model = self.built.model
         self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps

@@ -56,7 +56,7 @@ class Stills:
     ) -> None:
         world = describe(Path(stage))
         self.world = world if camera is None else world.model_copy(update={"cameras": [camera]})
-        self._built = build_model(Path(stage), self.world, pick_device(device))
+        self._built = build_model(Path(stage), self.world, pick_device(device, world))
         model = self._built.model
         self._state = model.state()
         newton.eval_fk(model, self._state.joint_q, self._state.joint_qd, self._state)
