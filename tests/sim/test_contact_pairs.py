@@ -122,7 +122,7 @@ def test_two_round_bodies_roll_by_both_radii(simulate):
 
     def build(scene):
         _ball(scene, rolling_friction=0.05)
-        scene.sphere("other", radius=R, mass=2.0, position=(0, 0, 3 * R), static=True)
+        scene.sphere("other", radius=R, position=(0, 0, 3 * R), static=True)
         scene.box("slab", size=(1, 1, 0.1), position=(2, 0, 0), static=True)
 
     *_, simulation = simulate(build, 0.0)
