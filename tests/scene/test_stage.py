@@ -9,6 +9,7 @@ from pxr import Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import Scene, SceneError
 from wsim.scene.check import check_stage
+from wsim.scene.describe import describe
 
 
 def test_stage_states_units_axis_and_default_prim(stage_path: Path) -> None:
@@ -176,3 +177,16 @@ def test_joint_trees_have_one_articulation_root_and_loops_are_cut() -> None:
         if p.IsA(UsdPhysics.Joint) and UsdPhysics.Joint(p).GetExcludeFromArticulationAttr().Get()
     ]
     assert cut == ["loop"]
+
+
+def test_what_is_saved_again_is_what_is_read(tmp_path):
+    """While somebody still holds the first stage open, too: USD keeps its layers by path."""
+    path = tmp_path / "world.usda"
+    held = []
+    for size in (0.2, 0.5):
+        scene = Scene()
+        scene.box("crate", size=(size,) * 3, position=(0, 0, 1))
+        scene.save(path)
+        held.append(Usd.Stage.Open(str(path)))
+    assert describe(path).bodies[0].shapes[0].size == pytest.approx((0.5, 0.5, 0.5))
+    assert held[0].GetPrimAtPath("/World/crate")

@@ -165,6 +165,10 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         self._bake_paths(self._duration, self._frame_rate)
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)
+        # USD hands out a layer that is still open under a path as it was, whatever the file says by now.
+        opened = Sdf.Layer.Find(str(target)) or Sdf.Layer.Find(str(target.absolute()))
+        if opened:
+            opened.Reload(True)
         return target
 
     def _author_run(self, step: float | None, seed: int | None) -> None:
