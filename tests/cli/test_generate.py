@@ -120,6 +120,17 @@ def test_a_parameter_that_the_program_lacks_is_named_with_those_it_has(wsim, flo
     assert not ended.runs.exists()
 
 
+def test_a_program_that_builds_with_the_value_alone_is_run(wsim, tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(
+        "def build(scene):\n"
+        "    scene.simulation(duration=0.1)\n"
+        "    edge = scene.param('edge', 0.0, low=0.0, high=1.0)\n"
+        "    scene.box('crate', size=(edge, edge, edge), position=(0, 0, 1))\n"
+    )
+    ended = wsim("run", "program.py", "--set", "edge=0.2", "--no-pictures", "--device", "cpu")
+    assert ended.code == 0, ended.err + ended.out
+
+
 def test_a_plan_that_is_none_is_said_in_one_line(wsim, tmp_path: Path) -> None:
     (tmp_path / "plan.json").write_text('{"title": 1}')
     ended = wsim("generate", "--plan", "plan.json", "--yes")

@@ -18,6 +18,8 @@ from wsim.judge.verdict import RepairTarget
 from wsim.loop.generate import generate
 from wsim.loop.options import Generated, Options
 from wsim.loop.replay import replay
+from wsim.loop.side_by_side import side_by_side
+from wsim.runs.iteration import Iteration
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +79,36 @@ def test_no_more_are_tried_than_the_budget_leaves(tmp_path: Path, monkeypatch: p
     assert done.verdict is not None
     assert done.verdict.status == "blocked"
     assert len(done.run.iterations()) == 3
+
+
+def test_a_coder_that_gives_up_leaves_what_it_gave_and_a_note(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    server = Server()
+    server.script |= {"planner": [text(GOOD_PLAN)], "coder": [text(lasts(0.4)), text("CANNOT: nothing else would do.")]}
+    monkeypatch.setenv("XDG_CACHE_HOME", apart(tmp_path / "cache"))
+    done = generate(PROMPT, tmp_path / "runs", Options(settings=SETTINGS, models=alone(server), candidates=3))
+    server.close()
+    assert done.verdict is not None
+    assert done.verdict.status == "accepted", done.verdict.summary
+    (note,) = done.run.facts()["notes"]
+    assert note.startswith("1 patches were tried side by side and not 3")
+    assert "nothing else would do" in note
+
+
+def test_what_is_not_done_in_time_is_blocked_and_the_others_go_on(tmp_path: Path) -> None:
+    made = []
+    for name, seconds in (("01", 0.05), ("02", 600.0)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "program.py").write_text(
+            "def build(scene):\n"
+            f"    scene.simulation(duration={seconds})\n"
+            "    scene.ground()\n"
+            "    scene.box('crate', size=(1, 1, 1), position=(0, 0, 0.5), density=500.0)\n"
+        )
+        made.append(Iteration(tmp_path / name, None, SETTINGS))
+    quick, slow = side_by_side(made, 25.0)
+    assert quick.verdict.status == "accepted", quick.verdict.summary
+    assert slow.verdict.status == "blocked"
+    assert "took more than 25 s" in slow.verdict.summary
 
 
 def test_steps_go_the_way_of_the_suggestion() -> None:

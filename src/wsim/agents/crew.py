@@ -134,14 +134,13 @@ class Crew:
             self.skills[number] = [skill.name for skill in coder.pick(situation)]
             try:
                 found = coder.repair(self.desk, situation, plan, self.workspace)
-            except (ModelError, BudgetError):
-                if made:
-                    break
-                raise
-            if not found.program:
-                if made:
-                    break
-                raise ModelError("gave up", found.why, "coder")
+                if not found.program:
+                    raise ModelError("gave up", found.why, "coder")
+            except (ModelError, BudgetError) as error:
+                if not made:
+                    raise
+                self.notes.append(f"{len(made)} patches were tried side by side and not {count}: {error}")
+                break
             self.reasons[number] = found.why
             self.tried[found.program] = number
             made[found.program] = found.why

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 from typing import Annotated
 
@@ -16,6 +17,7 @@ from wsim.plan.store import load
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.runs.named import named
 from wsim.runs.settings import Settings
+from wsim.scene.world import Parameter
 from wsim.sweep.declared import check, parameters_of
 
 
@@ -54,8 +56,11 @@ def run(
         build_memory=int(memory * 2**30),
     )
     settings.check()
+    known: dict[str, Parameter] = {}
     if settings.params:
-        known = {parameter.name: parameter for parameter in parameters_of(program, isolation)}
+        with contextlib.suppress(UserError):  # it may build with these values alone; if not, its verdict says why
+            known = {parameter.name: parameter for parameter in parameters_of(program, isolation)}
+    if known:
         for name, value in settings.params.items():
             check(name, [], known, f"--set {name}={value:g}")  # a range bounds a search, and no user
     folder = RunFolder.create(runs, chosen.title if chosen and target.is_dir() else program.stem)

@@ -66,6 +66,7 @@ class Verbs(TyperGroup):
         try:
             sys.exit(run(args, prog_name, complete_var, False, windows_expand_args, **extra) or 0)
         except typer.Abort:
+            print("wsim: stopped", file=sys.stderr)
             sys.exit(1)
         except TyperException as error:
             context = getattr(error, "ctx", None)

@@ -90,7 +90,7 @@ class Making:
         iterations = [self._iteration(program) for program in programs]
         if len(iterations) == 1:
             return [self._through(iterations[0])]
-        tried = side_by_side(iterations, self.crew.workspace.progress)
+        tried = side_by_side(iterations, self.crew.desk.ledger.seconds_left, self.crew.workspace.progress)
         best = max(range(len(tried)), key=lambda k: tried[k].rank)
         tried[best] = self._through(iterations[best])
         return sorted(tried, key=lambda one: one.rank, reverse=True)

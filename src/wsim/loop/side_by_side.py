@@ -12,21 +12,20 @@ from wsim.runs.attempt import Attempt, Reached, attempt
 from wsim.runs.iteration import Iteration
 from wsim.sweep.pool import Lost, Pool
 
-PATIENCE = 1800.0  # [s] that one may take
 
-
-def side_by_side(iterations: Sequence[Iteration], progress: Progress = silent) -> list[Attempt]:
+def side_by_side(iterations: Sequence[Iteration], seconds: float, progress: Progress = silent) -> list[Attempt]:
     """Each iteration's attempt without pictures, in the iterations' order; what they find is in their folders.
 
-    A patch that kills its process, or takes longer than `PATIENCE`, is blocked, and the others go on.
+    A patch that kills its process, or is not done when the time is over, is blocked, and the others go on.
 
     Args:
         iterations: Folders with a program each.
+        seconds: That are left for all of them [s].
         progress: Told how many are done.
     """
     found: dict[str, Attempt] = {}
     tasks = [replace(each, progress=silent) for each in iterations]
-    pool: Pool[Iteration, Attempt] = Pool(physics_of, min(len(tasks), len(os.sched_getaffinity(0))), _patience)
+    pool: Pool[Iteration, Attempt] = Pool(physics_of, min(len(tasks), len(os.sched_getaffinity(0))), lambda _: seconds)
     progress("patches side by side", 0, len(tasks))
     for task, result in pool.run(tasks):
         found[task.folder.name] = _lost(task, result) if isinstance(result, Lost) else result
@@ -40,10 +39,6 @@ def physics_of(iteration: Iteration) -> Attempt:
     tried = attempt(replace(iteration, settings=quick))
     tried.reached = min(tried.reached, Reached.PHYSICS)
     return tried
-
-
-def _patience(_: Iteration) -> float:
-    return PATIENCE
 
 
 def _lost(iteration: Iteration, lost: Lost) -> Attempt:

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 import shlex
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from wsim.judge.evidence.evidence import Evidence
@@ -28,6 +26,7 @@ from wsim.report.media import MOST_VIDEO_BYTES, Picture, find_moment, find_refer
 from wsim.report.moments import moment_chart
 from wsim.report.plots import make_charts
 from wsim.report.source import SourceLine, source_lines, statement
+from wsim.report.templates import source, template
 from wsim.runs.folder import write_whole
 
 STATUS_WORDS = {"accepted": "Accepted", "rejected": "Rejected", "blocked": "Blocked"}
@@ -78,14 +77,7 @@ def write(run_dir: str | Path, most_video_bytes: int = MOST_VIDEO_BYTES) -> Path
 
 def render(values: dict[str, Any]) -> str:
     """The template with its values."""
-
-    def source(name: str) -> str:
-        return files("wsim.report").joinpath(name).read_text(encoding="utf-8")
-
-    environment = Environment(
-        loader=FunctionLoader(source), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    return environment.get_template("template.html").render(style=Markup(source("style.css")), text=text, **values)
+    return template("template.html").render(style=Markup(source("style.css")), text=text, **values)
 
 
 def context(contents: RunContents, most_video_bytes: int) -> dict[str, Any]:

@@ -8,11 +8,9 @@ import shlex
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from wsim.plan.store import load
@@ -21,6 +19,7 @@ from wsim.report.media import Picture, find_stills
 from wsim.report.numbers import number
 from wsim.report.page import write as write_run
 from wsim.report.sweep_charts import draw
+from wsim.report.templates import source, template
 from wsim.runs.folder import write_whole
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import ORDER, Outcome
@@ -63,16 +62,9 @@ def write(folder: SweepFolder) -> Path:
 
 def render(values: dict[str, Any]) -> str:
     """The template with its values. The one script, which sorts the table, is allowed by its hash: no other runs."""
-
-    def source(name: str) -> str:
-        return files("wsim.report").joinpath(name).read_text(encoding="utf-8")
-
-    environment = Environment(
-        loader=FunctionLoader(source), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
     script = source("sort.js")
     digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
-    return environment.get_template("sweep.html").render(
+    return template("sweep.html").render(
         style=Markup(source("style.css") + source("sweep.css")),
         script=Markup(script),
         digest=digest,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import lengths
-from wsim.judge.evidence.motion import FLOAT32
+from wsim.judge.evidence.motion import FLOAT32, OURS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,7 +47,7 @@ def turned_over(evidence: Evidence, sinks: Floats) -> Floats:
     As those of the simulator do at a start; what it does again and again adds up, and is a gain. None where a
     recording does not say that steps are of both orders.
     """
-    orders = evidence.recording.metadata.get("loose_order") == 2
+    orders = evidence.recording.metadata.get(OURS) == 2
     return np.asarray(np.abs(sinks).max(axis=0) * latest(evidence) * orders)
 
 
