@@ -26,7 +26,7 @@ def scene():
         (("a", "b"), {"stiffness": 0.0}, "would do nothing; give one of them"),
         (("a", "b"), {"stiffness": float("nan")}, "stiffness = nan must be finite"),
         (("a", "a"), {"stiffness": 1.0}, 'a = b = "a": its ends need two bodies'),
-        (("wall", None), {"stiffness": 1.0, "anchor_b": (0, 0, 0)}, "neither a nor b is a body that moves"),
+        (("wall", None), {"stiffness": 1.0, "anchor_b": (0, 0, 0)}, "neither a nor b is a body that it could move"),
         ((None, "b"), {"stiffness": 1.0}, "a = None is the world; give anchor_a"),
         (("a", "far"), {"stiffness": 1.0}, "its ends are 500 m apart; at most 100 m"),
         (("a", "b"), {"stiffness": 1.0, "rest_length": 0.05}, "rest_length = 0.05 m, and its ends are 1 m apart"),

@@ -78,7 +78,7 @@ REFUSED: dict[str, tuple[Build, str]] = {
     ),
     "part's mass twice": (
         lambda s: s.compound("tool", parts=[Part("sphere", radius=0.1, mass=1.0, density=2.0)]),
-        "parts[0].mass = 1.0 and parts[0].density = 2.0",
+        "parts[0].mass = 1.0 and density = 2.0",
     ),
     "part's weight": (
         lambda s: s.compound("tool", parts=[Part("sphere", radius=0.1, mass=-1.0)]),

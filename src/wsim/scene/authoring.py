@@ -66,6 +66,8 @@ class Author:
             path = what if what.startswith("/") else f"{WORLD}/{what}"
         else:
             call.fail(f"{field} = {shown(what)} must be what a call returned, or its name")
+        if path in ("/", WORLD):
+            call.fail(f"{field} = {shown(what)} is the whole world; name an object in it")
         prim = self._stage.GetPrimAtPath(path) if Sdf.Path.IsValidPathString(path) else None
         if not prim:
             name = path.rsplit("/", 1)[-1]

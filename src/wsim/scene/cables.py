@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -72,14 +72,13 @@ class Cables(Fluids, Cords):
         call = Call("cable", name)
         self._path(call)
         thick = call.size("radius", radius)
-        if isinstance(through, (str, bytes)) or not isinstance(through, Iterable):
-            call.fail(f"through = {shown(through)} must be points (x, y, z) in m, in a list")
+        listed = call.listed("through", through, "points (x, y, z) in m, in a list")
         if call.flag("loose", loose) and b is not None:
             call.fail(f"b = {shown(b)} and loose=True: an end that is tied to something is not loose")
         if loose and anchor_b is None:
             call.fail("loose=True needs anchor_b, where the loose end is at the start [m]")
         ends = self._ends(call, a, b, anchor_a, anchor_b, still=True)
-        between = [Gf.Vec3d(*call.position(f"through[{k}]", point)) for k, point in enumerate(through)]
+        between = [Gf.Vec3d(*call.position(f"through[{k}]", point)) for k, point in enumerate(listed)]
         way = np.array([ends[0].point, *between, ends[1].point], dtype=np.float64)
         points = self._laid(call, way, length, links, thick)
         mass = (

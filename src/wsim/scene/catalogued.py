@@ -8,7 +8,7 @@ from pxr import Sdf, Usd, UsdPhysics
 
 from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose, world_pose
 from wsim.scene.bodies import set_start
-from wsim.scene.validate import Call
+from wsim.scene.validate import Call, shown
 
 _HERE = (0.0, 0.0, 0.0)
 
@@ -46,11 +46,14 @@ class Catalogued(Author):
 
         call = Call("asset", name)
         path = self._path(call)
+        if not isinstance(id, str):
+            call.fail(f"id = {shown(id)} must be the name of an asset")
         try:
             entry = get(id)
         except AssetError as error:
-            call.fail(str(error))
-        if static and entry.articulated:
+            call.fail(f"id: {error}")
+        turn = rotation(call.angles(rotation_deg))
+        if call.flag("static", static) and entry.articulated:
             call.fail(f"static = True on {id!r}, whose parts move on a joint; leave it out")
         place, start = call.position("position", position), call.velocity(velocity)
         spin = call.spin(angular_velocity_deg)
@@ -61,7 +64,6 @@ class Catalogued(Author):
         layer = Sdf.Layer.OpenAsAnonymous(str(entry.path))
         Sdf.CopySpec(layer, Sdf.Path(f"/{layer.defaultPrim}"), self._stage.GetRootLayer(), Sdf.Path(path))
         prim = self._stage.GetPrimAtPath(path)
-        turn = rotation(call.angles(rotation_deg))
         set_pose(prim, place, turn)
         bodies = [part for part in Usd.PrimRange(prim) if part.HasAPI(UsdPhysics.RigidBodyAPI)]
         for part in {prim, *bodies}:

@@ -11,6 +11,7 @@ from wsim.geometry.ropes import path_length, strayed
 from wsim.scene import schema
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
 from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
+from wsim.scene.usd_contacts import yields
 from wsim.scene.world import Guide, Rope, Spring
 
 
@@ -25,8 +26,8 @@ def cord_problems(prim: Usd.Prim) -> Iterator[str]:
         return
     rope = schema.has(prim, schema.ROPE)
     cord = read_rope(prim) if rope else read_spring(prim)
-    if cord.path[0].body is None and cord.path[-1].body is None:
-        yield f"{path}: neither wsim:a nor wsim:b is a body that moves"
+    if not any(end.body and yields(prim.GetStage().GetPrimAtPath(end.body)) for end in (cord.path[0], cord.path[-1])):
+        yield f"{path}: neither wsim:a nor wsim:b is a body that it could move: each is static or kinematic"
     elif cord.path[0].body == cord.path[-1].body:
         yield f"{path}.wsim:b: <{cord.path[0].body}> is at its other end, too"
     elif not 0.0 < cord.radius <= MAX_SIZE:

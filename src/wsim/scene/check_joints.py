@@ -8,11 +8,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pxr import Sdf, Usd, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
-from wsim.scene.articulation import dry_friction, geared_joints, is_kinematic, joint_ends, joints_of, may_break
+from wsim.scene.articulation import (
+    body_frame,
+    dry_friction,
+    geared_joints,
+    is_kinematic,
+    joint_ends,
+    joints_of,
+    may_break,
+)
 from wsim.scene.gears import contradicts, meshes_of
+from wsim.scene.limits import SHORTEST_WAY
 from wsim.scene.spanning import WORLD_END
 
 _CLOSING = (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)
@@ -38,6 +47,7 @@ def joint_problems(stage: Usd.Stage) -> Iterator[str]:
     for joint in closing:
         yield from _constraint(joint, joint.GetPath() in geared)
     yield from _roots(tree, stage)
+    yield from _welded(stage)
     for prim in stage.Traverse():
         if schema.has(prim, schema.GEAR):
             yield from _gear(prim)
@@ -55,6 +65,9 @@ def _numbers(joint: UsdPhysics.Joint) -> Iterator[str]:
         yield f"{joint.GetPath()}.newton:friction: {friction:g} must be finite and >= 0"
     if friction > 0.0 and not any(joint.GetPrim().IsA(kind) for kind in _ONE_FREEDOM):
         yield f"{joint.GetPath()}.newton:friction: a revolute or a prismatic joint can rub, not this one"
+    low, high = (_limit(joint.GetPrim(), end) for end in ("lower", "upper"))
+    if low is not None and high is not None and not high - low >= SHORTEST_WAY:
+        yield f"{joint.GetPath()}.physics:upperLimit: {high:g} must be above lowerLimit = {low:g}; or use a fixed joint"
     for attribute in (joint.GetBreakForceAttr(), joint.GetBreakTorqueAttr()):
         if not attribute.Get() > 0.0:
             yield f"{attribute.GetPath()}: {attribute.Get():g} must be > 0; inf never breaks"
@@ -99,14 +112,59 @@ def _constraint(joint: UsdPhysics.Joint, geared: bool) -> Iterator[str]:
 
 def _needs(prim: Usd.Prim, geared: bool) -> str:
     """What a joint has that needs a coordinate."""
-    ends = [prim.GetAttribute(f"physics:{end}Limit") for end in ("lower", "upper")]
     has = {
         "drive": prim.HasAPI(UsdPhysics.DriveAPI, "angular"),
-        "limits": any(end and math.isfinite(end.Get()) for end in ends),
+        "limits": any(_limit(prim, end) is not None for end in ("lower", "upper")),
         "friction": dry_friction(prim) > 0.0,
         "gear": geared,
     }
     return next((what for what, there in has.items() if there), "")
+
+
+def _limit(prim: Usd.Prim, end: str) -> float | None:
+    """Where a joint stops, [m] or [deg]; None where it does not."""
+    attribute = prim.GetAttribute(f"physics:{end}Limit")
+    value = attribute.Get() if attribute else None
+    return value if value is not None and math.isfinite(value) else None
+
+
+def _welded(stage: Usd.Stage) -> Iterator[str]:
+    """Bodies that fixed joints hold to two things which go different ways, and which none of them can move."""
+    at: dict[Sdf.Path, Sdf.Path] = {}
+
+    def top(path: Sdf.Path) -> Sdf.Path:
+        while at.get(path, path) != path:
+            path = at[path]
+        return path
+
+    for joint in joints_of(stage):
+        if not joint.GetPrim().IsA(UsdPhysics.FixedJoint) or may_break(joint):
+            continue
+        parent, child = (top(end) for end in joint_ends(joint))
+        if parent == WORLD_END or is_kinematic(stage.GetPrimAtPath(parent)):
+            parent, child = child, parent
+        leads = [path for path in (parent, child) if path == WORLD_END or is_kinematic(stage.GetPrimAtPath(path))]
+        if len(leads) == 2 and parent != child and _way(stage, parent) != _way(stage, child):
+            names = " and ".join("the world" if path == WORLD_END else f"<{path}>" for path in leads)
+            yield (
+                f"{joint.GetPath()}: fixed joints hold {names} together, of which neither gives way; leave this one "
+                "out, or give it a physics:breakForce"
+            )
+        at[parent] = child
+
+
+def _way(stage: Usd.Stage, path: Sdf.Path) -> object:
+    """What says how something goes that no joint moves; None where it stays."""
+    if path == WORLD_END:
+        return None
+    prim = stage.GetPrimAtPath(path)
+    body = UsdPhysics.RigidBodyAPI(prim)
+    spin = tuple(body.GetAngularVelocityAttr().Get() or ())
+    if any(spin) or schema.has(prim, schema.PATH):
+        return path  # which nothing else goes as well
+    frame = body_frame(prim)
+    velocity = tuple(round(x, 6) for x in frame.TransformDir(Gf.Vec3d(body.GetVelocityAttr().Get() or Gf.Vec3d())))
+    return velocity if any(velocity) else None
 
 
 def _gear(prim: Usd.Prim) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,6 @@ from wsim.defaults import BODY_DENSITY
 from wsim.geometry.rotations import matrices
 from wsim.scene.authoring import Handle, note_line, rotation, set_pose
 from wsim.scene.bodies import BodyOptions, MassProperties, finish_collider
-from wsim.scene.limits import MAX_DENSITY, MAX_MASS, MIN_DENSITY, MIN_MASS
 from wsim.scene.tracks import Tracks
 from wsim.scene.validate import Call, shown
 
@@ -83,7 +82,8 @@ class Compounds(Tracks):
         """
         call = Call("compound", name)
         listed = _listed(call, parts)
-        made = [self._part_geometry(call, k, part) for k, part in enumerate(listed)]
+        each = [replace(call, part=f"parts[{k}].") for k in range(len(listed))]
+        made = [self._part_geometry(one, part) for one, part in zip(each, listed, strict=True)]
         options = BodyOptions(
             position,
             rotation_deg,
@@ -103,7 +103,10 @@ class Compounds(Tracks):
         from wsim.scene.usd_shapes import read_shape, solid
 
         path, start = self._path(call), self._start(call, options)
-        surfaces = [self._surface(call, p.material, p.friction, p.restitution, p.color) for p in listed]
+        surfaces = [
+            self._surface(one, p.material, p.friction, p.restitution, p.color)
+            for one, p in zip(each, listed, strict=True)
+        ]
         densities = [surface.density or BODY_DENSITY for surface in surfaces]
 
         def author() -> MassProperties:
@@ -115,37 +118,34 @@ class Compounds(Tracks):
                 frame = UsdGeom.Xformable(self._stage.GetPrimAtPath(path)).ComputeLocalToWorldTransform(0)
                 shape = read_shape(gprim.GetPrim(), frame)
                 assert shape is not None
-                each = solid(shape)
-                weights.append(part.mass if part.mass is not None else (part.density or densities[k]) * each.volume)
+                body = solid(shape)
+                weights.append(part.mass if part.mass is not None else (part.density or densities[k]) * body.volume)
                 turn = matrices(np.array(shape.rotation))
-                inertia = turn @ each.inertia @ turn.T * (weights[-1] / each.volume)
-                solids.append((np.array(shape.position) + turn @ each.com, inertia))
+                inertia = turn @ body.inertia @ turn.T * (weights[-1] / body.volume)
+                solids.append((np.array(shape.position) + turn @ body.com, inertia))
             return _together(np.array(weights, dtype=np.float64), solids, whole)
 
         return self._body_of(call, start, path, author)
 
-    def _part_geometry(self, call: Call, k: int, part: Part) -> Callable[[str], UsdGeom.Gprim]:
+    def _part_geometry(self, call: Call, part: Part) -> Callable[[str], UsdGeom.Gprim]:
         """What defines a part's Gprim at a path; all numbers are checked now."""
-        where = f"parts[{k}]"
-        needs = _SHAPES.get(part.shape) if isinstance(part.shape, str) else None
-        if needs is None:
-            call.fail(f"{where}.shape = {shown(part.shape)} must be one of {', '.join(_SHAPES)}")
+        needs = _SHAPES[call.one_of("shape", part.shape, _SHAPES)]
         for field in ("size", "radius", "height"):
             given = getattr(part, field)
             if (given is not None) != (field in needs):
-                call.fail(f"{where}.{field} = {shown(given)}: a {part.shape} takes {' and '.join(needs)}")
+                call.fail(f"{field} = {shown(given)}: a {part.shape} takes {' and '.join(needs)}")
         if part.mass is not None and part.density is not None:
-            call.fail(f"{where}.mass = {part.mass!r} and {where}.density = {part.density!r} are both given; give one")
+            call.fail(f"mass = {part.mass!r} and density = {part.density!r} are both given; give one")
         if part.mass is not None:
-            call.positive(f"{where}.mass", part.mass, MAX_MASS, "kg", low=MIN_MASS)
+            call.mass(part.mass)
         if part.density is not None:
-            call.positive(f"{where}.density", part.density, MAX_DENSITY, "kg/m^3", low=MIN_DENSITY)
-        place = call.position(f"{where}.position", part.position)
+            call.density(part.density)
+        place = call.position("position", part.position)
         turn = rotation(call.angles(part.rotation_deg))
         axis = call.axis(part.axis)
-        edges = call.sizes(f"{where}.size", part.size) if part.shape == "box" else None
-        radius = None if part.radius is None else call.size(f"{where}.radius", part.radius)
-        height = None if part.height is None else call.size(f"{where}.height", part.height)
+        edges = call.sizes("size", part.size) if part.shape == "box" else None
+        radius = None if part.radius is None else call.size("radius", part.radius)
+        height = None if part.height is None else call.size("height", part.height)
 
         def geometry(path: str) -> UsdGeom.Gprim:
             if edges is not None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdGeom
 
 from wsim.geometry.ropes import path_length
 from wsim.scene import schema
@@ -13,6 +13,7 @@ from wsim.scene.articulation import body_frame
 from wsim.scene.authoring import Handle, note_line, world_pose
 from wsim.scene.joints import Joints
 from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
+from wsim.scene.usd_contacts import yields
 from wsim.scene.validate import Call, Vec3, shown
 
 Around = Sequence[Handle | str | tuple[Handle | str, str | Sequence[float]]]
@@ -123,9 +124,8 @@ class Cords(Joints):
         ends = self._ends(call, a, b, anchor_a, anchor_b)
         drawn = call.size("radius", radius)
         look = HEMP if color is None else call.color("color", color)
-        if isinstance(around, (str, bytes)) or not isinstance(around, Iterable):
-            call.fail(f'around = {shown(around)} must be a list of objects, or of (object, "under")')
-        rounds = [self._round_of(call, k, item) for k, item in enumerate(around)]
+        listed = call.listed("around", around, 'a list of objects, or of (object, "under")')
+        rounds = [self._round_of(call, k, item) for k, item in enumerate(listed)]
         paths = [prim.GetPath() for prim, _ in rounds]
         if len(set(paths)) < len(paths):
             call.fail(f"around names {shown(paths[-1].name)} twice; a rope runs round each object once")
@@ -180,8 +180,8 @@ class Cords(Joints):
         one, other = ends
         if one.prim is not None and one.prim == other.prim:
             call.fail(f"a = b = {shown(one.prim.GetName())}: its ends need two bodies, or one and the world")
-        if not still and not any(end.prim is not None and end.prim.HasAPI(UsdPhysics.RigidBodyAPI) for end in ends):
-            call.fail("neither a nor b is a body that moves; it would do nothing")
+        if not still and not any(end.prim is not None and yields(end.prim) for end in ends):
+            call.fail("neither a nor b is a body that it could move: each is static or kinematic; name a loose body")
         if (one.point - other.point).GetLength() < TAUT:
             call.fail(f"both its ends are at {_shown(one.point)} m: it has no length; give anchor_a or anchor_b")
         return one, other

@@ -12,7 +12,7 @@ from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, mark_articulations, may_break
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.gears import contradicts, meshes_of
-from wsim.scene.limits import MAX_POSITION
+from wsim.scene.limits import MAX_POSITION, SHORTEST_WAY
 from wsim.scene.validate import Call, shown
 
 _MAX_GAIN = 1e9
@@ -313,6 +313,8 @@ def _limits(call: Call, field: str, value: Sequence[float], bound: float, unit: 
     low, high = call.range(field, value, bound, unit)
     if not low <= 0.0 <= high:
         call.fail(f"{field} = ({low:g}, {high:g}) {unit} must hold 0, where the joint starts")
+    if high - low < SHORTEST_WAY:
+        call.fail(f"{field} = ({low:g}, {high:g}) {unit} leave it no way to go; use a joint_fixed")
     return low, high
 
 

@@ -23,6 +23,7 @@ MAX_KEYS = 10_000  # of a path
 MAX_COUNT = 20_000_000  # fluid particles
 MAX_DURATION = 3600.0  # [s]
 MAX_FRAME_RATE = 1000.0  # [1/s]
+SHORTEST_WAY = 1e-6  # [m] or [deg] between a joint's stops
 MIN_TIME_STEP = 1e-5  # [s], of a step that is asked for, or that a spring needs
 MAX_PRIMS = 20_000
 MAX_BYTES = 100_000_000

@@ -33,7 +33,7 @@ class MeshFile:
         """Read `file`; `SceneError` if it is missing, of another format, empty or of an absurd size."""
         path = _find(call, file, folder)
         factors = _factors(call, scale)
-        up = call.axis(up_axis)
+        up = call.axis(up_axis, "up_axis")
         if up == "X":
             call.fail('up_axis = "X" must be "Z" or "Y"')
         import trimesh  # heavy, and few programs read meshes
@@ -64,9 +64,7 @@ class MeshFile:
         """How the mesh collides: as asked for, or the default for what it is."""
         if collision is None:
             return "none" if static else "convexHull"
-        if collision not in APPROXIMATIONS:
-            call.fail(f"collision = {shown(collision)} must be one of {', '.join(APPROXIMATIONS)}")
-        if collision == "none" and not static:
+        if call.one_of("collision", collision, APPROXIMATIONS) == "none" and not static:
             call.fail('collision = "none" needs static=True; a mesh that moves takes convexHull or convexDecomposition')
         return collision
 

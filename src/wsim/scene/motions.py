@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
@@ -161,9 +161,8 @@ def _bake(prim: Usd.Prim, curve: Curve, frames: int, rate: float) -> None:
 
 
 def _times(call: Call, times: Sequence[float]) -> list[float]:
-    if isinstance(times, (str, bytes)) or not isinstance(times, Iterable):
-        call.fail(f"times = {shown(times)} must be two or more numbers in s")
-    when = [call.within(f"times[{k}]", time, 0.0, MAX_DURATION, "s") for k, time in enumerate(times)]
+    listed = call.listed("times", times, "two or more numbers in s")
+    when = [call.within(f"times[{k}]", time, 0.0, MAX_DURATION, "s") for k, time in enumerate(listed)]
     if not 2 <= len(when) <= MAX_KEYS:
         call.fail(f"times has {len(when)} keys; it must have 2 to {MAX_KEYS}")
     for k in range(1, len(when)):
@@ -173,9 +172,7 @@ def _times(call: Call, times: Sequence[float]) -> list[float]:
 
 
 def _vectors(call: Call, field: str, values: Sequence[Sequence[float]], count: int) -> list[Vec3]:
-    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-        call.fail(f"{field} = {shown(values)} must be a list of (x, y, z), one for each of times")
-    items = list(values)
+    items = call.listed(field, values, "a list of (x, y, z), one for each of times")
     if len(items) != count:
         call.fail(f"{field} has {len(items)} keys, and times has {count}; give one for each")
     if field == "positions":

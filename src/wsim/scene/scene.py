@@ -39,6 +39,8 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
     def __init__(self, params: Mapping[str, float] | None = None, seed: int = 0) -> None:
         super().__init__()
         call = Call("Scene")
+        if params is not None and not isinstance(params, Mapping):
+            call.fail(f'params = {shown(params)} must be values by name, such as {{"density": 600.0}}')
         self._overrides = {name: call.number(f"params[{shown(name)}]", v) for name, v in (params or {}).items()}
         self._parameters: list[str] = []
         seed = call.integer("seed", seed, 0, _MAX_SEED)
@@ -87,6 +89,8 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
             call.fail(f"low = {least:g} is above high = {most:g}")
         if (least is not None and standard < least) or (most is not None and standard > most):
             call.fail(f"default = {standard:g} lies outside low = {least}, high = {most}")
+        if not isinstance(unit, str):
+            call.fail(f'unit = {shown(unit)} must be words such as "kg/m^3"')
         value = self._overrides.get(name, standard)
         if not self._stage.GetPrimAtPath(PARAMETERS):
             UsdGeom.Scope.Define(self._stage, PARAMETERS)
@@ -96,7 +100,7 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         values: dict[str, tuple[Sdf.ValueTypeName, object]] = {
             "value": (double, value),
             "default": (double, standard),
-            "unit": (Sdf.ValueTypeNames.String, str(unit)),
+            "unit": (Sdf.ValueTypeNames.String, unit),
         }
         values |= {key: (double, bound) for key, bound in (("low", least), ("high", most)) if bound is not None}
         schema.apply(prim, schema.PARAMETER, values)
@@ -148,7 +152,9 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         Raises:
             SceneError: If an override names no parameter of the program, or the file is no USD file.
         """
-        call = Call("save", str(path))
+        call = Call("save", path)
+        if not isinstance(path, (str, Path)):
+            call.fail(f"path = {shown(path)} must be the path of a .usda, .usdc or .usd file")
         unknown = [name for name in self._overrides if name not in self._parameters]
         if unknown:
             raise SceneError(
@@ -157,8 +163,11 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
             )
         target = Path(path)
         if target.suffix not in (".usda", ".usdc", ".usd"):
-            call.fail(f"{shown(target.name)} must end in .usda, .usdc or .usd")
-        target.parent.mkdir(parents=True, exist_ok=True)
+            call.fail(f"path = {shown(target.name)} must end in .usda, .usdc or .usd")
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            call.fail(f"path = {shown(str(target))}: its folder cannot be made, {error.strerror}; take another")
         side = target.with_name(f".{target.stem}.part{target.suffix}")
         if any(joint_problems(self._stage)):
             mark_articulations(self._stage)  # joints that the program made through USD alone

@@ -10,6 +10,7 @@ from pxr import UsdGeom
 
 from wsim.scene.authoring import Handle, calling_folder, note_line, set_pose
 from wsim.scene.bodies import Bodies, BodyOptions, finish_collider
+from wsim.scene.limits import MAX_POSITION
 from wsim.scene.mesh_file import MeshFile
 from wsim.scene.rolling import Round
 from wsim.scene.validate import Call
@@ -53,7 +54,7 @@ class Shapes(Bodies):
         """Make a level plane without end, at z = `height` [m]."""
         call = Call("ground", name)
         path = self._path(call)
-        z = call.position("position", (0.0, 0.0, call.number("height", height, "m")))[2]
+        z = call.within("height", height, -MAX_POSITION, MAX_POSITION, "m")
         if material is None and color is None:
             color = (0.35, 0.36, 0.38)
         surface = self._surface(call, material, friction, restitution, color, rolling=rolling_friction)
@@ -302,7 +303,7 @@ class Shapes(Bodies):
         """
         call = Call("mesh", name)
         source = MeshFile.read(call, file, calling_folder(), scale=scale, up_axis=up_axis)
-        approximation = source.approximation(call, collision, static=static)
+        approximation = source.approximation(call, collision, static=call.flag("static", static))
         smooth = math.radians(call.within("smooth_deg", smooth_deg, 0.0, 90.0, "deg"))
 
         def geometry(path: str) -> UsdGeom.Gprim:

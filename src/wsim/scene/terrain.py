@@ -106,9 +106,12 @@ def _field(call: Call, heights: object, across: tuple[float, float], cells: Sequ
         xs, ys = (np.linspace(-edge / 2, edge / 2, n + 1) for edge, n in zip(across, (nx, ny), strict=True))
         heights = [[_height(call, heights, float(x), float(y)) for x in xs] for y in ys]
     try:
-        field = np.array(heights, dtype=np.float64)
-    except (TypeError, ValueError):
+        given = np.array(heights)
+    except (TypeError, ValueError):  # rows of different lengths
+        given = np.array(None)
+    if given.dtype.kind not in "iuf":
         call.fail(f"heights = {shown(heights)} must be rows x columns of numbers, all rows as long")
+    field = given.astype(np.float64)
     if field.ndim != 2 or min(field.shape) < 2 or max(field.shape) > _MOST:
         call.fail(f"heights has the shape {field.shape}; it must be 2 x 2 to {_MOST} x {_MOST}")
     bad = ~(np.abs(field) <= MAX_SIZE)

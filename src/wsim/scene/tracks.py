@@ -194,10 +194,7 @@ def _not_steep(call: Call, pieces: Sequence[Sequence[object]], made: list[Stretc
 
 
 def _through(call: Call, points: Sequence[Sequence[float]]) -> list[Stretch]:
-    try:
-        listed = list(points)
-    except TypeError:
-        call.fail(f"points = {shown(points)} must be a list of (x, y, z) in m")
+    listed = call.listed("points", points, "a list of (x, y, z) in m")
     if not 2 <= len(listed) <= 2000:
         call.fail(f"points has {len(listed)} points; it must be 2 to 2000")
     places = np.array([call.position(f"points[{k}]", point) for k, point in enumerate(listed)])
@@ -214,8 +211,7 @@ def _through(call: Call, points: Sequence[Sequence[float]]) -> list[Stretch]:
 
 
 def _sections(call: Call, profile: str, width: float, wall: float | None, thickness: float) -> list[Section]:
-    if not isinstance(profile, str) or profile not in PROFILES:
-        call.fail(f"profile = {shown(profile)} must be one of {', '.join(PROFILES)}")
+    call.one_of("profile", profile, PROFILES)
     w, t = call.size("width", width), call.size("thickness", thickness)
     if profile == "rails":
         if wall is not None:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import NoReturn, SupportsFloat, SupportsIndex, TypeAlias, cast
+from typing import Any, NoReturn, SupportsFloat, SupportsIndex, TypeAlias, cast
 
 from wsim.scene.errors import SceneError
 from wsim.scene.limits import (
@@ -38,13 +38,14 @@ class Call:
 
     method: str
     name: object = None
+    part: str = ""  # before the name of a field, where that is one of something the call was given: "parts[0]."
 
     def __str__(self) -> str:
         return f"{self.method}({shown(self.name)})" if self.name is not None else f"{self.method}()"
 
     def fail(self, message: str) -> NoReturn:
         """Raise a `SceneError` that starts with this call."""
-        raise SceneError(f"{self}: {message}")
+        raise SceneError(f"{self}: {self.part}{message}")
 
     def identifier(self, taken: Collection[str]) -> str:
         """The call's name, if it can name a new prim."""
@@ -163,11 +164,25 @@ class Call:
             self.fail(f"{field} = {shown(value)} must be True or False")
         return bool(value)
 
-    def axis(self, value: object) -> str:
+    def axis(self, value: object, field: str = "axis") -> str:
         """X, Y or Z."""
         if not isinstance(value, str) or value.upper() not in ("X", "Y", "Z"):
-            self.fail(f'axis = {shown(value)} must be "X", "Y" or "Z"')
+            self.fail(f'{field} = {shown(value)} must be "X", "Y" or "Z"')
         return value.upper()
+
+    def one_of(self, field: str, value: object, known: Iterable[str]) -> str:
+        """A word out of some."""
+        words = tuple(known)
+        if not isinstance(value, str) or value not in words:
+            self.fail(f"{field} = {shown(value)} must be one of {', '.join(words)}")
+        return value
+
+    def listed(self, field: str, value: object, meaning: str) -> list[Any]:
+        """Things in an order, as a list."""
+        unordered = isinstance(value, (Set, Mapping))
+        if unordered or isinstance(value, (str, bytes)) or not isinstance(value, Iterable) or _is_scalar(value):
+            self.fail(f"{field} = {shown(value)} must be {meaning}{', in a list' if unordered else ''}")
+        return list(value)
 
     def range(self, field: str, value: object, limit: float, unit: str) -> tuple[float, float]:
         """(low, high), low <= high."""
@@ -196,12 +211,17 @@ class Call:
             self.fail(
                 f"{field} = {shown(value)} is a set, which has no order; give a list of {count} numbers {meaning}"
             )
-        if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable):
+        if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable) or _is_scalar(value):
             self.fail(f"{field} = {shown(value)} must be {count} numbers {meaning}")
         items = list(value)
         if len(items) != count:
             self.fail(f"{field} = {shown(value)} has {len(items)} numbers; it must be {count}: {meaning}")
         return items
+
+
+def _is_scalar(value: object) -> bool:
+    """Whether it is one of NumPy's arrays without axes, which says of itself that it can be iterated."""
+    return getattr(value, "shape", None) == ()
 
 
 def shown(value: object) -> str:

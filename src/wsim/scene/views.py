@@ -10,7 +10,7 @@ from pxr import Gf, Sdf, UsdGeom, UsdLux
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, set_pose
 from wsim.scene.limits import MAX_POSITION
-from wsim.scene.validate import Call, Vec3, shown
+from wsim.scene.validate import Call, Vec3
 
 _APERTURE = 20.955  # [tenths of a unit], USD's own
 _INTENSITY = {"distant": 2000.0, "dome": 500.0, "sphere": 30000.0}
@@ -100,8 +100,7 @@ class Views(Author):
         """
         call = Call("light", name)
         path = self._path(call)
-        if kind not in _INTENSITY:
-            call.fail(f"kind = {shown(kind)} must be one of {', '.join(_INTENSITY)}")
+        call.one_of("kind", kind, _INTENSITY)
         strength = call.within("intensity", _INTENSITY[kind] if intensity is None else intensity, 0.0, 1e8)
         tint = call.color("color", color)
         aim = call.vector("direction", direction, MAX_POSITION, "m")
