@@ -129,7 +129,7 @@ class Compounds(Tracks):
 
     def _part_geometry(self, call: Call, part: Part) -> Callable[[str], UsdGeom.Gprim]:
         """What defines a part's Gprim at a path; all numbers are checked now."""
-        needs = _SHAPES[call.one_of("shape", part.shape, _SHAPES)]
+        needs = _SHAPES[call.one_of("shape", part.shape, tuple(_SHAPES))]
         for field in ("size", "radius", "height"):
             given = getattr(part, field)
             if (given is not None) != (field in needs):

@@ -170,11 +170,10 @@ class Call:
             self.fail(f'{field} = {shown(value)} must be "X", "Y" or "Z"')
         return value.upper()
 
-    def one_of(self, field: str, value: object, known: Iterable[str]) -> str:
+    def one_of(self, field: str, value: object, known: Sequence[str]) -> str:
         """A word out of some."""
-        words = tuple(known)
-        if not isinstance(value, str) or value not in words:
-            self.fail(f"{field} = {shown(value)} must be one of {', '.join(words)}")
+        if not isinstance(value, str) or value not in known:
+            self.fail(f"{field} = {shown(value)} must be one of {', '.join(known)}")
         return value
 
     def listed(self, field: str, value: object, meaning: str) -> list[Any]:

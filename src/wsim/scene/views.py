@@ -100,7 +100,7 @@ class Views(Author):
         """
         call = Call("light", name)
         path = self._path(call)
-        call.one_of("kind", kind, _INTENSITY)
+        call.one_of("kind", kind, tuple(_INTENSITY))
         strength = call.within("intensity", _INTENSITY[kind] if intensity is None else intensity, 0.0, 1e8)
         tint = call.color("color", color)
         aim = call.vector("direction", direction, MAX_POSITION, "m")
