@@ -135,6 +135,24 @@ def test_a_cable_with_equal_weights_lies_over_a_post(simulate, worlds):
         assert np.abs(v[name]).max() < 0.1
 
 
+def test_a_cable_round_a_post_starts_at_rest(simulate):
+    """Its links lie on the post: with their joints on that circle they were 1.15 mm in it, and lifted both weights."""
+    ring = 0.21
+
+    def build(scene):
+        scene.cylinder("post", radius=0.2, height=0.3, axis="Y", static=True)
+        turn = [(ring * math.cos(a), 0, ring * math.sin(a)) for a in np.linspace(math.pi, 0, 37)]
+        for name, x in (("left", -ring), ("right", ring)):
+            scene.box(name, size=(0.04, 0.04, 0.04), mass=0.5, position=(x, 0, -0.22))
+        scene.cable("c", "left", "right", anchor_a=(-ring, 0, -0.2), anchor_b=(ring, 0, -0.2), through=turn, links=26,
+                    mass_per_length=0.1, radius=0.01)  # fmt: skip
+
+    _, q, v = simulate(build, 0.1, 1)
+    for name in ("left", "right"):
+        assert q[name] == pytest.approx(np.broadcast_to(q[name][0], q[name].shape), abs=1e-4)
+        assert np.abs(v[name]).max() < 0.01
+
+
 def test_a_hanging_line_solves_the_catenary():
     """a cosh(x / a): of the right length, through both ends, and with the slope that its weight asks for."""
     points = hanging(np.array([0, 0, 1.0]), np.array([2.0, 0, 1.5]), 3.0, 20001)

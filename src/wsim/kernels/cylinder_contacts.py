@@ -28,12 +28,29 @@ from wsim.kernels.touches import (
     on_side,
     over,
     over_disc,
+    rim_on_side,
     within,
 )
 
 CAPSULE = wp.constant(3)  # mujoco.mjtGeom
 CYLINDER = wp.constant(5)
 BOX = wp.constant(6)
+
+
+@wp.func
+def _turned_round(scene: Scene) -> Scene:
+    """The same pair as the other sees it."""
+    back = wp.transpose(scene.pair.turn)
+    other = scene
+    other.pair.one = scene.pair.two
+    other.pair.two = scene.pair.one
+    other.pair.place = -(back * scene.pair.place)
+    other.pair.turn = back
+    other.way = -(back * scene.way)
+    other.turn = scene.turn * scene.pair.turn
+    other.middle = scene.middle + scene.turn * scene.pair.place
+    other.sense = -scene.sense
+    return other
 
 
 @wp.func
@@ -151,11 +168,9 @@ def _side_on_round(scene: Scene) -> wp.float64:
         elif scene.pair.two.disc == d(0.0):  # a ball
             nearest = wp.min(nearest, on_side(scene, centre, radius, wp.vec3d()))
         else:  # a rim
-            rim = centre
-            for _step in range(2):
-                toward = -wp.normalize(wp.vec3d(rim[0], rim[1], d(0.0)))
-                rim = centre + radius * wp.normalize(toward - wp.dot(toward, along) * along)
-            nearest = wp.min(nearest, on_side(scene, rim, d(0.0), along))
+            toward = -wp.normalize(wp.vec3d(centre[0], centre[1], d(0.0)))
+            arm = radius * wp.normalize(toward - wp.dot(toward, along) * along)
+            nearest = wp.min(nearest, rim_on_side(scene, centre, along, arm))
     return nearest
 
 
@@ -171,10 +186,15 @@ def _line_on_end(scene: Scene) -> wp.float64:
     if inside[1] <= inside[0]:
         return NONE
     nearest = NONE
+    back = wp.transpose(scene.pair.turn)
+    other = _turned_round(scene)
+    centre = wp.vec3d(d(0.0), d(0.0), side * scene.pair.one.span[2])
     for end in range(2):
         place = start + inside[end] * along
         if inside[end] > d(0.0) and inside[end] < d(1.0):
-            nearest = wp.min(nearest, on_rim(scene, place, axis))
+            arm = scene.pair.one.disc * wp.normalize(wp.vec3d(place[0], place[1], d(0.0)))
+            up = wp.vec3d(d(0.0), d(0.0), d(1.0))
+            nearest = wp.min(nearest, rim_on_side(other, back * (centre - scene.pair.place), back * up, back * arm))
         else:
             nearest = wp.min(nearest, on_end(scene, place))
     return nearest
@@ -259,22 +279,6 @@ def _nearest_points(scene: Scene, gap: wp.float64) -> wp.float64:
     if flat <= ACROSS and not stands:  # an end: where the other is
         point = pair.place + pair.turn * two - d(0.5) * gap * n
     return note(scene, point, n, gap)
-
-
-@wp.func
-def _turned_round(scene: Scene) -> Scene:
-    """The same pair as the other sees it."""
-    back = wp.transpose(scene.pair.turn)
-    other = scene
-    other.pair.one = scene.pair.two
-    other.pair.two = scene.pair.one
-    other.pair.place = -(back * scene.pair.place)
-    other.pair.turn = back
-    other.way = -(back * scene.way)
-    other.turn = scene.turn * scene.pair.turn
-    other.middle = scene.middle + scene.turn * scene.pair.place
-    other.sense = -scene.sense
-    return other
 
 
 @wp.func

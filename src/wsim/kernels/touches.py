@@ -8,6 +8,7 @@ LEANS = wp.constant(wp.float64(0.1))  # [rad] of an end, a side or a face: what 
 ALL_BUT = wp.constant(wp.float64(0.995))  # its cosine
 LEVEL = wp.constant(wp.float64(1.0e-5))  # [rad], where a drum leans by less, that way is rounding
 ACROSS = wp.constant(wp.float64(1.0e-7))  # of a length: what lies across a direction
+TANGENTS = wp.constant(5)  # steps of Newton's method, of which each doubles the digits
 BARE = wp.constant(wp.float64(1.0e-6))  # [m]: the nearest points are a contact of their own from here on
 NONE = wp.constant(wp.float64(1.0e9))
 
@@ -62,7 +63,7 @@ def on_side(scene: Scene, centre: wp.vec3d, radius: wp.float64, axis: wp.vec3d) 
     if far == d(0.0):
         return NONE
     out = wp.vec3d(centre[0] / far, centre[1] / far, d(0.0))
-    own = scene.pair.one.disc
+    own = scene.pair.one.disc + scene.pair.one.ball
     lean = wp.dot(out, axis)
     radius = radius / wp.sqrt(d(1.0) - lean * lean)
     gap = far - own - radius
@@ -83,16 +84,42 @@ def on_end(scene: Scene, point: wp.vec3d) -> wp.float64:
 
 @wp.func
 def on_rim(scene: Scene, point: wp.vec3d, along: wp.vec3d) -> wp.float64:
-    """A point over a cylinder's rim where what goes on along a unit vector, an edge or another rim, crosses it."""
-    side = sign(scene.way[2])
-    n = wp.cross(wp.vec3d(-point[1], point[0], d(0.0)), along)
-    if wp.length(n) < LEANS * scene.pair.one.disc:
-        return NONE
-    n = sign(wp.dot(n, scene.way)) * wp.normalize(n)
+    """Where a cylinder's rim is nearest to a line through a point over it along a unit vector, an edge or another
+    rim's tangent: by Newton's method, from under the point, taking the rim for its tangent."""
+    radius = scene.pair.one.disc
+    rim = wp.vec3d(point[0], point[1], sign(scene.way[2]) * scene.pair.one.span[2])
+    across = wp.vec3d()
+    for _step in range(TANGENTS):
+        out = wp.normalize(wp.vec3d(rim[0], rim[1], d(0.0)))
+        tangent = wp.vec3d(-out[1], out[0], d(0.0))
+        across = wp.cross(tangent, along)
+        if wp.length(across) < LEANS:
+            return NONE
+        onward = wp.dot(wp.cross(point - rim, along), across) / wp.dot(across, across)
+        rim = radius * wp.normalize(radius * out + onward * tangent) + wp.vec3d(d(0.0), d(0.0), rim[2])
+    n = sign(wp.dot(across, scene.way)) * wp.normalize(across)
     if wp.dot(n, scene.way) < ALL_BUT:
         return NONE
-    gap = (point[2] - side * scene.pair.one.span[2]) * n[2]
-    return note(scene, point - d(0.5) * gap * n, n, gap)
+    gap = wp.dot(point - rim, n)
+    return note(scene, rim + d(0.5) * gap * n, n, gap)
+
+
+@wp.func
+def rim_on_side(scene: Scene, centre: wp.vec3d, axis: wp.vec3d, arm: wp.vec3d) -> wp.float64:
+    """Where a rim about a unit vector is nearest to a cylinder's axis: by Newton's method, from an arm off its centre.
+
+    Turned on by a small angle its point moves along the tangent t, and half the square of its distance by x . t, whose
+    own change is t^2 - x . arm, all across the axis.
+    """
+    for _step in range(TANGENTS):
+        tangent = wp.cross(axis, arm)
+        place = centre + arm
+        slope = place[0] * tangent[0] + place[1] * tangent[1]
+        bow = tangent[0] * tangent[0] + tangent[1] * tangent[1] - place[0] * arm[0] - place[1] * arm[1]
+        if bow < LEANS * LEANS * wp.dot(arm, arm):
+            return NONE
+        arm = wp.length(arm) * wp.normalize(arm - slope / bow * tangent)
+    return on_side(scene, centre + arm, d(0.0), wp.vec3d())
 
 
 @wp.func

@@ -10,6 +10,7 @@ import numpy as np
 from pxr import Gf, UsdPhysics
 
 from wsim.geometry.catenary import hanging
+from wsim.geometry.laid import laid
 from wsim.scene.authoring import WORLD, Handle
 from wsim.scene.cords import HEMP, Cords
 from wsim.scene.fluids import Fluids
@@ -57,7 +58,9 @@ class Cables(Fluids, Cords):
             anchor_a: Where it is tied to `a`.
             anchor_b: Where it is tied to `b`; where it ends, if it is loose.
             length: [m]; as long as its way at the start if not given.
-            through: Points that it runs through on its way at the start [m]; then it is as long as that way.
+            through: Points that it runs through on its way at the start [m]; then it is as long as that way. Where it
+                turns by less than 45 degrees at each it is an arc, and links touch it from outside: round a post of
+                radius R give points at R + `radius`, and it lies on it.
             loose: Its other end is tied to nothing; `b` is None.
             links: How many, 2 to 200; about 30 if not given. A turn round something wants one in 15 degrees.
             radius: [m].
@@ -107,8 +110,7 @@ class Cables(Fluids, Cords):
         count = min(_LINKS, most) if links is None else call.integer("links", links, 2, most)
         if len(way) == 2:
             return hanging(way[0], way[1], long, count + 1)
-        at, even = np.concatenate([[0.0], np.cumsum(steps)]), np.linspace(0.0, shortest, count + 1)
-        return np.stack([np.interp(even, at, way[:, axis]) for axis in range(3)], axis=1)
+        return laid(way, count)
 
     def _links(self, name: str, points: Array, radius: float, mass: float, look: Handle) -> list[Handle]:
         made = []

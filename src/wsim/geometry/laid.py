@@ -1,0 +1,99 @@
+"""How a chain of straight links lies along a way that points are given of: on what it bends round, and not in it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_CORNER = math.radians(45.0)  # a way that turns by as much at a point has a corner there, and is straight up to it
+_LONG = 2.0  # a stretch so much longer than the next is straight, and the next begins to bend
+_FINE = 64  # samples of a stretch, by which its arc length is found
+
+
+def laid(way: Array, links: int) -> Array:
+    """Ends of the links of a chain along a way, (links + 1, 3) [m].
+
+    Links of equal shares of the way each touch it in their middles, and meet where those tangents do: a chain so drawn
+    round a post lies on it. One whose joints are on the way cuts through what that bends round, by R (1 - cos a / 2)
+    where a link turns by a round a radius R.
+
+    Args:
+        way: Points on the way from end to end, (N, 3) [m]; an arc where it turns by less than 45 degrees at each. A
+            stretch that is more than twice as long as the next is a straight line.
+        links: How many, two or more.
+    """
+    curve = _Curve(way)
+    share = curve.length / links
+    joints, _ = curve.at(share * np.arange(links + 1, dtype=np.float64))
+    touch, along = curve.at(share * (np.arange(links, dtype=np.float64) + 0.5))
+    for k in range(1, links):
+        met = _meet(touch[k - 1], along[k - 1], touch[k], along[k], share)
+        if met is not None:
+            joints[k] = met
+    return joints
+
+
+def _meet(one: Array, way: Array, other: Array, onward: Array, share: float) -> Array | None:
+    """Where a line from `one` meets one to `other`; None where it does not between them, or at a corner."""
+    cos = float(way @ onward)
+    if not math.cos(_CORNER) < cos < 1.0 - 1e-12:
+        return None
+    apart = other - one
+    ahead, behind = float(apart @ way), float(apart @ onward)
+    first = (ahead - cos * behind) / (1.0 - cos * cos)
+    last = (behind - cos * ahead) / (1.0 - cos * cos)
+    if not all(0.0 < each < 1.2 * share for each in (first, last)):
+        return None
+    met: Array = 0.5 * (one + first * way + other - last * onward)
+    return met
+
+
+class _Curve:
+    """Cubics from point to point, arcs of circles to the fourth order, each circle through three of the points."""
+
+    def __init__(self, way: Array) -> None:
+        chord = np.diff(way, axis=0)
+        long = np.linalg.norm(chord, axis=1)
+        unit = chord / long[:, None]
+        begin, end = unit.copy(), unit.copy()
+        for k in range(len(long) - 1):
+            if unit[k] @ unit[k + 1] <= math.cos(_CORNER):
+                continue
+            before, after = long[k + 1], long[k]  # the shorter of the two chords is nearer to the tangent
+            if after > _LONG * before:
+                before, after = 1.0, 0.0
+            elif before > _LONG * after:
+                before, after = 0.0, 1.0
+            tangent = before * unit[k] + after * unit[k + 1]
+            end[k] = begin[k + 1] = tangent / np.linalg.norm(tangent)
+        turn = np.arccos(np.clip((begin * end).sum(axis=1), -1.0, 1.0))
+        speed = (long / np.cos(0.25 * turn) ** 2)[:, None]  # at both ends of the cubic that is nearest to an arc
+        self._from, self._to, self._leaves, self._arrives = way[:-1], way[1:], speed * begin, speed * end
+        share = np.linspace(0.0, 1.0, _FINE + 1)
+        piece = np.repeat(np.arange(len(long)), _FINE + 1)
+        fine, _ = self._point(piece, np.tile(share, len(long)))
+        steps = np.linalg.norm(np.diff(fine.reshape(len(long), _FINE + 1, 3), axis=1), axis=2)
+        self._reach = np.concatenate([[0.0], np.cumsum(steps)])
+        self._where = np.concatenate([[0.0], (np.arange(len(long))[:, None] + share[1:]).ravel()])
+        self.length = float(self._reach[-1])
+
+    def at(self, s: Array) -> tuple[Array, Array]:
+        """Points at arc lengths [m], and the directions there, (M, 3) each."""
+        where = np.interp(s, self._reach, self._where)
+        piece = np.minimum(where.astype(int), len(self._from) - 1)
+        point, way = self._point(piece, where - piece)
+        return point, way / np.linalg.norm(way, axis=1, keepdims=True)
+
+    def _point(self, piece: NDArray[np.int64], share: Array) -> tuple[Array, Array]:
+        """Points of Hermite's cubics, and their derivatives."""
+        s = share[:, None]
+        ends = self._from[piece], self._leaves[piece], self._to[piece], self._arrives[piece]
+        point = (2 * s**3 - 3 * s**2 + 1, s**3 - 2 * s**2 + s, 3 * s**2 - 2 * s**3, s**3 - s**2)
+        slope = (6 * s**2 - 6 * s, 3 * s**2 - 4 * s + 1, 6 * s - 6 * s**2, 3 * s**2 - 2 * s)
+        there = sum(weight * end for weight, end in zip(point, ends, strict=True))
+        way = sum(weight * end for weight, end in zip(slope, ends, strict=True))
+        return np.asarray(there), np.asarray(way)
