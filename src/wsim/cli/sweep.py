@@ -54,7 +54,7 @@ def sweep(
     ] = 1,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the draw.")] = 0,
     plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
-    device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …")] = "cpu",
+    device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …; cuda:0,cuda:1: a worker on each.")] = "cpu",
     time_step: TimeStep = None,
     worlds: Annotated[
         int, typer.Option("--worlds", min=0, help="Worlds simulated at once; 0: one on a CPU, 1024 on a GPU.")
@@ -87,8 +87,7 @@ def sweep(
         if method not in get_args(Method):
             raise UserError(f"--method {method}: expected sobol, latin, random, grid, saltelli or cma")
         choose(isolation)
-        if device not in ("auto", "cpu"):
-            sim.known_device(device)
+        _known(device)
         spec = Spec(
             method=method,
             samples=samples,
@@ -117,6 +116,16 @@ def sweep(
     for path in [folder.path / "table.parquet", *([picture] if picture else []), page]:
         console.print(f"{path.stem}: {path}", soft_wrap=True)
     raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+
+
+def _known(device: str) -> None:
+    """Refuse a device that this machine has not; several are GPUs."""
+    names = device.split(",")
+    if len(names) > 1 and not all(name.startswith("cuda:") for name in names):
+        raise UserError(f"--device {device}: several devices are GPUs, as in cuda:0,cuda:1")
+    for name in names:
+        if name not in ("auto", "cpu"):
+            sim.known_device(name)
 
 
 def _ask(
