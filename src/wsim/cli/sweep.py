@@ -60,6 +60,9 @@ def sweep(
         int, typer.Option("--worlds", min=0, help="Worlds simulated at once; 0: one on a CPU, 1024 on a GPU.")
     ] = 0,
     workers: Annotated[int, typer.Option("--workers", min=0, help="Processes; 0: one for each core.")] = 0,
+    ray: Annotated[
+        str, typer.Option("--ray", metavar="auto|ADDRESS", help="Workers of a Ray cluster; auto: this machine's own.")
+    ] = "",
     patience: Annotated[
         float, typer.Option("--patience", min=1.0, help="Seconds after which a candidate is given up.")
     ] = 600.0,
@@ -87,7 +90,8 @@ def sweep(
         if method not in get_args(Method):
             raise UserError(f"--method {method}: expected sobol, latin, random, grid, saltelli or cma")
         choose(isolation)
-        _known(device)
+        if not ray:
+            _known(device)
         spec = Spec(
             method=method,
             samples=samples,
@@ -103,7 +107,7 @@ def sweep(
         folder = _ask(spec, targets or [], vary or [], points, plan, runs)
     try:
         with ConsoleProgress() as progress:
-            outcomes = run_sweep(folder, workers, progress)
+            outcomes = run_sweep(folder, workers, progress, ray)
             if full:
                 outcomes = in_full(folder, outcomes, progress=progress)
     except KeyboardInterrupt:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from wsim.progress import Progress, silent
 from wsim.sweep import shards
 from wsim.sweep.candidate import Candidate, Outcome
+from wsim.sweep.cluster import RayWorkers, connect
 from wsim.sweep.pool import Pool
 from wsim.sweep.search import Search
 from wsim.sweep.shards import Dealer, Lost
@@ -24,13 +25,14 @@ A_SHARD = 16  # candidates that are built in one process: starting it takes as l
 SHORTEST = 8  # times fewer in the last shards
 
 
-def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) -> list[Outcome]:
+def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent, ray: str = "") -> list[Outcome]:
     """Run what is not done yet; the table is whole whenever this ends, also by Ctrl-C.
 
     Args:
         folder: With what is asked; outcomes go there as they come.
         workers: Processes; by default one for each core.
         progress: Told how many candidates are done.
+        ray: A Ray cluster whose workers do it, as `wsim.sweep.cluster.connect` takes it; "": processes of this machine.
 
     Returns:
         All outcomes, the best first.
@@ -40,7 +42,7 @@ def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) ->
     try:
         for batch in batches(spec, done):
             left = [candidate for candidate in batch if candidate.number not in done]
-            for outcomes in run(left, folder, workers):
+            for outcomes in run(left, folder, workers, ray):
                 for outcome in outcomes:
                     folder.add(outcome)
                     done[outcome.candidate.number] = outcome
@@ -76,7 +78,9 @@ def batches(spec: Spec, done: Mapping[int, Outcome]) -> Iterator[list[Candidate]
         first += len(batch)
 
 
-def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) -> Iterator[list[Outcome]]:
+def run(
+    candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0, ray: str = ""
+) -> Iterator[list[Outcome]]:
     """Every candidate's outcome, some at a time, as they come.
 
     Who shares a shard with one that kills its worker, or holds it up, is run again without it.
@@ -84,16 +88,28 @@ def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) 
     Args:
         candidates: They.
         folder: Of the sweep that they belong to.
-        workers: Processes; by default one for each core, on GPUs one for each.
+        workers: How many; by default one for each core, on GPUs one for each.
+        ray: A Ray cluster whose workers do it; "": processes of this machine.
     """
-    spec = folder.spec
-    devices = spec.device.split(",")
-    cores = len(os.sched_getaffinity(0))
-    workers = min(workers or (len(devices) if spec.device.startswith("cuda") else cores), max(1, len(candidates)))
-    pool = Pool(work, workers, [_seeing(device) for device in devices] if len(devices) > 1 else [{}])
-    pack = packed(folder.path.resolve(), spec, max(1, cores // workers))
-    for found in shards.run(dealer(spec, len(candidates)), candidates, pack, pool):
+    if not candidates:
+        return
+    spec, doing = folder.spec, _workers(folder, min(workers, len(candidates)), ray)
+    cores = doing.cores if isinstance(doing, RayWorkers) else len(os.sched_getaffinity(0)) // len(doing.places)
+    pack = packed(
+        folder.path.resolve(), spec, max(1, cores), spec.device.startswith("cuda") and bool(ray or "," in spec.device)
+    )
+    for found in shards.run(dealer(spec, len(candidates)), candidates, pack, doing):
         yield [_lost(candidate, came) if isinstance(came, Lost) else came for candidate, came in found]
+
+
+def _workers(folder: SweepFolder, count: int, ray: str) -> Pool | RayWorkers:
+    spec, devices = folder.spec, folder.spec.device.split(",")
+    if ray:
+        files = {name: folder.path / name for name in [*spec.programs, "plan.json"]}
+        contents = {name: path.read_bytes() for name, path in files.items() if path.is_file()}
+        return RayWorkers(connect(ray), contents, devices[0].startswith("cuda"), count)
+    count = count or (len(devices) if devices[0].startswith("cuda") else len(os.sched_getaffinity(0)))
+    return Pool(work, count, [_seeing(device) for device in devices] if len(devices) > 1 else [{}])
 
 
 def dealer(spec: Spec, count: int) -> Dealer:
@@ -102,9 +118,9 @@ def dealer(spec: Spec, count: int) -> Dealer:
     return Dealer(count, most, spec.patience, max(1, most // SHORTEST))
 
 
-def packed(folder: Path, spec: Spec, cores: int) -> Callable[[tuple[Candidate, ...]], Shard]:
-    """What a worker is sent of some candidates; of several devices each worker sees its own alone."""
-    device = spec.device if "," not in spec.device else "cuda:0"
+def packed(folder: Path, spec: Spec, cores: int, alone: bool) -> Callable[[tuple[Candidate, ...]], Shard]:
+    """What a worker is sent of some candidates; of several GPUs each worker sees its own alone."""
+    device = "cuda:0" if alone else spec.device
     small = spec.model_copy(update={"device": device, "points": []})  # a million points are not sent with each shard
     return lambda candidates: Shard(candidates, folder, small, cores)
 
