@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from tests.children import started
 from tests.processes import below, lives
 from wsim.sweep.pool import Pool, each
 from wsim.sweep.shards import Dealer, Lost, run
@@ -131,17 +131,15 @@ def test_no_more_processes_than_tasks() -> None:
 def test_a_process_does_not_outlive_who_started_it() -> None:
     """It would keep a GPU, or a core, for as long as what it is at takes."""
     text = "import time; from wsim.sweep.pool import each; list(each(time.sleep, [600.0], 1, 600.0))"
-    parent = subprocess.Popen([sys.executable, "-c", text])
-    try:
+    with started([sys.executable, "-c", text]) as parent:
         until = time.monotonic() + 60.0
         while not (own := [pid for pid, name in below(parent.pid).items() if "spawn_main" in name]):
             assert time.monotonic() < until
             time.sleep(0.1)
         time.sleep(3.0)  # it has loaded, and sleeps
-    finally:
         parent.kill()
         parent.wait()
-    until = time.monotonic() + 10.0
-    while any(map(lives, own)) and time.monotonic() < until:
-        time.sleep(0.1)
-    assert not any(map(lives, own))
+        until = time.monotonic() + 10.0
+        while any(map(lives, own)) and time.monotonic() < until:
+            time.sleep(0.1)
+        assert not any(map(lives, own))

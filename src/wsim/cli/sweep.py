@@ -29,6 +29,7 @@ from wsim.sweep.run import sweep as run_sweep
 from wsim.sweep.sampling import Method, Point, read_points
 from wsim.sweep.sensitivity import sensitivities
 from wsim.sweep.spec import Spec
+from wsim.sweep.store import Store
 from wsim.sweep.table import parameters
 
 SHOWN = 12  # rows
@@ -70,8 +71,11 @@ def sweep(
         bool, typer.Option("--full/--no-full", help="Run the best, the worst and those at the limit again, in full.")
     ] = True,
     resume: Annotated[
-        Path | None, typer.Option("--resume", metavar="FOLDER", help="A sweep that was stopped: finish the rest.")
-    ] = None,
+        str, typer.Option("--resume", metavar="FOLDER|URL", help="A sweep that was stopped: finish the rest.")
+    ] = "",
+    store: Annotated[
+        str, typer.Option("--store", metavar="URL", help="A folder for a copy, as s3://bucket/sweeps (fsspec).")
+    ] = "",
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
 ) -> None:
@@ -85,7 +89,7 @@ def sweep(
             raise UserError(
                 "--resume goes on with a sweep as it was asked for; leave programs, --vary and --points out"
             )
-        folder = SweepFolder.open(resume)
+        folder, kept = _opened(resume, store, runs)
     else:
         if method not in get_args(Method):
             raise UserError(f"--method {method}: expected sobol, latin, random, grid, saltelli or cma")
@@ -104,13 +108,19 @@ def sweep(
             patience=patience,
             batch=max(1, (workers or len(os.sched_getaffinity(0))) // max(1, len(targets or []) * repeats)),
         )
+        Store(store) if store else None  # what cannot be reached is said before there is a folder
         folder = _ask(spec, targets or [], vary or [], points, plan, runs)
+        kept = Store(f"{store.rstrip('/')}/{folder.path.name}") if store else None
+    if kept:
+        kept.rest(folder)
     try:
         with ConsoleProgress() as progress:
-            outcomes = run_sweep(folder, workers, progress, ray)
+            outcomes = run_sweep(folder, workers, progress, ray, kept)
             if full:
                 outcomes = in_full(folder, outcomes, progress=progress)
     except KeyboardInterrupt:
+        if kept:
+            kept.rest(folder)
         console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
         raise typer.Exit(130) from None
     picture = draw(outcomes, folder.path)
@@ -119,7 +129,19 @@ def sweep(
     page = write_page(folder)
     for path in [folder.path / "table.parquet", *([picture] if picture else []), page]:
         console.print(f"{path.stem}: {path}", soft_wrap=True)
+    if kept:
+        kept.rest(folder)
+        console.print(f"all of it: {kept.url}", soft_wrap=True)
     raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+
+
+def _opened(resume: str, store: str, runs: Path) -> tuple[SweepFolder, Store | None]:
+    """A sweep that was stopped, in a folder of this machine or in a store; and where its copy is kept."""
+    if "://" in resume:
+        kept = Store(resume)
+        return kept.fetch(runs), kept
+    folder = SweepFolder.open(resume)
+    return folder, Store(f"{store.rstrip('/')}/{folder.path.name}") if store else None
 
 
 def _known(device: str) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import os
+import socket
 import tempfile
 import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -23,7 +24,7 @@ from wsim.sweep.work import Shard, work
 
 LOOPBACK = "127.0.0.1"
 NOBODY = 600.0  # [s] after which a cluster on which no worker runs is given up
-ASIDE = 0.05  # of a core, for an actor that only listens to its process
+ANSWERS = 5.0  # [s] for which a cluster is waited for
 
 
 def connect(address: str) -> Any:
@@ -43,6 +44,8 @@ def connect(address: str) -> Any:
         raise UserError(f"--ray needs Ray ({error}); install it with: pip install 'wsim[ray]'") from error
     if ray.is_initialized():
         return ray
+    if address != "auto":
+        _answers(address)
     quiet: dict[str, Any] = {"log_to_driver": False, "logging_level": "error"}
     try:
         ray.init(address, **quiet)
@@ -55,6 +58,17 @@ def connect(address: str) -> Any:
         cores = len(os.sched_getaffinity(0))
         ray.init("local", num_cpus=cores, include_dashboard=False, _node_ip_address=LOOPBACK, **quiet)
     return ray
+
+
+def _answers(address: str) -> None:
+    """Refuse an address at which nobody is, for which Ray would wait for minutes."""
+    host, _, port = address.rpartition(":")
+    if not host or not port.isdigit() or "/" in host:
+        raise UserError(f"--ray {address}: expected auto, or the cluster's HOST:PORT, as 10.0.0.1:6379")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWERS).close()
+    except (OSError, OverflowError) as error:
+        raise UserError(f"--ray {address}: no Ray cluster answers there ({error})") from error
 
 
 class Actor:
@@ -147,7 +161,8 @@ class RayWorkers:
         """What actors have said, and which have ended."""
         signs = {place.hello or place.says: k for k, place in self._places.items() if place.hello or place.says}
         left = min(until - time.monotonic(), NOBODY)
-        ready, _ = self._ray.wait(list(signs), num_returns=1, timeout=max(0.0, left)) if signs else ([], [])
+        self._ray.wait(list(signs), num_returns=1, timeout=max(0.0, left))
+        ready, _ = self._ray.wait(list(signs), num_returns=len(signs), timeout=0.0)  # of a thousand, all that are
         said = [heard for sign in ready if (heard := self._read(signs[sign]))]
         if any(place.hello is None for place in self._places.values()):
             self._seen = time.monotonic()

@@ -20,12 +20,15 @@ from wsim.sweep.work import Shard, work
 if TYPE_CHECKING:
     from wsim.sweep.folder import SweepFolder
     from wsim.sweep.spec import Spec
+    from wsim.sweep.store import Store
 
 A_SHARD = 16  # candidates that are built in one process: starting it takes as long as building them
 SHORTEST = 8  # times fewer in the last shards
 
 
-def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent, ray: str = "") -> list[Outcome]:
+def sweep(
+    folder: SweepFolder, workers: int = 0, progress: Progress = silent, ray: str = "", store: Store | None = None
+) -> list[Outcome]:
     """Run what is not done yet; the table is whole whenever this ends, also by Ctrl-C.
 
     Args:
@@ -33,6 +36,7 @@ def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent, ra
         workers: Processes; by default one for each core.
         progress: Told how many candidates are done.
         ray: A Ray cluster whose workers do it, as `wsim.sweep.cluster.connect` takes it; "": processes of this machine.
+        store: Where outcomes are sent as they come; the table is not.
 
     Returns:
         All outcomes, the best first.
@@ -46,6 +50,8 @@ def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent, ra
                 for outcome in outcomes:
                     folder.add(outcome)
                     done[outcome.candidate.number] = outcome
+                if store:
+                    store.part(folder)
                 progress("candidates", min(len(done), spec.count), spec.count)
     finally:
         if done:
