@@ -3,6 +3,7 @@
     .venv/bin/python benchmarks/cluster.py
     .venv/bin/python benchmarks/cluster.py --candidates 1000000 --seeds 3
     .venv/bin/python benchmarks/cluster.py --faults 5 --guilty 20
+    .venv/bin/python benchmarks/cluster.py --workers 100 --most 1024 --least 128 --parts 1 --seconds 0.02 --shard 10
 
 Workers and clock are simulated; who does what is dealt out by the code that a sweep uses (`wsim.sweep.shards`). Each
 fault is drawn at a rate in time. The ideal is what the workers would take, at the speeds that they have, had none of
@@ -242,22 +243,24 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=1.0, help="of a candidate in its shard")
     parser.add_argument("--shard", type=float, default=2.0, help="seconds that a shard takes besides")
     parser.add_argument("--start", type=float, default=15.0, help="seconds that a worker takes to start")
+    parser.add_argument("--parts", type=int, default=4, help="messages in which a shard's results come")
     parser.add_argument("--faults", type=float, default=1.0, help="times as many of them")
     parser.add_argument("--guilty", type=int, default=3, help="candidates that kill their worker")
     parser.add_argument("--stuck", type=int, default=0, help="candidates that hang; each takes its patience twice")
     parser.add_argument("--seeds", type=int, default=3)
     given = parser.parse_args()
-    print("seed  hours  ideal  overhead  done     guilty  innocent  twice  wrong  given again  faults")
+    print("seed  hours  ideal  worker-hours  overhead  done     guilty  innocent  twice  wrong  given again  faults")
     for seed in range(given.seeds):
         drawn = random.Random(seed).sample(range(given.candidates), given.guilty + given.stuck)
         bad = set(drawn)
-        faults, costs = Faults().times(given.faults), Costs(given.shard, given.seconds, given.start)
+        faults, costs = Faults().times(given.faults), Costs(given.shard, given.seconds, given.start, given.parts)
         cluster = Cluster(given.workers, costs, faults, seed, set(drawn[: given.guilty]), set(drawn[given.guilty :]))
         started = time.perf_counter()
         told = simulate(cluster, given.candidates, given.most, given.least)
         again = told.given / given.candidates - 1.0
         print(
-            f"{seed:4}  {told.seconds / 3600:5.3f}  {told.ideal / 3600:5.3f}  {told.overhead:7.2%}  {told.done:8}"
+            f"{seed:4}  {told.seconds / 3600:5.3f}  {told.ideal / 3600:5.3f}"
+            f" {given.workers * told.seconds / 3600:13.1f}  {told.overhead:8.2%}  {told.done:8}"
             f" {len(told.lost.keys() & bad):7} {len(told.lost.keys() - bad):9} {told.twice:6} {told.wrong:6}"
             f"  {again:10.2%}  "
             + ", ".join(f"{n} {name}" for name, n in sorted(told.seen.items()))

@@ -105,7 +105,7 @@ def test_what_a_worker_had_done_before_it_died_is_kept(tmp_path) -> None:
     lost = found.pop(3)
     assert isinstance(lost, Lost) and "signal 9" in lost.reason
     assert found == {k: k for k in (0, 1, 2, 4, 5)}
-    assert asked == [(0, 1, 2, 3, 4, 5), (3, 4, 5), (3,), (3,), (4, 5)]
+    assert asked == [(0, 1, 2, 3, 4, 5), (3, 4, 5), (3,), (3,), (4,), (5,)]
 
 
 def its_gpu(tasks: tuple[int, ...]) -> Iterator[list[tuple[int, str]]]:

@@ -18,6 +18,7 @@ from typing import Any, Protocol, TypeVar
 Item = TypeVar("Item")
 
 TRIES = 2  # a worker may be lost to what another one uses, or to its machine; who loses two is to blame
+PIECES = 4  # into which a share is cut that loses two: as many shares as by halves until one is alone, in half the time
 SHARES = 2  # shards that each worker would still have, of what is left: the last ones are short
 LATE = 4.0  # times the usual silence: a shard that is silent for longer hangs
 USUAL = 0.98  # of the last silences are no longer: a few that a network made so do not count
@@ -273,7 +274,7 @@ class Dealer:
         if share.strikes < TRIES and (alone or len(left) > 1):
             self._again.appendleft(Share(left, share.strikes, share.avoid))
         else:
-            self._again.extendleft(reversed(_halves(left, share.avoid)))
+            self._again.extendleft(reversed(_pieces(left, share.avoid)))
         return []
 
     def _rest(self, place: int, now: float) -> None:
@@ -290,10 +291,11 @@ class Dealer:
         return tuple(item for item in items if item not in self._done)
 
 
-def _halves(items: tuple[int, ...], avoid: frozenset[int]) -> list[Share]:
+def _pieces(items: tuple[int, ...], avoid: frozenset[int]) -> list[Share]:
     """One of them holds who is to blame: it is cut again when it loses a worker. By itself one has all tries."""
-    halves = [half for half in (items[: len(items) // 2], items[len(items) // 2 :]) if half]
-    return [Share(half, TRIES - 1 if len(half) > 1 else 0, avoid) for half in halves]
+    size = math.ceil(len(items) / PIECES)
+    pieces = [items[first : first + size] for first in range(0, len(items), size)]
+    return [Share(piece, TRIES - 1 if len(piece) > 1 else 0, avoid) for piece in pieces]
 
 
 def run(
