@@ -118,7 +118,7 @@ def test_a_place_that_is_alone_has_its_second_try() -> None:
 
 
 def _deal(dealer: Dealer, place: int, now: float, places: int = 2) -> Attempt:
-    (attempt,), _ = dealer.assign([place], range(places), now)
+    (attempt,), _ = dealer.assign([place], places, now)
     return attempt
 
 
@@ -132,7 +132,7 @@ def test_shares_grow_smaller_towards_the_end() -> None:
 @pytest.mark.parametrize(("count", "most", "places"), [(5, 16, 4), (8, 1024, 8), (2500, 1024, 1), (1, 16, 3)])
 def test_nobody_is_left_without_work_while_there_is_some(count: int, most: int, places: int) -> None:
     dealer = Dealer(count, most, 60.0, max(1, most // 8))
-    given, _ = dealer.assign(range(places), range(places), 0.0)
+    given, _ = dealer.assign(range(places), places, 0.0)
     assert len(given) == min(count, places)
     assert {place for attempt in given for place in [attempt.place]} == set(range(len(given)))
 
@@ -177,10 +177,10 @@ def test_who_is_free_runs_a_copy_of_what_takes_long_and_only_one() -> None:
     dealer.heard(Heard(quick.ticket, [(1, 1)], over=True), 2.0)
     third = _deal(dealer, 1, 2.0, 3)
     dealer.heard(Heard(third.ticket, [(2, 2)], over=True), 4.0)
-    assert dealer.assign([1, 2], range(3), 3.9) == ([], 4.0)
+    assert dealer.assign([1, 2], 3, 3.9) == ([], 4.0)
     copy = _deal(dealer, 1, 4.0, 3)
     assert copy.items == slow.items == (0,)
-    assert dealer.assign([2], range(3), 10.0)[0] == []
+    assert dealer.assign([2], 3, 10.0)[0] == []
     assert dealer.heard(Heard(copy.ticket, [(0, "copy")], over=True), 11.0) == [(0, "copy")]
     assert dealer.heard(Heard(slow.ticket, [(0, "slow")], over=True), 12.0) == []
     assert dealer.done
@@ -193,3 +193,26 @@ def test_the_latest_are_those(values: list[float], most: int, share: float) -> N
         latest.add(value)
     kept = sorted(values[-most:])
     assert latest.quantile(share) == kept[math.ceil(share * len(kept)) - 1]
+
+
+def test_nobody_waits_for_a_place_that_has_no_worker() -> None:
+    """Of two places one has lost its machine: what the other one loses is tried there again."""
+    dealer = Dealer(1, 1, 60.0)
+    first = _deal(dealer, 0, 0.0)
+    assert dealer.heard(Heard(first.ticket, over=True, lost=Lost("it broke", again=True)), 1.0) == []
+    second = _deal(dealer, 0, 2.0)
+    assert second.items == first.items
+
+
+def test_what_was_lost_in_company_counts_against_nobody_who_is_alone() -> None:
+    dealer, broke = Dealer(2, 2, 60.0), Lost("it broke", again=True)
+    both = _deal(dealer, 0, 0.0, 1)
+    assert both.items == (0, 1)
+    assert dealer.heard(Heard(both.ticket, [(0, "done")]), 1.0) == [(0, "done")]
+    assert dealer.heard(Heard(both.ticket, over=True, lost=broke), 2.0) == []
+    alone = _deal(dealer, 0, 10.0, 1)
+    assert alone.items == (1,)
+    assert dealer.heard(Heard(alone.ticket, over=True, lost=broke), 11.0) == []
+    again = _deal(dealer, 0, 100.0, 1)
+    assert dealer.heard(Heard(again.ticket, over=True, lost=broke), 101.0) == [(1, broke)]
+    assert dealer.done

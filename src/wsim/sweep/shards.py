@@ -158,14 +158,15 @@ class Dealer:
         """Whether every item has come to an end."""
         return len(self._done) == self._count
 
-    def assign(self, idle: Sequence[int], places: Collection[int], now: float) -> tuple[list[Attempt], float]:
-        """What the idle are to do, and when to ask again [s] if nothing is heard before."""
-        given, wake = [], math.inf
+    def assign(self, idle: Sequence[int], places: int, now: float) -> tuple[list[Attempt], float]:
+        """What the idle are to do, of so many places, and when to ask again [s] if nothing is heard before."""
+        given, wake = list[Attempt](), math.inf
+        there = {*idle, *(attempt.place for attempt in self._at.values())} if self._again else set[int]()
         for place in idle:
             if self._rests.get(place, now) > now:
                 wake = min(wake, self._rests[place])
                 continue
-            share, later = self._next(place, places, now)
+            share, later = self._next(place, places, there, now)
             wake = min(wake, later)
             if share:
                 given.append(self._start(share, place, now))
@@ -205,15 +206,15 @@ class Dealer:
         seconds = self._patience if alone else now - attempt.heard
         return self._lose(attempt, Lost(f"took more than {seconds:g} s", again=True), now)
 
-    def _next(self, place: int, places: Collection[int], now: float) -> tuple[Share | None, float]:
+    def _next(self, place: int, places: int, there: set[int], now: float) -> tuple[Share | None, float]:
         for share in list(self._again):
-            if place in share.avoid and not all(other in share.avoid for other in places):
-                continue
+            if place in share.avoid and not there <= share.avoid:
+                continue  # one of those who are there can try it elsewhere
             self._again.remove(share)
             if self._left(share.items):
                 return share, math.inf
         if self._fresh < self._count:
-            return self._cut(len(places)), math.inf
+            return self._cut(places), math.inf
         return self._copy(place, now) if self._copies else (None, math.inf)
 
     def _cut(self, workers: int) -> Share:
@@ -311,7 +312,7 @@ def run(
     """
     try:
         while not dealer.done:
-            given, wake = dealer.assign(workers.idle(), workers.places, workers.now())
+            given, wake = dealer.assign(workers.idle(), len(workers.places), workers.now())
             for attempt in given:
                 workers.give(attempt, pack(tuple(items[k] for k in attempt.items)))
             came = [new for said in workers.hear(wake) for new in dealer.heard(said, workers.now())]
