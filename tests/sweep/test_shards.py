@@ -150,7 +150,7 @@ def test_who_is_silent_for_long_is_late_by_what_others_took() -> None:
 
 
 def test_one_by_itself_has_all_of_its_patience() -> None:
-    dealer = Dealer(2, 1, 600.0, copies=False)
+    dealer = Dealer(2, 1, 600.0, elsewhere=False)
     slow, quick = _deal(dealer, 0, 0.0), _deal(dealer, 1, 0.0)
     dealer.heard(Heard(quick.ticket, [(1, 1)], over=True), 0.1)
     assert dealer.late(599.0) == []

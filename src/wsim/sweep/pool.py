@@ -120,7 +120,7 @@ class Pool:
 def each(
     work: Callable[[Task], Result], tasks: Sequence[Task], workers: int, patience: float
 ) -> Iterator[tuple[Task, Result | Lost]]:
-    """Each task with its result, in the order in which they are done; every task comes once, and is at one process.
+    """Each task with its result, in the order in which they are done; every task comes once, and what is late is lost.
 
     Args:
         work: Called in a process with each task; a function of a module.
@@ -128,7 +128,7 @@ def each(
         workers: How many processes.
         patience: After how many seconds a task's process is stopped [s].
     """
-    dealer = Dealer(len(tasks), 1, patience, copies=False)
+    dealer = Dealer(len(tasks), 1, patience, elsewhere=False)
     pool = Pool(partial(_one, work), min(workers, len(tasks)))
     for found in run(dealer, tasks, lambda items: items[0], pool):
         yield from found

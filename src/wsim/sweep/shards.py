@@ -137,12 +137,12 @@ class Dealer:
         most: Items of a shard.
         patience: How long a shard may be silent, for each item that it still has [s].
         least: Items of the last shards, where there are enough.
-        copies: Whether a shard may be at two workers at once.
+        elsewhere: Whether what a worker is late with may be at another one too, meanwhile or after.
     """
 
-    def __init__(self, count: int, most: int, patience: float, least: int = 1, copies: bool = True) -> None:
+    def __init__(self, count: int, most: int, patience: float, least: int = 1, elsewhere: bool = True) -> None:
         self._count, self._most, self._least = count, max(1, most), max(1, least)
-        self._patience, self._copies = patience, copies
+        self._patience, self._elsewhere = patience, elsewhere
         self._fresh, self._again = 0, deque[Share]()
         self._done: set[int] = set()
         self._at: dict[int, Attempt] = {}
@@ -204,7 +204,7 @@ class Dealer:
         """Count an attempt as lost because it is late; its items that are given up with it."""
         alone = len(attempt.items) == 1
         seconds = self._patience if alone else now - attempt.heard
-        return self._lose(attempt, Lost(f"took more than {seconds:g} s", again=True), now)
+        return self._lose(attempt, Lost(f"took more than {seconds:g} s", again=self._elsewhere), now)
 
     def _next(self, place: int, places: int, there: set[int], now: float) -> tuple[Share | None, float]:
         for share in list(self._again):
@@ -215,7 +215,7 @@ class Dealer:
                 return share, math.inf
         if self._fresh < self._count:
             return self._cut(places), math.inf
-        return self._copy(place, now) if self._copies else (None, math.inf)
+        return self._copy(place, now) if self._elsewhere else (None, math.inf)
 
     def _cut(self, workers: int) -> Share:
         left = self._count - self._fresh
