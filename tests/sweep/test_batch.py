@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +9,10 @@ import pytest
 
 from wsim.sweep import Axis, Spec, SweepFolder, sweep
 from wsim.sweep import batch as batched
-from wsim.sweep import run as sweeping
+from wsim.sweep import work as working
 from wsim.sweep.candidate import Candidate, Outcome
-from wsim.sweep.pool import Lost, Pool
-from wsim.sweep.run import parts, run
-from wsim.sweep.work import Shard, work
+from wsim.sweep.pool import each
+from wsim.sweep.work import Shard
 
 PROGRAM = """
 def build(scene):
@@ -28,6 +26,13 @@ def build(scene):
     if scene.param("ball", 0.0, low=0.0, high=1.0) > 0.5:
         scene.sphere("ball", radius=0.1, position=(3, 0, 1), density=500.0)
 """
+
+
+def work(shard: Shard) -> list[Outcome]:
+    """All outcomes of a shard, as its candidates stand in it."""
+    found = [pair for some in working.work(shard) for pair in some]
+    assert sorted(place for place, _ in found) == list(range(len(shard.candidates)))
+    return [outcome for _, outcome in sorted(found, key=lambda pair: pair[0])]
 
 
 @pytest.fixture
@@ -126,7 +131,7 @@ def test_cores_change_nothing_but_the_time(folder: Path) -> None:
     points = [{}, {"edge": 0.1}, {"friction": 0.1}, {"edge": 0.5}, {"edge": 0.3, "friction": 0.7}]
     candidates = tuple(Candidate(number=k, params=point, seed=k % 2) for k, point in enumerate(points))
     shards = [Shard(candidates, folder, Spec(worlds=8), cores) for cores in (1, 3)]
-    found = {shard.cores: told for shard, told in Pool(work, 1, lambda shard: shard.patience).run(shards)}
+    found = {shard.cores: told for shard, told in each(work, shards, 1, 600.0)}
     one, several = ([each.model_copy(update={"seconds": 0.0}) for each in found[cores]] for cores in (1, 3))
     assert [outcome.status for outcome in one] == ["accepted"] * 3 + ["rejected", "accepted"]
     assert several == one
@@ -161,35 +166,6 @@ def test_a_batch_that_cannot_be_run_as_one_says_so(folder: Path, monkeypatch: py
     assert {outcome.note for outcome in found} == {
         "run by itself, as 3 worlds could not be at once: RuntimeError: planted"
     }
-
-
-def test_who_shares_a_shard_with_a_killer_is_run_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[tuple[int, ...]] = []
-
-    def pool(shards: Sequence[Shard], workers: int) -> Iterator[tuple[Shard, list[Outcome] | Lost]]:
-        for shard in shards:
-            numbers = tuple(candidate.number for candidate in shard.candidates)
-            asked.append(numbers)
-            if 2 in numbers:
-                yield shard, Lost("its process ended with signal 9")
-            else:
-                yield shard, [Outcome(candidate=candidate, status="accepted") for candidate in shard.candidates]
-
-    monkeypatch.setattr(sweeping, "_on_pool", pool)
-    candidates = [Candidate(number=k) for k in range(6)]
-    made = SweepFolder.create(folder / "runs", "killer", Spec(worlds=4), [folder / "program.py"])
-    found = {outcome.candidate.number: outcome for outcomes in run(candidates, made, 2) for outcome in outcomes}
-    assert asked == [(0, 1, 2, 3), (4, 5), (0,), (1,), (2,), (3,)]
-    assert [found[k].status for k in range(6)] == ["accepted"] * 2 + ["failed"] + ["accepted"] * 3
-
-
-@pytest.mark.parametrize(("count", "together", "workers"), [(0, 1, 2), (5, 1, 2), (1000, 1, 2), (2500, 1024, 1)])
-def test_shards_hold_each_candidate_once(count: int, together: int, workers: int) -> None:
-    candidates = [Candidate(number=k) for k in range(count)]
-    shards = parts(candidates, together, workers)
-    assert [candidate for shard in shards for candidate in shard] == candidates
-    assert all(0 < len(shard) <= max(16, together) for shard in shards)
-    assert len(shards) >= min(count, workers) or together > 1
 
 
 def test_a_whole_sweep_of_batches(folder: Path) -> None:

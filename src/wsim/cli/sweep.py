@@ -29,6 +29,7 @@ from wsim.sweep.run import sweep as run_sweep
 from wsim.sweep.sampling import Method, Point, read_points
 from wsim.sweep.sensitivity import sensitivities
 from wsim.sweep.spec import Spec
+from wsim.sweep.store import Store
 from wsim.sweep.table import parameters
 
 SHOWN = 12  # rows
@@ -54,12 +55,15 @@ def sweep(
     ] = 1,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the draw.")] = 0,
     plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
-    device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …")] = "cpu",
+    device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …; cuda:0,cuda:1: a worker on each.")] = "cpu",
     time_step: TimeStep = None,
     worlds: Annotated[
         int, typer.Option("--worlds", min=0, help="Worlds simulated at once; 0: one on a CPU, 1024 on a GPU.")
     ] = 0,
     workers: Annotated[int, typer.Option("--workers", min=0, help="Processes; 0: one for each core.")] = 0,
+    ray: Annotated[
+        str, typer.Option("--ray", metavar="auto|ADDRESS", help="Workers of a Ray cluster; auto: this machine's own.")
+    ] = "",
     patience: Annotated[
         float, typer.Option("--patience", min=1.0, help="Seconds after which a candidate is given up.")
     ] = 600.0,
@@ -67,8 +71,11 @@ def sweep(
         bool, typer.Option("--full/--no-full", help="Run the best, the worst and those at the limit again, in full.")
     ] = True,
     resume: Annotated[
-        Path | None, typer.Option("--resume", metavar="FOLDER", help="A sweep that was stopped: finish the rest.")
-    ] = None,
+        str, typer.Option("--resume", metavar="FOLDER|URL", help="A sweep that was stopped: finish the rest.")
+    ] = "",
+    store: Annotated[
+        str, typer.Option("--store", metavar="URL", help="A folder for a copy, as s3://bucket/sweeps (fsspec).")
+    ] = "",
     runs: Runs = Path("runs"),
     isolation: Isolation = "auto",
 ) -> None:
@@ -82,13 +89,13 @@ def sweep(
             raise UserError(
                 "--resume goes on with a sweep as it was asked for; leave programs, --vary and --points out"
             )
-        folder = SweepFolder.open(resume)
+        folder, kept = _opened(resume, store, runs)
     else:
         if method not in get_args(Method):
             raise UserError(f"--method {method}: expected sobol, latin, random, grid, saltelli or cma")
         choose(isolation)
-        if device not in ("auto", "cpu"):
-            sim.known_device(device)
+        if not ray:
+            _known(device)
         spec = Spec(
             method=method,
             samples=samples,
@@ -101,13 +108,19 @@ def sweep(
             patience=patience,
             batch=max(1, (workers or len(os.sched_getaffinity(0))) // max(1, len(targets or []) * repeats)),
         )
+        Store(store) if store else None  # what cannot be reached is said before there is a folder
         folder = _ask(spec, targets or [], vary or [], points, plan, runs)
+        kept = Store(f"{store.rstrip('/')}/{folder.path.name}") if store else None
+    if kept:
+        kept.rest(folder)
     try:
         with ConsoleProgress() as progress:
-            outcomes = run_sweep(folder, workers, progress)
+            outcomes = run_sweep(folder, workers, progress, ray, kept)
             if full:
                 outcomes = in_full(folder, outcomes, progress=progress)
     except KeyboardInterrupt:
+        if kept:
+            kept.rest(folder)
         console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
         raise typer.Exit(130) from None
     picture = draw(outcomes, folder.path)
@@ -116,7 +129,29 @@ def sweep(
     page = write_page(folder)
     for path in [folder.path / "table.parquet", *([picture] if picture else []), page]:
         console.print(f"{path.stem}: {path}", soft_wrap=True)
+    if kept:
+        kept.rest(folder)
+        console.print(f"all of it: {kept.url}", soft_wrap=True)
     raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+
+
+def _opened(resume: str, store: str, runs: Path) -> tuple[SweepFolder, Store | None]:
+    """A sweep that was stopped, in a folder of this machine or in a store; and where its copy is kept."""
+    if "://" in resume:
+        kept = Store(resume)
+        return kept.fetch(runs), kept
+    folder = SweepFolder.open(resume)
+    return folder, Store(f"{store.rstrip('/')}/{folder.path.name}") if store else None
+
+
+def _known(device: str) -> None:
+    """Refuse a device that this machine has not; several are GPUs."""
+    names = device.split(",")
+    if len(names) > 1 and not all(name.startswith("cuda:") for name in names):
+        raise UserError(f"--device {device}: several devices are GPUs, as in cuda:0,cuda:1")
+    for name in names:
+        if name not in ("auto", "cpu"):
+            sim.known_device(name)
 
 
 def _ask(

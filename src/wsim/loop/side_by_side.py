@@ -10,7 +10,8 @@ from wsim.judge.verdict import Verdict
 from wsim.progress import Progress, silent
 from wsim.runs.attempt import Attempt, Reached, attempt
 from wsim.runs.iteration import Iteration
-from wsim.sweep.pool import Lost, Pool
+from wsim.sweep.pool import each
+from wsim.sweep.shards import Lost
 
 
 def side_by_side(iterations: Sequence[Iteration], seconds: float, progress: Progress = silent) -> list[Attempt]:
@@ -24,13 +25,12 @@ def side_by_side(iterations: Sequence[Iteration], seconds: float, progress: Prog
         progress: Told how many are done.
     """
     found: dict[str, Attempt] = {}
-    tasks = [replace(each, progress=silent) for each in iterations]
-    pool: Pool[Iteration, Attempt] = Pool(physics_of, min(len(tasks), len(os.sched_getaffinity(0))), lambda _: seconds)
+    tasks = [replace(iteration, progress=silent) for iteration in iterations]
     progress("patches side by side", 0, len(tasks))
-    for task, result in pool.run(tasks):
+    for task, result in each(physics_of, tasks, len(os.sched_getaffinity(0)), seconds):
         found[task.folder.name] = _lost(task, result) if isinstance(result, Lost) else result
         progress("patches side by side", len(found), len(tasks))
-    return [found[each.folder.name] for each in iterations]
+    return [found[iteration.folder.name] for iteration in iterations]
 
 
 def physics_of(iteration: Iteration) -> Attempt:

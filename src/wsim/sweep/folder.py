@@ -7,6 +7,7 @@ runs/<time>-sweep-<name>/
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections import Counter
 from collections.abc import Sequence
@@ -93,10 +94,11 @@ class SweepFolder:
 
     def add(self, outcome: Outcome) -> None:
         """Keep an outcome."""
-        path = self.path / "outcomes.jsonl"
-        cut = path.is_file() and path.stat().st_size and not path.read_bytes().endswith(b"\n")
-        with path.open("a", encoding="utf-8") as file:
-            file.write(("\n" if cut else "") + outcome.model_dump_json() + "\n")
+        with (self.path / "outcomes.jsonl").open("ab+") as file:
+            if file.tell():
+                file.seek(-1, os.SEEK_END)
+            cut = file.read(1) not in (b"", b"\n")
+            file.write((("\n" if cut else "") + outcome.model_dump_json() + "\n").encode())
 
     def finish(self, best_first: Sequence[Outcome]) -> None:
         """Say in summary.json that all is done, how many came out how, and which is the best."""

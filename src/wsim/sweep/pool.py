@@ -1,154 +1,197 @@
-"""Worker processes that may die, hang or raise: each loses what it was at, and nothing else."""
+"""Worker processes of this machine, that may die, hang or raise: each loses what it was at, and nothing else."""
 
 from __future__ import annotations
 
 import contextlib
+import ctypes
+import math
 import multiprocessing
 import os
+import signal
 import time
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection, wait
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 from wsim.scene import usd_threads
+from wsim.sweep.shards import Attempt, Dealer, Heard, Lost, run
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
+Found = tuple[int, Any]  # where in its task a result belongs, and it
 
-TRIES = 2  # a worker may be killed for what another one uses; who kills two is to blame
 # As many processes as cores, and they may be forked.
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", **usd_threads.ONE_THREAD}
 
-
-@dataclass(frozen=True)
-class Lost:
-    """Why a task has no result, and whether another try may have one."""
-
-    reason: str
-    again: bool = False
+PR_SET_PDEATHSIG = 1  # prctl(2)
 
 
 @dataclass
 class _Worker:
     process: Any
     pipe: Connection
-    task: int | None = None
-    until: float = 0.0  # [s] of the clock, when it is given up
+    attempt: Attempt | None = None
 
 
-class Pool(Generic[Task, Result]):
-    """Processes that work off a list, and are replaced when they end.
+class Pool:
+    """Processes, each at a place; a `Workers`.
 
     Args:
-        work: Called in a worker with each task; a function of a module.
+        work: Called in a process with each task; a function of a module. Yields what it has found, some at a time.
         workers: How many processes.
-        patience: After how many seconds a task's worker is stopped [s], of each task.
+        environments: Variables that differ, as which GPU is seen; taken in turn.
     """
 
-    def __init__(self, work: Callable[[Task], Result], workers: int, patience: Callable[[Task], float]) -> None:
-        self._work, self._patience, self._count = work, patience, max(1, workers)
-        self._workers: list[_Worker] = []
+    def __init__(
+        self,
+        work: Callable[[Any], Iterable[Sequence[Found]]],
+        workers: int,
+        environments: Sequence[Mapping[str, str]] = ({},),
+    ) -> None:
+        self._work, self._environments = work, environments
+        self._places = range(max(1, workers))
+        self._workers: dict[int, _Worker] = {}
 
-    def run(self, tasks: Sequence[Task]) -> Iterator[tuple[Task, Result | Lost]]:
-        """Each task with its result, in the order in which they are done; every task comes once."""
-        todo, tries = deque(range(len(tasks))), [0] * len(tasks)
-        try:
-            while todo or any(worker.task is not None for worker in self._workers):
-                self._fill(tasks, todo, tries)
-                for worker in self._ready():
-                    index, result = self._answer(worker, tasks)
-                    if index is None:
-                        continue
-                    if isinstance(result, Lost) and result.again and tries[index] < TRIES:
-                        todo.appendleft(index)
-                        continue
-                    yield tasks[index], result
-        finally:
-            self.stop()
+    @property
+    def places(self) -> Collection[int]:
+        """One for each process."""
+        return self._places
+
+    def now(self) -> float:
+        """The clock of this machine [s]."""
+        return time.monotonic()
+
+    def idle(self) -> Sequence[int]:
+        """Places whose process waits for work, or is yet to be started."""
+        return [k for k in self._places if k not in self._workers or self._workers[k].attempt is None]
+
+    def give(self, attempt: Attempt, task: Any) -> None:
+        """Send a task to a place's process."""
+        place = attempt.place
+        if place not in self._workers:
+            self._workers[place] = _start(self._work, self._environments[place % len(self._environments)])
+        self._workers[place].attempt = attempt
+        with contextlib.suppress(OSError):  # it has died; what it was to do is found lost
+            self._workers[place].pipe.send(task)
+
+    def hear(self, until: float) -> Sequence[Heard]:
+        """What processes have said, or that they have ended."""
+        busy = {place: worker for place, worker in self._workers.items() if worker.attempt is not None}
+        signs: dict[Any, int] = {worker.pipe: place for place, worker in busy.items()}
+        signs |= {worker.process.sentinel: place for place, worker in busy.items()}
+        found = wait(list(signs), timeout=None if math.isinf(until) else max(0.0, until - time.monotonic()))
+        return [self._read(place) for place in dict.fromkeys(signs[sign] for sign in found)]
+
+    def end(self, place: int) -> None:
+        """End a process, whatever it is at."""
+        worker = self._workers.pop(place)
+        worker.pipe.close()
+        worker.process.terminate()
+        worker.process.join(2.0)
+        if worker.process.is_alive():
+            worker.process.kill()
+            worker.process.join()
 
     def stop(self) -> None:
-        """End every worker, whatever it is at."""
-        for worker in self._workers:
-            _end(worker)
-        self._workers = []
+        """End all of them."""
+        for place in list(self._workers):
+            self.end(place)
 
-    def _fill(self, tasks: Sequence[Task], todo: deque[int], tries: list[int]) -> None:
-        while todo and len(self._workers) < min(self._count, len(tasks)):
-            self._workers.append(_start(self._work))
-        for worker in self._workers:
-            if todo and worker.task is None:
-                index = todo.popleft()
-                tries[index] += 1
-                worker.task, worker.until = index, time.monotonic() + self._patience(tasks[index])
-                with contextlib.suppress(OSError):  # it has died; what it was to do is found lost
-                    worker.pipe.send(tasks[index])
-
-    def _ready(self) -> list[_Worker]:
-        """Workers that have answered, ended, or been given up."""
-        busy = [worker for worker in self._workers if worker.task is not None]
-        signs = {worker.pipe: worker for worker in busy} | {worker.process.sentinel: worker for worker in busy}
-        left = min((worker.until for worker in busy), default=0.0) - time.monotonic()
-        found = wait(list(signs), timeout=max(0.0, left))
-        late = [worker for worker in busy if time.monotonic() >= worker.until]
-        return list({id(worker): worker for worker in [*(signs[sign] for sign in found), *late]}.values())
-
-    def _answer(self, worker: _Worker, tasks: Sequence[Task]) -> tuple[int | None, Any]:
-        index, worker.task = worker.task, None
+    def _read(self, place: int) -> Heard:
+        worker = self._workers[place]
+        attempt = worker.attempt
+        assert attempt is not None  # only who is at something is heard
         try:
             if worker.pipe.poll():
-                return index, worker.pipe.recv()
+                said = worker.pipe.recv()
+                if said is None or isinstance(said, Lost):
+                    worker.attempt = None
+                    return Heard(attempt.ticket, over=True, lost=said)
+                return Heard(attempt.ticket, [(attempt.items[k], result) for k, result in said])
         except (EOFError, OSError):
             worker.process.join(2.0)  # it says itself how it ends
-        hung = worker.process.is_alive() and time.monotonic() >= worker.until
-        _end(worker)
-        self._workers.remove(worker)
-        if hung and index is not None:
-            return index, Lost(f"took more than {self._patience(tasks[index]):g} s")
-        return index, Lost(f"its process ended with {_cause(worker.process.exitcode)}", again=True)
+        self.end(place)
+        how = f"its process ended with {_cause(worker.process.exitcode)}"
+        return Heard(attempt.ticket, over=True, lost=Lost(how, again=True))
 
 
-def _start(work: Callable[[Any], Any]) -> _Worker:
+def each(
+    work: Callable[[Task], Result], tasks: Sequence[Task], workers: int, patience: float
+) -> Iterator[tuple[Task, Result | Lost]]:
+    """Each task with its result, in the order in which they are done; every task comes once, and what is late is lost.
+
+    Args:
+        work: Called in a process with each task; a function of a module.
+        tasks: They.
+        workers: How many processes.
+        patience: After how many seconds a task's process is stopped [s].
+    """
+    dealer = Dealer(len(tasks), 1, patience, elsewhere=False)
+    pool = Pool(partial(_one, work), min(workers, len(tasks)))
+    for found in run(dealer, tasks, lambda items: items[0], pool):
+        yield from found
+
+
+def _one(work: Callable[[Any], Any], task: Any) -> Iterator[list[Found]]:
+    yield [(0, work(task))]
+
+
+def _start(work: Callable[[Any], Iterable[Sequence[Found]]], environment: Mapping[str, str]) -> _Worker:
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update({name: value for name, value in ONE_THREAD.items() if before[name] is None})
-    try:
+    threads = {name: value for name, value in ONE_THREAD.items() if name not in os.environ}
+    with _environment({**threads, **environment}):
         process = context.Process(target=_serve, args=(theirs, work), daemon=True)
         process.start()
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
     theirs.close()
     return _Worker(process, ours)
 
 
-def _serve(pipe: Connection, work: Callable[[Any], Any]) -> None:
-    """In a worker: do what comes, until nobody is there to send it."""
+@contextlib.contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """What is started within has these variables."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _serve(pipe: Connection, work: Callable[[Any], Iterable[Sequence[Found]]]) -> None:
+    """In a process: do what comes, until nobody is there to send it. It ends when who started it is killed."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    parent = multiprocessing.parent_process()
+    if parent is None or not parent.is_alive():
+        return
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pipe.recv()
+            end = None
             try:
-                done = work(task)
+                for found in work(task):
+                    pipe.send(found)
+            except (BrokenPipeError, ConnectionError):
+                return
             except Exception as error:  # noqa: BLE001 - whatever it was, the row says so
-                done = Lost(told(error))
-            pipe.send(done)
+                end = lost_to(error)
+            pipe.send(end)
+
+
+def lost_to(error: Exception) -> Lost:
+    """What went wrong; another machine may have the memory, or the disk, that this one lacks."""
+    return Lost(told(error), again=isinstance(error, (MemoryError, OSError)))
 
 
 def told(error: Exception) -> str:
     """What went wrong, in a line."""
     return f"{type(error).__name__}: {' '.join(str(error).split())[:400]}"
-
-
-def _end(worker: _Worker) -> None:
-    worker.pipe.close()
-    worker.process.terminate()
-    worker.process.join(2.0)
-    if worker.process.is_alive():
-        worker.process.kill()
-        worker.process.join()
 
 
 def _cause(code: int | None) -> str:

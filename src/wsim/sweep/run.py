@@ -3,32 +3,40 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wsim.progress import Progress, silent
+from wsim.sweep import shards
 from wsim.sweep.candidate import Candidate, Outcome
-from wsim.sweep.pool import Lost, Pool
+from wsim.sweep.cluster import RayWorkers, connect
+from wsim.sweep.pool import Pool
 from wsim.sweep.search import Search
+from wsim.sweep.shards import Dealer, Lost
 from wsim.sweep.table import ranked, write
 from wsim.sweep.work import Shard, work
 
 if TYPE_CHECKING:
     from wsim.sweep.folder import SweepFolder
     from wsim.sweep.spec import Spec
+    from wsim.sweep.store import Store
 
 A_SHARD = 16  # candidates that are built in one process: starting it takes as long as building them
-SHARDS_A_WORKER = 4  # so that none waits long for the last
+SHORTEST = 8  # times fewer in the last shards
 
 
-def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) -> list[Outcome]:
+def sweep(
+    folder: SweepFolder, workers: int = 0, progress: Progress = silent, ray: str = "", store: Store | None = None
+) -> list[Outcome]:
     """Run what is not done yet; the table is whole whenever this ends, also by Ctrl-C.
 
     Args:
         folder: With what is asked; outcomes go there as they come.
         workers: Processes; by default one for each core.
         progress: Told how many candidates are done.
+        ray: A Ray cluster whose workers do it, as `wsim.sweep.cluster.connect` takes it; "": processes of this machine.
+        store: Where outcomes are sent as they come; the table is not.
 
     Returns:
         All outcomes, the best first.
@@ -38,10 +46,12 @@ def sweep(folder: SweepFolder, workers: int = 0, progress: Progress = silent) ->
     try:
         for batch in batches(spec, done):
             left = [candidate for candidate in batch if candidate.number not in done]
-            for outcomes in run(left, folder, workers):
+            for outcomes in run(left, folder, workers, ray):
                 for outcome in outcomes:
                     folder.add(outcome)
                     done[outcome.candidate.number] = outcome
+                if store:
+                    store.part(folder)
                 progress("candidates", min(len(done), spec.count), spec.count)
     finally:
         if done:
@@ -74,46 +84,59 @@ def batches(spec: Spec, done: Mapping[int, Outcome]) -> Iterator[list[Candidate]
         first += len(batch)
 
 
-def run(candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0) -> Iterator[list[Outcome]]:
-    """Every candidate's outcome, some at a time, in the order in which they are done.
+def run(
+    candidates: Sequence[Candidate], folder: SweepFolder, workers: int = 0, ray: str = ""
+) -> Iterator[list[Outcome]]:
+    """Every candidate's outcome, some at a time, as they come.
 
-    Who shares a shard with one that kills its worker, or holds it up, is run again by itself.
+    Who shares a shard with one that kills its worker, or holds it up, is run again without it.
+
+    Args:
+        candidates: They.
+        folder: Of the sweep that they belong to.
+        workers: How many; by default one for each core, on GPUs one for each.
+        ray: A Ray cluster whose workers do it; "": processes of this machine.
     """
-    spec, workers = folder.spec, workers or _workers(folder.spec)
-    shared = parts(candidates, spec.together, workers)
-    cores = max(1, len(os.sched_getaffinity(0)) // max(1, min(workers, len(shared))))
-    shards = [Shard(part, folder.path.resolve(), spec, cores) for part in shared]
-    left: list[Shard] = []
-    for shard, result in _on_pool(shards, workers):
-        if not isinstance(result, Lost):
-            yield result
-        elif len(shard.candidates) > 1:
-            left += [replace(shard, candidates=(candidate,)) for candidate in shard.candidates]
-        else:
-            yield [_lost(shard, result)]
-    for shard, result in _on_pool(left, workers):
-        yield [_lost(shard, result)] if isinstance(result, Lost) else result
+    if not candidates:
+        return
+    spec, doing = folder.spec, _workers(folder, min(workers, len(candidates)), ray)
+    cores = doing.cores if isinstance(doing, RayWorkers) else len(os.sched_getaffinity(0)) // len(doing.places)
+    pack = packed(
+        folder.path.resolve(), spec, max(1, cores), spec.device.startswith("cuda") and bool(ray or "," in spec.device)
+    )
+    for found in shards.run(dealer(spec, len(candidates)), candidates, pack, doing):
+        yield [_lost(candidate, came) if isinstance(came, Lost) else came for candidate, came in found]
 
 
-def parts(candidates: Sequence[Candidate], together: int, workers: int) -> list[tuple[Candidate, ...]]:
-    """Shards of candidates: as many as are simulated at once, or a few, of which each worker has several."""
-    size = together if together > 1 else min(A_SHARD, max(1, len(candidates) // (SHARDS_A_WORKER * workers)))
-    return [tuple(candidates[first : first + size]) for first in range(0, len(candidates), size)]
+def _workers(folder: SweepFolder, count: int, ray: str) -> Pool | RayWorkers:
+    spec, devices = folder.spec, folder.spec.device.split(",")
+    if ray:
+        files = {name: folder.path / name for name in [*spec.programs, "plan.json"]}
+        contents = {name: path.read_bytes() for name, path in files.items() if path.is_file()}
+        return RayWorkers(connect(ray), contents, devices[0].startswith("cuda"), count)
+    count = count or (len(devices) if devices[0].startswith("cuda") else len(os.sched_getaffinity(0)))
+    return Pool(work, count, [_seeing(device) for device in devices] if len(devices) > 1 else [{}])
 
 
-def _workers(spec: Spec) -> int:
-    """One for each core; on a GPU one, which has it for itself."""
-    return 1 if spec.device.startswith("cuda") else len(os.sched_getaffinity(0))
+def dealer(spec: Spec, count: int) -> Dealer:
+    """Of so many candidates: shards of as many as are simulated at once, or of a few."""
+    most = spec.together if spec.together > 1 else A_SHARD
+    return Dealer(count, most, spec.patience, max(1, most // SHORTEST))
 
 
-def _on_pool(shards: Sequence[Shard], workers: int) -> Iterator[tuple[Shard, list[Outcome] | Lost]]:
-    pool: Pool[Shard, list[Outcome]] = Pool(work, workers, _patience)
-    return pool.run(shards)
+def packed(folder: Path, spec: Spec, cores: int, alone: bool) -> Callable[[tuple[Candidate, ...]], Shard]:
+    """What a worker is sent of some candidates; of several GPUs each worker sees its own alone."""
+    device = "cuda:0" if alone else spec.device
+    small = spec.model_copy(update={"device": device, "points": []})  # a million points are not sent with each shard
+    return lambda candidates: Shard(candidates, folder, small, cores)
 
 
-def _patience(shard: Shard) -> float:
-    return shard.patience
+def _seeing(device: str) -> dict[str, str]:
+    """Variables with which a process sees one GPU alone; which of those that this one sees is in the device's name."""
+    index = int(device.removeprefix("cuda:"))
+    seen = os.environ.get("CUDA_VISIBLE_DEVICES", "")
+    return {"CUDA_VISIBLE_DEVICES": seen.split(",")[index] if seen else str(index)}
 
 
-def _lost(shard: Shard, lost: Lost) -> Outcome:
-    return Outcome(candidate=shard.candidates[0], status="failed", reason=lost.reason)
+def _lost(candidate: Candidate, lost: Lost) -> Outcome:
+    return Outcome(candidate=candidate, status="failed", reason=lost.reason)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -54,16 +54,11 @@ class Shard:
     spec: Spec
     cores: int = 1
 
-    @property
-    def patience(self) -> float:
-        """How long it may take [s]."""
-        return self.spec.patience * len(self.candidates)
-
 
 def settings(spec: Spec, candidate: Candidate, pictures: bool = False) -> Settings:
     """A candidate's, as `wsim run` takes them."""
     return Settings(
-        device=spec.device,
+        device=spec.device.split(",")[0],
         params=candidate.params,
         isolation=spec.isolation,
         pictures=pictures,
@@ -72,31 +67,31 @@ def settings(spec: Spec, candidate: Candidate, pictures: bool = False) -> Settin
     )
 
 
-def work(shard: Shard) -> list[Outcome]:
-    """Build, simulate, judge; nothing stays on disk."""
+def work(shard: Shard) -> Iterator[list[tuple[int, Outcome]]]:
+    """Build, simulate, judge: outcomes as they are known, each with its place in the shard. Nothing stays on disk."""
     plan_file = shard.folder / "plan.json"
     plan = load(plan_file) if plan_file.is_file() else None
+    places = {candidate.number: place for place, candidate in enumerate(shard.candidates)}
     with tempfile.TemporaryDirectory(prefix="wsim-candidates-") as scratch:
-        made = [
-            (candidate, *each)
+        left = {
+            candidate.number: (candidate, *each)
             for candidate, each in zip(shard.candidates, build(shard, Path(scratch), plan), strict=True)
-        ]
-        found: dict[int, Outcome] = {}
+        }
         notes: dict[int, str] = {}
         if shard.spec.together > 1:
-            runnable = [(candidate, iteration) for candidate, iteration, built in made if built.ok]
+            runnable = [(candidate, iteration) for candidate, iteration, built in left.values() if built.ok]
             for batch in batches(runnable, shard.spec.together, shard.cores):
                 try:
-                    found |= _together(batch, plan, shard.cores)
+                    found = _together(batch, plan, shard.cores)
                 except FAILURES as error:  # each is run by itself, which says whose it is; what it costs is not hidden
                     why = f"run by itself, as {len(batch)} worlds could not be at once: {told(error)}"
                     notes |= {member.candidate.number: why for member in batch}
-        return [
-            found[candidate.number]
-            if candidate.number in found
-            else _alone(candidate, iteration, built).model_copy(update={"note": notes.get(candidate.number, "")})
-            for candidate, iteration, built in made
-        ]
+                    continue
+                left = {number: made for number, made in left.items() if number not in found}
+                yield [(places[number], outcome) for number, outcome in found.items()]
+        for number, (candidate, iteration, built) in left.items():
+            alone = _alone(candidate, iteration, built)
+            yield [(places[number], alone.model_copy(update={"note": notes.get(number, "")}))]
 
 
 def as_varied(verdict: Verdict) -> Verdict:
