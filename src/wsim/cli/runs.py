@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from wsim.cli.show import STATUS_STYLE, console
+from wsim.errors import UserError
 from wsim.runs.folder import RunFolder
 from wsim.runs.named import folders
 from wsim.sweep.folder import SweepFolder
@@ -25,10 +26,11 @@ def runs(
 ) -> None:
     """List runs and sweeps, the newest first, with their verdicts.
 
-    Wherever a run is named, `latest` and any part of its name will do, also in `latest/candidates/0007`.
+    Wherever a run is named, `latest` and any part of its name will do, also in `latest/candidates/0007`. A folder that
+    cannot be read has a line that says why.
     """
     known = folders(base)
-    rows = [_sweep(path) if (path / "sweep.json").is_file() else _run(path) for path in known[:count]]
+    rows = [_row(path) for path in known[:count]]
     if json:
         print(as_json.dumps(rows, indent=2, ensure_ascii=False))
         return
@@ -48,9 +50,22 @@ def runs(
         console.print(f"and {len(known) - len(rows)} older ones")
 
 
+def _row(path: Path) -> dict[str, Any]:
+    """What is said of a folder; of one that cannot be read why, so that the others are listed nonetheless."""
+    swept = (path / "sweep.json").is_file()
+    try:
+        return _sweep(path) if swept else _run(path)
+    except (UserError, ValueError, OSError) as error:  # files are a user's to edit; json's errors are ValueErrors
+        why = str(error).splitlines()[0]
+        row = {"run": path.name, "what": "sweep" if swept else "run", "tried": 0, "status": "unreadable"}
+        return row | {"seconds": None, "summary": why.replace(f"{path}/", "")}
+
+
 def _run(path: Path) -> dict[str, Any]:
     run = RunFolder(path)
     facts = run.facts()
+    if not isinstance(facts, dict):
+        raise UserError("run.json: it holds no table of names and values")
     return {
         "run": path.name,
         "what": "generate" if "budget" in facts else "run",

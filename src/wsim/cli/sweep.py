@@ -198,6 +198,9 @@ def _show(outcomes: list[Outcome]) -> None:
     console.print(table)
     counts = {status: sum(o.status == status for o in outcomes) for status in {o.status: 0 for o in outcomes}}
     console.print(", ".join(f"{count} {status}" for status, count in counts.items()) + f" of {len(outcomes)}")
+    accepted = [outcome for outcome in outcomes if outcome.status == "accepted"]
+    if len(accepted) > 1 and all(outcome.slack is None for outcome in accepted):
+        console.print("no objective ranks the accepted: they stand by their numbers; --plan gives what to rank by")
     for note, count in Counter(outcome.note for outcome in outcomes if outcome.note).most_common():
         console.print(f"{count} {note}", soft_wrap=True)
     if outcomes and outcomes[0].status == "accepted" and outcomes[0].together > 1:
