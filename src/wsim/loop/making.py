@@ -14,6 +14,7 @@ from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.runs.accept import accept
 from wsim.runs.attempt import Attempt, Reached, attempt, numerics
+from wsim.runs.bare_run import BareRun
 from wsim.runs.folder import RunFolder
 from wsim.runs.iteration import Iteration
 from wsim.runs.records import Tried
@@ -105,9 +106,16 @@ class Making:
 
     def _through(self, iteration: Iteration) -> Attempt:
         """All passes, the review, the judge, and acceptance."""
-        tried = attempt(iteration, cheap_first=self.crew.has("coder") or self.best is not None)
+        cheap_first = self.crew.has("coder") or self.best is not None
+        if cheap_first or not self.options.confirm:
+            return self._concluded(iteration, attempt(iteration, cheap_first))
+        with BareRun(self.run.path / "bare.partial", iteration) as bare_run:
+            bare_run.start()  # a first draft is to need no repair
+            return self._concluded(iteration, attempt(iteration, cheap_first), bare_run)
+
+    def _concluded(self, iteration: Iteration, tried: Attempt, bare_run: BareRun | None = None) -> Attempt:
         try:
-            self._assess(tried, replace(iteration, settings=self.options.settings))
+            self._assess(tried, replace(iteration, settings=self.options.settings), bare_run)
         except BudgetError as error:  # what was tried is kept, and what was found of it
             self.run.record(cause=str(error))
             if tried.verdict.status == "accepted":
@@ -118,14 +126,14 @@ class Making:
         iteration.conclude(tried.verdict)
         return tried
 
-    def _assess(self, tried: Attempt, iteration: Iteration) -> None:
+    def _assess(self, tried: Attempt, iteration: Iteration, bare_run: BareRun | None) -> None:
         """The review, the judge, and acceptance; a program that is no better is not asked about."""
         if tried.verdict.status == "accepted":
             self.crew.look(tried, self.plan)
         if self.best is None or tried.rank > self.best.rank:
             self.crew.judge(tried, self.plan)
         if tried.verdict.status == "accepted" and self.options.confirm:
-            tried.verdict = accept(self.run, iteration, tried.earlier)
+            tried.verdict = accept(self.run, iteration, tried.earlier, bare_run)
         elif tried.verdict.status == "accepted":
             self.run.stamp(tried.folder)
 
