@@ -10,6 +10,7 @@ from wsim.agents.crew import Crew
 from wsim.judge.verdict import Verdict
 from wsim.loop.options import Options
 from wsim.loop.side_by_side import side_by_side
+from wsim.phases import Phases
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.runs.accept import accept
@@ -31,6 +32,7 @@ class Making:
         options: How it is made.
         best: The best attempt so far.
         undone: Patches of the best that are no better.
+        phases: Where the time goes.
     """
 
     run: RunFolder
@@ -39,6 +41,7 @@ class Making:
     options: Options
     best: Attempt | None = None
     undone: list[Attempt] = field(default_factory=list)
+    phases: Phases = field(default_factory=Phases)
 
     @property
     def tried(self) -> int:
@@ -133,7 +136,8 @@ class Making:
         if self.best is None or tried.rank > self.best.rank:
             self.crew.judge(tried, self.plan)
         if tried.verdict.status == "accepted" and self.options.confirm:
-            tried.verdict = accept(self.run, iteration, tried.earlier, bare_run)
+            with self.phases.phase("confirm"):
+                tried.verdict = accept(self.run, iteration, tried.earlier, bare_run)
         elif tried.verdict.status == "accepted":
             self.run.stamp(tried.folder)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Protocol
@@ -15,6 +14,7 @@ import numpy as np
 import warp as wp
 
 from wsim.errors import UserError
+from wsim.phases import Phases
 from wsim.progress import Progress, silent
 from wsim.recording import RecordingWriter
 from wsim.scene.describe import describe
@@ -27,6 +27,7 @@ from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
+from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
 from wsim.sim.starts import start_joints
@@ -38,21 +39,6 @@ class Controller(Protocol):
 
     def __call__(self, t: float, simulation: Simulation) -> None:
         """Read the state, and set `simulation.control` and `simulation.control_force`."""
-
-
-@dataclass
-class SimulationResult:
-    """How a run went. `problems` are what makes it fail; empty means that it can be judged."""
-
-    problems: list[str]
-    frames: int
-    steps: int
-    dt: float  # [s]
-    wall_seconds: float
-    particles: int
-    boundary_particles: int
-    device: str
-    stills: list[Path] = field(default_factory=list)
 
 
 class Simulation:
@@ -79,6 +65,7 @@ class Simulation:
         state: The present state.
         control: Joint targets and forces.
         time: Simulated time [s].
+        compiled: Seconds that each module took that was compiled for it, by name [s].
     """
 
     def __init__(
@@ -108,7 +95,9 @@ class Simulation:
         described = worlds or [describe(each) for each in stages]
         self.device = wp.get_device(pick_device(device, described[0], world_count, progress))
         self._draws = draws
-        compiling.compile_first(self.device, described[0], steps_in_c(self.device, world_count), draws, progress)
+        self.compiled = compiling.compile_first(
+            self.device, described[0], steps_in_c(self.device, world_count), draws, progress
+        )
         if len(stages) > 1:
             self.built = build_batch(stages, described, self.device, time_step, processes)
         else:
@@ -160,7 +149,7 @@ class Simulation:
         """Compile every kernel of a step, on a state that is thrown away."""
         kept, self.state = self.state, self.model.state()
         self.state.assign(kept)
-        compiling.compile_all(self._launched(), self.device, progress)
+        self.compiled |= compiling.compile_all(self._launched(), self.device, progress)
         self.state.assign(kept)
         self._push_and_move()
         self.state = kept
@@ -291,26 +280,33 @@ class Simulation:
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
         problems: list[str] = []
+        phases = Phases()
         if self.rigid:
             self.rigid.keep_contacts()
             self._graphs.clear()  # a step sums them from here on
         with ExitStack() as stack:
+            stack.enter_context(phases.phase("record"))
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
             pictures = None
             if video:
-                drawn = Pictures(self.world, self.built, writer, video, frames_dir, review, frames, progress)
+                with phases.phase("prepare the camera"):
+                    drawn = Pictures(
+                        self.world, self.built, writer, video, frames_dir, review, frames, progress, phases
+                    )
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             for frame in range(frames + 1):
-                if frame:
-                    self.advance_frame()
-                problems = self.problems()
+                with phases.phase("simulate"):
+                    if frame:
+                        self.advance_frame()
+                    problems = self.problems()
                 measured = measure(self.built, self.state, self.rigid, self.fluid)
                 writer.frame(self.time, measured)
                 for prim, text in self._breakages(measured.scalars):
                     writer.log(self.time, "INFO", text, prim)
                 if pictures and not problems:
-                    pictures.take(frame, self.time, self.state)
+                    with phases.phase("draw"):
+                        pictures.take(frame, self.time, self.state)
                 progress("simulating", frame, frames)
                 for prim, text in self._departures():
                     writer.log(self.time, "WARN", text, prim)
@@ -330,6 +326,8 @@ class Simulation:
             boundary_particles=self.fluid.boundary_count if self.fluid else 0,
             device=str(self.device),
             stills=pictures.stills if pictures else [],
+            seconds=phases.rounded(),
+            compiled=self.compiled,
         )
 
     def _breakages(self, scalars: Mapping[str, float]) -> list[tuple[str, str]]:
