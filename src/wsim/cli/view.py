@@ -38,8 +38,8 @@ def view(
     time, prim = _moment(recording, finding) if finding is not None else (None, None)
     if web:
         with recordings.serve_web(recording, port, time=time, entity=prim) as server:
-            print(f"serving {recording} on 127.0.0.1 only; Ctrl-C stops\n{server.url}", flush=True)
             with contextlib.suppress(KeyboardInterrupt):  # the way it is meant to end
+                print(f"serving {recording} on 127.0.0.1 only; Ctrl-C stops\n{server.url}", flush=True)
                 server.process.wait()
         return
     if has_display():
