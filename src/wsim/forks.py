@@ -7,7 +7,7 @@ import ctypes
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from multiprocessing.connection import Connection
 from typing import Any, TypeVar
 
@@ -22,7 +22,7 @@ class LostForkError(RuntimeError):
     """A forked process ended before it had sent what it was to."""
 
 
-def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: int) -> Iterator[Value]:
+def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: int) -> Generator[Value, None, None]:
     """`call` of each item, in order. What it gives is pickled; what it raises is raised here.
 
     A process whose own parent may have no children by `multiprocessing` (a daemon) has these all the same. They live no

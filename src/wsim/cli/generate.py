@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,6 +34,7 @@ from wsim.cli.options import (
 from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
 from wsim.errors import UserError
 from wsim.loop.options import Options
+from wsim.phases import since_start
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
 from wsim.runs.settings import Settings
@@ -109,6 +111,7 @@ def generate(
         image=image,
         candidates=candidates,
         confirm=confirm,
+        start_up=since_start() or 0.0,
     )
     options.settings.check()
     _generate(prompt, options, runs, plan, answers, yes)
@@ -133,7 +136,10 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
             return yes or typer.confirm("build it?")
 
     with progress:
-        done = loop.generate_world(said, runs, options, approve, chosen, progress)
+        began = time.perf_counter()
+        generate_world = loop.generate_world  # loads the simulator
+        options.start_up += time.perf_counter() - began
+        done = generate_world(said, runs, options, approve, chosen, progress)
     if done.verdict is None:
         console.print("nothing was built")
         raise typer.Exit(0)

@@ -27,6 +27,7 @@ VERBS = {
     "runs": "List runs and sweeps, the newest first, with their verdicts.",
     "view": "Open a recording in Rerun's viewer; with no display, print the command to use elsewhere.",
     "mcp": "Serve wsim's tools to a coding agent, which starts this command and speaks over its stdin and stdout.",
+    "warmup": "Compile the kernels that most worlds need, side by side, so that a first world need not wait for them.",
     "doctor": "List devices, versions, isolation and the models configured. Exit code 1 if wsim cannot run here.",
 }
 

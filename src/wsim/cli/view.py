@@ -37,10 +37,10 @@ def view(
         recording, _ = find_recording(target)
     time, prim = _moment(recording, finding) if finding is not None else (None, None)
     if web:
-        with recordings.serve_web(recording, port, time=time, entity=prim) as server:
+        served = recordings.serve_web(recording, port, time=time, entity=prim)
+        with contextlib.suppress(KeyboardInterrupt), served as server:  # the way it is meant to end
             print(f"serving {recording} on 127.0.0.1 only; Ctrl-C stops\n{server.url}", flush=True)
-            with contextlib.suppress(KeyboardInterrupt):  # the way it is meant to end
-                server.process.wait()
+            server.process.wait()
         return
     if has_display():
         recordings.open_native(recording, time, prim)

@@ -13,6 +13,7 @@ from wsim.judge.verdict import Verdict
 from wsim.loop.making import Making
 from wsim.loop.options import Generated, Options
 from wsim.loop.start import keep_plan, picture_of, start
+from wsim.phases import Phases
 from wsim.plan.schema import Plan
 from wsim.progress import Progress, silent
 from wsim.rules.planner import plan as plan_by_rules
@@ -40,7 +41,7 @@ def generate(
         NotUnderstood: If the builtin planner cannot ground the prompt; nothing is left behind.
         UserError: If a model cannot be reached by its name, or the picture is none; nothing is left behind.
     """
-    options = options or Options()
+    options, phases = options or Options(), Phases()
     if options.replay is None:
         reach(options.models)
     picture = picture_of(options)
@@ -48,11 +49,13 @@ def generate(
         plan = plan_by_rules(prompt)  # refused before there is a folder
     run, crew = start(prompt, runs, plan, options, progress)
     try:
-        plan = keep_plan(run, crew, prompt, plan, picture)  # prompt → plan
+        with phases.phase("plan"):
+            plan = keep_plan(run, crew, prompt, plan, picture)  # prompt → plan
         if not approve(plan):
             run.record(status="not approved", **crew.facts())
             return Generated(run, plan, None, None)
-        verdict = _world(Making(run, crew, plan, options))  # plan → verdict
+        with phases.phase("try"):
+            verdict = _world(Making(run, crew, plan, options, phases=phases))  # plan → verdict
     except (ModelError, BudgetError) as error:  # of the planner: there is nothing to keep but the transcript
         run.record(cause=str(error))
         verdict = Verdict(status="blocked", summary=str(error))
@@ -60,7 +63,12 @@ def generate(
         why = "interrupted" if isinstance(error, KeyboardInterrupt) else f"{type(error).__name__}: {error}"
         run.record(status="stopped", summary=why, **crew.facts())
         raise
-    run.record(status=verdict.status, summary=verdict.summary, **crew.facts())
+    run.record(
+        status=verdict.status,
+        summary=verdict.summary,
+        phases={"start-up": round(options.start_up, 3), **phases.rounded()},
+        **crew.facts(),
+    )
     return Generated(run, plan, verdict, report.write(run.path))
 
 

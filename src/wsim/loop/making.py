@@ -10,10 +10,12 @@ from wsim.agents.crew import Crew
 from wsim.judge.verdict import Verdict
 from wsim.loop.options import Options
 from wsim.loop.side_by_side import side_by_side
+from wsim.phases import Phases
 from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.runs.accept import accept
 from wsim.runs.attempt import Attempt, Reached, attempt, numerics
+from wsim.runs.bare_run import BareRun
 from wsim.runs.folder import RunFolder
 from wsim.runs.iteration import Iteration
 from wsim.runs.records import Tried
@@ -30,6 +32,7 @@ class Making:
         options: How it is made.
         best: The best attempt so far.
         undone: Patches of the best that are no better.
+        phases: Where the time goes.
     """
 
     run: RunFolder
@@ -38,6 +41,7 @@ class Making:
     options: Options
     best: Attempt | None = None
     undone: list[Attempt] = field(default_factory=list)
+    phases: Phases = field(default_factory=Phases)
 
     @property
     def tried(self) -> int:
@@ -105,9 +109,16 @@ class Making:
 
     def _through(self, iteration: Iteration) -> Attempt:
         """All passes, the review, the judge, and acceptance."""
-        tried = attempt(iteration, cheap_first=self.crew.has("coder") or self.best is not None)
+        cheap_first = self.crew.has("coder") or self.best is not None
+        if cheap_first or not self.options.confirm:
+            return self._concluded(iteration, attempt(iteration, cheap_first))
+        with BareRun(self.run.path / "bare.partial", iteration) as bare_run:
+            bare_run.start()  # a first draft is to need no repair
+            return self._concluded(iteration, attempt(iteration, cheap_first), bare_run)
+
+    def _concluded(self, iteration: Iteration, tried: Attempt, bare_run: BareRun | None = None) -> Attempt:
         try:
-            self._assess(tried, replace(iteration, settings=self.options.settings))
+            self._assess(tried, replace(iteration, settings=self.options.settings), bare_run)
         except BudgetError as error:  # what was tried is kept, and what was found of it
             self.run.record(cause=str(error))
             if tried.verdict.status == "accepted":
@@ -118,14 +129,15 @@ class Making:
         iteration.conclude(tried.verdict)
         return tried
 
-    def _assess(self, tried: Attempt, iteration: Iteration) -> None:
+    def _assess(self, tried: Attempt, iteration: Iteration, bare_run: BareRun | None) -> None:
         """The review, the judge, and acceptance; a program that is no better is not asked about."""
         if tried.verdict.status == "accepted":
             self.crew.look(tried, self.plan)
         if self.best is None or tried.rank > self.best.rank:
             self.crew.judge(tried, self.plan)
         if tried.verdict.status == "accepted" and self.options.confirm:
-            tried.verdict = accept(self.run, iteration, tried.earlier)
+            with self.phases.phase("confirm"):
+                tried.verdict = accept(self.run, iteration, tried.earlier, bare_run)
         elif tried.verdict.status == "accepted":
             self.run.stamp(tried.folder)
 

@@ -29,6 +29,7 @@ class Options:
         candidates: Patches of an iteration that are tried side by side; the best of them goes on.
         confirm: Run the accepted program once more, bare, and compare.
         replay: A recorded run that answers in place of the models.
+        start_up: What it took to come this far [s].
     """
 
     settings: Settings = field(default_factory=Settings)
@@ -38,6 +39,7 @@ class Options:
     candidates: int = 1
     confirm: bool = True
     replay: Replay | None = None
+    start_up: float = 0.0
 
 
 @dataclass

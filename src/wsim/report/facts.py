@@ -11,8 +11,9 @@ if TYPE_CHECKING:
     from wsim.report.contents import RunContents
 
 # Of run.json: what is shown elsewhere on the page; of a run with a loop also what tells of it, and how it was started.
-HIDDEN = {"prompt", "title", "status", "summary", "seconds"}
+HIDDEN = {"prompt", "title", "status", "summary", "seconds", "phases"}
 OF_LOOP = {"iterations", "best", "usage", "skills", "notes", "cause", "budget", "settings", "confirm"}
+SLOWEST = 5  # modules that are named
 
 
 def make_facts(contents: RunContents) -> list[tuple[str, list[tuple[str, str]]]]:
@@ -70,8 +71,19 @@ def _simulation(contents: RunContents) -> list[tuple[str, str]]:
 
 def _seconds(contents: RunContents) -> list[tuple[str, str]]:
     stages = contents.shown.seconds() if contents.shown else {}
-    rows = [(str(name), duration(_float(value))) for name, value in stages.items()]
-    return [*rows, ("whole run", duration(_float(contents.facts.get("seconds"))))]
+    phases = contents.facts.get("phases")
+    of_run = {name: value for name, value in phases.items() if name != "try"} if isinstance(phases, dict) else {}
+    before = {name: of_run.pop(name) for name in ("start-up", "plan") if name in of_run}
+    rows = [(str(name), duration(_float(value))) for name, value in {**before, **stages, **of_run}.items()]
+    return [*rows, *_compiled(contents), ("whole run", duration(_float(contents.facts.get("seconds"))))]
+
+
+def _compiled(contents: RunContents) -> list[tuple[str, str]]:
+    """The modules that took longest to compile, several at once, in what was to prepare."""
+    found = contents.shown.simulation().get("compiled") if contents.shown else None
+    seconds = {str(name): _float(value) or 0.0 for name, value in found.items()} if isinstance(found, dict) else {}
+    slowest = sorted(seconds, key=seconds.__getitem__, reverse=True)[:SLOWEST]
+    return [(f"compiling {name.rsplit('.', 1)[-1]}", duration(seconds[name])) for name in slowest]
 
 
 def _run(contents: RunContents) -> list[tuple[str, str]]:

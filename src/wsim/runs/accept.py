@@ -2,53 +2,45 @@
 
 from __future__ import annotations
 
-import shutil
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 
 from wsim import sim
 from wsim.judge.verdict import Finding, RepairTarget, Verdict, status_of, unjudged
-from wsim.program.bare import bare
-from wsim.runs.folder import RunFolder, write_whole
+from wsim.runs.bare_run import BareRun
+from wsim.runs.folder import RunFolder
 from wsim.runs.iteration import Iteration
 from wsim.runs.trajectory import Trajectory
 from wsim.scene.describe import describe
 
 
-def accept(run: RunFolder, iteration: Iteration, earlier: Trajectory | None = None) -> Verdict:
+def accept(
+    run: RunFolder, iteration: Iteration, earlier: Trajectory | None = None, bare_run: BareRun | None = None
+) -> Verdict:
     """Strip an accepted iteration's program, run it again without pictures, and stamp it if it goes the same way.
 
     Args:
         run: The run; accepted/ gets program.py, stage.usda, acceptance.json and SHA256SUMS.
         iteration: The accepted one; the bare world is judged by its plan, and run by its settings.
         earlier: Another run of this very program; where nothing is stripped, it is the second run.
+        bare_run: The second run, where it was started ahead.
 
     Returns:
         The bare world's verdict; with the finding `CheckReproduced` where that, or another, is not accepted.
     """
-    folder = run.path / "bare.partial"
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
-    try:
-        return _confirmed(run, iteration, folder, earlier)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    if bare_run is not None:
+        return _confirmed(run, iteration, bare_run, earlier)
+    with BareRun(run.path / "bare.partial", iteration) as bare_run:
+        return _confirmed(run, iteration, bare_run, earlier)
 
 
-def _confirmed(run: RunFolder, iteration: Iteration, folder: Path, earlier: Trajectory | None) -> Verdict:
-    """The verdict on the bare program, which is run in `folder`; stamped if it goes the same way."""
-    stripped = bare(iteration.text)
-    as_it_was = stripped == iteration.text
+def _confirmed(run: RunFolder, iteration: Iteration, bare_run: BareRun, earlier: Trajectory | None) -> Verdict:
+    """The verdict on the bare program; stamped if it goes the same way."""
     first, verdict, again = Trajectory.of(iteration.recording), iteration.verdict, iteration
-    if earlier is not None and as_it_was:
+    if earlier is not None and bare_run.as_it_was:
         second = earlier
     else:
-        write_whole(folder / "program.py", stripped)
-        quiet = replace(iteration.settings, pictures=False, verify=False)
-        again = replace(iteration, folder=folder, source=None, settings=quiet)
-        verdict = again.run()
+        again = bare_run.iteration
+        verdict = bare_run.verdict()
         if not again.recording.is_file():
             return verdict
         second = Trajectory.of(again.recording)
@@ -62,7 +54,7 @@ def _confirmed(run: RunFolder, iteration: Iteration, folder: Path, earlier: Traj
             status=status_of(findings, verdict.crashes), summary=f"The bare program: {said}.", findings=findings,
             crashes=verdict.crashes,
         )  # fmt: skip
-    run.stamp(again.folder, {"stripped": not as_it_was, "largest_distance_m": apart})
+    run.stamp(again.folder, {"stripped": not bare_run.as_it_was, "largest_distance_m": apart})
     return verdict
 
 

@@ -125,8 +125,7 @@ class Iteration:
         checks: dict[str, Any] = {"build": before.get("build")}
         seconds = dict(before.get("seconds", {}))
         try:
-            with _timed(seconds, "simulate"):
-                result = self.simulate()
+            result = self.simulate(seconds)
         except ControlError as error:
             self._note(checks | {"simulation": {"error": str(error)}, "seconds": seconds})
             return reject(Finding(**error.finding()), f"The program's control failed ({error.kind}).")
@@ -142,17 +141,22 @@ class Iteration:
             self._note(checks | {"verify": again.figures})
         return verdict
 
-    def simulate(self) -> SimulationResult:
+    def simulate(self, seconds: dict[str, float]) -> SimulationResult:
         """Stage → recording, with video and stills where they are wanted.
+
+        Args:
+            seconds: Gets the wall time of each phase [s].
 
         Raises:
             ControlError: If the program's own `control` fails.
         """
         pictures = self.settings.pictures
+        began = time.perf_counter()
         with open_simulation(
             self.stage, self.program, self.settings, self.progress, (self.settings.seed,)
         ) as simulation:
-            return simulation.run(
+            seconds["prepare"] = round(time.perf_counter() - began, 3)
+            result = simulation.run(
                 self.recording,
                 video=self.folder / "video.mp4" if pictures else None,
                 frames_dir=self.folder / "frames" if pictures else None,
@@ -160,6 +164,8 @@ class Iteration:
                 metadata={"program": self.program.name, "params": self.settings.params},
                 progress=self.progress,
             )
+        seconds |= result.seconds
+        return result
 
     def conclude(self, verdict: Verdict) -> Verdict:
         """Write the verdict beside its evidence."""

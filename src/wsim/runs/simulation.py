@@ -33,6 +33,7 @@ def open_simulation(
             controller=controller,
             progress=progress,
             seeds=seeds,
+            draws=settings.pictures,
         )
 
 

@@ -8,18 +8,30 @@ from wsim.door import door
 
 if TYPE_CHECKING:
     from wsim.sim.devices import known_device, pick_device, start_warp
-    from wsim.sim.simulation import Simulation, SimulationResult
+    from wsim.sim.result import SimulationResult
+    from wsim.sim.simulation import Simulation
     from wsim.sim.stills import Stills, cameras_of
+    from wsim.sim.warmup import fill as fill_cache
 
-__all__ = ["Simulation", "SimulationResult", "Stills", "cameras_of", "known_device", "pick_device", "start_warp"]
+__all__ = [
+    "Simulation",
+    "SimulationResult",
+    "Stills",
+    "cameras_of",
+    "fill_cache",
+    "known_device",
+    "pick_device",
+    "start_warp",
+]
 
 __getattr__ = door(
     __name__,
     {
         "Simulation": "simulation",
-        "SimulationResult": "simulation",
+        "SimulationResult": "result",
         "Stills": "stills",
         "cameras_of": "stills",
+        "fill_cache": "warmup.fill",
         "known_device": "devices",
         "pick_device": "devices",
         "start_warp": "devices",

@@ -10,6 +10,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from wsim.errors import UserError
+from wsim.scene.validate import shown
 from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Rope, Shape, Spring, World
 
 # Numbers that each world of a batch has of its own.
@@ -88,3 +90,18 @@ def _kept(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_kept(each) for each in value]
     return value
+
+
+def paths_of(stage: object) -> list[Path]:
+    """The files that were given, one or a list.
+
+    Raises:
+        UserError: Something else was.
+    """
+    given = [stage] if isinstance(stage, str | Path) else stage
+    if not isinstance(given, Sequence) or not given or not all(isinstance(each, str | Path) for each in given):
+        raise UserError(
+            f"stage = {shown(stage)}: give the path of a USD file, or a list of paths; "
+            "stage.Export(path) writes a Usd.Stage, scene.save(path) a Scene"
+        )
+    return [Path(each) for each in given]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wsim.phases import Phases
 from wsim.progress import Progress
 from wsim.recording.video import VideoWriter
 from wsim.sim.cameras import CameraRenderer
@@ -37,6 +38,7 @@ class Pictures:
             is in frame, whether anyone looks at it or not; None writes none.
         frames: Number of the last frame.
         progress: Told about compilation.
+        phases: Gets the time of encoding.
     """
 
     def __init__(
@@ -49,8 +51,9 @@ class Pictures:
         review: str | Path | None,
         frames: int,
         progress: Progress,
+        phases: Phases,
     ) -> None:
-        self.built, self.writer = built, writer
+        self.built, self.writer, self.phases = built, writer, phases
         self.frames_dir = Path(frames_dir) if frames_dir else None
         self.review = Path(review) if review else None
         self.renderer = CameraRenderer(built.model, world, progress=progress)
@@ -68,7 +71,8 @@ class Pictures:
 
     def __exit__(self, *error: Any) -> None:
         """Finish the video, and write what the stills show; of a run that was stopped there is neither."""
-        self.video.__exit__(*error)
+        with self.phases.phase("encode"):
+            self.video.__exit__(*error)
         if self.review and error[0] is None:
             partial = self.review.with_name(self.review.name + ".partial")
             partial.write_text(json.dumps({"share_of_picture": self.seen}, indent=1) + "\n", encoding="utf-8")
@@ -87,9 +91,11 @@ class Pictures:
         images = self.renderer.render(state, self._fluids(state), cameras=cameras)
         for k, (camera, image) in enumerate(images.items()):
             if k == 0:
-                self.video.write(image.rgb)
+                with self.phases.phase("encode"):
+                    self.video.write(image.rgb)
             if camera in self.recorded:
-                self.writer.image(time, camera, image.rgb)
+                with self.phases.phase("record"):
+                    self.writer.image(time, camera, image.rgb)
             shares = self._shares(image)
             self.writer.seen(time, camera, shares)
             if still:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Protocol
@@ -15,31 +14,24 @@ import numpy as np
 import warp as wp
 
 from wsim.errors import UserError
+from wsim.phases import Phases
 from wsim.progress import Progress, silent
 from wsim.recording import RecordingWriter
 from wsim.scene.describe import describe
-from wsim.scene.validate import shown
 from wsim.scene.world import World
-from wsim.sim.devices import pick_device
+from wsim.sim import compiling
+from wsim.sim.alike import paths_of
+from wsim.sim.cameras import CameraRenderer
+from wsim.sim.devices import pick_device, steps_in_c
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
+from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
 from wsim.sim.starts import start_joints
 from wsim.solvers.solver_sph import SolverSPH
-
-
-def _paths(stage: object) -> list[Path]:
-    """The files that were given."""
-    given = [stage] if isinstance(stage, str | Path) else stage
-    if not isinstance(given, Sequence) or not given or not all(isinstance(each, str | Path) for each in given):
-        raise UserError(
-            f"stage = {shown(stage)}: give the path of a USD file, or a list of paths; "
-            "stage.Export(path) writes a Usd.Stage, scene.save(path) a Scene"
-        )
-    return [Path(each) for each in given]
 
 
 class Controller(Protocol):
@@ -47,21 +39,6 @@ class Controller(Protocol):
 
     def __call__(self, t: float, simulation: Simulation) -> None:
         """Read the state, and set `simulation.control` and `simulation.control_force`."""
-
-
-@dataclass
-class SimulationResult:
-    """How a run went. `problems` are what makes it fail; empty means that it can be judged."""
-
-    problems: list[str]
-    frames: int
-    steps: int
-    dt: float  # [s]
-    wall_seconds: float
-    particles: int
-    boundary_particles: int
-    device: str
-    stills: list[Path] = field(default_factory=list)
 
 
 class Simulation:
@@ -80,6 +57,7 @@ class Simulation:
             not. By default none does.
         worlds: What `wsim.scene.describe` read from several stages, where that was done already.
         processes: That several stages are read in.
+        draws: Whether pictures will be taken: their kernels are then compiled beside those of a step.
 
     Attributes:
         world: What the stage states, the first one of several.
@@ -87,6 +65,7 @@ class Simulation:
         state: The present state.
         control: Joint targets and forces.
         time: Simulated time [s].
+        compiled: Seconds that each module took that was compiled for it, by name [s].
     """
 
     def __init__(
@@ -101,8 +80,9 @@ class Simulation:
         seeds: Sequence[int] = (),
         worlds: Sequence[World] = (),
         processes: int = 1,
+        draws: bool = False,
     ) -> None:
-        stages = _paths(stage)
+        stages = paths_of(stage)
         if not isinstance(world_count, int | np.integer) or world_count < 1:
             raise UserError(f"world_count = {world_count!r}: give a whole number from 1")
         if len(stages) > 1 and world_count != 1:
@@ -114,6 +94,10 @@ class Simulation:
         self.stage = stages[0]
         described = worlds or [describe(each) for each in stages]
         self.device = wp.get_device(pick_device(device, described[0], world_count, progress))
+        self._draws = draws
+        self.compiled = compiling.compile_first(
+            self.device, described[0], steps_in_c(self.device, world_count), draws, progress
+        )
         if len(stages) > 1:
             self.built = build_batch(stages, described, self.device, time_step, processes)
         else:
@@ -138,7 +122,7 @@ class Simulation:
             if self.model.body_count
             else None
         )
-        self.fluid = SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
+        self.fluid = self._make_fluid()
         self.state, self.control = self.model.state(), self.model.control()
         perturb(self.built, self.state, seeds)
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
@@ -150,7 +134,7 @@ class Simulation:
         self._control_every = max(1, round(control_interval / self.dt))
         self._graphs: dict[int, Any] = {}  # by how many steps they are
         self._asked: tuple[Any, ...] = ()
-        self._warm_up()
+        self._warm_up(progress)
         # What a batch of bodies costs on a CPU is the launches of its kernels, a few hundred a step. In C there are
         # none; and whether a fluid on a CPU sorts its particles anew is asked step by step.
         self._replays = not (self.device.is_cuda or self.fluid) and self.rigid is not None and not self.rigid.on_c
@@ -161,9 +145,11 @@ class Simulation:
         """Whether a controller drives joints and pushes bodies."""
         return self._controller is not None
 
-    def _warm_up(self) -> None:
+    def _warm_up(self, progress: Progress) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""
         kept, self.state = self.state, self.model.state()
+        self.state.assign(kept)
+        self.compiled |= compiling.compile_all(self._launched(), self.device, progress)
         self.state.assign(kept)
         self._push_and_move()
         self.state = kept
@@ -173,6 +159,22 @@ class Simulation:
             self.fluid.reset_search()
             self.fluid.take_wall_impulse()
         wp.synchronize_device(self.device)
+
+    def _launched(self) -> list[compiling.Needed]:
+        """What a step launches, and a picture; MuJoCo's C code is left out, which keeps what it is given."""
+        kept = self.fluid
+        self.fluid = self._make_fluid()  # of the other one the order of its particles would stay
+        if self.rigid is None or not self.rigid.on_c:
+            needed = compiling.rehearse(self._push_and_move)
+        else:
+            needed = compiling.rehearse(self._push_and_flow)
+        if self._draws:
+            needed += compiling.rehearse(lambda: CameraRenderer(self.model, self.world))
+        self.fluid = kept
+        return needed
+
+    def _make_fluid(self) -> SolverSPH | None:
+        return SolverSPH(self.model, self.built.sph, self.built.containers) if self.built.sph else None
 
     def step(self) -> None:
         """Advance by one time step: the fluid pushes the bodies, then the bodies move."""
@@ -184,13 +186,16 @@ class Simulation:
         self._count(1)
 
     def _push_and_move(self) -> None:
+        self._push_and_flow()
+        if self.rigid:
+            self.rigid.step(self.state, self.state, self.control, self.dt)
+
+    def _push_and_flow(self) -> None:
         self.state.clear_forces()
         if self._controller is not None and self.control_force is not None:
             wp.copy(self.state.body_f, self.control_force)
         if self.fluid:
             self.fluid.step(self.state, self.state, self.control, None, self.dt)
-        if self.rigid:
-            self.rigid.step(self.state, self.state, self.control, self.dt)
 
     def advance_frame(self) -> None:
         """Advance by one recorded frame.
@@ -275,26 +280,33 @@ class Simulation:
         started = time.perf_counter()
         frames = round(self.world.duration * self.world.frame_rate)
         problems: list[str] = []
+        phases = Phases()
         if self.rigid:
             self.rigid.keep_contacts()
             self._graphs.clear()  # a step sums them from here on
         with ExitStack() as stack:
+            stack.enter_context(phases.phase("record"))
             writer = stack.enter_context(RecordingWriter(recording, self.world, {**(metadata or {}), **self.facts()}))
             pictures = None
             if video:
-                drawn = Pictures(self.world, self.built, writer, video, frames_dir, review, frames, progress)
+                with phases.phase("prepare the camera"):
+                    drawn = Pictures(
+                        self.world, self.built, writer, video, frames_dir, review, frames, progress, phases
+                    )
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
             for frame in range(frames + 1):
-                if frame:
-                    self.advance_frame()
-                problems = self.problems()
+                with phases.phase("simulate"):
+                    if frame:
+                        self.advance_frame()
+                    problems = self.problems()
                 measured = measure(self.built, self.state, self.rigid, self.fluid)
                 writer.frame(self.time, measured)
                 for prim, text in self._breakages(measured.scalars):
                     writer.log(self.time, "INFO", text, prim)
                 if pictures and not problems:
-                    pictures.take(frame, self.time, self.state)
+                    with phases.phase("draw"):
+                        pictures.take(frame, self.time, self.state)
                 progress("simulating", frame, frames)
                 for prim, text in self._departures():
                     writer.log(self.time, "WARN", text, prim)
@@ -314,6 +326,8 @@ class Simulation:
             boundary_particles=self.fluid.boundary_count if self.fluid else 0,
             device=str(self.device),
             stills=pictures.stills if pictures else [],
+            seconds=phases.rounded(),
+            compiled=self.compiled,
         )
 
     def _breakages(self, scalars: Mapping[str, float]) -> list[tuple[str, str]]:

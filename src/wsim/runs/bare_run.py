@@ -1,0 +1,110 @@
+"""The run of a bare program that confirms another: when it is asked for, or ahead, in a process of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+
+from wsim.judge.verdict import Verdict
+from wsim.program.bare import bare
+from wsim.progress import silent
+from wsim.runs.folder import write_whole
+from wsim.runs.iteration import Iteration
+
+
+class BareRun:
+    """A program without what only served its review, in a folder that is there as long as this is open.
+
+    Args:
+        folder: For its files.
+        iteration: Whose program it is.
+
+    Attributes:
+        iteration: The bare one, without pictures.
+        as_it_was: Whether nothing was stripped.
+    """
+
+    def __init__(self, folder: Path, iteration: Iteration) -> None:
+        stripped = bare(iteration.text)
+        self.as_it_was = stripped == iteration.text
+        self._text = stripped
+        quiet = replace(iteration.settings, pictures=False, verify=False)
+        self.iteration = replace(iteration, folder=folder, source=None, settings=quiet)
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def __enter__(self) -> BareRun:
+        """Write the program."""
+        self._clear()
+        self.iteration.folder.mkdir(parents=True)
+        write_whole(self.iteration.program, self._text)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the process, whatever it is at, and take the folder away."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.communicate()
+        self._clear()
+
+    def start(self) -> None:
+        """Run it ahead, beside what this process does; half of the processors' threads are enough for it.
+
+        It is a command, and no fork: of a process that has a GPU none can be made, and a script that has no guard is
+        not run twice.
+        """
+        threads = {"WSIM_THREADS": str(max(1, len(os.sched_getaffinity(0)) // 2))}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "wsim.runs.bare_run"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**threads, **os.environ},
+        )
+        assert self._process.stdin is not None
+        with contextlib.suppress(BrokenPipeError):  # it has died: what it was to do is done here
+            pickle.dump(replace(self.iteration, progress=silent), self._process.stdin)
+            self._process.stdin.flush()
+
+    def verdict(self) -> Verdict:
+        """The bare program's: waited for if it was started, else run here and now.
+
+        A process that breaks has said nothing that counts: the program is run again, here, where an error is seen.
+        """
+        if self._process is not None:
+            self.iteration.progress("confirming", 0, 1)
+            done = self._process.wait() == 0
+            self.iteration.progress("confirming", 1, 1)
+            if done:
+                return self.iteration.verdict
+        return self.iteration.run()
+
+    def _clear(self) -> None:
+        shutil.rmtree(self.iteration.folder, ignore_errors=True)
+
+
+def _main() -> None:
+    """In the process: run what comes, and end when nobody is there any more who wants it."""
+    iteration = pickle.load(sys.stdin.buffer)
+
+    def end_with_parent() -> None:
+        sys.stdin.buffer.read()
+        os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
+    iteration.run()
+    sys.stdout.flush()
+    os._exit(0)  # the thread still reads
+
+
+if __name__ == "__main__":
+    _main()
