@@ -114,15 +114,21 @@ def sweep(
     if kept:
         kept.rest(folder)
     try:
-        with ConsoleProgress() as progress:
-            outcomes = run_sweep(folder, workers, progress, ray, kept)
-            if full:
-                outcomes = in_full(folder, outcomes, progress=progress)
+        outcomes = _run(folder, workers, ray, kept, full)
     except KeyboardInterrupt:
         if kept:
             kept.rest(folder)
         console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
         raise typer.Exit(130) from None
+    raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+
+
+def _run(folder: SweepFolder, workers: int, ray: str, kept: Store | None, full: bool) -> list[Outcome]:
+    """Run what is left, show how it came out, and write the page."""
+    with ConsoleProgress() as progress:
+        outcomes = run_sweep(folder, workers, progress, ray, kept)
+        if full:
+            outcomes = in_full(folder, outcomes, progress=progress)
     picture = draw(outcomes, folder.path)
     _show(outcomes)
     _show_sensitivity(folder.spec, outcomes)
@@ -132,7 +138,7 @@ def sweep(
     if kept:
         kept.rest(folder)
         console.print(f"all of it: {kept.url}", soft_wrap=True)
-    raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+    return outcomes
 
 
 def _opened(resume: str, store: str, runs: Path) -> tuple[SweepFolder, Store | None]:
