@@ -10,12 +10,21 @@ from wsim.assets import assets_folder
 from wsim.errors import UserError
 from wsim.program import sandbox
 from wsim.scene.describe import describe
-from wsim.scene.world import Parameter
+from wsim.scene.world import Parameter, World
 from wsim.sweep.axis import Axis
 
 
 def parameters_of(program: Path, isolation: str = "auto") -> list[Parameter]:
-    """The parameters of a program, which is built for them in the sandbox.
+    """The parameters of a program.
+
+    Raises:
+        UserError: If it cannot be built as it stands.
+    """
+    return as_it_stands(program, isolation).parameters
+
+
+def as_it_stands(program: Path, isolation: str = "auto") -> World:
+    """What a program's stage states with its parameters as they are; it is built in the sandbox.
 
     Raises:
         UserError: If it cannot be built as it stands.
@@ -25,7 +34,7 @@ def parameters_of(program: Path, isolation: str = "auto") -> list[Parameter]:
         built = sandbox.build(program, stage, isolation=isolation, readable=[assets_folder()])
         if not built.ok:
             raise UserError(f"{program} makes no world as it stands: {built.message}")
-        return describe(stage).parameters
+        return describe(stage)
 
 
 def axes_of(program: Path, given: Sequence[Axis], isolation: str = "auto") -> list[Axis]:
