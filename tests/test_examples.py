@@ -27,7 +27,7 @@ from wsim.sim import Simulation
 EXAMPLES = Path(__file__).parent.parent / "examples"
 
 
-LONG = {"dam_break", "floating_blocks", "marble_run", "terrain_crates"}  # minutes on two cores
+LONG = {"dam_break", "floating_blocks", "marble_run", "terrain_crates", "wood_afloat"}  # minutes on two cores
 BY_COMMAND = {"stack_and_ball"}  # `wsim run` judges it below
 SHORT = sorted({path.stem for path in EXAMPLES.glob("*.py")} - LONG - BY_COMMAND)
 
@@ -163,6 +163,23 @@ def test_blocks_float_and_the_ball_sinks(simulate) -> None:
     ball = recording.position("/World/ball")[:, 2]
     assert ball[-1] < 0.02 + 0.06 + 0.02  # on the floor
     assert ball[-1] > 0.02 + 0.06 - 0.01
+
+
+@pytest.mark.parametrize(("density", "share"), [(400.0, 1.0), (900.0, 0.0)])
+def test_wood_floats_or_stands_where_archimedes_has_it(tmp_path: Path, density: float, share: float) -> None:
+    """The lighter one has 0.08 m - 0.4 x 0.16 m x 3/4 of water under it, the heavier one has none."""
+    spec = importlib.util.spec_from_file_location("wood_afloat", EXAMPLES / "wood_afloat.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    scene = Scene(params={"density": density})
+    module.build(scene)
+    scene.simulation(duration=1.5, frame_rate=20.0)
+    result = Simulation(scene.save(tmp_path / "stage.usda"), device="cpu").run(tmp_path / "recording.rrd")
+    assert result.problems == []
+    under = read(tmp_path / "recording.rrd").position("/World/block")[:, 2] - 0.02 - 0.16 / 2
+    assert under[0] > 0.03  # it starts apart from the bottom
+    gap = share * (0.08 - 0.4 * 0.16 * (1.0 - 0.25))
+    assert under[-10:].mean() == pytest.approx(gap, abs=0.25 * 0.02)  # of a spacing
 
 
 def test_stack_is_knocked_over_by_wsim_run(tmp_path: Path) -> None:

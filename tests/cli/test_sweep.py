@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -64,3 +65,24 @@ def test_what_is_done_at_ctrl_c_is_kept_and_the_rest_is_done_on_resume(tmp_path:
         assert process.wait(STUCK) == 0
     assert outcomes.read_text().splitlines()[: len(kept)] == kept
     assert len(outcomes.read_text().splitlines()) == 61
+
+
+def test_ctrl_c_while_the_page_is_made_is_no_loss(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(PROGRAM)
+    sweep = [sys.executable, "-m", "wsim.cli", "sweep", "--workers", "1"]
+    asked = [str(tmp_path / "program.py"), "--samples", "8", "--runs", str(tmp_path / "runs"), "--no-full"]
+    with started([*sweep, *asked], cwd=tmp_path, stdout=subprocess.PIPE) as process:
+        until = time.monotonic() + STUCK
+        while time.monotonic() < until and not list(tmp_path.glob("runs/*/summary.json")):
+            time.sleep(0.005)
+        process.send_signal(signal.SIGINT)  # all is run; the drawing and the page are left
+        said, _ = process.communicate(timeout=STUCK)
+        assert process.returncode == 130
+    (outcomes,) = tmp_path.glob("runs/*/outcomes.jsonl")
+    assert f"wsim sweep --resume {outcomes.parent}" in said
+    kept, page = outcomes.read_text(), outcomes.parent / "report.html"
+    assert len(kept.splitlines()) == 9 and not page.exists()
+    with started([*sweep, "--no-full", "--resume", str(outcomes.parent)], cwd=tmp_path) as process:
+        assert process.wait(STUCK) == 0
+    assert outcomes.read_text() == kept
+    assert page.is_file() and (outcomes.parent / "margins.png").is_file()

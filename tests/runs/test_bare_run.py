@@ -14,6 +14,7 @@ from wsim.runs.bare_run import BareRun
 from wsim.runs.folder import RunFolder
 from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
+from wsim.runs.standby import Standby
 
 PROGRAM = """\
 from wsim.scene import Scene
@@ -58,7 +59,7 @@ def test_one_that_is_killed_is_run_here(tmp_path: Path, iteration: Iteration) ->
     with BareRun(tmp_path / "killed", iteration) as run:
         run.start()
         assert run._process is not None
-        run._process.kill()
+        run._process.process.kill()
         assert run.verdict().status == "accepted"
 
 
@@ -66,8 +67,28 @@ def test_one_that_is_not_wanted_ends_and_leaves_nothing(tmp_path: Path, iteratio
     with BareRun(tmp_path / "unwanted", iteration) as run:
         run.start()
     assert run._process is not None
-    assert run._process.returncode is not None
+    assert run._process.process.returncode is not None
     assert not (tmp_path / "unwanted").exists()
+
+
+def test_one_that_had_loaded_already_goes_as_it_goes_here(tmp_path: Path, iteration: Iteration) -> None:
+    here, q_here = ran(tmp_path / "here", iteration, ahead=False)
+    with Standby() as standby:
+        with BareRun(tmp_path / "ahead", iteration) as run:
+            run.start(standby)
+            assert run.verdict() == here
+            assert np.array_equal(np.array(read(run.iteration.recording).body_q), q_here)
+        assert standby.process.returncode == 0
+
+
+def test_one_that_is_given_nothing_ends() -> None:
+    with Standby() as standby:
+        assert standby.process.poll() is None
+    assert standby.process.returncode is not None
+    alone = Standby()
+    assert alone.process.stdin is not None
+    alone.process.stdin.close()
+    assert not alone.done()
 
 
 def test_a_world_is_accepted_by_one_that_was_started_ahead(tmp_path: Path, iteration: Iteration) -> None:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
+from pathlib import Path
 
 import pytest
-from pxr import Sdf
+from pxr import Sdf, UsdPhysics
 
 from wsim.scene import Scene, SceneError
+from wsim.scene.check import check_stage
 from wsim.scene.check_cords import cord_problems
 from wsim.scene.check_joints import joint_problems
+from wsim.scene.check_leads import parted
+from wsim.sim import Simulation
 
 HERE = (0.0, 0.0, 0.0)
 
@@ -41,11 +46,11 @@ def test_what_fixed_joints_hold_to_two_that_part_is_refused() -> None:
     for moves in ("by velocity", "by keys"):
         scene = Scene()
         crank(scene, moves=moves)
-        problem = next(joint_problems(scene.stage))
+        problem = next(parted(scene.stage))
         assert "fixed joints hold" in problem and "of which neither gives way" in problem and "/World/leads" in problem
     scene = Scene()
     lifts(scene, 0.5)
-    assert "</World/one> and </World/other>" in next(joint_problems(scene.stage))
+    assert "</World/one> and </World/other>" in next(parted(scene.stage))
 
 
 def test_what_fixed_joints_may_hold_is_taken() -> None:
@@ -55,7 +60,90 @@ def test_what_fixed_joints_may_hold_is_taken() -> None:
     for world in worlds:
         scene = Scene()
         world(scene)
-        assert list(joint_problems(scene.stage)) == []
+        assert list(parted(scene.stage)) == []
+
+
+CUBE = {"size": (0.2, 0.2, 0.2)}
+
+
+def strut(scene: Scene, kinds: tuple[str, str], *, between: int = 1, **leads: tuple[float, float, float]) -> None:
+    """Two kinematic bodies 1 m apart and a strut, of some boxes fixed to each other, that joints hold to both."""
+    for k, name in enumerate(("left", "right")):
+        motion = {key.removeprefix(f"{name}_"): value for key, value in leads.items() if key.startswith(name)}
+        scene.box(name, position=(float(k), 0.0, 0.0), kinematic=True, **CUBE, **motion)
+    pieces = [f"piece_{k}" for k in range(between)]
+    for k, piece in enumerate(pieces):
+        scene.box(piece, size=(0.02, 0.05, 0.05), position=(0.5 + 0.1 * k, 0.0, 0.0))
+    for k, (one, other) in enumerate(pairwise(pieces)):
+        scene.joint_fixed(f"glue_{k}", one, other)
+    for name, piece, kind, x in (("at_left", pieces[0], kinds[0], 0.0), ("at_right", pieces[-1], kinds[1], 1.0)):
+        getattr(scene, kind)(name, name.removeprefix("at_"), piece, anchor=(x, 0.0, 0.0))
+
+
+BALL, HINGE, WELD = "joint_spherical", "joint_revolute", "joint_fixed"  # the hinge's axis is Z
+UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+PARTS: list[Callable[[Scene], None]] = [
+    partial(strut, kinds=(BALL, BALL), right_velocity=ALONG),
+    partial(strut, kinds=(BALL, BALL), right_velocity=UP),
+    partial(strut, kinds=(HINGE, HINGE), left_velocity=ALONG),
+    partial(strut, kinds=(HINGE, BALL), right_velocity=(0.0, 0.02, 0.0)),
+    partial(strut, kinds=(WELD, HINGE), right_velocity=ALONG),
+    partial(strut, kinds=(BALL, WELD), left_velocity=UP, between=3),
+    partial(
+        strut, kinds=(HINGE, HINGE), right_angular_velocity_deg=(90.0, 0.0, 0.0)
+    ),  # its axis turns away from the other
+    partial(strut, kinds=(WELD, WELD), right_angular_velocity_deg=(0.0, 0.0, 90.0)),
+]
+TOGETHER: list[Callable[[Scene], None]] = [
+    partial(strut, kinds=(BALL, BALL)),
+    partial(strut, kinds=(WELD, HINGE), left_velocity=ALONG, right_velocity=ALONG),
+    partial(
+        strut,
+        kinds=(BALL, BALL),
+        left_angular_velocity_deg=(0.0, 0.0, 90.0),
+        right_angular_velocity_deg=(90.0, 0.0, 0.0),
+    ),  # about their points
+    partial(strut, kinds=(BALL, HINGE), right_angular_velocity_deg=(0.0, 0.0, 90.0)),
+    partial(strut, kinds=(WELD, BALL), right_angular_velocity_deg=(90.0, 0.0, 0.0), between=3),
+    partial(strut, kinds=(WELD, HINGE), right_angular_velocity_deg=(0.0, 0.0, 90.0)),
+]
+
+
+@pytest.mark.parametrize("world", PARTS)
+def test_what_joints_hold_to_two_that_part_is_refused(world: Callable[[Scene], None], tmp_path: Path) -> None:
+    scene = Scene()
+    world(scene)
+    (problem,) = check_stage(scene.save(tmp_path / "stage.usda"), [tmp_path])
+    assert problem.startswith("/World/at_right: ")
+    assert "joints hold </World/left> and </World/right> together, of which neither gives way" in problem
+
+
+@pytest.mark.parametrize("world", TOGETHER)
+def test_what_two_that_stay_together_hold_is_taken(world: Callable[[Scene], None], tmp_path: Path) -> None:
+    """And the joints hold as it goes: the bodies' anchors stay where their leads have theirs."""
+    scene = Scene()
+    world(scene)
+    path = scene.save(tmp_path / "stage.usda")
+    assert check_stage(path, [tmp_path]) == []
+    simulation = Simulation(path, device="cpu")
+    for _ in range(20):
+        simulation.advance_frame()
+    assert not simulation.problems()
+    place = dict(zip(simulation.model.body_label, simulation.state.body_q.numpy(), strict=True))
+    first = place["/World/piece_0"][:3] - place["/World/left"][:3]
+    assert abs(float((first @ first) ** 0.5) - 0.5) < 1e-3
+
+
+def test_what_a_path_takes_away_is_refused(tmp_path: Path) -> None:
+    """A path that comes back to where it began parts in between."""
+    start = (1.0, 0.0, 0.0)
+    for middle in (start, (1.0, 0.3, 0.0)):
+        scene = Scene()
+        strut(scene, (BALL, BALL))
+        scene.path("right", times=[0.0, 1.0, 2.0], positions=[start, middle, start])
+        for joint in ("at_left", "at_right"):
+            UsdPhysics.Joint(scene.stage.GetPrimAtPath(f"/World/{joint}")).CreateExcludeFromArticulationAttr(True)
+        assert bool(list(parted(scene.stage))) == (middle != start)
 
 
 def test_stops_without_a_way_between_are_refused() -> None:
@@ -78,6 +166,10 @@ def test_a_cord_between_what_it_cannot_move_is_refused(cord: str) -> None:
     with pytest.raises(SceneError, match="neither a nor b is a body that it could move"):
         getattr(scene, cord)("new", "lift", "wheel", **stiff)
     getattr(scene, cord)("new", "lift", "ball", **stiff)
+    assert list(cord_problems(scene.stage.GetPrimAtPath("/World/new"))) == []
+    scene.joint_fixed("glue", "wheel", "ball")
+    (problem,) = cord_problems(scene.stage.GetPrimAtPath("/World/new"))
+    assert "neither wsim:a nor wsim:b is a body that it could move: fixed joints hold </World/ball> to what" in problem
     scene.stage.GetPrimAtPath("/World/new").GetRelationship("wsim:b").SetTargets(["/World/wheel"])
     (problem,) = cord_problems(scene.stage.GetPrimAtPath("/World/new"))
     assert "neither wsim:a nor wsim:b is a body that it could move" in problem

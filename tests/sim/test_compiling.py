@@ -98,6 +98,9 @@ def test_a_rehearsal_leaves_no_trace(tmp_path, worlds):
     stage = scene.save(tmp_path / "stage.usda")
     left, rehearsed = Unrehearsed(stage, "cpu", worlds), Simulation(stage, "cpu", worlds, draws=True)
     rehearsed._warm_up(silent)
+    (force, deep), (force_again, deep_again) = left.rigid.contacts(), rehearsed.rigid.contacts()
+    assert np.array_equal(force, force_again)
+    assert np.array_equal(deep, deep_again)
     for simulation in (left, rehearsed):
         for _ in range(6):
             simulation.advance_frame()

@@ -148,8 +148,9 @@ def test_a_cable_round_a_post_starts_at_rest(simulate):
                     mass_per_length=0.1, radius=0.01)  # fmt: skip
 
     _, q, v = simulate(build, 0.1, 1)
+    drift = 2e-6 if simulate.args[1] == "cpu" else 3e-4  # [m]; the mass matrix is near what 24 bits can factor
     for name in ("left", "right"):
-        assert q[name] == pytest.approx(np.broadcast_to(q[name][0], q[name].shape), abs=1e-4)
+        assert q[name] == pytest.approx(np.broadcast_to(q[name][0], q[name].shape), abs=drift)
         assert np.abs(v[name]).max() < 0.01
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import shutil
 from pathlib import Path
@@ -97,6 +98,23 @@ def test_the_verdict_of_its_own_run_is_the_one_that_counts(swept: SweepFolder, t
     table = pyarrow.parquet.read_table(folder.path / "table.parquet")
     assert table["note"].to_pylist()[[row.candidate for row in found].index(wrong.candidate)] == own.note
     assert folder.outcomes()[wrong.candidate.number] == own
+
+
+def test_whose_own_run_is_there_is_not_run_once_more(swept: SweepFolder, tmp_path: Path) -> None:
+    """As after Ctrl-C between the runs in full and the page; one that was stopped midway is run again."""
+    folder = SweepFolder(shutil.copytree(swept.path, tmp_path / "stopped"))
+    found = in_full(folder, list(folder.outcomes().values()), pictures=False)
+    runs = sorted((folder.path / "candidates").glob("*/run.json"))
+    assert len(runs) > 1
+    facts = json.loads(runs[0].read_text())
+    del facts["same"]
+    runs[0].write_text(json.dumps(facts))
+    before = [path.stat().st_mtime_ns for path in runs]
+    again = in_full(folder, list(folder.outcomes().values()), pictures=False)
+    assert [path.stat().st_mtime_ns != old for path, old in zip(runs, before, strict=True)] == [
+        path is runs[0] for path in runs
+    ]
+    assert [row.candidate for row in again] == [row.candidate for row in found]
 
 
 def test_a_picture_has_a_panel_for_the_parameter(swept: SweepFolder) -> None:

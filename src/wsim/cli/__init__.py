@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import signal
 import sys
 import threading
@@ -36,6 +38,7 @@ def _options(version: bool = typer.Option(False, "--version", help="Print the ve
 def main() -> None:
     """Run the command line; a user's mistake is one line and exit code 2."""
     _keep_interrupts()
+    atexit.register(gc.freeze)  # Python would look for garbage among all that Newton made, for seconds
     try:
         app(prog_name="wsim")
     except UserError as error:

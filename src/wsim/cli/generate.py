@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -38,6 +40,7 @@ from wsim.phases import since_start
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
 from wsim.runs.settings import Settings
+from wsim.runs.standby import Standby
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -135,7 +138,7 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
             show_plan(plan)
             return yes or typer.confirm("build it?")
 
-    with progress:
+    with progress, _standby(options):
         began = time.perf_counter()
         generate_world = loop.generate_world  # loads the simulator
         options.start_up += time.perf_counter() - began
@@ -146,6 +149,16 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
     show_verdict(done.verdict, done.run.path, done.report)
     show_usage(done.run.facts())
     raise typer.Exit(EXIT_CODES[done.verdict.status])
+
+
+@contextmanager
+def _standby(options: Options) -> Iterator[None]:
+    """Let the process that will confirm a first draft load beside this one; a draft that a model sees has none."""
+    if not options.confirm or options.models.coder != BUILTIN:
+        yield
+        return
+    with Standby() as options.standby:
+        yield
 
 
 def _replay(recorded: Path, runs: Path, device: str) -> None:

@@ -23,6 +23,7 @@ from wsim.sweep.again import in_full
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Outcome
 from wsim.sweep.declared import axes_of, check, check_draws, parameters_of
+from wsim.sweep.device import pick_device
 from wsim.sweep.draw import parse_all
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.picture import draw
@@ -64,7 +65,10 @@ def sweep(
     ] = 1,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the draw.")] = 0,
     plan: Annotated[Path | None, typer.Option("--plan", help="plan.json to judge by; a run's own by default.")] = None,
-    device: Annotated[str, typer.Option("--device", help="cpu, cuda:0, …; cuda:0,cuda:1: a worker on each.")] = "cpu",
+    device: Annotated[
+        str,
+        typer.Option("--device", help="auto (what is done sooner), cpu, cuda:0, …; cuda:0,cuda:1: a worker on each."),
+    ] = "auto",
     time_step: TimeStep = None,
     worlds: Annotated[
         int, typer.Option("--worlds", min=0, help="Worlds simulated at once; 0: one on a CPU, 1024 on a GPU.")
@@ -111,7 +115,7 @@ def sweep(
             samples=samples,
             repeats=repeats,
             seed=seed,
-            device=device,
+            device="cpu" if ray and device == "auto" else device,  # what a cluster has is not known here
             time_step=time_step,
             isolation=isolation,
             worlds=worlds,
@@ -125,15 +129,21 @@ def sweep(
     if kept:
         kept.rest(folder)
     try:
-        with ConsoleProgress() as progress:
-            outcomes = run_sweep(folder, workers, progress, ray, kept)
-            if full:
-                outcomes = in_full(folder, outcomes, progress=progress)
+        outcomes = _run(folder, workers, ray, kept, full)
     except KeyboardInterrupt:
         if kept:
             kept.rest(folder)
         console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
         raise typer.Exit(130) from None
+    raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+
+
+def _run(folder: SweepFolder, workers: int, ray: str, kept: Store | None, full: bool) -> list[Outcome]:
+    """Run what is left, show how it came out, and write the page."""
+    with ConsoleProgress() as progress:
+        outcomes = run_sweep(folder, workers, progress, ray, kept)
+        if full:
+            outcomes = in_full(folder, outcomes, progress=progress)
     picture = draw(outcomes, folder.path)
     _show(outcomes)
     _show_sensitivity(folder.spec, outcomes)
@@ -143,7 +153,7 @@ def sweep(
     if kept:
         kept.rest(folder)
         console.print(f"all of it: {kept.url}", soft_wrap=True)
-    raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
+    return outcomes
 
 
 def _opened(resume: str, store: str, runs: Path) -> tuple[SweepFolder, Store | None]:
@@ -191,6 +201,11 @@ def _ask(
     chosen = load(plans.pop()) if plans else None
     asked = spec.model_copy(update={"axes": axes, "points": given})
     _ = asked.count  # too few for the method is said before there is a folder
+    if asked.device == "auto":
+        device, why = pick_device(asked, programs[0], len(os.sched_getaffinity(0)))
+        asked = asked.model_copy(update={"device": device})
+        if why:
+            console.print(why, soft_wrap=True)
     text = chosen.model_dump_json(indent=2) + "\n" if chosen else None
     return SweepFolder.create(runs, chosen.title if chosen else programs[0].stem, asked, programs, text)
 

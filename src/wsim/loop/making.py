@@ -113,7 +113,7 @@ class Making:
         if cheap_first or not self.options.confirm:
             return self._concluded(iteration, attempt(iteration, cheap_first))
         with BareRun(self.run.path / "bare.partial", iteration) as bare_run:
-            bare_run.start()  # a first draft is to need no repair
+            bare_run.start(self.options.standby)  # a first draft is to need no repair
             return self._concluded(iteration, attempt(iteration, cheap_first), bare_run)
 
     def _concluded(self, iteration: Iteration, tried: Attempt, bare_run: BareRun | None = None) -> Attempt:

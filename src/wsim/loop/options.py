@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from wsim.agents.relay import Replay
     from wsim.judge.verdict import Verdict
     from wsim.plan.schema import Plan
+    from wsim.runs.standby import Standby
 
 
 @dataclass
@@ -30,6 +31,7 @@ class Options:
         confirm: Run the accepted program once more, bare, and compare.
         replay: A recorded run that answers in place of the models.
         start_up: What it took to come this far [s].
+        standby: A process that loads beside this one, for the run that confirms the first draft.
     """
 
     settings: Settings = field(default_factory=Settings)
@@ -40,6 +42,7 @@ class Options:
     confirm: bool = True
     replay: Replay | None = None
     start_up: float = 0.0
+    standby: Standby | None = None
 
 
 @dataclass

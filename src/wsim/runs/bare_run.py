@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pickle
 import shutil
-import subprocess
 import sys
 import threading
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 
+from wsim.door import load_module
 from wsim.judge.verdict import Verdict
 from wsim.program.bare import bare
 from wsim.progress import silent
 from wsim.runs.folder import write_whole
 from wsim.runs.iteration import Iteration
+from wsim.runs.standby import Standby
 
 
 class BareRun:
@@ -38,7 +38,7 @@ class BareRun:
         self._text = stripped
         quiet = replace(iteration.settings, pictures=False, verify=False)
         self.iteration = replace(iteration, folder=folder, source=None, settings=quiet)
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Standby | None = None
 
     def __enter__(self) -> BareRun:
         """Write the program."""
@@ -52,28 +52,13 @@ class BareRun:
     ) -> None:
         """End the process, whatever it is at, and take the folder away."""
         if self._process is not None:
-            self._process.kill()
-            self._process.communicate()
+            self._process.close()
         self._clear()
 
-    def start(self) -> None:
-        """Run it ahead, beside what this process does; half of the processors' threads are enough for it.
-
-        It is a command, and no fork: of a process that has a GPU none can be made, and a script that has no guard is
-        not run twice.
-        """
-        threads = {"WSIM_THREADS": str(max(1, len(os.sched_getaffinity(0)) // 2))}
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "wsim.runs.bare_run"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            env={**threads, **os.environ},
-        )
-        assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):  # it has died: what it was to do is done here
-            pickle.dump(replace(self.iteration, progress=silent), self._process.stdin)
-            self._process.stdin.flush()
+    def start(self, standby: Standby | None = None) -> None:
+        """Run it ahead, beside what this process does: in a process that has loaded already, or in a new one."""
+        self._process = standby or Standby()
+        self._process.give(pickle.dumps(replace(self.iteration, progress=silent)))
 
     def verdict(self) -> Verdict:
         """The bare program's: waited for if it was started, else run here and now.
@@ -82,7 +67,7 @@ class BareRun:
         """
         if self._process is not None:
             self.iteration.progress("confirming", 0, 1)
-            done = self._process.wait() == 0
+            done = self._process.done()
             self.iteration.progress("confirming", 1, 1)
             if done:
                 return self.iteration.verdict
@@ -93,8 +78,12 @@ class BareRun:
 
 
 def _main() -> None:
-    """In the process: run what comes, and end when nobody is there any more who wants it."""
-    iteration = pickle.load(sys.stdin.buffer)
+    """In the process: load what will be needed, run what comes, and end when nobody is there any more who wants it."""
+    load_module("wsim.sim.simulation")
+    try:
+        iteration = pickle.load(sys.stdin.buffer)
+    except EOFError:  # nothing came
+        os._exit(1)
 
     def end_with_parent() -> None:
         sys.stdin.buffer.read()

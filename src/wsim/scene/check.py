@@ -20,6 +20,7 @@ from wsim.scene.check_contacts import contact_problems, surface_problems
 from wsim.scene.check_cords import cord_problems
 from wsim.scene.check_indices import check_indices
 from wsim.scene.check_joints import joint_problems
+from wsim.scene.check_leads import parted
 from wsim.scene.check_motion import motion_problems
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
@@ -112,7 +113,10 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
             yield from cord_problems(prim)
         yield from joint_problems(stage)
         yield from contact_problems(prims)
-        yield from motion_problems(stage)
+        wrong = list(motion_problems(stage))
+        yield from wrong
+        if not wrong:  # of paths that can be followed
+            yield from parted(stage)
 
 
 def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:

@@ -9,6 +9,7 @@ from pxr import Usd
 
 from wsim.geometry.ropes import path_length, strayed
 from wsim.scene import schema
+from wsim.scene.check_leads import led
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
 from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene.usd_contacts import yields
@@ -26,8 +27,17 @@ def cord_problems(prim: Usd.Prim) -> Iterator[str]:
         return
     rope = schema.has(prim, schema.ROPE)
     cord = read_rope(prim) if rope else read_spring(prim)
-    if not any(end.body and yields(prim.GetStage().GetPrimAtPath(end.body)) for end in (cord.path[0], cord.path[-1])):
+    bodies = [prim.GetStage().GetPrimAtPath(end.body) for end in (cord.path[0], cord.path[-1]) if end.body]
+    loose = [body for body in bodies if yields(body)]
+    firm = led(prim.GetStage()) if loose else set()
+    if not loose:
         yield f"{path}: neither wsim:a nor wsim:b is a body that it could move: each is static or kinematic"
+    elif all(body.GetPath() in firm for body in loose):
+        named = " and ".join(f"<{body.GetPath()}>" for body in loose)
+        yield (
+            f"{path}: neither wsim:a nor wsim:b is a body that it could move: fixed joints hold {named} to what is "
+            "static or kinematic; leave out a joint, or give it a physics:breakForce"
+        )
     elif cord.path[0].body == cord.path[-1].body:
         yield f"{path}.wsim:b: <{cord.path[0].body}> is at its other end, too"
     elif not 0.0 < cord.radius <= MAX_SIZE:

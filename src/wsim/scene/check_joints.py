@@ -8,11 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pxr import Gf, Sdf, Usd, UsdPhysics
+from pxr import Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.articulation import (
-    body_frame,
     dry_friction,
     geared_joints,
     is_kinematic,
@@ -47,7 +46,6 @@ def joint_problems(stage: Usd.Stage) -> Iterator[str]:
     for joint in closing:
         yield from _constraint(joint, joint.GetPath() in geared)
     yield from _roots(tree, stage)
-    yield from _welded(stage)
     for prim in stage.Traverse():
         if schema.has(prim, schema.GEAR):
             yield from _gear(prim)
@@ -126,45 +124,6 @@ def _limit(prim: Usd.Prim, end: str) -> float | None:
     attribute = prim.GetAttribute(f"physics:{end}Limit")
     value = attribute.Get() if attribute else None
     return value if value is not None and math.isfinite(value) else None
-
-
-def _welded(stage: Usd.Stage) -> Iterator[str]:
-    """Bodies that fixed joints hold to two things which go different ways, and which none of them can move."""
-    at: dict[Sdf.Path, Sdf.Path] = {}
-
-    def top(path: Sdf.Path) -> Sdf.Path:
-        while at.get(path, path) != path:
-            path = at[path]
-        return path
-
-    for joint in joints_of(stage):
-        if not joint.GetPrim().IsA(UsdPhysics.FixedJoint) or may_break(joint):
-            continue
-        parent, child = (top(end) for end in joint_ends(joint))
-        if parent == WORLD_END or is_kinematic(stage.GetPrimAtPath(parent)):
-            parent, child = child, parent
-        leads = [path for path in (parent, child) if path == WORLD_END or is_kinematic(stage.GetPrimAtPath(path))]
-        if len(leads) == 2 and parent != child and _way(stage, parent) != _way(stage, child):
-            names = " and ".join("the world" if path == WORLD_END else f"<{path}>" for path in leads)
-            yield (
-                f"{joint.GetPath()}: fixed joints hold {names} together, of which neither gives way; leave this one "
-                "out, or give it a physics:breakForce"
-            )
-        at[parent] = child
-
-
-def _way(stage: Usd.Stage, path: Sdf.Path) -> object:
-    """What says how something goes that no joint moves; None where it stays."""
-    if path == WORLD_END:
-        return None
-    prim = stage.GetPrimAtPath(path)
-    body = UsdPhysics.RigidBodyAPI(prim)
-    spin = tuple(body.GetAngularVelocityAttr().Get() or ())
-    if any(spin) or schema.has(prim, schema.PATH):
-        return path  # which nothing else goes as well
-    frame = body_frame(prim)
-    velocity = tuple(round(x, 6) for x in frame.TransformDir(Gf.Vec3d(body.GetVelocityAttr().Get() or Gf.Vec3d())))
-    return velocity if any(velocity) else None
 
 
 def _gear(prim: Usd.Prim) -> Iterator[str]:

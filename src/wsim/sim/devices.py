@@ -38,6 +38,12 @@ def steps_in_c(device: Any, world_count: int) -> bool:
     return world_count <= 1 and not wp.get_device(device).is_cuda
 
 
+def cuda_devices() -> list[str]:
+    """The CUDA devices of this machine."""
+    start_warp()
+    return [str(device) for device in wp.get_devices() if device.is_cuda]
+
+
 def choose_device(cuda: Sequence[str], world: World, world_count: int = 1) -> tuple[str, str]:
     """The device that is quicker for a world, and why in a line.
 
@@ -72,8 +78,7 @@ def pick_device(name: str, world: World, world_count: int = 1, progress: Progres
     """
     if name != "auto":
         return known_device(name)
-    start_warp()
-    cuda = [str(device) for device in wp.get_devices() if device.is_cuda]
+    cuda = cuda_devices()
     device, why = choose_device(cuda, world, world_count)
     if cuda:
         progress(why, 1, 1)

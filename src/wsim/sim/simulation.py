@@ -151,14 +151,19 @@ class Simulation:
         self.state.assign(kept)
         self.compiled |= compiling.compile_all(self._launched(), self.device, progress)
         self.state.assign(kept)
+        self._forget()  # copies are made in a rehearsal, and what they are of was not computed
         self._push_and_move()
         self.state = kept
+        self._forget()
+        wp.synchronize_device(self.device)
+
+    def _forget(self) -> None:
+        """Forget the steps taken so far: the state is where the next one starts."""
         if self.rigid:
             self.rigid.reset(self.state)
         if self.fluid:
             self.fluid.reset_search()
             self.fluid.take_wall_impulse()
-        wp.synchronize_device(self.device)
 
     def _launched(self) -> list[compiling.Needed]:
         """What a step launches, and a picture; MuJoCo's C code is left out, which keeps what it is given."""

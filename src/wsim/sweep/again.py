@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from wsim.plan.store import load
 from wsim.progress import Progress, silent
 from wsim.runs.alone import run_in_folder
+from wsim.runs.folder import RunFolder
 from wsim.sweep.candidate import Outcome
 from wsim.sweep.table import ranked, write
 from wsim.sweep.work import as_varied, settings
 
 if TYPE_CHECKING:
-    from wsim.runs.folder import RunFolder
     from wsim.sweep.folder import SweepFolder
 
 
@@ -36,6 +36,8 @@ def in_full(
 ) -> list[Outcome]:
     """Run the telling ones again, each by itself; what that run's verdict says is what counts, and ranks them.
 
+    One whose own run is there already, of a time before this was stopped, is not run once more.
+
     Args:
         folder: The sweep's, whose table is written anew.
         outcomes: All of them.
@@ -45,11 +47,11 @@ def in_full(
     Returns:
         All outcomes, the best first: what is best now has been run by itself.
     """
-    best_first, done = ranked(outcomes), set[int]()
+    best_first = ranked(outcomes)
+    done = {outcome.candidate.number for outcome in best_first if _was_run(folder, outcome)}
     while left := [outcome for outcome in telling(best_first) if outcome.candidate.number not in done]:
         _, own = run_again(folder, left[0], pictures, progress)
         done.add(own.candidate.number)
-        folder.add(own)
         best_first = ranked([own if each.candidate == own.candidate else each for each in best_first])
     write(best_first, folder.path)
     folder.finish(best_first)
@@ -62,7 +64,7 @@ def run_again(
     """Run a candidate alone, with its parameters, draws and seed, into candidates/NNNN.
 
     What was simulated with others is run on the CPU, where contacts and what joints, springs and ropes give are
-    recorded. Its run.json says whether the verdict is the one that it had in the sweep.
+    recorded. Its run.json says whether the verdict is the one that it had in the sweep; its outcome is kept.
 
     Returns:
         The run, and what came of the candidate by it.
@@ -83,8 +85,15 @@ def run_again(
     verdict = run_in_folder(run, program, plan, own, progress)
     said = as_varied(verdict) if candidate.values else verdict
     same = said.status == outcome.status
-    run.record(seed=candidate.seed, in_sweep=outcome.status, same=same)
-    found = Outcome.of(candidate, said, outcome.seconds)
     of = f" with {outcome.together - 1} others" if outcome.together > 1 else ""
     note = outcome.note if same else f"{outcome.status} when it was simulated{of}"
-    return run, found.model_copy(update={"note": note})
+    found = Outcome.of(candidate, said, outcome.seconds).model_copy(update={"note": note})
+    folder.add(found)
+    run.record(seed=candidate.seed, in_sweep=outcome.status, same=same)  # last: where this stands, all of it is there
+    return run, found
+
+
+def _was_run(folder: SweepFolder, outcome: Outcome) -> bool:
+    """Whether a candidate's own run was finished, and its outcome is what that said."""
+    run = RunFolder(folder.candidate(outcome.candidate.number))
+    return outcome.together == 1 and run.path.is_dir() and "same" in run.facts()

@@ -13,19 +13,28 @@ from wsim.errors import UserError
 from wsim.program import sandbox
 from wsim.runs.draws import apply
 from wsim.scene.describe import describe
-from wsim.scene.world import Parameter
+from wsim.scene.world import Parameter, World
 from wsim.sweep.axis import Axis
 from wsim.sweep.draw import Draw
 
 
 def parameters_of(program: Path, isolation: str = "auto") -> list[Parameter]:
-    """The parameters of a program, which is built for them in the sandbox.
+    """The parameters of a program.
+
+    Raises:
+        UserError: If it cannot be built as it stands.
+    """
+    return as_it_stands(program, isolation).parameters
+
+
+def as_it_stands(program: Path, isolation: str = "auto") -> World:
+    """What a program's stage states with its parameters as they are; it is built in the sandbox.
 
     Raises:
         UserError: If it cannot be built as it stands.
     """
     with _built(program, isolation) as stage:
-        return describe(stage).parameters
+        return describe(stage)
 
 
 @contextmanager

@@ -111,9 +111,13 @@ class SweepFolder:
         """Whether nothing is left to run."""
         return (self.path / "summary.json").is_file()
 
+    def candidate(self, number: int) -> Path:
+        """Where a candidate's own run is, if there is one."""
+        return self.path / "candidates" / f"{number:04d}"
+
     def run_of(self, number: int) -> RunFolder:
         """The folder of a candidate that is run in full; an older one goes."""
-        path = self.path / "candidates" / f"{number:04d}"
+        path = self.candidate(number)
         shutil.rmtree(path, ignore_errors=True)
         path.mkdir(parents=True)
         return RunFolder(path)

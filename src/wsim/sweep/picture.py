@@ -42,5 +42,6 @@ def draw(outcomes: Sequence[Outcome], folder: Path) -> Path | None:
         if k == 1:
             axes.legend(fontsize=7, frameon=False)
     path = folder / "margins.png"
-    figure.savefig(path)
-    return path
+    partial = path.with_name(path.name + ".partial")
+    figure.savefig(partial, format="png")
+    return partial.replace(path)

@@ -4,7 +4,8 @@ A box that rocks as it slides lands on one corner after another. Each landing ta
 and shares it out to all of the body's motion: how its other points slip changes with it, and back again with the next,
 all between two frames. By the reduced mass M of both an impulse of (1 + e) M u changes a body's velocities by about
 (1 + e) M u / m, where the pair bounces with e. What parts at v from what it bounces off has met it at v / e. Across a
-gap that is open as the interval begins a body falls, too: of a gap d it comes with v^2 = u^2 + 2 g d at most.
+gap that is open as the interval begins a body falls, too: of a gap d it comes with v^2 = u^2 + 2 g d at most, and so it
+does where it still rises at u and falls back before the interval ends, as a barrel does that a blow has tipped.
 """
 
 from __future__ import annotations
@@ -49,8 +50,8 @@ def landing(touching: Touching, contacts: Contacts, poses: Poses, h: Floats, mas
     moves, at = rows >= 0, np.maximum(rows, 0)
     pull, time = float(np.linalg.norm(touching.world.gravity)), h[at.max(axis=0)]
     falls = np.where((contacts.gap > OPEN) & (end == 0), pull, 0.0)
-    lands = (closing > 0.0) & (contacts.gap <= (closing + 0.5 * falls * time) * time)
-    closing = np.sqrt(closing**2 + 2.0 * falls * np.maximum(contacts.gap, 0.0)) * (closing > 0.0)
+    lands = ((closing > 0.0) | (falls > 0.0)) & (contacts.gap <= (closing + 0.5 * falls * time) * time)
+    closing = np.sqrt(closing**2 + 2.0 * falls * np.maximum(contacts.gap, 0.0)) * lands
     met = closing * (1.0 + (1.0 / np.maximum(bounce, 1e-9) if end else bounce))
     light = np.where(moves, 1.0 / mass[at], 0.0)
     for side in (0, 1):

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.framing import framed, in_frame
+from wsim.judge.evidence.strands import strands
 from wsim.judge.language.kinds import formula_of
 from wsim.judge.language.objective import ObjectiveCheck, conjuncts
 from wsim.judge.verdict import RepairTarget
@@ -131,7 +132,10 @@ class CheckInFrame(Check):
 
 @dataclass
 class CheckSeen(Check):
-    """Everything that moves is to be seen in some picture: not hidden behind something in all, and not too small."""
+    """Everything that moves is to be seen in some picture: not hidden behind something in all, and not too small.
+
+    A cable is one thing, part of which may run behind a post.
+    """
 
     pixels: float = 16.0  # of a picture, below which it is a speck
 
@@ -142,10 +146,12 @@ class CheckSeen(Check):
             return []
         sizes = {camera.prim: camera.width * camera.height for camera in evidence.world.cameras}
         found, least, least_prim = [], 1.0, ""
-        for body in evidence.world.bodies:
-            if any(shape.opacity < 1.0 for shape in body.shapes) or not body.shapes:
+        for thing in strands(evidence.world):
+            body = thing[0]
+            if any(shape.opacity < 1.0 for each in thing for shape in each.shapes) or not body.shapes:
                 continue  # what is clear is not in the pictures of what is opaque
-            times, visible = self._visible(evidence, "/".join(body.prim.split("/")[:3]), sizes)
+            prims = {"/".join(each.prim.split("/")[:3]) for each in thing}
+            times, visible = self._visible(evidence, prims, sizes)
             share = float(visible.mean()) if len(times) else 1.0
             if share < least:
                 least, least_prim = share, body.prim
@@ -163,19 +169,23 @@ class CheckSeen(Check):
             self.passed(f"Everything that moves is to be seen{hidden}", prim=least_prim or None, line=None)
         ]
 
-    def _visible(self, evidence: Evidence, prim: str, sizes: dict[str, int]) -> tuple[Floats, Bools]:
+    def _visible(self, evidence: Evidence, prims: set[str], sizes: dict[str, int]) -> tuple[Floats, Bools]:
         """Times of pictures, and whether any camera then shows the object: at the times that the most cameras share."""
-        tracks = [track for track in evidence.recording.seen.values() if prim in track.objects and len(track.time)]
+        seen = {
+            camera: ([k for k, prim in enumerate(track.objects) if prim in prims], track)
+            for camera, track in evidence.recording.seen.items()
+        }
+        tracks = [track for columns, track in seen.values() if columns and len(track.time)]
         if not tracks:
             return np.zeros(0), np.zeros(0, dtype=bool)
         # The first camera draws every frame, the others a few: where all draw, one of them has to show it.
         times = min((track.time for track in tracks), key=len)
         shown = np.zeros(len(times), dtype=bool)
-        for camera, track in evidence.recording.seen.items():
-            if prim in track.objects and len(track.time):
+        for camera, (columns, track) in seen.items():
+            if columns and len(track.time):
                 nearest = np.abs(track.time[None] - times[:, None]).argmin(axis=1)
                 least = self.pixels / sizes.get(camera, 640 * 360)
-                shown |= track.share[nearest, track.objects.index(prim)] >= least
+                shown |= track.share[nearest][:, columns].sum(axis=1) >= least
         return times, shown
 
 

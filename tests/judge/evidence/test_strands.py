@@ -1,0 +1,26 @@
+"""A cable is one thing to who looks at it; other chains are as many things as they have bodies."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from wsim.judge.evidence.strands import strands
+from wsim.scene import Scene
+from wsim.scene.describe import describe
+
+
+def test_the_links_of_a_cable_are_one_thing(tmp_path: Path) -> None:
+    scene = Scene()
+    scene.box("load", size=(0.1, 0.1, 0.1), mass=1.0, position=(0.0, 0.0, 0.0))
+    scene.cable("line", None, "load", anchor_a=(0.0, 0.0, 1.05), anchor_b=(0.0, 0.0, 0.05), links=12)
+    scene.cable(
+        "other", None, None, anchor_a=(1.0, 0.0, 1.0), anchor_b=(2.0, 0.0, 1.0), length=1.2, links=9, loose=False
+    )
+    scene.capsule("upper", radius=0.04, height=0.3, position=(4.0, 0.0, 1.0))
+    scene.capsule("lower", radius=0.03, height=0.3, position=(4.0, 0.0, 0.5))
+    scene.joint_spherical("elbow", "upper", "lower", anchor=(4.0, 0.0, 0.75))
+    found = strands(describe(scene.save(tmp_path / "stage.usda")))
+    assert sorted(len(thing) for thing in found) == [1, 1, 1, 9, 12]
+    assert sorted(body.prim for thing in found if len(thing) == 1 for body in thing) == [
+        "/World/load", "/World/lower", "/World/upper"
+    ]  # fmt: skip
