@@ -22,8 +22,9 @@ from wsim.report.sweep_page import write as write_page
 from wsim.sweep.again import in_full
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Outcome
-from wsim.sweep.declared import axes_of, check, parameters_of
+from wsim.sweep.declared import axes_of, check, check_draws, parameters_of
 from wsim.sweep.device import pick_device
+from wsim.sweep.draw import parse_all
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.picture import draw
 from wsim.sweep.run import sweep as run_sweep
@@ -43,6 +44,14 @@ def sweep(
     vary: Annotated[
         list[str] | None,
         typer.Option("--vary", metavar="NAME=LOW:HIGH", help="What differs; also NAME=log:LOW:HIGH and NAME=A,B,C."),
+    ] = None,
+    randomise: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--randomise",
+            metavar="BODY.WHAT=LOW:HIGH",
+            help="Drawn for each: .mass, .friction, .level (LOW:HIGHx: times its own), .pose=0.05,5deg.",
+        ),
     ] = None,
     points: Annotated[
         Path | None, typer.Option("--points", metavar="FILE.csv", help="Values: a line of names, a line a candidate.")
@@ -85,13 +94,14 @@ def sweep(
 ) -> None:
     """Run many candidates of a program, judge each, and rank them: by verdict, then by the room to the limit.
 
-    Without --vary, every scene.param that states a range is varied. Ctrl-C keeps what is done.
+    Without --vary and --randomise, every scene.param that states a range is varied. Ctrl-C keeps what is done.
     Exit code: 0 if a candidate is accepted, 1 if none is, 2 for a mistake in what was given.
     """
     if resume:
-        if targets or vary or points:
+        if targets or vary or points or randomise:
             raise UserError(
-                "--resume goes on with a sweep as it was asked for; leave programs, --vary and --points out"
+                "--resume goes on with a sweep as it was asked for; "
+                "leave programs, --vary, --randomise and --points out"
             )
         folder, kept = _opened(resume, store, runs)
     else:
@@ -110,6 +120,7 @@ def sweep(
             isolation=isolation,
             worlds=worlds,
             patience=patience,
+            draws=parse_all(randomise or []),
             batch=max(1, (workers or len(os.sched_getaffinity(0))) // max(1, len(targets or []) * repeats)),
         )
         Store(store) if store else None  # what cannot be reached is said before there is a folder
@@ -184,7 +195,9 @@ def _ask(
             for name in given[0]:
                 check(name, [point[name] for point in given], known, f"--points {points}")
         else:
-            axes = axes_of(program, axes, spec.isolation)
+            axes = axes_of(program, axes, spec.isolation) if axes or not spec.draws else axes
+        if spec.draws:
+            check_draws(program, spec.draws, spec.isolation)
     chosen = load(plans.pop()) if plans else None
     asked = spec.model_copy(update={"axes": axes, "points": given})
     _ = asked.count  # too few for the method is said before there is a folder
@@ -204,7 +217,7 @@ def _show(outcomes: list[Outcome]) -> None:
     for column in ("rank", "candidate", *names, "status", "slack", "decided by", "s"):
         table.add_column(column, overflow="fold")
     for rank, outcome in enumerate(outcomes[:SHOWN], start=1):
-        values = [outcome.candidate.params.get(name) for name in names]
+        values = [outcome.candidate.values.get(name) for name in names]
         numbers = ["as it stands" if value is None else f"{value:.4g}" for value in values]
         slack = "" if outcome.slack is None else f"{outcome.slack:+.3f}"
         cells = [str(rank), str(outcome.candidate.number), *numbers]

@@ -77,10 +77,10 @@ def draw(outcomes: Sequence[Outcome], axes: Sequence[Axis], told: Sequence[Sensi
         axes: What was varied; values that were given in a file have none.
         told: Sobol' indices, if the design gave any.
     """
-    varied = [outcome for outcome in outcomes if outcome.candidate.params]
+    varied = [outcome for outcome in outcomes if outcome.candidate.values]
     note = "" if len(varied) <= MOST else f"the best and the worst {MOST // 2} of {len(varied)}"
     shown = varied if not note else [*varied[: MOST // 2], *varied[-(MOST // 2) :]]
-    names = list(dict.fromkeys(name for outcome in shown for name in outcome.candidate.params))
+    names = list(dict.fromkeys(name for outcome in shown for name in outcome.candidate.values))
     scales = {name: _scale(name, shown, axes) for name in names}
     roomy = any(outcome.slack is not None for outcome in shown)
     drawings = [
@@ -96,12 +96,12 @@ def draw(outcomes: Sequence[Outcome], axes: Sequence[Axis], told: Sequence[Sensi
 
 
 def _scale(name: str, outcomes: Sequence[Outcome], axes: Sequence[Axis]) -> Scale:
-    values = [outcome.candidate.params[name] for outcome in outcomes if name in outcome.candidate.params]
+    values = [outcome.candidate.values[name] for outcome in outcomes if name in outcome.candidate.values]
     return Scale.of(name, values, next((axis for axis in axes if axis.name == name), None))
 
 
 def _value(outcome: Outcome, name: str) -> float | None:
-    return outcome.slack if name == ROOM else outcome.candidate.params.get(name)
+    return outcome.slack if name == ROOM else outcome.candidate.values.get(name)
 
 
 def _x(scale: Scale, value: float) -> float:
@@ -211,7 +211,7 @@ def _bars(told: Sensitivity) -> Drawing:
 
 def title_of(outcome: Outcome) -> str:
     """What a mark says when it is pointed at."""
-    values = ", ".join(f"{name} {number(value)}" for name, value in outcome.candidate.params.items())
+    values = ", ".join(f"{name} {number(value)}" for name, value in outcome.candidate.values.items())
     room = "" if outcome.slack is None else f", room {number(outcome.slack, sign=True)}"
     return f"{outcome.candidate.number}: {values or 'as it stands'}: {outcome.status}{room}"
 

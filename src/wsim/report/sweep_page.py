@@ -23,6 +23,7 @@ from wsim.report.templates import source, template
 from wsim.runs.folder import write_whole
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import ORDER, Outcome
+from wsim.sweep.draw import Draw
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.sensitivity import sensitivities
 from wsim.sweep.spec import Spec
@@ -86,7 +87,7 @@ def context(folder: SweepFolder) -> dict[str, Any]:
         "folder": folder.path.resolve().name,
         "spec": spec,
         "facts": facts(spec),
-        "axes": [(axis.name, span(axis)) for axis in spec.axes],
+        "axes": [(axis.name, span(axis)) for axis in spec.axes] + [(draw.name, span(draw)) for draw in spec.draws],
         "counts": [(status, counts[status]) for status in ORDER if counts[status]],
         "asked": spec.count,
         "done": len(outcomes),
@@ -118,8 +119,10 @@ def facts(spec: Spec) -> list[tuple[str, str]]:
     ]
 
 
-def span(axis: Axis) -> str:
-    """What a parameter ranged over."""
+def span(axis: Axis | Draw) -> str:
+    """What a parameter ranged over, or was drawn from."""
+    if isinstance(axis, Draw):
+        return f"{number(axis.low, 4)} … {number(axis.high, 4)}, drawn for each"
     if axis.values:
         return ", ".join(number(value, 4) for value in axis.values)
     return f"{number(axis.low, 4)} … {number(axis.high, 4)}" + (", by its logarithm" if axis.scale == "log" else "")

@@ -19,6 +19,7 @@ from wsim.judge.verdict import Finding, Verdict
 from wsim.program import sandbox
 from wsim.program.control import ControlError
 from wsim.progress import Progress, silent
+from wsim.runs import draws
 from wsim.runs.folder import write_json, write_whole
 from wsim.runs.settings import Settings
 from wsim.runs.simulation import is_controlled, open_simulation
@@ -105,7 +106,11 @@ class Iteration:
         return self.conclude(self.happen() if built.ok else no_world(built))
 
     def build(self) -> BuildResult:
-        """Program → stage, in the sandbox; checks.json says how it went."""
+        """Program → stage, in the sandbox, with what is drawn set on it; checks.json says how it went.
+
+        Raises:
+            UserError: If what is drawn cannot be set on the stage.
+        """
         self.progress("building the stage", 0, 1)
         built = sandbox.build(
             self.program,
@@ -117,6 +122,8 @@ class Iteration:
         )
         self.progress("building the stage", 1, 1)
         self._note({"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})
+        if built.ok:
+            draws.apply(self.stage, self.settings.draws)
         return built
 
     def happen(self) -> Verdict:
@@ -161,7 +168,7 @@ class Iteration:
                 video=self.folder / "video.mp4" if pictures else None,
                 frames_dir=self.folder / "frames" if pictures else None,
                 review=self.folder / "review.json" if pictures else None,
-                metadata={"program": self.program.name, "params": self.settings.params},
+                metadata={"program": self.program.name, "params": self.settings.params | self.settings.draws},
                 progress=self.progress,
             )
         seconds |= result.seconds

@@ -15,6 +15,7 @@ class Settings:
 
     device: str = "auto"
     params: dict[str, float] = field(default_factory=dict)
+    draws: dict[str, float] = field(default_factory=dict)  # set on the stage that is built (`wsim.runs.draws`)
     isolation: str = "auto"
     pictures: bool = True
     time_step: float | None = None  # [s]

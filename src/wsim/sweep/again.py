@@ -61,7 +61,7 @@ def in_full(
 def run_again(
     folder: SweepFolder, outcome: Outcome, pictures: bool = True, progress: Progress = silent
 ) -> tuple[RunFolder, Outcome]:
-    """Run a candidate alone, with its parameters and seed, into candidates/NNNN.
+    """Run a candidate alone, with its parameters, draws and seed, into candidates/NNNN.
 
     What was simulated with others is run on the CPU, where contacts and what joints, springs and ropes give are
     recorded. Its run.json says whether the verdict is the one that it had in the sweep; its outcome is kept.
@@ -76,12 +76,14 @@ def run_again(
     if plan is not None:
         (run.path / "plan.json").write_text(plan_file.read_text(encoding="utf-8"), encoding="utf-8")
     run.record(prompt=plan.prompt if plan else None, program=candidate.program, params=candidate.params)
+    if candidate.draws:
+        run.record(draws=candidate.draws)
     program = folder.path / candidate.program
     own = settings(spec, candidate, pictures)
     if outcome.together > 1:
         own = replace(own, device="cpu")
     verdict = run_in_folder(run, program, plan, own, progress)
-    said = as_varied(verdict) if candidate.params else verdict
+    said = as_varied(verdict) if candidate.values else verdict
     same = said.status == outcome.status
     of = f" with {outcome.together - 1} others" if outcome.together > 1 else ""
     note = outcome.note if same else f"{outcome.status} when it was simulated{of}"

@@ -18,6 +18,7 @@ class Candidate(BaseModel):
     Attributes:
         number: Its own, from 0: the program as it stands.
         params: Values of `scene.param`; the others keep their defaults.
+        draws: Numbers that are set on the stage (`wsim.runs.draws`).
         seed: Of `wsim.sim.perturb`; 0 starts as the stage states.
         program: The file in the sweep's folder.
     """
@@ -26,8 +27,14 @@ class Candidate(BaseModel):
 
     number: int
     params: dict[str, float] = Field(default_factory=dict)
+    draws: dict[str, float] = Field(default_factory=dict)
     seed: int = 0
     program: str = "program.py"
+
+    @property
+    def values(self) -> dict[str, float]:
+        """All in which it differs from the program as it stands: parameters, then what was drawn."""
+        return self.params | self.draws
 
 
 class Outcome(BaseModel):

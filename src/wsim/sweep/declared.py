@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from wsim.assets import assets_folder
 from wsim.errors import UserError
 from wsim.program import sandbox
+from wsim.runs.draws import apply
 from wsim.scene.describe import describe
 from wsim.scene.world import Parameter, World
 from wsim.sweep.axis import Axis
+from wsim.sweep.draw import Draw
 
 
 def parameters_of(program: Path, isolation: str = "auto") -> list[Parameter]:
@@ -29,12 +33,19 @@ def as_it_stands(program: Path, isolation: str = "auto") -> World:
     Raises:
         UserError: If it cannot be built as it stands.
     """
+    with _built(program, isolation) as stage:
+        return describe(stage)
+
+
+@contextmanager
+def _built(program: Path, isolation: str) -> Iterator[Path]:
+    """The stage of a program as it stands."""
     with tempfile.TemporaryDirectory(prefix="wsim-parameters-") as scratch:
         stage = Path(scratch) / "stage.usda"
         built = sandbox.build(program, stage, isolation=isolation, readable=[assets_folder()])
         if not built.ok:
             raise UserError(f"{program} makes no world as it stands: {built.message}")
-        return describe(stage)
+        yield stage
 
 
 def axes_of(program: Path, given: Sequence[Axis], isolation: str = "auto") -> list[Axis]:
@@ -56,6 +67,23 @@ def axes_of(program: Path, given: Sequence[Axis], isolation: str = "auto") -> li
         raise UserError(f"{program}: no parameter states a range ({named}); give one with --vary NAME=LOW:HIGH")
     # A search begins at the program as it stands.
     return [axis.model_copy(update={"start": known[axis.name].value}) for axis in axes]
+
+
+def check_draws(program: Path, draws: Sequence[Draw], isolation: str = "auto") -> None:
+    """Refuse what cannot be drawn of the program as it stands, at either end of its range, before anything is run.
+
+    Raises:
+        UserError: Naming what the world lacks, or what cannot be changed in it.
+    """
+    with _built(program, isolation) as stage:
+        for draw in draws:
+            for value in (draw.low, draw.high):
+                tried = stage.with_name("tried.usda")
+                shutil.copyfile(stage, tried)
+                try:
+                    apply(tried, {draw.name: value})
+                except UserError as error:
+                    raise UserError(f"--randomise {error}") from error
 
 
 def check(name: str, values: Sequence[float], known: dict[str, Parameter], where: str) -> None:

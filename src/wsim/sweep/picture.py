@@ -15,7 +15,7 @@ PANEL = (3.6, 2.8)  # [in]
 
 
 def draw(outcomes: Sequence[Outcome], folder: Path) -> Path | None:
-    """margins.png: a panel for each parameter; None where no candidate has any."""
+    """margins.png: a panel for each parameter and each draw; None where no candidate has any."""
     from matplotlib.figure import Figure  # heavy: a sweep without parameters draws nothing
 
     names = parameters(outcomes)
@@ -29,9 +29,9 @@ def draw(outcomes: Sequence[Outcome], folder: Path) -> Path | None:
         axes.axhline(0.0, color="#888", linewidth=0.8)
         for status in ORDER:
             points = [
-                (outcome.candidate.params[name], np.nan if outcome.slack is None else outcome.slack)
+                (outcome.candidate.values[name], np.nan if outcome.slack is None else outcome.slack)
                 for outcome in outcomes
-                if outcome.status == status and name in outcome.candidate.params
+                if outcome.status == status and name in outcome.candidate.values
             ]
             if points:
                 across, up = np.transpose(points)

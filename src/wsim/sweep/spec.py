@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Candidate
+from wsim.sweep.draw import Draw
 from wsim.sweep.sampling import Method, Point, sample
 
 TOGETHER = 1024  # worlds at once on a CUDA device; fewer where its memory holds fewer
@@ -19,6 +20,7 @@ class Spec(BaseModel):
     Attributes:
         programs: Files in the sweep's folder; each is run with each point.
         axes: What candidates differ in.
+        draws: What is drawn for each candidate; without axes and points, `samples` of them differ in that alone.
         points: Points that were given instead of drawn.
         method: How points are drawn; "cma" searches for the one with the most room to the limit.
         samples: How many points are drawn; of a search, at most about as many.
@@ -36,6 +38,7 @@ class Spec(BaseModel):
 
     programs: list[str] = Field(default=["program.py"], min_length=1)
     axes: list[Axis] = Field(default_factory=list)
+    draws: list[Draw] = Field(default_factory=list)
     points: list[Point] = Field(default_factory=list)
     method: Method = "sobol"
     samples: int = Field(default=16, ge=1, le=1_000_000)
@@ -65,9 +68,9 @@ class Spec(BaseModel):
 
     @property
     def _points(self) -> int:
-        if self.points or self.method in ("grid", "saltelli"):
+        if self.points or (self.axes and self.method in ("grid", "saltelli")):
             return len(self._drawn())
-        return self.samples if self.axes else 0
+        return self.samples if self.axes or self.draws else 0
 
     def candidates(self) -> list[Candidate]:
         """All worlds: every program as it stands, then with each point, in the order in which they are drawn."""
@@ -79,9 +82,17 @@ class Spec(BaseModel):
             (point, program, seed) for point in points for program in self.programs for seed in range(self.repeats)
         ]
         return [
-            Candidate(number=number, params=point, seed=seed, program=program)
+            Candidate(number=number, params=point, draws=self._draws(number), seed=seed, program=program)
             for number, (point, program, seed) in enumerate(cases, start=first)
         ]
 
+    def _draws(self, number: int) -> dict[str, float]:
+        """What is drawn for a candidate; nothing for the programs as they stand, which come first."""
+        if number < self.each:
+            return {}
+        return {draw.name: draw.at(self.seed, number, index) for index, draw in enumerate(self.draws)}
+
     def _drawn(self) -> list[Point]:
-        return self.points or (sample(self.axes, self.method, self.samples, self.seed) if self.axes else [])
+        if self.points or not self.axes:
+            return self.points or [{} for _ in range(self.samples if self.draws else 0)]
+        return sample(self.axes, self.method, self.samples, self.seed)

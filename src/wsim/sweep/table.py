@@ -20,12 +20,13 @@ def ranked(outcomes: Sequence[Outcome]) -> list[Outcome]:
 
 def parameters(outcomes: Sequence[Outcome]) -> list[str]:
     """What candidates differ in."""
-    return list(dict.fromkeys(name for outcome in outcomes for name in outcome.candidate.params))
+    return list(dict.fromkeys(name for outcome in outcomes for name in outcome.candidate.values))
 
 
 def table(outcomes: Sequence[Outcome]) -> pa.Table:
-    """Columns: rank, candidate, program, seed, each parameter, status, slack, decided_by, each objective's value and
-    margin, failures, reason, seconds, how many were simulated together, note. Nothing stands where one has none."""
+    """Columns: rank, candidate, program, seed, each parameter and draw, status, slack, decided_by, each objective's
+    value and margin, failures, reason, seconds, how many were simulated together, note. Nothing stands where one has
+    none."""
     best_first = ranked(outcomes)
     rows = [_row(rank, outcome) for rank, outcome in enumerate(best_first, start=1)]
     names = list(dict.fromkeys(name for row in rows for name in row))
@@ -55,7 +56,7 @@ def _objectives(outcomes: Sequence[Outcome]) -> list[str]:
 def _row(rank: int, outcome: Outcome) -> dict[str, Any]:
     candidate = outcome.candidate
     row: dict[str, Any] = {"rank": rank, "candidate": candidate.number, "program": candidate.program}
-    row |= {"seed": candidate.seed, **candidate.params}
+    row |= {"seed": candidate.seed, **candidate.values}
     row |= {"status": outcome.status, "slack": outcome.slack, "decided_by": outcome.decided_by}
     row |= {f"value: {name}": value for name, value in outcome.values.items()}
     row |= {f"margin: {name}": value for name, value in outcome.margins.items()}

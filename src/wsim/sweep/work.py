@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING
 
 from wsim.assets import assets_folder
 from wsim.errors import UserError
+from wsim.forks import shared_out
 from wsim.judge.verdict import Verdict, status_of, unjudged
 from wsim.plan.store import load
 from wsim.program import sandbox
 from wsim.program.control import ControlError
+from wsim.runs import draws
 from wsim.runs.iteration import Iteration, no_world
 from wsim.runs.settings import Settings
+from wsim.scene.usd_threads import forks
 from wsim.sweep.batch import Member, batches, verdicts
 from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.pool import told
@@ -60,6 +63,7 @@ def settings(spec: Spec, candidate: Candidate, pictures: bool = False) -> Settin
     return Settings(
         device=spec.device.split(",")[0],
         params=candidate.params,
+        draws=candidate.draws,
         isolation=spec.isolation,
         pictures=pictures,
         time_step=spec.time_step,
@@ -77,6 +81,10 @@ def work(shard: Shard) -> Iterator[list[tuple[int, Outcome]]]:
             candidate.number: (candidate, *each)
             for candidate, each in zip(shard.candidates, build(shard, Path(scratch), plan), strict=True)
         }
+        unfit = dict(_set_draws(list(left.values()), shard.cores))
+        left = {number: made for number, made in left.items() if number not in unfit}
+        if unfit:
+            yield [(places[number], outcome) for number, outcome in unfit.items()]
         notes: dict[int, str] = {}
         if shard.spec.together > 1:
             runnable = [(candidate, iteration) for candidate, iteration, built in left.values() if built.ok]
@@ -95,7 +103,7 @@ def work(shard: Shard) -> Iterator[list[tuple[int, Outcome]]]:
 
 
 def as_varied(verdict: Verdict) -> Verdict:
-    """A verdict without what differs from the plan because a parameter was set; candidate 0 is held to all of it."""
+    """A verdict without what differs from the plan that candidates are there to change; the first is held to it."""
     kept = [finding for finding in verdict.findings if finding.passed or finding.check not in VARIED]
     if len(kept) == len(verdict.findings):
         return verdict
@@ -132,6 +140,26 @@ def build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteratio
     return [made[candidate.number] for candidate in shard.candidates]
 
 
+def _set_draws(
+    made: Sequence[tuple[Candidate, Iteration, BuildResult]], processes: int
+) -> Iterator[tuple[int, Outcome]]:
+    """Set what is drawn on the stages; those on which it cannot be set have failed, and are told."""
+
+    def put(each: tuple[Candidate, Iteration, BuildResult]) -> str:
+        candidate, iteration, built = each
+        try:
+            if built.ok:
+                draws.apply(iteration.stage, candidate.draws)
+        except UserError as error:
+            return str(error)
+        return ""
+
+    for (candidate, _, built), why in zip(made, shared_out(put, made, forks(processes)), strict=True):
+        if why:
+            failed = Outcome(candidate=candidate, status="failed", reason=why, seconds=round(built.seconds, 3))
+            yield candidate.number, failed
+
+
 def _alone(candidate: Candidate, iteration: Iteration, built: BuildResult) -> Outcome:
     def run() -> Verdict:
         return iteration.happen() if built.ok else no_world(built)
@@ -155,7 +183,7 @@ def _together(batch: Sequence[Member], plan: Plan | None, cores: int) -> dict[in
 def _outcome(candidate: Candidate, run: Callable[[], Verdict], seconds: Callable[[], float]) -> Outcome:
     try:
         verdict = run()
-        if candidate.params:
+        if candidate.values:
             verdict = as_varied(verdict)
         return Outcome.of(candidate, verdict, seconds())
     except Exception as error:  # noqa: BLE001 - one candidate's, and the others go on
