@@ -52,7 +52,8 @@ def read(table: Path) -> Blocks:
     value = next(name for name in rows[0] if name.startswith("value: "))
     rows = [row for row in rows if row[value]]
     numbers = np.array([[float(row[name]) for name in ("density", "level", value)] for row in rows])
-    return Blocks(*numbers.T, np.array([row["status"] == "accepted" for row in rows]))
+    floats = np.array([row["status"] == "accepted" for row in rows])
+    return Blocks(numbers[:, 0], numbers[:, 1], numbers[:, 2], floats)
 
 
 def say(blocks: Blocks, spacing: float) -> None:

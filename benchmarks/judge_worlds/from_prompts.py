@@ -168,7 +168,7 @@ PROMPTED: tuple[SoundWorld, ...] = (
         "A steel ball knocks over a row of five dominoes",
         "A steel ball knocks over a row of three dominoes",
         "A steel ball knocks over a row of seven dominoes",
-        "A steel ball knocks over a row of four dominoes",
+        "A row of four dominoes topples",  # a ball that meets them low carries four of them along, leaning back over it
         change=fall_in_order,
     ),
     prompted(

@@ -116,6 +116,15 @@ def test_charts_of_odd_values_are_whole(value: np.ndarray) -> None:
     assert svg.endswith("</svg>") and "nan" not in svg and "inf" not in svg
 
 
+@pytest.mark.parametrize("most", [2.4e-5, 3e-4, 2e-3, 0.7, 123.0, 45_000.0, 8e5, 3e6, 1e9, -4e-7])
+def test_an_axis_has_short_labels_and_one_power_of_ten(most: float) -> None:
+    svg = str(Chart("depth", "mm", [Series("a", np.arange(5.0), np.linspace(0.0, most, 5))], zero=" ").svg)
+    labels = re.findall(r'<text class="tick end"[^>]*>([^<]*)</text>', svg)
+    assert max(map(len, labels)) <= 7  # what its margin has room for
+    assert not any("×" in label for label in labels)
+    assert svg.count("×") == (0 if 1e-3 <= abs(most) < 1e5 else 1)
+
+
 def text_of(line: SourceLine) -> str:
     return unescape(re.sub("<[^>]*>", "", line.html))
 

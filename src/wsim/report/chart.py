@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from markupsafe import Markup
 
-from wsim.report.numbers import nice_unit, number, quantity
+from wsim.report.numbers import LARGE, SMALL, SUPERSCRIPTS, nice_unit, number, quantity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -188,12 +188,16 @@ def ticks(low: float, high: float, count: int = TICKS) -> list[float]:
 def _axes(chart: Chart, frame: _Frame) -> list[Markup]:
     parts = []
     rows = ticks(min(frame.bottom, frame.top), max(frame.bottom, frame.top))
+    scale, power = common_power(rows)
+    parts.append(Markup('<text class="tick" x="{}" y="{}">{}</text>').format(2, TOP - 3, power))
     for value in rows:
         y = _px(frame.y(value))
         zero = bool(chart.zero) and abs(value) < 1e-12
         line = '<line class="{}" x1="{}" x2="{}" y1="{}" y2="{}"/><text class="tick end" x="{}" y="{}">{}</text>'
         place = (LEFT, WIDTH - RIGHT, y, y, LEFT - 7, _px(frame.y(value) + 4))
-        parts.append(Markup(line).format("zero" if zero else "grid", *place, _tick(value, rows)))
+        parts.append(
+            Markup(line).format("zero" if zero else "grid", *place, _tick(value / scale, [row / scale for row in rows]))
+        )
         if zero:
             text = '<text class="tick end" x="{}" y="{}">{}</text>'
             parts.append(Markup(text).format(WIDTH - RIGHT, _px(frame.y(0.0) - 4), chart.zero))
@@ -203,6 +207,15 @@ def _axes(chart: Chart, frame: _Frame) -> list[Markup]:
         parts.append(Markup(text).format(_px(frame.x(t)), HEIGHT - BOTTOM + 17, _tick(t, columns)))
     parts.append(Markup('<text class="tick mid" x="{}" y="{}">time [s]</text>').format((LEFT + WIDTH) // 2, HEIGHT - 3))
     return parts
+
+
+def common_power(values: Sequence[float]) -> tuple[float, str]:
+    """What all of an axis' values are divided by, and how that is written above it, where they would be too long."""
+    largest = max((abs(value) for value in values), default=0.0)
+    power = math.floor(math.log10(largest)) if largest > 0.0 else 0
+    if SMALL < power < LARGE - 1:  # ticks that are a tenth of the largest are short as well
+        return 1.0, ""
+    return 10.0**power, f"× 10{str(power).translate(SUPERSCRIPTS)}"
 
 
 def _tick(value: float, values: Sequence[float]) -> str:
