@@ -133,8 +133,7 @@ def test_each_candidate_run_again_stops_where_its_drawn_friction_has_it(swept: S
         facts = run.facts()
         assert facts["same"] is True
         assert facts.get("draws", {}) == outcomes[number].candidate.draws
-        evidence = recording.read(run.iteration(1) / "recording.rrd")
-        x = evidence.body("/World/crate").position[:, 0]
+        x = recording.read(run.iteration(1) / "recording.rrd").position("/World/crate")[:, 0]
         mu = outcomes[number].candidate.draws.get("crate.friction", 0.5)
         assert x[-1] - x[0] == pytest.approx(SPEED**2 / (2.0 * mu * G), rel=0.01)
 
