@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -76,3 +77,31 @@ def test_a_daemon_may_have_forks() -> None:
     assert ours.poll(60.0)
     assert ours.recv() == [0, 1, 4, 9]
     process.join()
+
+
+class _Held:
+    """Something of a cycle that says, as it is thrown away, in which process it is."""
+
+    def __init__(self, told: list[int]) -> None:
+        self.told, self.itself = told, self
+
+    def __del__(self) -> None:
+        self.told.append(os.getpid())
+
+
+def test_a_parents_garbage_is_left_to_it() -> None:
+    """What lies on a GPU can be given back by the process alone that has it."""
+    told: list[int] = []
+    gc.disable()
+    try:
+        _Held(told)  # garbage from here on
+
+        def call(_: int) -> list[int]:
+            gc.collect()
+            return list(told)
+
+        assert list(shared_out(call, range(2), 2)) == [[], []]
+        gc.collect()
+        assert told == [os.getpid()]
+    finally:
+        gc.enable()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import gc
 import multiprocessing
 import os
 import signal
@@ -27,7 +28,8 @@ def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: 
 
     A process whose own parent may have no children by `multiprocessing` (a daemon) has these all the same. They live no
     longer than the thread that asks, nor than the iterator. A child has only the thread that forked it, so `call` is to
-    need no lock that another thread may hold, and no device.
+    need no lock that another thread may hold, and no device; nor does it collect the parent's garbage, some of which may
+    lie on one.
 
     Args:
         call: Also a closure; one child works off every n-th item.
@@ -73,6 +75,7 @@ def _fork(call: Callable[[Item], Value], items: Sequence[Item], others: Sequence
         theirs.close()
         return pid, ours
     try:
+        gc.freeze()
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
         if hasattr(_LIBC, "prctl"):
