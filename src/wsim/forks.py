@@ -28,8 +28,8 @@ def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: 
 
     A process whose own parent may have no children by `multiprocessing` (a daemon) has these all the same. They live no
     longer than the thread that asks, nor than the iterator. A child has only the thread that forked it, so `call` is to
-    need no lock that another thread may hold, and no device; nor does it collect the parent's garbage, some of which may
-    lie on one.
+    need no lock that another thread may hold, and no device; nor does it collect its parent's garbage, some of which
+    may lie on one.
 
     Args:
         call: Also a closure; one child works off every n-th item.
