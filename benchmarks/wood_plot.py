@@ -49,11 +49,11 @@ def read(table: Path) -> Blocks:
     """What a sweep's table.csv says of candidates with a density and a level."""
     with table.open(newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["density"] and row["status"] in ("accepted", "rejected")]
-    value = next(name for name in rows[0] if name.startswith("value: "))
+    value, margin = (next(name for name in rows[0] if name.startswith(start)) for start in ("value: ", "margin: "))
     rows = [row for row in rows if row[value]]
-    numbers = np.array([[float(row[name]) for name in ("density", "level", value)] for row in rows])
-    floats = np.array([row["status"] == "accepted" for row in rows])
-    return Blocks(numbers[:, 0], numbers[:, 1], numbers[:, 2], floats)
+    numbers = np.array([[float(row[name]) for name in ("density", "level", value, margin)] for row in rows])
+    density, level, gap, over = numbers.T
+    return Blocks(density, level, gap, over > 0.0)  # a block may float and be rejected: the plan has one density
 
 
 def say(blocks: Blocks, spacing: float) -> None:
@@ -88,7 +88,7 @@ def draw(blocks: Blocks, spacing: float, path: Path) -> None:
         plane.scatter(blocks.level[these] * 1e3, blocks.density[these], color=color, label=label, zorder=3, **look)
         gaps.scatter(blocks.theory[these] / spacing, blocks.gap[these] / spacing, color=color, zorder=3, **look)
     plane.set(xlabel="level of the water before the block [mm]", ylabel="density [kg/m³]", ylim=(240, 1010))
-    plane.legend(fontsize=7, loc="upper left")
+    plane.legend(fontsize=7, loc="upper left", markerscale=2.0)
     low, high = blocks.theory.min() / spacing, blocks.theory.max() / spacing
     gaps.plot([low, 0.0, high], [0.0, 0.0, high], color="#222", linewidth=0.8)
     gaps.axvspan(0.0, support(spacing) / spacing, color="#ddd")
