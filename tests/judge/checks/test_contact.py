@@ -173,6 +173,30 @@ def test_rest_sliding_and_bounces_that_die_away_are_no_tremble(sound):
     assert only(ask(CheckJitter(), sound())).passed
 
 
+@pytest.mark.parametrize("rate", [0.5, 2.0, 4.0, 6.0])
+@pytest.mark.parametrize("speed", [0.02, 0.3])
+def test_a_swing_of_many_frames_is_no_tremble(rate, speed):
+    """A marble in a gutter of 7 mm swings six times a second, ten frames each."""
+    right = resting(2.0)
+    t = right.time
+    phase = 2.0 * np.pi * rate * t
+    reach = speed / (2.0 * np.pi * rate)
+    swung = edited(right, "body_q", (slice(None), 0, 0), reach * np.sin(phase))
+    swung = edited(swung, "body_qd", (slice(None), 0, 0), speed * np.cos(phase))
+    assert only(ask(CheckJitter(), swung)).passed
+    flips = 0.05 * (-1.0) ** np.arange(len(t))
+    shaken = edited(swung, "body_qd", (slice(None), 0, 0), speed * np.cos(phase) + flips)
+    assert not only(ask(CheckJitter(), shaken)).passed
+
+
+def test_hits_once_in_a_while_are_no_tremble():
+    """In each quarter of the window one frame is hit: the second order's median does not see it."""
+    right = resting(6.0)
+    hit = np.zeros(len(right.time))
+    hit[7::15] = 0.2
+    assert only(ask(CheckJitter(), edited(right, "body_qd", (slice(None), 0, 2), hit))).passed
+
+
 def bowled(share=1.0, speed=8.0, spin=0.0):
     """A ball that slides on the ground with a share of the friction that it should have, and is turned by it."""
     t = times(0.5)
