@@ -57,19 +57,19 @@ class Friction(Tamper):
     factor: float
 
     def prepare(self, simulation: Any) -> None:
-        """Scale every geom's friction."""
-        simulation.rigid.solver.mj_model.geom_friction[:, 0] *= self.factor
+        """Scale the sliding friction of every pair."""
+        simulation.rigid.solver._law_c.law[..., 0] *= self.factor
 
 
 @dataclass
 class SoftContacts(Tamper):
     """Contacts are so soft that bodies sink into each other."""
 
-    seconds: float  # time constant of a contact's spring
+    impedance: float  # of 1, where contacts let nothing in
 
     def prepare(self, simulation: Any) -> None:
-        """Set MuJoCo's contact springs."""
-        simulation.rigid.solver.mj_model.geom_solref[:, 0] = self.seconds
+        """Let contacts give way: a body at rest is g h times their settling time deep, (1 - d) / d times."""
+        simulation.rigid.solver.mj_model.geom_solimp[:, :2] = self.impedance
 
 
 @dataclass

@@ -213,7 +213,7 @@ OF_MOTION = (
     _sunk("ramp roll", 2, "rubber_ball", 0.02),
     Fault(
         "sunk in", "drop", 3, "soft contacts in the solver", by.height("ice_cube"), 0.01, "m",
-        tamper=solver.SoftContacts(1.0),
+        tamper=solver.SoftContacts(0.0025),
     ),
     _frozen("throw", 3, "steel_ball", 0.4, 0.5, 0.5),
     _frozen("ball on table", 0, "copper_ball", 0.2, 0.3, 0.1),
