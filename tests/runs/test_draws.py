@@ -132,6 +132,17 @@ def test_what_cannot_be_set_is_said_in_a_line(tmp_path: Path, name: str, value: 
     assert describe(path) == before
 
 
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [("crate.mass", "/World/crate.mass x"), ("tank.level", "water.level"), ("ball.pose.x", "/World/ball.pose.x")],
+)
+def test_two_names_of_one_number_are_refused(tmp_path: Path, one: str, other: str) -> None:
+    before, _, path = drawn(tmp_path, yard)
+    with pytest.raises(UserError, match="is the same number; give it once"):
+        apply(path, {one: 0.3, other: 0.31})
+    assert describe(path) == before
+
+
 def batch(folder: Path, build: Build, name: str, values: list[float]) -> np.ndarray:
     """One batch of worlds, one for each value of a number: (world, frame, body, 7)."""
     stages = []

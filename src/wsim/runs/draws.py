@@ -18,7 +18,7 @@ from wsim.scene.authoring import LOOKS, set_extent, set_pose
 from wsim.scene.contact import within
 from wsim.scene.describe import describe
 from wsim.scene.validate import suggestion
-from wsim.scene.world import Body, Static, World
+from wsim.scene.world import Body, Fluid, Static, World
 
 MOST_FRICTION = 10.0  # as `scene.material` has it
 TIMES = " x"  # ends the name of a number that multiplies what the stage states
@@ -40,9 +40,15 @@ def apply(path: Path, draws: Mapping[str, float]) -> None:
         return
     stage = Usd.Stage.Open(str(path))
     world = describe(stage)
+    drawn: dict[tuple[str, str], str] = {}
     for name, value in draws.items():
         target, _, what = name.partition(".")
         kind, times = what.removesuffix(TIMES), what.endswith(TIMES)
+        told = f"{target}.{kind.partition('.')[0]}"
+        prim = (_fluid if kind == "level" else _solid)(world, target, told).prim
+        if (prim, kind) in drawn:
+            raise UserError(f"{told}: {drawn[prim, kind]} is the same number; give it once")
+        drawn[prim, kind] = told
         if kind == "mass":
             _set_mass(stage, world, target, value, times)
         elif kind == "friction":
@@ -118,11 +124,7 @@ def _with_friction(stage: Usd.Stage, path: str, prim: Usd.Prim, friction: float)
 def _set_level(stage: Usd.Stage, world: World, target: str, value: float, times: bool) -> None:
     """Of a fluid, or of the one in a tank: its depth, above a bottom that stays where it is."""
     what = f"{target}.level"
-    by_name = [fluid for fluid in world.fluids if target in (_name(fluid.prim), _name(fluid.container or ""))]
-    if len(by_name) != 1:
-        known = ", ".join(_name(fluid.prim) for fluid in world.fluids) or "no fluid"
-        raise UserError(f"{what}: {target} names {len(by_name) or 'no'} fluids; the world has {known}")
-    fluid = by_name[0]
+    fluid = _fluid(world, target, what)
     level = value * fluid.size[2] if times else value
     if level < fluid.spacing:
         raise UserError(f"{what} = {level:g} m is less than a particle ({fluid.spacing:g} m); give a larger one")
@@ -193,6 +195,15 @@ def _solid(world: World, target: str, what: str) -> Body | Static:
     if found:
         raise UserError(f"{what}: {target} names {len(found)} objects; give one of {', '.join(s.prim for s in found)}")
     raise UserError(f"{what}: the world has no {target!r}; {suggestion(target, [_name(s.prim) for s in solids])}")
+
+
+def _fluid(world: World, target: str, what: str) -> Fluid:
+    """The fluid of a name, or the one in a tank of that name."""
+    found = [fluid for fluid in world.fluids if target in (_name(fluid.prim), _name(fluid.container or ""))]
+    if len(found) == 1:
+        return found[0]
+    known = ", ".join(_name(fluid.prim) for fluid in world.fluids) or "no fluid"
+    raise UserError(f"{what}: {target} names {len(found) or 'no'} fluids; the world has {known}")
 
 
 def _name(prim: str) -> str:

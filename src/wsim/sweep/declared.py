@@ -75,15 +75,16 @@ def check_draws(program: Path, draws: Sequence[Draw], isolation: str = "auto") -
     Raises:
         UserError: Naming what the world lacks, or what cannot be changed in it.
     """
+    ends = [{draw.name: value} for draw in draws for value in (draw.low, draw.high)]
+    together = {draw.name: draw.low for draw in draws}  # two names may be of one number
     with _built(program, isolation) as stage:
-        for draw in draws:
-            for value in (draw.low, draw.high):
-                tried = stage.with_name("tried.usda")
-                shutil.copyfile(stage, tried)
-                try:
-                    apply(tried, {draw.name: value})
-                except UserError as error:
-                    raise UserError(f"--randomise {error}") from error
+        for values in (*ends, together):
+            tried = stage.with_name("tried.usda")
+            shutil.copyfile(stage, tried)
+            try:
+                apply(tried, values)
+            except UserError as error:
+                raise UserError(f"--randomise {error}") from error
 
 
 def check(name: str, values: Sequence[float], known: dict[str, Parameter], where: str) -> None:
