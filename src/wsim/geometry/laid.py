@@ -50,15 +50,16 @@ def _touched(curve: _Curve, links: int) -> Array:
     one, each to where it takes most off the sum of (share - mean share)^2 of all links, which makes that the least
     (Fox, Operations Research 14, 1966).
     """
+    middles: Array = np.arange(links, dtype=np.float64) + 0.5
     bends = curve.bends(curve.length / links)
     if not 0 < len(bends) <= links:
-        return curve.length / links * (np.arange(links) + 0.5)
+        return curve.length / links * middles
     where = np.array([0.0, *bends, curve.length])
     counts = np.ones(len(bends) + 1)
     counts[[0, -1]] = 0.5
     for _ in range(links - len(bends)):
         counts[np.argmax(np.diff(where) ** 2 / (counts * (counts + 1.0)))] += 1.0
-    return np.interp(np.arange(links) + 0.5, [0.0, *np.cumsum(counts)], where)
+    return np.interp(middles, [0.0, *np.cumsum(counts)], where)
 
 
 def _meet(one: Array, way: Array, other: Array, onward: Array, apart: float) -> Array | None:
