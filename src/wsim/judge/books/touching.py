@@ -235,7 +235,7 @@ class Touching:
         """Further points of what is flat among contacts, each at one of several poses; and at which these are."""
         if not self._flat:
             return NONE, NONE.one
-        places = self._placed(pairs, poses[at])
+        places = self._placed(pairs, poses, at[:, None])
         further = flats(pairs, normal, at, [shape for _, _, shape in self.shapes], places)
         shapes = pairs[further.of]
         gap = further.gap - self._margin[shapes].sum(axis=1)
@@ -264,13 +264,13 @@ class Touching:
                 found.append(Contacts(*rows, np.tile([m, k], (count, 1)), point, normal, near.gap))
         return together(found)
 
-    def _placed(self, shapes: Rows, poses: Floats) -> Floats:
-        """Where shapes are in the world, (..., 7), each at poses of its own (..., B, 7) or at the same (B, 7)."""
+    def _placed(self, shapes: Rows, poses: Floats, at: Rows | None = None) -> Floats:
+        """Where shapes (...) are in the world, (..., 7), at poses (B, 7), or each `at` one of several (K, B, 7)."""
         own, rows = self._own[shapes], self._row_of_shape[shapes]
         if not poses.shape[-2]:
             return own
         body = np.maximum(rows, 0)
-        q = poses[body] if poses.ndim == 2 else poses[np.arange(len(poses))[:, None], body]
+        q = poses[body] if at is None else poses[at, body]
         place = q[..., :3] + rotate(q[..., 3:], own[..., :3])
         moved = np.concatenate([place, multiply(q[..., 3:], own[..., 3:])], axis=-1)
         return np.where((rows >= 0)[..., None], moved, own)
