@@ -216,6 +216,19 @@ class Touching:
         shapes = self._shape_of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
+    def deepest(self, poses: Floats) -> Floats:
+        """How deep shapes are in each other at most at each of several poses (K, B, 7), meshes aside, (K,) [m]."""
+        every = np.zeros(len(poses), dtype=np.intp)
+        shapes, _, _, gap, at = self._found(poses, np.zeros(len(poses)), every)
+        found, meet = np.zeros(len(poses)), self._meet[shapes[:, 0], shapes[:, 1]]
+        np.maximum.at(found, at[meet], -gap[meet])
+        return found
+
+    @property
+    def triangles(self) -> bool:
+        """Whether any shape is a mesh."""
+        return bool(self._meshes)
+
     @cached_property
     def _meet(self) -> NDArray[np.bool_]:
         """Whether two shapes may touch at all: not where a joint ties their objects, or they are made to pass."""
