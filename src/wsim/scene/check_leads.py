@@ -12,16 +12,15 @@ from itertools import combinations, pairwise
 from typing import NamedTuple
 
 import numpy as np
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from wsim.geometry.paths import Curve, exponential
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.scene.articulation import body_above, is_kinematic, joint_ends, joints_of, may_break
 from wsim.scene.spanning import WORLD_END
-from wsim.scene.usd_mass import mass_of
+from wsim.scene.usd_mass import mass_at
 from wsim.scene.usd_motion import curve_of, path_of
 from wsim.scene.usd_prims import rigid_frame, turn_of
-from wsim.scene.usd_shapes import read_shape
 
 Array = np.ndarray
 SHORTEST_PARTING = 1e-4  # by which what leads a piece must part to be refused [m]
@@ -193,8 +192,5 @@ class _Way:
 
 def _center(prim: Usd.Prim) -> tuple[float, float, float]:
     """A body's centre of mass, in its axes [m]."""
-    base = rigid_frame(prim)
-    parts = (part for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()) if part.IsA(UsdGeom.Gprim))
-    shapes = [shape for part in parts if (shape := read_shape(part, base)) is not None]
-    x, y, z = mass_of(prim, shapes).com
+    x, y, z = mass_at(prim).com
     return float(x), float(y), float(z)
