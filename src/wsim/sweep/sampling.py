@@ -45,12 +45,15 @@ def sample(axes: Sequence[Axis], method: Method, count: int, seed: int = 0) -> l
         listed = math.prod(len(axis.values) or 1 for axis in axes)
         # A hair is added so that the cube root of 27 is 3.
         along = max(2, math.floor((count / listed) ** (1.0 / free) + 1e-9)) if free else 1
-        columns = [axis.spread(along) for axis in axes]
-        points = np.array(list(itertools.product(*columns)))
-    else:
-        shares = _shares(method, len(axes), count, seed)
-        points = np.stack([axis.at(column) for axis, column in zip(axes, shares.T, strict=True)], axis=1)
-    return [dict(zip((axis.name for axis in axes), map(float, point), strict=True)) for point in points]
+        return points_at(axes, np.array(list(itertools.product(*(axis.shares(along) for axis in axes)))))
+    return points_at(axes, _shares(method, len(axes), count, seed))
+
+
+def points_at(axes: Sequence[Axis], shares: np.ndarray) -> list[Point]:
+    """The points at shares of each axis: (points, axes). What goes with an axis has the same share."""
+    columns = {each.name: each.at(shares[:, k]) for k, axis in enumerate(axes) for each in axis.parameters}
+    rows = np.stack(list(columns.values()), axis=1).tolist()
+    return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
 def _shares(method: Method, dimensions: int, count: int, seed: int) -> np.ndarray:
