@@ -42,7 +42,7 @@ SLIPPERY = """
 POST = """\
 --- a/slide.py
 +++ b/slide.py
-@@ -5,4 +5,5 @@
+@@ -5,3 +5,4 @@
      scene.ground(friction=1.0)
 +    scene.box("post", size=(0.1, 0.1, 1.0), position=(0, 5, 0.5), static=True)
      scene.box("crate", size=(0.4, 0.4, 0.05), position=(0, 0, 0.025), velocity=(speed, 0, 0), density=500.0,

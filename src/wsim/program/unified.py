@@ -15,7 +15,7 @@ def edits_of(text: str) -> list[Edit]:
     Raises:
         PatchError: If it holds neither, is cut off, or is of more files than one.
     """
-    lines = text.replace("\r\n", "\n").split("\n")
+    lines = text.replace("\r\n", "\n").removesuffix("\n").split("\n")
     if not any(_HUNK.match(line) for line in lines) or any(line.startswith("<<<<<") for line in lines):
         return parse(text)
     found: list[Edit] = []
