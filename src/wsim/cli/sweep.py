@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import shlex
 from pathlib import Path
 from typing import get_args
 
@@ -45,6 +47,8 @@ from wsim.sweep.run import sweep as run_sweep
 from wsim.sweep.sampling import Method
 from wsim.sweep.spec import Spec
 from wsim.sweep.store import Store
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 
 
 def sweep(
@@ -109,16 +113,22 @@ def sweep(
 
 
 def _through(folder: SweepFolder, workers: int, ray: str, kept: Store | None, full: bool) -> None:
-    """Run what is left; Ctrl-C keeps what is done, and says how to go on."""
-    if kept:
-        kept.rest(folder)
-    try:
-        outcomes = _run(folder, workers, ray, kept, full)
-    except KeyboardInterrupt:
+    """Run what is left; Ctrl-C and a full disk keep what is done, and it is said how to go on."""
+    go_on = f"wsim sweep --resume {shlex.quote(str(folder.path))}"
+    with folder.taken():
         if kept:
             kept.rest(folder)
-        console.print(f"stopped; what is done is kept: wsim sweep --resume {folder.path}", soft_wrap=True)
-        raise typer.Exit(130) from None
+        try:
+            outcomes = _run(folder, workers, ray, kept, full)
+        except KeyboardInterrupt:
+            console.print(f"stopped; what is done is kept: {go_on}", soft_wrap=True)
+            if kept:
+                kept.rest(folder)
+            raise typer.Exit(130) from None
+        except OSError as error:
+            if error.errno not in NO_ROOM:
+                raise
+            raise UserError(f"{folder.path} takes no more: {error.strerror}; what it has is kept: {go_on}") from error
     raise typer.Exit(0 if any(outcome.status == "accepted" for outcome in outcomes) else 1)
 
 

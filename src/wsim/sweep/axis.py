@@ -44,6 +44,8 @@ class Axis(BaseModel):
     def _is_a_range(self) -> Axis:
         if not self.values and not self.low < self.high:
             raise ValueError(f"{self.name}: low {self.low:g} is not below high {self.high:g}")
+        if not math.isfinite(self.high - self.low):
+            raise ValueError(f"{self.name}: from {self.low:g} to {self.high:g} is further than numbers go")
         if self.scale == "log" and self.low <= 0.0:
             raise ValueError(f"{self.name}: low {self.low:g} has no logarithm; it must be above 0")
         return self

@@ -60,6 +60,8 @@ class Draw(BaseModel):
 
     @model_validator(mode="after")
     def _is_a_range(self) -> Draw:
+        if not math.isfinite(self.high - self.low):
+            raise ValueError(f"from {self.low:g} to {self.high:g} is further than numbers go")
         if not self.low < self.high:
             raise ValueError(f"low {self.low:g} is not below high {self.high:g}")
         low, high = (f"{end} {value:g}" for end, value in (("low", self.low), ("high", self.high)))

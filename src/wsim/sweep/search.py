@@ -45,7 +45,7 @@ class Search:
             FIRST_STEP,
             {
                 "bounds": [0.0, 1.0],
-                "seed": seed + 1,  # its 0 draws a seed from the clock
+                "seed": (seed + 1) % 2**32 or 1,  # its 0 draws a seed from the clock, and it has no greater one
                 "popsize": max(batch, 4 + math.floor(3 * math.log(dimensions))),
                 "tolx": FINE,
                 "tolfun": 0.0,
