@@ -8,6 +8,7 @@ import numpy as np
 
 from wsim.progress import Progress, silent
 from wsim.recording.trajectories import Trajectories
+from wsim.sim.body_tracks import BodyTracks
 from wsim.sim.fluid_tracks import FluidTracks
 from wsim.sim.ledger_tracks import LedgerTracks
 
@@ -30,11 +31,8 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
     frames = round(world.duration * world.frame_rate) + 1
     worlds, bodies = max(1, simulation.model.world_count), len(world.bodies)
     time = np.zeros(frames)
-    q = np.zeros((worlds, frames, bodies, 7), dtype=np.float32)
-    qd = np.zeros((worlds, frames, bodies, 6), dtype=np.float32)
-    force = np.zeros((worlds, frames, bodies, 3), dtype=np.float32)
-    deepest = np.zeros((worlds, frames))
     scalars: dict[str, np.ndarray] = {}
+    moved = BodyTracks(simulation, rigid, frames) if rigid else None
     wet = FluidTracks(simulation, simulation.fluid, time) if simulation.fluid else None
     # What drives alone give is worked out by their law.
     asked = simulation.fluid is not None or simulation.controlled
@@ -43,18 +41,16 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
         if frame:
             simulation.advance_frame()
         time[frame] = simulation.time
-        if rigid:
-            pushes, deepest[:, frame] = rigid.contacts()
+        if rigid and moved:
+            moved.take(frame)
             for name, values in rigid.breakage().items():
                 scalars.setdefault(name, np.zeros((worlds, frames)))[:, frame] = values
-            q[:, frame] = simulation.state.body_q.numpy().reshape(worlds, -1, 7)[:, built.bodies]
-            qd[:, frame] = simulation.state.body_qd.numpy().reshape(worlds, -1, 6)[:, built.bodies]
-            force[:, frame] = pushes[:, built.bodies]
         if wet:
             wet.take(frame)
         if pushed:
             pushed.take(frame)
         progress("simulating", frame, frames - 1)
+    q, qd, force, deepest = moved.read() if moved else _nothing(worlds, frames)
     mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
     problems = _problems(simulation, q, qd)
     return Trajectories(
@@ -73,6 +69,12 @@ def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories
         fluids=wet.tracks if wet else (),
         own_metadata=[{"sph": simulation.method_of_fluid(w)} for w in range(worlds)] if wet else (),
     )
+
+
+def _nothing(worlds: int, frames: int) -> tuple[np.ndarray, ...]:
+    """The tracks of worlds without bodies."""
+    of_bodies = (np.zeros((worlds, frames, 0, width), dtype=np.float32) for width in (7, 6, 3))
+    return *of_bodies, np.zeros((worlds, frames))
 
 
 def _problems(simulation: Simulation, q: np.ndarray, qd: np.ndarray) -> list[list[str]]:
