@@ -23,7 +23,7 @@ import platform
 import pstats
 import tempfile
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -39,11 +39,12 @@ from wsim.plan.schema import Plan
 from wsim.plan.store import load
 from wsim.recording.trajectories import Trajectories
 from wsim.sim import Simulation
-from wsim.sim.collect import collect
+from wsim.sim.collect import follow
 from wsim.sweep import Axis, Spec
 from wsim.sweep.batch import batches
 from wsim.sweep.candidate import Candidate
 from wsim.sweep.sampling import sample
+from wsim.sweep.screen import rejected
 from wsim.sweep.work import Shard, build
 
 PROGRAM = """
@@ -62,6 +63,24 @@ def build(scene):
                  density=density, restitution=scene.param("bounce", 0.3, low=0.0, high=0.8))
 """
 AXES = ("ground=0.2:0.9", "edge=0.1:0.3", "density=200:1500", "speed=0.2:2", "height=0.3:2", "bounce=0:0.6")
+# What is asked with --ask: about half of the candidates slide that far.
+THINGS = {**{f"stacked_{k}": "box" for k in range(3)}, **{f"sliding_{k}": "box" for k in range(2)}, "ball": "sphere"}
+ASKED = {"op": "gone_between", "object": "sliding_0", "axis": "y", "low": 0.0, "high": 0.1}
+PLAN: dict[str, Any] = {
+    "title": "slides",
+    "prompt": "A box slides beside a stack and a ball.",
+    "objects": [
+        {"name": "ground", "role": "terrain", "state": "static",
+         "construction": {"kind": "proxy", "primitive": "ground"}},
+        *(
+            {"name": name, "role": "rigid_body", "state": "dynamic", "material": {"name": "wood", "density": 600.0},
+             "construction": {"kind": "proxy", "primitive": kind, "size": [0.2] * (3 if kind == "box" else 1)}}
+            for name, kind in THINGS.items()
+        ),
+    ],
+    "objectives": [{"kind": "formula", "object": "sliding_0", "formula": ASKED}],
+    "simulation": {"duration": 1.0, "frame_rate": 60.0},
+}  # fmt: skip
 WARM = 2  # candidates of the batch that compiles the kernels
 SHOWN = 16  # checks that take longest
 Value = TypeVar("Value")
@@ -74,7 +93,7 @@ def cpu_seconds() -> float:
 
 def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
     """Every phase in seconds, that passed and of the CPU; and the digests."""
-    plan = load(args.plan) if args.plan else None
+    plan = load(args.plan) if args.plan else Plan.model_validate(PLAN) if args.ask else None
     axes = [Axis.parse(text) for text in args.vary]
     points = sample(axes, "sobol", args.count, 0)
     candidates = tuple(Candidate(number=k, params=point) for k, point in enumerate(points))
@@ -83,6 +102,7 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
     spec = Spec(axes=axes, device=args.device, worlds=max(2, args.together))
     seconds: dict[str, list[float]] = {}
     kept: list[int] = []
+    counts: Counter[str] = Counter()
     by_check: defaultdict[str, float] = defaultdict(float)
 
     def timed(name: str, call: Callable[..., Value], *given: Any, **named: Any) -> Value:
@@ -102,15 +122,21 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
             worlds = [member.world for member in batch]
             stages = [member.iteration.stage for member in batch]
             simulation = timed("set up", Simulation, stages, device=args.device, worlds=worlds, processes=args.cores)
-            found = timed("simulated", collect, simulation)
+            tracks = timed("simulated", follow, simulation)
+            early = timed("screened", rejected, tracks, plan)
+            left = [w for w in range(tracks.count) if w not in early]
+            counts["rejected by the screen"] += len(early)
+            found = timed("read", tracks.read, left)
             assert found.penetration is not None  # what is collected has it
             arrays = (found.body_q, found.body_qd, found.contact_force, found.penetration)
             kept.append(sum(int(array.nbytes) for array in arrays))
             for array in arrays:
                 moved.update(array.tobytes())
-            for verdict in timed("judged", verdicts_of, found, plan, args.cores):
+            verdicts = timed("judged", verdicts_of, found, plan, args.cores) if left else []
+            for verdict in [*early.values(), *verdicts]:
                 said.update(verdict.model_dump_json().encode())
-            if args.checks and len(some) > WARM:
+                counts[verdict.status] += 1
+            if args.checks and left and len(some) > WARM:
                 for name, busy in checks_of(found, plan).items():
                     by_check[name] += busy
         return moved.hexdigest()[:16], said.hexdigest()[:16]
@@ -118,6 +144,7 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
     run(candidates[:WARM], folder / "warm")
     seconds.clear()
     kept.clear()
+    counts.clear()
     profile = cProfile.Profile()
     if args.profile:
         profile.enable()
@@ -126,7 +153,13 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
         profile.disable()
         profile.dump_stats(args.profile)
         pstats.Stats(profile).sort_stats("cumulative").print_stats(60)
-    said = {"trajectories": digests[0], "verdicts": digests[1], "bytes": sum(kept), "checks": dict(by_check)}
+    said: dict[str, Any] = {
+        "trajectories": digests[0],
+        "verdicts": digests[1],
+        "bytes": sum(kept),
+        "checks": dict(by_check),
+    }
+    said["counts"] = dict(counts)
     return {"seconds": seconds, **said}
 
 
@@ -159,6 +192,7 @@ def main() -> None:
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), help="that are kept busy")
     parser.add_argument("--profile", help="write a profile of the parent process here, and print its head")
+    parser.add_argument("--ask", action="store_true", help="hold the default program to an objective")
     parser.add_argument("--checks", action="store_true", help="print what judging takes, check by check")
     parser.add_argument("--json", type=Path)
     args = parser.parse_args()
@@ -180,6 +214,7 @@ def main() -> None:
     )
     for name, busy in sorted(found["checks"].items(), key=lambda each: -each[1])[:SHOWN]:
         print(f"  {name:24}  {1e3 * busy / args.count:8.3f} ms a candidate  {busy / simulating:8.2%} of simulating")
+    print(", ".join(f"{name} {count}" for name, count in found["counts"].items()))
     print(f"trajectories {found['trajectories']}, verdicts {found['verdicts']}")
     if args.json:
         args.json.parent.mkdir(parents=True, exist_ok=True)

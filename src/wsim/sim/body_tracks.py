@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,6 +70,22 @@ class BodyTracks:
             if before is not None:
                 wp.synchronize_event(before)
 
-    def read(self) -> tuple[Array, Array, Array, Array]:
-        """Poses (W, T, B, 7), velocities (W, T, B, 6), forces (W, T, B, 3) and deepest contacts (W, T)."""
-        return self.q.numpy(), self.qd.numpy(), self.force.numpy(), self.deepest.numpy()
+    def read(self, worlds: Sequence[int]) -> tuple[Array, Array, Array, Array]:
+        """Of some worlds poses (N, T, B, 7), velocities (N, T, B, 6), forces (N, T, B, 3), deepest contacts (N, T)."""
+        q, qd, force = (self._chosen(array, worlds) for array in (self.q, self.qd, self.force))
+        return q, qd, force, self._chosen(self.deepest, worlds)
+
+    def read_first(self) -> tuple[Array, Array, Array]:
+        """Poses, velocities and forces of all worlds at the first frame alone, with an axis of one frame."""
+        q, qd, force = (array[:, :1].contiguous().numpy() for array in (self.q, self.qd, self.force))
+        return q, qd, force
+
+    def _chosen(self, array: Any, worlds: Sequence[int]) -> Array:
+        if list(worlds) == list(range(array.shape[0])):
+            found: Array = array.numpy()
+            return found
+        if not len(worlds):
+            return self._chosen(array, [0])[:0]
+        which = wp.array(list(worlds), dtype=int, device=self._device)
+        some: Array = wp.indexedarray(array, [which, *[None] * (array.ndim - 1)]).contiguous().numpy()
+        return some
