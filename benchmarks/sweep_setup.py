@@ -45,7 +45,7 @@ from wsim.sweep.batch import batches
 from wsim.sweep.candidate import Candidate
 from wsim.sweep.sampling import sample
 from wsim.sweep.screen import rejected
-from wsim.sweep.work import Shard, build
+from wsim.sweep.work import Shard, as_varied, build
 
 PROGRAM = """
 def build(scene):
@@ -135,7 +135,7 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
             verdicts = timed("judged", verdicts_of, found, plan, args.cores) if left else []
             for verdict in [*early.values(), *verdicts]:
                 said.update(verdict.model_dump_json().encode())
-                counts[verdict.status] += 1
+                counts[as_varied(verdict).status] += 1
             if args.checks and left and len(some) > WARM:
                 for name, busy in checks_of(found, plan).items():
                     by_check[name] += busy

@@ -76,16 +76,14 @@ def plan_of(*formulas, seconds=(FRAMES - 1) / RATE, rate=RATE):
     )  # fmt: skip
 
 
-def told_by(worlds, plan):
+def told_by(worlds, plan, device="cpu"):
     starts = replace(
         worlds, time=worlds.time[:1], body_q=worlds.body_q[:, :1], body_qd=worlds.body_qd[:, :1],
         contact_force=worlds.contact_force[:, :1],
     )  # fmt: skip
     asked = screen.watched(plan, starts, worlds.time)
-    q, qd = (
-        wp.array(worlds.body_q, dtype=wp.transform, device="cpu"),
-        wp.array(worlds.body_qd, dtype=wp.spatial_vector, device="cpu"),
-    )
+    q = wp.array(worlds.body_q, dtype=wp.transform, device=device)
+    qd = wp.array(worlds.body_qd, dtype=wp.spatial_vector, device=device)
     return asked, screen.reduce(asked, q, qd, worlds.world) if asked else None
 
 
@@ -139,6 +137,20 @@ def test_margins_are_the_languages(formula, seed, varied):
         assert told.margin[0, w] == pytest.approx(float(outcome.robustness[0]), rel=1e-9, abs=1e-6)
         assert worlds.time[told.moment[0, w]] == pytest.approx(float(outcome.moment[0]))
         assert told.margin[0, w] == pytest.approx(float(outcome.margin[0]), rel=1e-9, abs=1e-6)
+
+
+@pytest.mark.cuda
+def test_a_gpu_says_the_same():
+    kinds = [
+        say.settles("ball"), say.speed_between("box", 0.5, 4.0), say.reaches("box", (0.0, 0.0, 0.5), 0.4),
+        say.stays_within("box", "ball", 2.0), say.crosses("ball", "z", 0.2), say.moves("box", 0.3),
+        say.gone_between("ball", "y", -0.5, 0.5), say.upright("box", 20.0), say.spin_between("box", "x", -60.0, 90.0),
+    ]  # fmt: skip
+    asked = [*kinds, *(Eventually(of=~kind) for kind in kinds), *(Mean(of=kind) for kind in kinds)]
+    for varied in (False, True):
+        here, there = (told_by(moving(3, varied), plan_of(*asked), device)[1] for device in ("cpu", "cuda:0"))
+        assert there.margin == pytest.approx(here.margin, rel=1e-9, abs=1e-6)
+        assert np.array_equal(there.moment, here.moment)
 
 
 FAULTS = ("none", "hovers", "is not a number", "leaps", "spins")
