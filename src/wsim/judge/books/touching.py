@@ -181,8 +181,9 @@ class Touching:
         which = np.zeros(len(poses), dtype=np.intp) if worlds is None or len(self.worlds) == 1 else worlds
         shapes, place, normal, gap, at = self._found(poses, reach, which)
         if about is not None:  # before further points are looked for
-            chosen = np.isin(self._row_of_shape[shapes], about).any(axis=1)
-            shapes, place, normal, gap, at = (each[chosen] for each in (shapes, place, normal, gap, at))
+            chosen = np.flatnonzero(np.isin(self._row_of_shape[shapes], about).any(axis=1))
+            shapes, at = shapes[chosen], at[chosen]
+            place, normal, gap = place[chosen], normal[chosen], gap[chosen]
         one, two = self._row_of_shape[shapes].T
         contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
@@ -193,7 +194,7 @@ class Touching:
             order = np.argsort(at, kind="stable")  # what is of one pose stays together
             contacts, at = together([contacts, *others, further.only(near)]).only(order), at[order]
             if about is not None and self._meshes:
-                chosen = np.isin(np.stack([contacts.one, contacts.two], axis=1), about).any(axis=1)
+                chosen = np.flatnonzero(np.isin(contacts.one, about) | np.isin(contacts.two, about))
                 contacts, at = contacts.only(chosen), at[chosen]
         by = rows[at] * poses.shape[1]
         one, two = (np.where(row >= 0, row + by, row) for row in (contacts.one, contacts.two))
