@@ -44,7 +44,7 @@ def lands(layers: int, drop: float, density: float, folder: Path) -> int:
     assert settings is not None
     fastest = compressed = 0.0
     out = []
-    for second in range(SECONDS):
+    for _ in range(SECONDS):
         for _ in range(50):
             simulation.advance_frame()
             place, speed = simulation.state.particle_q.numpy(), simulation.state.particle_qd.numpy()
