@@ -162,11 +162,13 @@ class Touching:
         item.add_geom(**fields)
         self.shapes.append((row, owner, shape))
 
-    def at(self, poses: Floats, reach: float) -> Contacts:
-        """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
-        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp))
+    def at(self, poses: Floats, reach: float, about: Sequence[int] | None = None) -> Contacts:
+        """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]; those of the bodies `about` alone."""
+        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp), about=about)
 
-    def of_many(self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None) -> Contacts:
+    def of_many(
+        self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None, about: Sequence[int] | None = None
+    ) -> Contacts:
         """Contacts at several poses.
 
         Args:
@@ -174,9 +176,14 @@ class Touching:
             reach: Of each pose, (K,) [m].
             rows: A body's row is that of these by B, (K,).
             worlds: Which of the joined worlds each is a pose of, (K,); None: all of the first.
+            about: Rows of bodies; contacts that none of them has are left out.
         """
         which = np.zeros(len(poses), dtype=np.intp) if worlds is None or len(self.worlds) == 1 else worlds
         shapes, place, normal, gap, at = self._found(poses, reach, which)
+        if about is not None:  # before further points are looked for
+            chosen = np.flatnonzero(np.isin(self._row_of_shape[shapes], about).any(axis=1))
+            shapes, at = shapes[chosen], at[chosen]
+            place, normal, gap = place[chosen], normal[chosen], gap[chosen]
         one, two = self._row_of_shape[shapes].T
         contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
@@ -186,6 +193,9 @@ class Touching:
             at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
             order = np.argsort(at, kind="stable")  # what is of one pose stays together
             contacts, at = together([contacts, *others, further.only(near)]).only(order), at[order]
+            if about is not None and self._meshes:
+                chosen = np.flatnonzero(np.isin(contacts.one, about) | np.isin(contacts.two, about))
+                contacts, at = contacts.only(chosen), at[chosen]
         by = rows[at] * poses.shape[1]
         one, two = (np.where(row >= 0, row + by, row) for row in (contacts.one, contacts.two))
         contacts = replace(contacts, one=one, two=two)
