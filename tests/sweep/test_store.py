@@ -93,14 +93,14 @@ def test_a_sweep_goes_on_elsewhere(folder: SweepFolder, url: str, tmp_path: Path
 
 
 def test_what_is_cut_off_while_it_is_fetched_is_no_folder_to_go_on_with(folder: SweepFolder, tmp_path: Path) -> None:
-    store, there = Store("bucket://sweeps/balls"), tmp_path / "there"
+    store, there = Store("memory://sweeps/balls"), tmp_path / "there"
     store.rest(folder)
-    MemoryFileSystem.pipe_file(Bucket(), "/sweeps/balls/" + "x" * 300, b"no file may be called so")
-    with pytest.raises(UserError, match=r"bucket://sweeps/balls cannot be fetched: .*File name too long"):
-        Store("bucket://sweeps/balls").fetch(there)
+    MemoryFileSystem().pipe_file("/sweeps/balls/" + "x" * 300, b"no file may be called so")
+    with pytest.raises(UserError, match=r"memory://sweeps/balls cannot be fetched: .*File name too long"):
+        Store("memory://sweeps/balls").fetch(there)
     assert not (there / "balls").exists()
-    Bucket().rm_file("/sweeps/balls/" + "x" * 300)
-    assert Store("bucket://sweeps/balls").fetch(there).spec == folder.spec
+    MemoryFileSystem().rm_file("/sweeps/balls/" + "x" * 300)
+    assert Store("memory://sweeps/balls").fetch(there).spec == folder.spec
     assert [each.name for each in there.iterdir()] == ["balls"]
 
 

@@ -82,8 +82,9 @@ def make(asked: Asked, spec: Spec, runs: Path) -> SweepFolder:
         )
         if spec.draws:
             check_draws(stages, spec.draws)
-        if spec.count > MOST:  # too few for the method is said here, too
-            raise UserError(f"{spec.count:,} candidates are more than {MOST:,}; ask for fewer --samples or --repeats")
+        if (most := (1 + max(spec.samples, len(spec.points))) * spec.each) > MOST:
+            raise UserError(f"{most:,} candidates are more than {MOST:,}; ask for fewer --samples or --repeats")
+        _ = spec.count  # too few for the method is said before there is a folder
         if spec.device == "auto":
             first = describe(next(iter(stages.values())))
             spec = spec.model_copy(update={"device": _device(spec, first)})
