@@ -7,9 +7,9 @@
 By default five boxes and a ball on the ground, whose sizes, masses, friction and speeds are drawn. A small batch of
 the same program is set up first, so that kernels are warm: what is measured is what each further batch takes. Beside
 the time that passes stands that of the CPU on all cores (what runs in sandboxes is not seen), which other jobs on
-the machine change less, and what share that is of what simulating took. The digests
-are of all trajectories and of all verdicts; two versions of wsim that do the same print the same. `--checks` tells
-which part of judging takes how long, of one process's CPU.
+the machine change less, and what share of simulating it is. The digests are of all
+trajectories and of all verdicts; two versions of wsim that do the same print the same. `--checks` tells which part of
+judging takes how long, of one process's CPU.
 """
 
 from __future__ import annotations
@@ -82,6 +82,7 @@ PLAN: dict[str, Any] = {
     "simulation": {"duration": 1.0, "frame_rate": 60.0},
 }  # fmt: skip
 WARM = 2  # candidates of the batch that compiles the kernels
+CLOCKS = ("time,", "CPU,")
 SHOWN = 16  # checks that take longest
 Value = TypeVar("Value")
 
@@ -180,6 +181,22 @@ def checks_of(worlds: Trajectories, plan: Plan | None) -> dict[str, float]:
     return taken
 
 
+def show(found: dict[str, Any]) -> None:
+    """Print the table."""
+    # A GPU simulates while the CPU waits; on a CPU other jobs change the time that passes more than its own.
+    clock, count = (0 if found["device"].startswith("cuda") else 1), found["count"]
+    print(f"phase          seconds   ms a candidate   CPU ms a candidate   {CLOCKS[clock]} of simulating")
+    simulating = found["seconds"]["simulated"][clock]
+    for name, (wall, busy) in found["seconds"].items():
+        each, own, share = 1e3 * wall / count, 1e3 * busy / count, (wall, busy)[clock] / simulating
+        print(f"{name:12}  {wall:8.2f}  {each:15.2f}  {own:19.2f}  {share:18.1%}")
+    print(f"arrays of bodies that were read: {found['bytes'] / count / 1e3:.1f} kB a candidate")
+    for name, busy in sorted(found["checks"].items(), key=lambda each: -each[1])[:SHOWN]:
+        print(f"  {name:24}  {1e3 * busy / count:8.3f} CPU ms a candidate")
+    print(", ".join(f"{name} {number}" for name, number in found["counts"].items()))
+    print(f"trajectories {found['trajectories']}, verdicts {found['verdicts']}")
+
+
 def main() -> None:
     """Measure, print the table, write it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -204,18 +221,7 @@ def main() -> None:
     print(
         f"{args.count} candidates, {args.device}, {found['cores']} cores, {platform.processor() or platform.machine()}"
     )
-    print("phase          seconds   ms a candidate   CPU ms a candidate   CPU, of simulating")
-    simulating = found["seconds"]["simulated"][1]
-    for name, (wall, busy) in found["seconds"].items():
-        each, own = 1e3 * wall / args.count, 1e3 * busy / args.count
-        print(f"{name:12}  {wall:8.2f}  {each:15.2f}  {own:19.2f}  {busy / simulating:18.1%}")
-    print(
-        f"arrays of bodies, on the device and then on the host: {found['bytes'] / args.count / 1e3:.1f} kB a candidate"
-    )
-    for name, busy in sorted(found["checks"].items(), key=lambda each: -each[1])[:SHOWN]:
-        print(f"  {name:24}  {1e3 * busy / args.count:8.3f} ms a candidate  {busy / simulating:8.2%} of simulating")
-    print(", ".join(f"{name} {count}" for name, count in found["counts"].items()))
-    print(f"trajectories {found['trajectories']}, verdicts {found['verdicts']}")
+    show(found)
     if args.json:
         args.json.parent.mkdir(parents=True, exist_ok=True)
         args.json.write_text(json.dumps(found, indent=2) + "\n")

@@ -178,6 +178,7 @@ def test_a_patch_that_does_not_fit_is_said_before_anything_is_run(files: Path, t
         (["--randomise", "post.friction=0.1:0.2"], r"--randomise for slide\.py: post\.friction: the world has no"),
         (["--vary", "speed=1:2", "--vary", "speed=1,2"], "--vary speed is given twice"),
         (["--vary", "speed=1:2", "--zip", "speed,friction"], "--zip speed,friction: 'friction' is not varied"),
+        (["--samples", "1000000", "--repeats", "10000"], "30,000,030,000 candidates are more than 10,000,000"),
         (["--samples", "0", "--vary", "speed=1:2"], "--samples 0 runs the programs as they stand alone"),
     ],
 )

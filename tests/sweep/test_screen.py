@@ -211,6 +211,7 @@ def test_what_the_device_cannot_tell_is_left_to_the_judge():
         Always(of=say.settles("box") | say.settles("ball")),
         say.finally_(say.settles("box"), 5.0),  # a window that is not covered
         say.upright("ball"),
+        say.stays_within("ground", (0.0, 0.0, 0.0), 1.0),
         say.settles("box") & say.touches("box", "ball"),
     )
     asked, _ = told_by(worlds, plan)

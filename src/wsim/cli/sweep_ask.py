@@ -20,7 +20,7 @@ from wsim.sweep.declared import Known, axes_of, built, check, check_draws, known
 from wsim.sweep.device import pick_device
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.sampling import read_points
-from wsim.sweep.spec import Spec
+from wsim.sweep.spec import MOST, Spec
 from wsim.sweep.variant import called, variants
 
 
@@ -82,7 +82,8 @@ def make(asked: Asked, spec: Spec, runs: Path) -> SweepFolder:
         )
         if spec.draws:
             check_draws(stages, spec.draws)
-        _ = spec.count  # too few for the method is said before there is a folder
+        if spec.count > MOST:  # too few for the method is said here, too
+            raise UserError(f"{spec.count:,} candidates are more than {MOST:,}; ask for fewer --samples or --repeats")
         if spec.device == "auto":
             first = describe(next(iter(stages.values())))
             spec = spec.model_copy(update={"device": _device(spec, first)})

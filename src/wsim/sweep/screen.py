@@ -246,7 +246,9 @@ def _watch(check: ObjectiveCheck, formula: Formula, starts: Starts, time: Floats
     if when is None or kind not in NUMBERS:
         return None
     asked, count = when.predicate, starts.count
-    numbers = starts.ask(lambda signals: NUMBERS[kind](asked, signals))
+    numbers = starts.ask(
+        lambda signals: NUMBERS[kind](asked, signals) if signals.moves(asked.object) else None  # type: ignore[attr-defined]
+    )
     if any(number is None for number in numbers):
         return None
     measures = starts.ask(lambda signals: MEASURERS[kind](asked, signals))

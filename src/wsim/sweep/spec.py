@@ -11,6 +11,7 @@ from wsim.sweep.candidate import Candidate
 from wsim.sweep.draw import Draw
 from wsim.sweep.sampling import Method, Point, sample
 
+MOST = 10_000_000  # candidates of a sweep, which one machine holds and ranks
 TOGETHER = 1024  # worlds at once on a CUDA device; fewer where its memory holds fewer
 
 
