@@ -18,9 +18,9 @@ G, RADIUS = 9.81, 0.02
 DEVICES = [("cpu", 1), ("cpu", 2), pytest.param(("cuda:0", 2), marks=pytest.mark.cuda)]
 
 
-def v_track(scene, bend=0.3, slope=30.0, way=0.4, end=0.6):
+def v_track(scene, bend=0.3, slope=30.0):
     """A ball let go on one of two slopes with a bend between them."""
-    pieces = [("line", way + 0.2), ("up", bend, 2.0 * slope), ("line", end)]
+    pieces = [("line", 0.6), ("up", bend, 2.0 * slope), ("line", 0.6)]
     track = scene.track(
         "track", pieces=pieces, slope_deg=-slope, start=(0, 0, 1), width=0.2, profile="flat", friction=0.5
     )
@@ -48,26 +48,6 @@ def test_a_ball_on_a_v_track_keeps_its_energy(simulate):
     run = simulate(v_track, 1.5)
     found = energy(run)
     assert np.abs(found - found[0]).max() < 5e-4 * (found[0] - G * run.q["ball"][:, 2].min())
-
-
-def test_what_leaves_a_bend_beside_a_pendulum_flies_as_fast_as_it_is_told_to(simulate):
-    """Where nothing touches anything steps are of the fourth order, and begin with the velocity of where it is.
-
-    With that of half a step before it would come 0.3 mm less far in 0.12 s than its velocity says.
-    """
-
-    def build(scene):
-        v_track(scene, end=0.02)
-        bob = scene.sphere("bob", radius=0.05, mass=1.0, position=(0.3, 2.0, 3.0))
-        scene.joint_revolute("hinge", None, bob, anchor=(0.0, 2.0, 3.0), axis="Y")
-
-    run = simulate(build, 0.85)
-    q, v = run.q["ball"], run.v["ball"]
-    falls = np.abs(np.diff(v[:, 2]) + G * run.dt) < 1e-4 * G * run.dt
-    first = len(falls) - np.argmin(falls[::-1])
-    assert (len(v) - first) * run.dt > 0.1
-    way = 0.5 * run.dt * (v[first:-1] + v[first + 1 :]).sum(axis=0)
-    assert np.abs(q[-1] - q[first] - way).max() < 1e-5
 
 
 @pytest.fixture(scope="module")

@@ -25,16 +25,7 @@ def three(values: wp.array2d(dtype=wp.float64), world: int, first: int) -> wp.ve
 
 
 @wp.func
-def lacking(
-    q: wp.quatd, center: wp.vec3d, principal: wp.quatd, moments: wp.vec3d, gain: wp.vec3d, turning: wp.vec3d
-) -> tuple[wp.vec3d, wp.vec3d]:
-    """What the velocity of a body's origin, and its spin, lack of a velocity and an angular momentum of its centre."""
-    spin = spin_of(principal, moments, wp.quat_rotate_inv(q, turning))
-    return gain - wp.quat_rotate(q, wp.cross(spin, center)), spin
-
-
-@wp.func
-def catch_up_with(
+def catch_up(
     world: int,
     k: int,
     gain: wp.array3d(dtype=wp.vec3d),
@@ -96,7 +87,7 @@ def recall(
         else:
             true_qd[world, n] = wp.float64(qvel[world, n])
     if not same and row[k] >= 0:
-        catch_up_with(world, row[k], gain, behind, shift)
+        catch_up(world, row[k], gain, behind, shift)
         since[world, row[k]] = 0
 
 
@@ -136,46 +127,11 @@ def say(
     q = wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3])
     way, spin = wp.vec3d(), wp.vec3d()
     if centred * behind[world, k] > 0:
-        way, spin = lacking(q, center[own, k], principal[own, k], moments[own, k], gain[world, k, 0], gain[world, k, 1])
+        spin = spin_of(principal[own, k], moments[own, k], wp.quat_rotate_inv(q, gain[world, k, 1]))
+        way = gain[world, k, 0] - wp.quat_rotate(q, wp.cross(spin, center[own, k]))
     for i in range(3):
         qvel[world, f + i] = qvel.dtype(true_qd[world, f + i] + way[i])
         qvel[world, f + 3 + i] = qvel.dtype(true_qd[world, f + 3 + i] + spin[i])
-
-
-@wp.kernel(enable_backward=False)
-def catch_up(
-    # Data in:
-    place: wp.array(dtype=int),  # of each loose body, in qpos
-    freedom: wp.array(dtype=int),
-    center: wp.array2d(dtype=wp.vec3d),
-    principal: wp.array2d(dtype=wp.quatd),
-    moments: wp.array2d(dtype=wp.vec3d),
-    held: wp.array2d(dtype=Any),  # what constraints push with
-    true_q: wp.array2d(dtype=wp.float64),
-    gain: wp.array3d(dtype=wp.vec3d),
-    # Data out:
-    behind: wp.array2d(dtype=int),
-    shift: wp.array3d(dtype=wp.vec3d),
-    true_qd: wp.array2d(dtype=wp.float64),
-    qvel: wp.array2d(dtype=Any),
-    start: wp.array2d(dtype=Any),  # of velocities, that another step begins with
-):
-    """Give what nothing holds the velocities of where it is."""
-    world, k = wp.tid()
-    p, f, own = place[k], freedom[k], world % moments.shape[0]
-    for i in range(6):
-        if held[world, f + i] != held.dtype(0.0):
-            return
-    if not catch_up_with(world, k, gain, behind, shift):
-        return
-    q = wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3])
-    way, spin = lacking(q, center[own, k], principal[own, k], moments[own, k], gain[world, k, 0], gain[world, k, 1])
-    for i in range(3):
-        true_qd[world, f + i] = true_qd[world, f + i] + way[i]
-        true_qd[world, f + 3 + i] = true_qd[world, f + 3 + i] + spin[i]
-    for i in range(6):
-        qvel[world, f + i] = qvel.dtype(true_qd[world, f + i])
-        start[world, f + i] = start.dtype(true_qd[world, f + i])
 
 
 @wp.func
@@ -193,7 +149,7 @@ def change_order(
     """Note what half a step gains, and whether velocities lack it from now on; 1 where no longer, -1 where anew."""
     changes = int(0)
     if not lags:
-        if catch_up_with(world, k, gain, behind, shift):
+        if catch_up(world, k, gain, behind, shift):
             changes = 1
     elif behind[world, k] == 0:
         changes = -1
@@ -350,7 +306,6 @@ for _number in (float, wp.float64):
     _rows: Any = wp.array2d(dtype=_number)
     wp.overload(recall, {"qpos": _rows, "qvel": _rows})
     wp.overload(say, {"qvel": _rows})
-    wp.overload(catch_up, dict.fromkeys(("held", "qvel", "start"), _rows))
     wp.overload(keep, {"values": _rows})
     wp.overload(tumble, {"bias": _rows})
     wp.overload(fly, dict.fromkeys(("qacc", "held", "pushed", "bias", "qpos", "qvel"), _rows))

@@ -176,8 +176,6 @@ class ContactLawC:
         alone = smooth & (pushed | struck | (parts > 1))  # of which all of the step is recorded by itself
         note = self._tell_ties(data, force, smooth, struck, alone)
         self.blows.take_from(data)
-        if whole:
-            self.flight.catch_up()
         if whole and parts == 1:
             self.smooth_steps.step(data)
         else:

@@ -122,8 +122,6 @@ class ContactLawWarp:
         if self.impulses is not None:
             self.impulses.add(data, h)
         self._implicit(model, data)
-        if self._smooth_steps:
-            self._flight.catch_up(self._smooth_steps.first_velocities)
         self._flight.fly(h)
         if self._smooth_steps:
             self._smooth_steps.end(model, data, self._breaking.anew if self._breaking else None)

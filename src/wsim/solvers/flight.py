@@ -21,7 +21,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.blows import jump
-from wsim.kernels.flight import catch_up, fly, keep, recall, say, tumble
+from wsim.kernels.flight import fly, keep, recall, say, tumble
 
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
@@ -109,6 +109,8 @@ class Flight:
 
     def say(self, *, centred: bool) -> None:
         """Give MuJoCo the velocities that loose bodies have where they are, or those that their steps go on from."""
+        if self._shared and not self._behind_c.any():
+            return
         wp.launch(
             say,
             dim=self._change.shape,
@@ -117,25 +119,6 @@ class Flight:
                 self._behind, int(centred),
             ],
             outputs=[self._qvel],
-            device=self.model.device,
-        )  # fmt: skip
-
-    def catch_up(self, start: Any = None) -> None:
-        """Before a step of another kind: give what nothing holds the velocities of where it is.
-
-        Args:
-            start: Velocities that this step begins with, a row a world, where they are not MuJoCo's present ones.
-        """
-        if self._shared and not self._behind_c.any():
-            return
-        wp.launch(
-            catch_up,
-            dim=self._change.shape,
-            inputs=[
-                self._place, self._freedom, self._center, self._principal, self._moments, self._held, self._true[0],
-                self._gain,
-            ],
-            outputs=[self._behind, self._shift, self._true[1], self._qvel, self._qvel if start is None else start],
             device=self.model.device,
         )  # fmt: skip
 

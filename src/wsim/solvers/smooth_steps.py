@@ -208,11 +208,6 @@ class SmoothStepsWarp:
             self._of_rows = [wp.array(each, dtype=int) for each in of_rows]
             self._of_values = [wp.array(each, dtype=int) for each in (owners.of_place, owners.of_dof)]
 
-    @property
-    def first_velocities(self) -> Any:
-        """Those that the step begins with, after its blows, a row a world."""
-        return self._start[1]
-
     def begin(self) -> None:
         """Note where the step begins, after its blows."""
         _copy(self._state, self._start)
