@@ -5,7 +5,8 @@ energy, by the square of what it turns in a step. Here the spin of the step's en
 step; contacts see it as a smooth force. Where gravity, and what touches a body, are all that acts on it after the
 step's blows, and it accelerates evenly, the step goes the way of the mean of its first and last velocities: falls,
 throws, slides and rolling are exact, where v += a h, x += v h would come a t h / 2 too far. What a contact leads to and
-fro, or round a bend, goes by the latter, which is symplectic: by the mean it would gain energy. Newton's state is in
+fro, or round a bend, goes by the latter, which is symplectic: by the mean it would gain energy. There its velocity is
+that of half a step before, and the state is told the one at its place. Newton's state is in
 single precision, where a kilometre has steps of 0.06 mm: what is true between two steps is kept beside it in double,
 for as long as nobody else writes the state.
 """
