@@ -23,7 +23,7 @@ demo: install  ## A sentence becomes a judged world
 	$(BIN)/wsim generate "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks." --yes
 
 test: install  ## Run the tests
-	$(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadfile --no-loadscope-reorder $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadgroup --no-loadscope-reorder $(PYTEST_ARGS)
 
 lint: install  ## Check format, lint, types and import directions
 	$(BIN)/ruff format --check .

@@ -19,24 +19,38 @@ settings.register_profile("any_machine", deadline=None, suppress_health_check=[H
 settings.load_profile("any_machine")
 
 
-# A worker takes a file at a time (`--dist loadfile`): a long one that is taken last leaves the other cores idle. Left
+# A worker takes a group at a time (`--dist loadgroup`): a file, or those that share a world of a session, which each
+# worker would make for itself. A long one that is taken last leaves the other cores idle. Left
 # to itself xdist begins with the files of most tests, which are quick ones: `make test` has it keep this order.
 LONG = (
     "loop/test_transcripts.py", "benchmarks/test_sph", "program/test_hostile.py", "skills/", "sim/", "test_examples",
     "cli/", "sweep/", "runs/", "mcp/", "judge/checks/test_heaps.py", "loop/", "solvers/", "kernels/",
     "assets/test_standing.py", "judge/", "rules/", "tools/", "agents/", "benchmarks/", "program/",
 )  # fmt: skip
+TOGETHER = (("cli/test_generate.py", "cli/test_verbs.py"), ("tools/test_query.py", "tools/test_run.py"))
 HERE = Path(__file__).parent
+
+
+def inside(item: pytest.Item) -> str:
+    """A test's file, from here on."""
+    return item.path.relative_to(HERE).as_posix() if item.path.is_relative_to(HERE) else item.path.as_posix()
 
 
 def place(item: pytest.Item) -> int:
     """Where a test's file stands in `LONG`; behind them all if it does not."""
-    inside = item.path.relative_to(HERE).as_posix() if item.path.is_relative_to(HERE) else ""
-    return next((k for k, long in enumerate(LONG) if inside.startswith(long)), len(LONG))
+    return next((k for k, long in enumerate(LONG) if inside(item).startswith(long)), len(LONG))
 
 
+def group(item: pytest.Item) -> str:
+    """What a worker takes at a time: a test's file, or the first of those that it goes together with."""
+    return next((files[0] for files in TOGETHER if inside(item) in files), inside(item))
+
+
+@pytest.hookimpl(tryfirst=True)  # xdist reads the marks as it is asked
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=place)
+    for item in items:
+        item.add_marker(pytest.mark.xdist_group(group(item)))
     marked = [item for item in items if item.get_closest_marker("cuda")]
     if not marked:
         return

@@ -15,6 +15,18 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+_lasts = False  # what is loaded is kept from all later searches for garbage
+
+
+def keep_what_loads() -> None:
+    """Say that this process is wsim's own: what is loaded from here on stays, and no search for garbage looks at it.
+
+    Each full one would go through all that Newton made, for the better part of a second, and a run has several. Who
+    uses wsim as a library decides that alone: with what is loaded, all that is there at the time is kept.
+    """
+    global _lasts
+    _lasts = True
+
 
 def load_module(name: str) -> ModuleType:
     """Import a module without looking for garbage on the way.
@@ -27,6 +39,8 @@ def load_module(name: str) -> ModuleType:
     try:
         return import_module(name)
     finally:
+        if _lasts:
+            gc.freeze()
         if collects:
             gc.enable()
 

@@ -49,7 +49,7 @@ def test_what_cannot_be_is_said_in_a_line(tmp_path: Path, options: list[str], sa
 def test_what_is_done_at_ctrl_c_is_kept_and_the_rest_is_done_on_resume(tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(PROGRAM)
     sweep = [sys.executable, "-m", "wsim.cli", "sweep", "--no-full", "--workers", "1"]
-    asked = [str(tmp_path / "program.py"), "--samples", "60", "--runs", str(tmp_path / "runs")]
+    asked = [str(tmp_path / "program.py"), "--samples", "24", "--runs", str(tmp_path / "runs")]
     with started([*sweep, *asked], cwd=tmp_path) as process:
         until, lines = time.monotonic() + STUCK, 0
         while lines < 2 and time.monotonic() < until:
@@ -59,12 +59,12 @@ def test_what_is_done_at_ctrl_c_is_kept_and_the_rest_is_done_on_resume(tmp_path:
         assert process.wait(STUCK) == 130
     (outcomes,) = tmp_path.glob("runs/*/outcomes.jsonl")
     kept = outcomes.read_text().splitlines()
-    assert 2 <= len(kept) < 61
+    assert 2 <= len(kept) < 25
     assert (outcomes.parent / "table.parquet").is_file()
     with started([*sweep, "--resume", str(outcomes.parent)], cwd=tmp_path) as process:
         assert process.wait(STUCK) == 0
     assert outcomes.read_text().splitlines()[: len(kept)] == kept
-    assert len(outcomes.read_text().splitlines()) == 61
+    assert len(outcomes.read_text().splitlines()) == 25
 
 
 def test_ctrl_c_while_the_page_is_made_is_no_loss(tmp_path: Path) -> None:

@@ -47,6 +47,8 @@ def yard(scene: Scene) -> None:
     scene.box("arm", size=(0.5, 0.1, 0.1), mass=1.0, position=(0, 4, 2))
     scene.joint_revolute("hinge", None, "arm", anchor=(0, 4, 2), axis="Y")
     scene.contact("wall", "ball", friction=0.3)
+    scene.box("held", size=(0.1,) * 3, mass=1.0, position=(0, 6, 2))
+    scene.spring("spring", None, "held", anchor_a=(0, 6, 3), stiffness=100.0)
 
 
 def test_a_mass_takes_its_inertia_along_and_nothing_else(tmp_path: Path) -> None:
@@ -119,7 +121,7 @@ def test_a_level_rises_above_a_bottom_that_stays(tmp_path: Path, name: str) -> N
         ("ball.friction", 0.3, "states the friction of a pair, which comes first"),
         ("slab.friction x", 1.1, "/World/slab/geometry states no friction to multiply"),
         ("crate.friction x", 30.0, "crate.friction = 12 is above 10"),
-        ("arm.pose.x", 0.1, "arm.pose: /World/hinge holds arm to where it is"),
+        ("held.pose.x", 0.1, "held.pose: /World/spring holds held to where it is"),
         ("tank.pose.turn", 0.1, "tank.pose: /World/water holds tank to where it is"),
     ],
 )

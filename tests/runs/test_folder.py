@@ -1,9 +1,12 @@
 """Run folders: never overwritten, files whole or absent."""
 
 import hashlib
+import subprocess
+import sys
 
 import pytest
 
+from tests.patience import STUCK
 from wsim.errors import UserError
 from wsim.runs.folder import RunFolder, slug, write_whole
 
@@ -23,6 +26,32 @@ def test_a_link_to_nowhere_is_named(tmp_path, below):
     (tmp_path / "runs").symlink_to(tmp_path / "gone")
     with pytest.raises(UserError, match=r"runs is a link to .*gone, which is not there; name another with --runs"):
         RunFolder.create(tmp_path / "runs" / below, "a")
+
+
+@pytest.mark.parametrize("below", ["", "deep/er"])
+def test_a_file_where_runs_would_be_is_named(tmp_path, below):
+    """By `wsim generate` before the simulator is loaded, which takes seconds."""
+    (tmp_path / "runs").write_text("a file")
+    said = rf"{tmp_path / 'runs'} is a file; choose another with --runs"
+    with pytest.raises(UserError, match=said):
+        RunFolder.create(tmp_path / "runs" / below, "run")
+    script = (
+        "import sys; from wsim.cli import main\ntry: main()\n"
+        "except SystemExit as end: print('code', end.code, 'newton' in sys.modules)"
+    )
+    command = [
+        sys.executable,
+        "-c",
+        script,
+        "generate",
+        "A ball rolls.",
+        "--yes",
+        "--runs",
+        str(tmp_path / "runs" / below),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=STUCK)
+    assert done.stdout.splitlines()[-1] == "code 2 False"
+    assert "choose another with --runs" in done.stderr
 
 
 def test_run_json_grows(tmp_path):

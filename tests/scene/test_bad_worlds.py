@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pxr import Sdf, UsdPhysics
 
@@ -132,6 +133,64 @@ def test_what_two_that_stay_together_hold_is_taken(world: Callable[[Scene], None
     place = dict(zip(simulation.model.body_label, simulation.state.body_q.numpy(), strict=True))
     first = place["/World/piece_0"][:3] - place["/World/left"][:3]
     assert abs(float((first @ first) ** 0.5) - 0.5) < 1e-3
+
+
+def linkage(scene: Scene, kind: str, places: np.ndarray, goal: Sequence[float], seconds: float = 2.0) -> None:
+    """Rods from place to place between a wall and a kinematic box, which goes to `goal` in 2 s and comes back."""
+    scene.simulation(duration=seconds)
+    first = places[-1].tolist()
+    scene.box("end", position=first, kinematic=True, **CUBE)
+    scene.path("end", times=[0.0, 2.0, 4.0], positions=[first, goal, first])
+    names = [None, *(f"rod_{k}" for k in range(len(places) - 1)), "end"]
+    for name, (start, end) in zip(names[1:-1], pairwise(places), strict=True):
+        scene.box(name, size=(0.02, 0.02, 0.02), position=(0.5 * (start + end)).tolist())
+    for k, ((one, other), place) in enumerate(zip(pairwise(names), places, strict=True)):
+        axis = {"axis": "Y"} if kind == HINGE else {}
+        getattr(scene, kind)(f"joint_{k}", one, other, anchor=place.tolist(), **axis)
+
+
+@pytest.mark.parametrize("kind", [BALL, HINGE])
+@pytest.mark.parametrize("count", [2, 3, 12])
+@pytest.mark.parametrize("seconds", [1.0, 4.0])
+def test_a_linkage_is_not_drawn_beyond_its_reach(kind: str, count: int, seconds: float, tmp_path: Path) -> None:
+    """A row of rods, bent, and drawn 1 % less far than it is long, or more: in a run that lasts until then."""
+    x = np.linspace(0.0, 1.0, count + 1)
+    places = np.column_stack([x, 0.0 * x, np.minimum(x, 1.0 - x)])
+    reach = float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+    for far in (0.99, 1.01):
+        scene = Scene()
+        linkage(scene, kind, places, (far * reach, 0.0, 0.0), seconds)
+        problems = check_stage(scene.save(tmp_path / f"{far}.usda"), [tmp_path])
+        if far < 1.0 or seconds < 2.0:
+            assert problems == []
+            continue
+        (problem,) = problems
+        assert f"what joints hold between </World/end> and the world reaches {reach:.4g} m" in problem
+        assert "leave this joint out" in problem
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_what_a_linkage_reaches_is_taken(seed: int, tmp_path: Path) -> None:
+    """Rods at random, of which the end goes anywhere within the length of all, and just beyond."""
+    rng = np.random.default_rng(seed)
+    places = np.cumsum(rng.normal(size=(int(rng.integers(3, 7)), 3)), axis=0)
+    reach = float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+    way = rng.normal(size=3)
+    for far, taken in ((0.999, True), (1.001, False)):
+        goal = places[0] + far * reach * way / np.linalg.norm(way)
+        scene = Scene()
+        linkage(scene, BALL, places, goal.tolist())
+        assert (check_stage(scene.save(tmp_path / f"{far}.usda"), [tmp_path]) == []) == taken
+
+
+def test_a_cable_is_not_drawn_beyond_its_length(tmp_path: Path) -> None:
+    for far in (1.29, 1.31):
+        scene = Scene()
+        scene.box("end", position=(1.0, 0.0, 0.0), kinematic=True, **CUBE)
+        scene.path("end", times=[0.0, 2.0], positions=[(1.0, 0.0, 0.0), (far, 0.0, 0.0)])
+        scene.cable("c", None, "end", anchor_a=(0, 0, 0), anchor_b=(1.0, 0, 0), length=1.3)
+        problems = check_stage(scene.save(tmp_path / f"{far}.usda"), [tmp_path])
+        assert len(problems) == (far > 1.3)
 
 
 def test_what_a_path_takes_away_is_refused(tmp_path: Path) -> None:

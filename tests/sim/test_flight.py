@@ -7,7 +7,7 @@ import newton
 import numpy as np
 import pytest
 
-from tests.sim.test_bodies import Run
+from tests.sim.test_bodies import G, Run
 from wsim.geometry.rotations import rotate
 from wsim.scene import Part
 
@@ -112,6 +112,19 @@ def test_a_push_on_what_tumbles_gives_its_impulse(simulate, worlds):
         simulation.step()
     assert momentum() - before == pytest.approx(wrench[3:] * steps * simulation.dt, abs=2e-3)
     assert simulation.state.body_qd.numpy()[k, :3] == pytest.approx(wrench[:3] * steps * simulation.dt, abs=1e-5)
+
+
+@BOTH
+def test_a_push_below_single_precision_is_none(simulate, worlds):
+    """A GPU flushes such numbers in one sum and not in another: what it leaves, 1e-38 N m, costs a fall no parabola."""
+    run = simulate(lambda scene: scene.box("box", size=(0.2,) * 3, mass=1.0), 0.005, worlds)
+    simulation = run.simulation
+    simulation.control_force.assign(np.full((simulation.model.body_count, 6), 1e-39, dtype=np.float32))
+    simulation._controller = lambda t, sim: None
+    while simulation.time < 0.1:
+        simulation.step()
+    place = simulation.state.body_q.numpy()[simulation.built.bodies[0], 2]
+    assert place == pytest.approx(-0.5 * G * simulation.time**2, abs=1e-6)
 
 
 @BOTH

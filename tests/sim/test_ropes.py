@@ -135,8 +135,13 @@ def test_a_cable_with_equal_weights_lies_over_a_post(simulate, worlds):
         assert np.abs(v[name]).max() < 0.1
 
 
-def test_a_cable_round_a_post_starts_at_rest(simulate):
-    """Its links lie on the post: with their joints on that circle they were 1.15 mm in it, and lifted both weights."""
+@BOTH
+def test_a_cable_round_a_post_starts_at_rest(simulate, worlds):
+    """Its links lie on the post: with their joints on that circle they were 1.15 mm in it, and lifted both weights.
+
+    In single precision contacts with it are soft (`soften_contacts_for_single_precision`), and two worlds lost their
+    numbers at once where its tree began at an end, not in the middle.
+    """
     ring = 0.21
 
     def build(scene):
@@ -147,8 +152,8 @@ def test_a_cable_round_a_post_starts_at_rest(simulate):
         scene.cable("c", "left", "right", anchor_a=(-ring, 0, -0.2), anchor_b=(ring, 0, -0.2), through=turn, links=26,
                     mass_per_length=0.1, radius=0.01)  # fmt: skip
 
-    _, q, v = simulate(build, 0.1, 1)
-    drift = 2e-6 if simulate.args[1] == "cpu" else 3e-4  # [m]; the mass matrix is near what 24 bits can factor
+    _, q, v = simulate(build, 0.1, worlds)
+    drift = 2e-6 if simulate.args[1] == "cpu" and worlds == 1 else 3e-4  # [m]
     for name in ("left", "right"):
         assert q[name] == pytest.approx(np.broadcast_to(q[name][0], q[name].shape), abs=drift)
         assert np.abs(v[name]).max() < 0.01

@@ -138,15 +138,15 @@ def test_cores_change_nothing_but_the_time(folder: Path) -> None:
 
 
 def test_what_finds_no_room_is_split_and_not_lost(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sizes, collect = [], batched.collect
+    sizes, follow = [], batched.follow
 
     def tight(simulation: Any) -> Any:
         sizes.append(simulation.model.world_count)
         if sizes[-1] > 2:
             raise RuntimeError("Failed to allocate 123 bytes on device 'cuda:0'")
-        return collect(simulation)
+        return follow(simulation)
 
-    monkeypatch.setattr(batched, "collect", tight)
+    monkeypatch.setattr(batched, "follow", tight)
     candidates = tuple(Candidate(number=k, params={"friction": 0.1 * k}) for k in range(3))
     found = work(Shard(candidates, folder, Spec(worlds=8)))
     assert [outcome.status for outcome in found] == ["accepted"] * 3
@@ -159,7 +159,7 @@ def test_a_batch_that_cannot_be_run_as_one_says_so(folder: Path, monkeypatch: py
     def broken(simulation: Any) -> Any:
         raise RuntimeError("planted")
 
-    monkeypatch.setattr(batched, "collect", broken)
+    monkeypatch.setattr(batched, "follow", broken)
     candidates = tuple(Candidate(number=k, params={"friction": 0.1 * k}) for k in range(3))
     found = work(Shard(candidates, folder, Spec(worlds=8)))
     assert [(outcome.status, outcome.together) for outcome in found] == [("accepted", 1)] * 3

@@ -9,6 +9,7 @@ import pyarrow.parquet
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import stats
 from typer.testing import CliRunner
 
 from wsim import recording
@@ -54,7 +55,32 @@ def test_a_range_is_read_as_it_is_written(target: str, what, ends: tuple[float, 
         parse(f"{target}.{what}={high!r}:{low!r}{suffix}")
 
 
-@given(text=st.text(max_size=30) | st.from_regex(r"[a-z]{1,3}\.(mass|friction|level|pose)=[-0-9a-z.:,]{0,12}"))
+@given(middle=st.floats(0.5, 5.0), deviation=st.floats(0.001, 0.1), what=st.sampled_from(["mass", "friction", "level"]))
+def test_a_normal_distribution_is_cut_off_where_hardly_any_of_it_is(middle: float, deviation: float, what) -> None:
+    (made,) = parse(f"crate.{what}=normal:{middle!r}:{deviation!r}")
+    assert (made.low, made.high) == pytest.approx((middle - 4.0 * deviation, middle + 4.0 * deviation))
+    assert all(made.low <= made.at(0, k, 0) <= made.high for k in range(50))
+
+
+def test_draws_have_the_distribution_that_is_asked_for() -> None:
+    """Kolmogorov and Smirnov: of n draws a share is off by more than 1.95 / sqrt(n) once in a thousand times."""
+    cases = {
+        "crate.mass=normal:2:0.25": stats.norm(2.0, 0.25),
+        "crate.mass=log:0.5:8": stats.loguniform(0.5, 8.0),
+        "crate.mass=log:0.5:8x": stats.loguniform(0.5, 8.0),
+        "crate.mass=0.5:8": stats.uniform(0.5, 7.5),
+        "crate.pose=normal:0.1": stats.norm(0.0, 0.1),
+    }
+    for text, theory in cases.items():
+        for index, made in enumerate(parse(text)):
+            values = [made.at(3, k, index) for k in range(2000)]
+            assert stats.kstest(values, theory.cdf).statistic < 1.95 / np.sqrt(2000), text
+
+
+@given(
+    text=st.text(max_size=30)
+    | st.from_regex(r"[a-z]{1,3}\.(mass|friction|level|pose)=(log:|normal:)?[-0-9a-z.:,]{0,12}")
+)
 def test_whatever_is_written_is_read_or_refused_in_a_line(text: str) -> None:
     try:
         for made in parse(text):
@@ -71,6 +97,11 @@ def test_a_pose_is_a_reach_and_an_angle() -> None:
     ]
     assert [d.name for d in parse("crate.pose=0,5deg")] == ["crate.pose.turn"]
     assert [d.name for d in parse("crate.pose=0.1")] == ["crate.pose.x", "crate.pose.y"]
+    assert [(d.name, d.low, d.spread) for d in parse("crate.pose=normal:0.05,5deg")] == [
+        ("crate.pose.x", -0.2, "normal"),
+        ("crate.pose.y", -0.2, "normal"),
+        ("crate.pose.turn", -20.0, "normal"),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -84,6 +115,17 @@ def test_a_pose_is_a_reach_and_an_angle() -> None:
         ("floor.friction=0.1:11", "high 11 is above 10"),
         ("crate.colour=0:1", "expected BODY.mass=2:3"),
         ("crate=0:1", "expected BODY.mass=2:3"),
+        ("crate.mass=normal:1:0.3", "low -0.2, 4 deviations from the mean, must be above 0, as every mass is"),
+        ("crate.friction=normal:9:0.3", "high 10.2, 4 deviations from the mean, is above 10"),
+        ("crate.friction=log:0:0.5", "low 0 has no logarithm; it must be above 0"),
+        ("crate.mass=log:-1:2", "low -1 must be above 0"),
+        ("crate.mass=normal:1:0", "expected BODY.mass=2:3"),
+        ("crate.mass=normal:1:-0.1", "expected BODY.mass=2:3"),
+        ("crate.mass=normal:1", "expected BODY.mass=2:3"),
+        ("crate.mass=normal(1,0.1)", "expected BODY.mass=2:3"),
+        ("crate.mass=log:normal:1:2", "expected BODY.mass=2:3"),
+        ("crate.mass=NORMAL:1:0.1", "expected BODY.mass=2:3"),
+        ("crate.pose=log:0.1", "expected BODY.mass=2:3"),
         ("crate.pose=0.1,5", "expected BODY.mass=2:3"),
         ("crate.pose=0", "expected BODY.mass=2:3"),
         ("crate.pose=-0.1", "expected BODY.mass=2:3"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.stats import qmc
 
 from wsim.errors import UserError
-from wsim.sweep.axis import Axis
+from wsim.sweep.axis import Axis, walked_together
 from wsim.sweep.sampling import read_points, sample
 
 LENGTH = Axis(name="length", low=0.5, high=2.0)
@@ -104,3 +105,38 @@ def test_a_file_that_holds_no_points_is_refused(tmp_path: Path, text: str, said:
     (tmp_path / "points.csv").write_text(text)
     with pytest.raises(UserError, match=said):
         read_points(tmp_path / "points.csv")
+
+
+def test_what_is_zipped_is_walked_together_and_crossed_with_the_rest() -> None:
+    size = Axis(name="size", low=1.0, high=3.0, values=(1.0, 2.0, 3.0))
+    axes = walked_together([COUNT, LENGTH, size, STIFFNESS], ["count,size,length"])
+    assert [axis.label for axis in axes] == ["count & size & length", "stiffness"]
+    points = sample(axes, "grid", 12)
+    walked = [(1.0, 1.0, 0.5), (2.0, 2.0, 1.25), (5.0, 3.0, 2.0)]  # a range has as many values as the list
+    assert [(p["count"], p["size"], p["length"]) for p in points[::4]] == walked
+    assert len(points) == 12 and len({p["stiffness"] for p in points}) == 4
+
+
+@pytest.mark.parametrize("method", ["sobol", "latin", "random", "grid", "saltelli"])
+def test_ranges_that_are_zipped_are_at_one_share_of_each(method) -> None:
+    axes = walked_together([LENGTH, STIFFNESS], ["stiffness,length"])
+    for point in sample(axes, method, 24):
+        assert math.log(point["stiffness"]) / math.log(1000.0) == pytest.approx((point["length"] - 0.5) / 1.5)
+
+
+@pytest.mark.parametrize(
+    ("groups", "said"),
+    [
+        (["length"], "--zip length: expected two parameters or more"),
+        (["length,length"], "--zip length,length: expected two parameters or more"),
+        (["length,width"], "--zip length,width: 'width' is not varied; what is: length, stiffness, count, pair"),
+        (["count,pair"], "lists are walked value by value, and count has 3, pair has 2; give each as many"),
+        (["length,count", "count,stiffness"], "--zip count,stiffness: count goes with others already"),
+        (["length,count", "length,stiffness"], "--zip length,stiffness: length goes with others already"),
+    ],
+)
+def test_what_cannot_be_walked_together_is_said_in_a_line(groups: list[str], said: str) -> None:
+    pair = Axis(name="pair", low=1.0, high=2.0, values=(1.0, 2.0))
+    with pytest.raises(UserError) as told:
+        walked_together([LENGTH, STIFFNESS, COUNT, pair], groups)
+    assert said in str(told.value)

@@ -92,6 +92,18 @@ def test_a_sweep_goes_on_elsewhere(folder: SweepFolder, url: str, tmp_path: Path
         assert (last.path / name).read_bytes() == (again.path / name).read_bytes()
 
 
+def test_what_is_cut_off_while_it_is_fetched_is_no_folder_to_go_on_with(folder: SweepFolder, tmp_path: Path) -> None:
+    store, there = Store("bucket://sweeps/balls"), tmp_path / "there"
+    store.rest(folder)
+    MemoryFileSystem.pipe_file(Bucket(), "/sweeps/balls/" + "x" * 300, b"no file may be called so")
+    with pytest.raises(UserError, match=r"bucket://sweeps/balls cannot be fetched: .*File name too long"):
+        Store("bucket://sweeps/balls").fetch(there)
+    assert not (there / "balls").exists()
+    Bucket().rm_file("/sweeps/balls/" + "x" * 300)
+    assert Store("bucket://sweeps/balls").fetch(there).spec == folder.spec
+    assert [each.name for each in there.iterdir()] == ["balls"]
+
+
 def test_parts_are_sent_no_more_often_than_asked(folder: SweepFolder) -> None:
     store = Store("bucket://often", every=10.0)
     for second in range(25):

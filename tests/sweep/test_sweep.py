@@ -16,7 +16,7 @@ from wsim.program.compose import compose
 from wsim.rules.planner import plan as make_plan
 from wsim.sweep.again import in_full, run_again, telling
 from wsim.sweep.axis import Axis
-from wsim.sweep.declared import axes_of
+from wsim.sweep.declared import axes_of, declared_by
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.picture import draw
 from wsim.sweep.run import sweep
@@ -41,7 +41,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> SweepFolder:
     program = base / "ramp.py"
     text = compose(plan).replace("friction=0.05", 'friction=scene.param("friction", 0.05, low=0.0, high=1.0)')
     program.write_text(text, encoding="utf-8")
-    axes = axes_of(program, [Axis(name="friction", low=0.05, high=0.8, values=VALUES)])
+    axes = axes_of(declared_by([program]), [Axis(name="friction", low=0.05, high=0.8, values=VALUES)])
     spec = Spec(axes=axes, method="grid")
     folder = SweepFolder.create(base / "runs", "ramp", spec, [program], plan.model_dump_json())
     sweep(folder, workers=2)
@@ -132,7 +132,7 @@ def test_a_picture_has_a_panel_for_the_parameter(swept: SweepFolder) -> None:
 )
 def test_what_the_program_would_refuse_is_refused_first(swept: SweepFolder, given: list[Axis], said: str) -> None:
     with pytest.raises(UserError, match=said):
-        axes_of(swept.path / "ramp.py", given)
+        axes_of(declared_by([swept.path / "ramp.py"]), given)
 
 
 def test_a_folder_without_a_sweep_is_said(tmp_path: Path) -> None:
@@ -158,7 +158,7 @@ def build(scene: Scene) -> None:
 def test_what_a_program_raised_is_in_its_row(tmp_path: Path) -> None:
     program = tmp_path / "shelf.py"
     program.write_text(BREAKS, encoding="utf-8")
-    axes = axes_of(program, [Axis(name="height", low=0.5, high=2.0, values=(1.63,))])
+    axes = axes_of(declared_by([program]), [Axis(name="height", low=0.5, high=2.0, values=(1.63,))])
     folder = SweepFolder.create(tmp_path / "runs", "shelf", Spec(axes=axes, method="grid"), [program])
     sweep(folder, workers=1)
     said = {number: outcome.reason for number, outcome in folder.outcomes().items()}

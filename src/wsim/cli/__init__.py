@@ -12,6 +12,7 @@ import typer
 
 from wsim import __version__
 from wsim.cli.verbs import Verbs
+from wsim.door import keep_what_loads
 from wsim.errors import UserError
 from wsim.threads import one_thread
 
@@ -38,6 +39,7 @@ def _options(version: bool = typer.Option(False, "--version", help="Print the ve
 def main() -> None:
     """Run the command line; a user's mistake is one line and exit code 2."""
     _keep_interrupts()
+    keep_what_loads()
     atexit.register(gc.freeze)  # Python would look for garbage among all that Newton made, for seconds
     try:
         app(prog_name="wsim")

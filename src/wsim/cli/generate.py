@@ -39,6 +39,7 @@ from wsim.loop.options import Options
 from wsim.phases import since_start
 from wsim.plan.store import load
 from wsim.rules.planner import plan as make_plan
+from wsim.runs.folder import check_base
 from wsim.runs.settings import Settings
 from wsim.runs.standby import Standby
 
@@ -138,6 +139,7 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
             show_plan(plan)
             return yes or typer.confirm("build it?")
 
+    check_base(runs)
     with progress, _standby(options):
         began = time.perf_counter()
         generate_world = loop.generate_world  # loads the simulator

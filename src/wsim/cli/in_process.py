@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import shutil
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
 
+from wsim import report
+from wsim import runs as passes
 from wsim.cli.options import EXIT_CODES
 from wsim.cli.show import ConsoleProgress, show_verdict
+from wsim.door import keep_what_loads
 from wsim.errors import UserError
-from wsim.report import write as write_report
 from wsim.runs.folder import RunFolder
-from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
 from wsim.scene import Scene, SceneError
 
@@ -23,6 +26,8 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
 
     Exits like `wsim run`: 0 accepted, 1 rejected, 3 blocked, 2 for a mistake in the program's calls.
     """
+    keep_what_loads()  # the process ends with the run
+    atexit.register(gc.freeze)
     program = Path(sys.modules[build.__module__].__file__ or "program.py")
     run = RunFolder.create("runs", program.stem)
     run.record(prompt=None, program=str(program), in_process=True)
@@ -33,7 +38,8 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
         build(scene)
         scene.save(folder / "stage.usda")
         with ConsoleProgress() as progress:
-            iteration = Iteration(folder, None, Settings(isolation="none"), progress, program)
+            # The simulator loads now: what the program's calls have wrong was said before.
+            iteration = passes.Iteration(folder, None, Settings(isolation="none"), progress, program)
             verdict = iteration.conclude(iteration.happen())
     except (UserError, SceneError) as error:
         run.record(status="stopped", summary=str(error))
@@ -42,7 +48,7 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
     if verdict.status == "accepted":
         run.stamp(folder)
     run.record(status=verdict.status, summary=verdict.summary)
-    show_verdict(verdict, run.path, write_report(run.path))
+    show_verdict(verdict, run.path, report.write(run.path))
     raise SystemExit(EXIT_CODES[verdict.status])
 
 

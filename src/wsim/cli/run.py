@@ -17,8 +17,7 @@ from wsim.plan.store import load
 from wsim.runs.folder import RunFolder, write_whole
 from wsim.runs.named import named
 from wsim.runs.settings import Settings
-from wsim.scene.world import Parameter
-from wsim.sweep.declared import check, parameters_of
+from wsim.sweep.declared import Known, check, declared_by
 
 
 def run(
@@ -56,10 +55,10 @@ def run(
         build_memory=int(memory * 2**30),
     )
     settings.check()
-    known: dict[str, Parameter] = {}
+    known: Known = {}
     if settings.params:
         with contextlib.suppress(UserError):  # it may build with these values alone; if not, its verdict says why
-            known = {parameter.name: parameter for parameter in parameters_of(program, isolation)}
+            known = declared_by([program], isolation)
     if known:
         for name, value in settings.params.items():
             check(name, [], known, f"--set {name}={value:g}")  # a range bounds a search, and no user

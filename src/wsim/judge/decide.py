@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from wsim.judge.books.copies import similar, work_out
+from wsim.judge.books.copies import similar
+from wsim.judge.books.copies import work_out as books_of
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.evidence.alike import alike, groups
 from wsim.judge.evidence.evidence import Evidence
@@ -69,11 +70,11 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         answers.ask(run_checks(), evidence)
     broken = [next((f for f in run.findings if f.check == "CheckFinite" and not f.passed), None) for run in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
-    _work_out(sound)
+    work_out(sound)
     return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
 
 
-def _work_out(copies: Sequence[Evidence]) -> None:
+def work_out(copies: Sequence[Evidence]) -> None:
     """At once what the checks ask of all copies of like worlds. What cannot be is left to each by itself, and told."""
     joined: list[tuple[Evidence, list[Evidence]]] = []
     for group in (group for group in groups(copies, _like) if len(group) > 1):
@@ -83,7 +84,7 @@ def _work_out(copies: Sequence[Evidence]) -> None:
     for group in groups(copies, similar):
         if len(group) > 1:
             with _left_to_each(group, "books"):
-                work_out(group)
+                books_of(group)
     for whole, group in joined:
         asked = group[0].plan.objectives if group[0].plan is not None else []
         for check in (*physics_checks(), *map(ObjectiveCheck, asked)):

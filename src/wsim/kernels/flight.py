@@ -6,6 +6,7 @@ import warp as wp
 
 from wsim.kernels.free_turns import free_turn, in_axes, spin_after, spin_of
 
+NO_FORCE = wp.constant(wp.float64(2.0**-126))  # [N] or [N m]: below single precision, where GPUs flush what is left
 ALWAYS = wp.constant(2**30)  # steps, of what has been even since the start
 
 
@@ -242,8 +243,8 @@ def fly(
         push[i] = wp.float64(qacc[world, f + i])
         twist[i] = wp.float64(qacc[world, f + 3 + i])
         free = free and held[world, f + i] == held.dtype(0.0) and held[world, f + 3 + i] == held.dtype(0.0)
-        alone = alone and pushed[world, f + i] == -bias[world, f + i]
-        alone = alone and pushed[world, f + 3 + i] == -bias[world, f + 3 + i]
+        alone = alone and wp.abs(wp.float64(pushed[world, f + i] + bias[world, f + i])) < NO_FORCE
+        alone = alone and wp.abs(wp.float64(pushed[world, f + 3 + i] + bias[world, f + 3 + i])) < NO_FORCE
     kick = twist - change[world, k]
     pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
     spun = wp.quat_rotate(q, kick)

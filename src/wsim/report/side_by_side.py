@@ -14,6 +14,8 @@ from wsim.plan.store import load
 from wsim.recording import read
 from wsim.recording.side_by_side import MOST, Course, Part, write_side_by_side
 from wsim.report.signals import find_signal
+from wsim.runs.folder import RunFolder
+from wsim.sweep.folder import SweepFolder
 
 if TYPE_CHECKING:
     from wsim.judge.verdict import Finding
@@ -28,7 +30,7 @@ def recorded(folder: Path) -> list[tuple[str, Path]]:
     Of more than `MOST` the first and the last ones.
     """
     runs = sorted((folder / "candidates").glob("[0-9]*"))
-    found = [(f"candidate {int(run.name)}", each) for run in runs for each in _iterations(run)]
+    found = [(_candidate(folder, run), each) for run in runs for each in _iterations(run)]
     found += [(f"iteration {int(each.name)}", each) for each in _iterations(folder)]
     return found if len(found) <= MOST else [*found[: MOST // 2], *found[-(MOST - MOST // 2) :]]
 
@@ -50,6 +52,13 @@ def side_by_side(folder: Path, target: Path | None = None) -> Path:
     plan = load(plan_file) if plan_file.is_file() else None
     made = target or Path(tempfile.mkdtemp(prefix="wsim-view-")) / f"{folder.name}.rrd"
     return write_side_by_side([_part(name, each, plan) for name, each in found], made)
+
+
+def _candidate(sweep: Path, run: Path) -> str:
+    """What a candidate is called; of several programs, which one it is of."""
+    several = (sweep / "sweep.json").is_file() and len(SweepFolder(sweep).spec.programs) > 1
+    program = RunFolder(run).facts().get("program") if several else None
+    return f"candidate {int(run.name)}" + (f", {program}" if program else "")
 
 
 def _iterations(run: Path) -> list[Path]:

@@ -213,7 +213,8 @@ def title_of(outcome: Outcome) -> str:
     """What a mark says when it is pointed at."""
     values = ", ".join(f"{name} {number(value)}" for name, value in outcome.candidate.values.items())
     room = "" if outcome.slack is None else f", room {number(outcome.slack, sign=True)}"
-    return f"{outcome.candidate.number}: {values or 'as it stands'}: {outcome.status}{room}"
+    own = outcome.candidate
+    return f"{own.number}: {own.program}, {values or 'as it stands'}: {outcome.status}{room}"
 
 
 def _text(kind: str, x: float, y: float, said: float | str) -> Markup:

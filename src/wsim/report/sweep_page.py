@@ -14,7 +14,9 @@ from typing import Any
 from markupsafe import Markup
 
 from wsim.plan.store import load
+from wsim.program.patch import diff
 from wsim.report.asked import sentence_of
+from wsim.report.diff import Diff, make_diff
 from wsim.report.media import Picture, find_stills
 from wsim.report.numbers import number
 from wsim.report.page import write as write_run
@@ -87,7 +89,8 @@ def context(folder: SweepFolder) -> dict[str, Any]:
         "folder": folder.path.resolve().name,
         "spec": spec,
         "facts": facts(spec),
-        "axes": [(axis.name, span(axis)) for axis in spec.axes] + [(draw.name, span(draw)) for draw in spec.draws],
+        "axes": [(each.name, walk(each, axis)) for axis in spec.axes for each in axis.parameters]
+        + [(draw.name, span(draw)) for draw in spec.draws],
         "counts": [(status, counts[status]) for status in ORDER if counts[status]],
         "asked": spec.count,
         "done": len(outcomes),
@@ -97,9 +100,10 @@ def context(folder: SweepFolder) -> dict[str, Any]:
         "best": outcomes[0] if outcomes else None,
         "names": parameters(outcomes),
         "several": len(spec.programs) > 1,
+        "patches": patches(folder, spec),
         "rows": list(enumerate(outcomes[:MOST_ROWS], start=1)),
         "fulls": fulls(folder, outcomes),
-        "drawings": draw(outcomes, spec.axes, sensitivities(spec, outcomes)),
+        "drawings": draw(outcomes, spec.parameters, sensitivities(spec, outcomes)),
         "unasked": bool(outcomes) and all(outcome.slack is None for outcome in outcomes),
         "reasons": reasons(outcomes),
         "notes": Counter(outcome.note for outcome in outcomes if outcome.note).most_common(),
@@ -119,10 +123,23 @@ def facts(spec: Spec) -> list[tuple[str, str]]:
     ]
 
 
+def patches(folder: SweepFolder, spec: Spec) -> list[tuple[str, str, Diff]]:
+    """Of each patched program its name, that of the one that it is a patch of, and what it changes."""
+    texts = {name: (folder.path / name).read_text(encoding="utf-8") for pair in spec.patched.items() for name in pair}
+    return [(name, of, make_diff(diff(texts[of], texts[name]))) for name, of in spec.patched.items()]
+
+
+def walk(parameter: Axis, axis: Axis) -> str:
+    """What a parameter ranged over, and which others it went with."""
+    others = ", ".join(each.name for each in axis.parameters if each != parameter)
+    return span(parameter) + (f", together with {others}" if others else "")
+
+
 def span(axis: Axis | Draw) -> str:
     """What a parameter ranged over, or was drawn from."""
     if isinstance(axis, Draw):
-        return f"{number(axis.low, 4)} … {number(axis.high, 4)}, drawn for each"
+        how = {"even": "", "log": ", by its logarithm", "normal": ", normally"}[axis.spread]
+        return f"{number(axis.low, 4)} … {number(axis.high, 4)}, drawn for each{how}"
     if axis.values:
         return ", ".join(number(value, 4) for value in axis.values)
     return f"{number(axis.low, 4)} … {number(axis.high, 4)}" + (", by its logarithm" if axis.scale == "log" else "")

@@ -8,8 +8,8 @@ from wsim.door import door
 
 if TYPE_CHECKING:
     from wsim.runs.alone import run_in_folder
-    from wsim.runs.iteration import judge_recording
+    from wsim.runs.iteration import Iteration, judge_recording
 
-__all__ = ["judge_recording", "run_in_folder"]
+__all__ = ["Iteration", "judge_recording", "run_in_folder"]
 
-__getattr__ = door(__name__, {"judge_recording": "iteration", "run_in_folder": "alone"})
+__getattr__ = door(__name__, {"Iteration": "iteration", "judge_recording": "iteration", "run_in_folder": "alone"})

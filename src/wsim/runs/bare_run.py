@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 
-from wsim.door import load_module
+from wsim.door import keep_what_loads, load_module
 from wsim.judge.verdict import Verdict
 from wsim.program.bare import bare
 from wsim.progress import silent
@@ -79,6 +79,7 @@ class BareRun:
 
 def _main() -> None:
     """In the process: load what will be needed, run what comes, and end when nobody is there any more who wants it."""
+    keep_what_loads()
     load_module("wsim.sim.simulation")
     try:
         iteration = pickle.load(sys.stdin.buffer)

@@ -43,6 +43,19 @@ def _dangling(path: Path) -> Path | None:
     return next((each for each in (path, *path.parents) if each.is_symlink() and not each.exists()), None)
 
 
+def check_base(base: Path) -> None:
+    """Refuse a folder for runs that none can be made in; nothing is made, and nothing heavy loaded to find it out.
+
+    Raises:
+        UserError: A link at or above it leads nowhere, or what is there is no folder.
+    """
+    if (dangling := _dangling(base)) is not None:
+        raise UserError(f"{dangling} is a link to {dangling.readlink()}, which is not there; name another with --runs")
+    there = next((path for path in (base, *base.parents) if path.exists()), base)
+    if there.exists() and not there.is_dir():
+        raise UserError(f"cannot make a run folder in {base}: {there} is a file; choose another with --runs")
+
+
 class RunFolder:
     """runs/<time>-<slug>/ with run.json, plan.json, transcript.jsonl, report.html, iterations/NN/ and accepted/.
 
@@ -57,10 +70,7 @@ class RunFolder:
     def create(cls, base: str | Path, title: str) -> RunFolder:
         """Make a new folder under `base`; never one that exists."""
         stem = f"{datetime.now():%Y%m%d-%H%M%S}-{slug(title)}"
-        if (dangling := _dangling(Path(base))) is not None:
-            raise UserError(
-                f"{dangling} is a link to {dangling.readlink()}, which is not there; name another with --runs"
-            )
+        check_base(Path(base))
         for k in range(1, 1000):
             path = Path(base) / (stem if k == 1 else f"{stem}-{k}")
             try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
@@ -12,14 +13,18 @@ from wsim.scene.spanning import WORLD_END, Link, Tree, span
 _HALF_TURN = {"X": Gf.Quatf(0.0, 0.0, 1.0, 0.0), "Y": Gf.Quatf(0.0, 1.0, 0.0, 0.0), "Z": Gf.Quatf(0.0, 1.0, 0.0, 0.0)}
 
 
-def mark_articulations(stage: Usd.Stage) -> Tree:
+def mark_articulations(stage: Usd.Stage, tops: Sequence[Sdf.Path] = ()) -> Tree:
     """Put one articulation root on each tree of joints, and take joints that close a loop out of the tree.
 
     The root is the joint to the world, or the topmost body. A joint that points towards its root is turned round, its
     coordinate as it was. Called after each new joint: joints made by other means are marked with the rest, and roots
     set by other means give way.
+
+    Args:
+        stage: Changed in place.
+        tops: Bodies at which trees are to begin that hang on nothing.
     """
-    tree = span(*links_of(stage))
+    tree = span(*links_of(stage), tops)
     for prim in stage.Traverse():
         if prim.HasAPI(UsdPhysics.ArticulationRootAPI):
             prim.RemoveAPI(UsdPhysics.ArticulationRootAPI)

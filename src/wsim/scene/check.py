@@ -22,6 +22,7 @@ from wsim.scene.check_indices import check_indices
 from wsim.scene.check_joints import joint_problems
 from wsim.scene.check_leads import parted
 from wsim.scene.check_motion import motion_problems
+from wsim.scene.check_reach import overreached
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
 from wsim.scene.limits import (
@@ -117,6 +118,7 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
         yield from wrong
         if not wrong:  # of paths that can be followed
             yield from parted(stage)
+            yield from overreached(stage)
 
 
 def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:

@@ -12,16 +12,15 @@ from itertools import combinations, pairwise
 from typing import NamedTuple
 
 import numpy as np
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from wsim.geometry.paths import Curve, exponential
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.scene.articulation import body_above, is_kinematic, joint_ends, joints_of, may_break
 from wsim.scene.spanning import WORLD_END
-from wsim.scene.usd_mass import mass_of
+from wsim.scene.usd_mass import mass_at
 from wsim.scene.usd_motion import curve_of, path_of
 from wsim.scene.usd_prims import rigid_frame, turn_of
-from wsim.scene.usd_shapes import read_shape
 
 Array = np.ndarray
 SHORTEST_PARTING = 1e-4  # by which what leads a piece must part to be refused [m]
@@ -39,14 +38,14 @@ class Hold(NamedTuple):
 
 def parted(stage: Usd.Stage) -> Iterator[str]:
     """Rigid pieces that joints hold to two things which part, and which none of them can move."""
-    ways: dict[Sdf.Path, _Way] = {}
-    for holds in _pieces(stage).values():
+    ways: dict[Sdf.Path, Way] = {}
+    for holds in pieces(stage).values():
         for one, other in combinations(holds, 2):
             if one.lead == other.lead:
                 continue
             for lead in (one.lead, other.lead):
                 if lead not in ways:
-                    ways[lead] = _Way(stage, lead)
+                    ways[lead] = Way(stage, lead)
             if _part(one, other, ways):
                 names = " and ".join(
                     "the world" if each.lead == WORLD_END else f"<{each.lead}>" for each in (one, other)
@@ -61,13 +60,13 @@ def parted(stage: Usd.Stage) -> Iterator[str]:
 
 def led(stage: Usd.Stage) -> set[Sdf.Path]:
     """Bodies that fixed joints hold to the world or to kinematic bodies: they go as those go."""
-    top = _tops(stage)
+    top = tops(stage)
     firm = {
         top.get(end, end)
         for joint in _welds(stage)
-        if any(_leads(stage, lead) for lead in joint_ends(joint))
+        if any(is_lead(stage, lead) for lead in joint_ends(joint))
         for end in joint_ends(joint)
-        if not _leads(stage, end)
+        if not is_lead(stage, end)
     }
     return {end for joint in _welds(stage) for end in joint_ends(joint) if top.get(end, end) in firm}
 
@@ -76,28 +75,29 @@ def _welds(stage: Usd.Stage) -> list[UsdPhysics.Joint]:
     return [joint for joint in joints_of(stage) if joint.GetPrim().IsA(UsdPhysics.FixedJoint) and not may_break(joint)]
 
 
-def _leads(stage: Usd.Stage, path: Sdf.Path) -> bool:
+def is_lead(stage: Usd.Stage, path: Sdf.Path) -> bool:
+    """Whether something goes its own way."""
     return bool(path == WORLD_END or is_kinematic(stage.GetPrimAtPath(path)))
 
 
-def _tops(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
+def tops(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
     """Of each body that is fixed to others which joints move as well, the one that stands for them all."""
     top: dict[Sdf.Path, Sdf.Path] = {}
     for joint in _welds(stage):
         ends = joint_ends(joint)
-        if not any(_leads(stage, end) for end in ends):
+        if not any(is_lead(stage, end) for end in ends):
             kept, gone = (top.setdefault(end, end) for end in ends)
             top = {path: kept if now == gone else now for path, now in top.items()}
     return top
 
 
-def _pieces(stage: Usd.Stage) -> dict[Sdf.Path, list[Hold]]:
+def pieces(stage: Usd.Stage) -> dict[Sdf.Path, list[Hold]]:
     """What leads each rigid piece, by the body that stands for it."""
-    top = _tops(stage)
+    top = tops(stage)
     found: dict[Sdf.Path, list[Hold]] = {}
     for joint in joints_of(stage):
         ends = joint_ends(joint)
-        leads = [_leads(stage, end) for end in ends]
+        leads = [is_lead(stage, end) for end in ends]
         if may_break(joint) or sum(leads) != 1:
             continue
         lead, body = ends if leads[0] else ends[::-1]
@@ -124,6 +124,11 @@ def _points(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Array:
     return np.array([frame.Transform(Gf.Vec3d(*step)) for step in steps])
 
 
+def place_of(joint: UsdPhysics.Joint, body: Sdf.Path) -> Array:
+    """Where a joint is, by one of its ends [m]."""
+    return np.array(_frame(joint, body).ExtractTranslation())
+
+
 def _frame(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Gf.Matrix4d:
     """A joint's frame at what leads, in the world."""
     stage = joint.GetPrim().GetStage()
@@ -138,7 +143,7 @@ def _frame(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Gf.Matrix4d:
     return frame * rigid_frame(held[k]) if held[k] else frame
 
 
-def _part(one: Hold, other: Hold, ways: dict[Sdf.Path, _Way]) -> bool:
+def _part(one: Hold, other: Hold, ways: dict[Sdf.Path, Way]) -> bool:
     """Whether points that one holds come nearer to those that the other does, or go away from them."""
     first, second = ways[one.lead], ways[other.lead]
     times = np.unique(np.concatenate([first.times, second.times]))
@@ -149,7 +154,7 @@ def _part(one: Hold, other: Hold, ways: dict[Sdf.Path, _Way]) -> bool:
     return bool(np.abs(distances - distances[0]).max() > SHORTEST_PARTING)
 
 
-class _Way:
+class Way:
     """How something goes that no joint moves.
 
     Attributes:
@@ -193,8 +198,5 @@ class _Way:
 
 def _center(prim: Usd.Prim) -> tuple[float, float, float]:
     """A body's centre of mass, in its axes [m]."""
-    base = rigid_frame(prim)
-    parts = (part for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()) if part.IsA(UsdGeom.Gprim))
-    shapes = [shape for part in parts if (shape := read_shape(part, base)) is not None]
-    x, y, z = mass_of(prim, shapes).com
+    x, y, z = mass_at(prim).com
     return float(x), float(y), float(z)

@@ -19,6 +19,7 @@ from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
 from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE, MIN_TIME_STEP
 from wsim.scene.motions import Motions
+from wsim.scene.rooting import better_roots
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.views import Views
 
@@ -171,6 +172,8 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         side = target.with_name(f".{target.stem}.part{target.suffix}")
         if any(joint_problems(self._stage)):
             mark_articulations(self._stage)  # joints that the program made through USD alone
+        if tops := better_roots(self._stage):
+            mark_articulations(self._stage, tops)
         self._bake_paths(self._duration, self._frame_rate)
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)

@@ -36,12 +36,13 @@ class Tree:
     stuck: list[Sdf.Path]  # joints of a first loop in which each needs a coordinate; empty if there is none
 
 
-def span(links: Sequence[Link], ground: Iterable[Sdf.Path]) -> Tree:
+def span(links: Sequence[Link], ground: Iterable[Sdf.Path], tops: Sequence[Sdf.Path] = ()) -> Tree:
     """Choose the trees (Kruskal 1956), the joints that need a coordinate first, else in their order.
 
     Args:
         links: The joints.
         ground: What goes its own way: the world, and kinematic bodies. A tree hangs on one of them at most.
+        tops: At which trees that hang on none of them are to begin; else where their joints say.
     """
     grounded = set(ground) | {WORLD_END}
     groups = _Groups(grounded)
@@ -54,7 +55,7 @@ def span(links: Sequence[Link], ground: Iterable[Sdf.Path]) -> Tree:
         elif link.needs_coordinate and not stuck:
             stuck = [*_between(chosen, link, grounded), link.joint]
     chosen.sort(key=links.index)
-    turned, roots = _orient(chosen, [path for path in _ends(links) if path in grounded])
+    turned, roots = _orient(chosen, [*(path for path in _ends(links) if path in grounded), *tops])
     inside = {link.joint for link in chosen}
     return Tree(turned, [link.joint for link in links if link.joint not in inside], roots, stuck)
 
@@ -63,15 +64,15 @@ def _ends(links: Sequence[Link]) -> list[Sdf.Path]:
     return list(dict.fromkeys(path for link in links for path in (link.parent, link.child)))
 
 
-def _orient(links: list[Link], ground: list[Sdf.Path]) -> tuple[list[Sdf.Path], list[Sdf.Path]]:
-    """The joints that point towards their root, and the roots."""
+def _orient(links: list[Link], first: list[Sdf.Path]) -> tuple[list[Sdf.Path], list[Sdf.Path]]:
+    """The joints that point towards their root, and the roots: what comes first in each tree."""
     children = {link.child for link in links}
     tops = [path for path in _ends(links) if path not in children]
     seen: set[Sdf.Path] = set()
     turned: list[Sdf.Path] = []
     roots: list[Sdf.Path] = []
     # What is nobody's child is the top of its tree, as its joints say; one whose joints say nothing begins anywhere.
-    for top in [*ground, *tops, *_ends(links)]:
+    for top in [*first, *tops, *_ends(links)]:
         if top in seen:
             continue
         seen.add(top)

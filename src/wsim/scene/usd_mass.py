@@ -6,10 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from pxr import Gf, Usd, UsdPhysics
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.rotations import matrices
-from wsim.scene.usd_shapes import Array, solid, to_quat
+from wsim.scene.usd_prims import rigid_frame
+from wsim.scene.usd_shapes import Array, read_shape, solid, to_quat
 from wsim.scene.world import Shape
 
 _SMALL_SPHERE = 0.1  # [m]: radius of the ball that USD takes a body without colliders for
@@ -23,6 +24,13 @@ class Mass:
     com: Array  # (3,)
     inertia: Array  # (3, 3)
     volume: float
+
+
+def mass_at(prim: Usd.Prim) -> Mass:
+    """Mass properties of the body at `prim`, by what shapes it has."""
+    base = rigid_frame(prim)
+    parts = (part for part in Usd.PrimRange(prim, Usd.TraverseInstanceProxies()) if part.IsA(UsdGeom.Gprim))
+    return mass_of(prim, [shape for part in parts if (shape := read_shape(part, base)) is not None])
 
 
 def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:

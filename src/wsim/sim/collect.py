@@ -4,84 +4,30 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from wsim.progress import Progress, silent
-from wsim.recording.trajectories import Trajectories
-from wsim.sim.fluid_tracks import FluidTracks
-from wsim.sim.ledger_tracks import LedgerTracks
+from wsim.sim.tracks import Tracks
 
 if TYPE_CHECKING:
+    from wsim.recording.trajectories import Trajectories
     from wsim.sim.simulation import Simulation
 
 
-def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories:
+def follow(simulation: Simulation, progress: Progress = silent) -> Tracks:
     """Step every world through the stage's duration, and keep what the judge needs of each recorded frame.
 
     Args:
         simulation: At its start; left at its end.
         progress: Told after each frame.
-
-    Returns:
-        The bodies and fluids of all worlds. A world whose contact buffers overflow, whose state is not finite or whose
-        fluid is beyond sense is told of in `problems`; the others are none the worse.
     """
-    world, built, rigid = simulation.world, simulation.built, simulation.rigid
-    frames = round(world.duration * world.frame_rate) + 1
-    worlds, bodies = max(1, simulation.model.world_count), len(world.bodies)
-    time = np.zeros(frames)
-    q = np.zeros((worlds, frames, bodies, 7), dtype=np.float32)
-    qd = np.zeros((worlds, frames, bodies, 6), dtype=np.float32)
-    force = np.zeros((worlds, frames, bodies, 3), dtype=np.float32)
-    deepest = np.zeros((worlds, frames))
-    scalars: dict[str, np.ndarray] = {}
-    wet = FluidTracks(simulation, simulation.fluid, time) if simulation.fluid else None
-    # What drives alone give is worked out by their law.
-    asked = simulation.fluid is not None or simulation.controlled
-    pushed = LedgerTracks(built, rigid.ledger, frames) if rigid and rigid.ledger and asked else None
-    for frame in range(frames):
+    tracks = Tracks(simulation)
+    for frame in range(len(tracks.time)):
         if frame:
             simulation.advance_frame()
-        time[frame] = simulation.time
-        if rigid:
-            pushes, deepest[:, frame] = rigid.contacts()
-            for name, values in rigid.breakage().items():
-                scalars.setdefault(name, np.zeros((worlds, frames)))[:, frame] = values
-            q[:, frame] = simulation.state.body_q.numpy().reshape(worlds, -1, 7)[:, built.bodies]
-            qd[:, frame] = simulation.state.body_qd.numpy().reshape(worlds, -1, 6)[:, built.bodies]
-            force[:, frame] = pushes[:, built.bodies]
-        if wet:
-            wet.take(frame)
-        if pushed:
-            pushed.take(frame)
-        progress("simulating", frame, frames - 1)
-    mass = simulation.model.body_mass.numpy().reshape(worlds, -1)[:, built.bodies] if bodies else None
-    problems = _problems(simulation, q, qd)
-    return Trajectories(
-        world=world,
-        time=time,
-        body_q=q,
-        body_qd=qd,
-        contact_force=force,
-        penetration=deepest,
-        mass=mass,
-        scalars=scalars | (wet.scalars if wet else {}) | (pushed.scalars if pushed else {}),
-        problems=[a + b for a, b in zip(problems, wet.problems, strict=True)] if wet else problems,
-        metadata=simulation.facts(),
-        worlds=built.worlds if len(built.worlds) > 1 else (),
-        applied=({"wall_impulse": wet.wall_impulse} if wet else {}) | (pushed.applied if pushed else {}),
-        fluids=wet.tracks if wet else (),
-        own_metadata=[{"sph": simulation.method_of_fluid(w)} for w in range(worlds)] if wet else (),
-    )
+        tracks.take(frame)
+        progress("simulating", frame, len(tracks.time) - 1)
+    return tracks
 
 
-def _problems(simulation: Simulation, q: np.ndarray, qd: np.ndarray) -> list[list[str]]:
-    overflowed = simulation.rigid.overflowed() if simulation.rigid else np.zeros(len(q), dtype=bool)
-    warned = simulation.rigid.problems() if simulation.rigid and simulation.rigid.on_c else []
-    broken = ~(np.isfinite(q).all(axis=(1, 2, 3)) & np.isfinite(qd).all(axis=(1, 2, 3)))
-    return [
-        warned
-        + (["contact buffers overflowed"] if full else [])
-        + (["body_q or body_qd is not finite"] if not_finite else [])
-        for full, not_finite in zip(overflowed, broken, strict=True)
-    ]
+def collect(simulation: Simulation, progress: Progress = silent) -> Trajectories:
+    """The same, and all of it read (`Tracks.read`)."""
+    return follow(simulation, progress).read()

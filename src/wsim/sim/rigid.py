@@ -20,6 +20,7 @@ from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
+from wsim.sim.pressed import Pressed
 from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
@@ -77,6 +78,7 @@ class RigidBodies:
 
     Attributes:
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
+        pressed: What contacts press with.
     """
 
     def __init__(
@@ -121,6 +123,7 @@ class RigidBodies:
             kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
         self.observables: Any = self.solver.observables(kinds) if kinds else None
         self._kinematic = Kinematic(model, world, dt)
+        self.pressed = Pressed(model, self.solver, self.on_c)
         pushed = driven or controlled or model.particle_count > 0
         self.ledger = Ledger(model, self.observables if driven else None) if pushed else None
 
@@ -228,53 +231,6 @@ class RigidBodies:
 
     def contacts(self) -> tuple[np.ndarray, np.ndarray]:
         """Net contact force on each body of each world [N], (W, bodies, 3), and the deepest penetrations [m], (W,)."""
+        self.pressed.measure()
         worlds = max(1, self.model.world_count)
-        force, deepest = self._contacts_c() if self.on_c else self._contacts_warp(worlds)
-        return force.reshape(worlds, -1, 3), deepest
-
-    def _contacts_c(self) -> tuple[np.ndarray, np.ndarray]:
-        mujoco = self.solver.import_mujoco()[0]
-        mj_model, mj_data = self.solver.mj_model, self.solver.mj_data
-        force = np.zeros((self.model.body_count, 3))
-        deepest, wrench = 0.0, np.zeros(6)
-        shapes, bodies = self._geom_shapes()[0], self._shape_bodies()
-        for k in range(mj_data.ncon):
-            contact = mj_data.contact[k]
-            deepest = max(deepest, -float(contact.dist))
-            mujoco.mj_contactForce(mj_model, mj_data, k, wrench)
-            # The frame's rows are its axes; the first points from the first geom to the second, which it pushes.
-            push = np.asarray(contact.frame).reshape(3, 3).T @ wrench[:3]
-            for geom, sign in ((contact.geom[0], -1.0), (contact.geom[1], 1.0)):
-                body = bodies[shapes[geom]]
-                if body >= 0:
-                    force[body] += sign * push
-        return force, np.array([deepest])
-
-    def _contacts_warp(self, worlds: int) -> tuple[np.ndarray, np.ndarray]:
-        """Forces from the rows of MuJoCo Warp's constraint solver."""
-        data = self.solver.mjw_data
-        count = int(data.nacon.numpy()[0])
-        force, deepest = np.zeros((self.model.body_count, 3)), np.zeros(worlds)
-        if count == 0:
-            return force, deepest
-        contact = data.contact
-        world, rows = contact.worldid.numpy()[:count], contact.efc_address.numpy()[:count]
-        np.maximum.at(deepest, world, -contact.dist.numpy()[:count])
-        held = rows[:, 0] >= 0
-        world, rows = world[held], rows[held]
-        frames = contact.frame.numpy()[:count][held].reshape(-1, 3, 3)
-        geoms = contact.geom.numpy()[:count][held]
-        # An elliptic cone's rows are the push and the two frictions, along the axes of the contact's frame.
-        push = np.einsum("nji,nj->ni", frames, data.efc.force.numpy()[world[:, None], rows[:, :3]])
-        shapes, bodies = self._geom_shapes(), self._shape_bodies()
-        for side, sign in ((0, -1.0), (1, 1.0)):
-            body = bodies[shapes[world, geoms[:, side]]]
-            np.add.at(force, body[body >= 0], sign * push[body >= 0])
-        return force, deepest
-
-    def _geom_shapes(self) -> np.ndarray:
-        """Newton's shape of each of MuJoCo's geoms in each world, (W, geoms)."""
-        return self.solver.mjc_geom_to_newton_shape.numpy()
-
-    def _shape_bodies(self) -> np.ndarray:
-        return np.append(self.model.shape_body.numpy(), -1)
+        return self.pressed.force.numpy().reshape(worlds, -1, 3).copy(), self.pressed.deepest.numpy().copy()

@@ -295,8 +295,9 @@ class Simulation:
             pictures = None
             if video:
                 with phases.phase("prepare the camera"):
+                    beside = not (self.device.is_cuda or self._replays)
                     drawn = Pictures(
-                        self.world, self.built, writer, video, frames_dir, review, frames, progress, phases
+                        self.world, self.built, writer, video, frames_dir, review, frames, progress, phases, beside
                     )
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
@@ -319,6 +320,9 @@ class Simulation:
                     writer.log(self.time, "ERROR", problem)
                 if problems:
                     break
+            if pictures:
+                with phases.phase("draw"):
+                    pictures.finish()
             if problems:
                 writer.close(complete=False, error="; ".join(problems))
         return SimulationResult(

@@ -15,7 +15,8 @@ from wsim.scene.describe import describe
 from wsim.scene.usd_threads import forks
 from wsim.sim import Simulation
 from wsim.sim.alike import alike
-from wsim.sim.collect import collect
+from wsim.sim.collect import follow
+from wsim.sweep.screen import rejected
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from wsim.plan.schema import Plan
     from wsim.runs.iteration import Iteration
     from wsim.scene.world import World
+    from wsim.sim.tracks import Tracks
     from wsim.sweep.candidate import Candidate
 
 BYTES_OF_A_PARTICLE = 28  # seven numbers in single precision
@@ -101,13 +103,22 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
                 worlds=[member.world for member in batch],
                 processes=processes,
             )
-            worlds = collect(simulation)
+            tracks = follow(simulation)
     except (MemoryError, RuntimeError) as error:
         if len(batch) < 2 or not _is_no_room(error):
             raise
         half = len(batch) // 2
         return verdicts(batch[:half], plan, processes) + verdicts(batch[half:], plan, processes)
-    return verdicts_of(worlds, plan, processes)
+    return judged(tracks, plan, processes)
+
+
+def judged(tracks: Tracks, plan: Plan | None, processes: int = 1) -> list[Verdict]:
+    """The verdict on each world: where an objective is known to fail that alone, else of all that is asked."""
+    found = rejected(tracks, plan)
+    left = [w for w in range(tracks.count) if w not in found]
+    if left:
+        found |= dict(zip(left, verdicts_of(tracks.read(left), plan, processes), strict=True))
+    return [found[w] for w in range(tracks.count)]
 
 
 def _is_no_room(error: Exception) -> bool:

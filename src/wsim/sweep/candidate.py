@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -57,7 +58,7 @@ class Outcome(BaseModel):
         note: Why it was not simulated with others, or what was said of it before it was run by itself.
     """
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="strings")  # JSON has no other word for them
 
     candidate: Candidate
     status: Status
@@ -119,11 +120,11 @@ def slack(finding: Finding) -> float:
     """How far a finding is from its limit, m, as a share m / (|m| + s) with s the greater of limit and expected value.
 
     Margins have units and cannot be compared; this one is without, grows with each of them, and changes sign with them.
-    1 and -1 where there are no numbers.
+    1 and -1 where there are no numbers, or none that is finite.
     """
     sign = 1.0 if finding.passed else -1.0
-    if finding.margin is None:
-        return sign
     scale = max(abs(finding.limit or 0.0), abs(finding.expected or 0.0))
+    if finding.margin is None or not math.isfinite(finding.margin) or not math.isfinite(scale):
+        return sign
     size = abs(finding.margin)
     return sign * size / (size + scale) if size + scale > 0.0 else 0.0

@@ -12,14 +12,12 @@ Where the figures come from:
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wsim.plan.cost import BODY_STEP, PARTICLE_STEPS
 from wsim.sim.devices import cuda_devices
 from wsim.sim.fluids import largest_step, sph_config
 from wsim.sim.time_step import choose_time_step
-from wsim.sweep.declared import as_it_stands
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
@@ -33,19 +31,19 @@ GPU_PARTICLE_STEPS = 1.1e9  # [1/s]
 FIVE = 5.0  # bodies, to which the times of a step belong
 
 
-def pick_device(spec: Spec, program: Path, cores: int) -> tuple[str, str]:
+def pick_device(spec: Spec, world: World, cores: int) -> tuple[str, str]:
     """The device of a sweep that names none, and why, in a line; nothing where there is no choice.
 
     Args:
         spec: The sweep's.
-        program: Its first one.
+        world: Of its first program, as it stands.
         cores: Of the CPU.
     """
     cuda = cuda_devices()
     if not cuda:
         return "cpu", ""
     on_gpu = spec.model_copy(update={"device": cuda[0]})
-    return choose(cuda[0], as_it_stands(program, spec.isolation), spec.count, on_gpu.together, cores, spec.time_step)
+    return choose(cuda[0], world, spec.count, on_gpu.together, cores, spec.time_step)
 
 
 def choose(

@@ -7,10 +7,12 @@ runs/<time>-sweep-<name>/
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -84,13 +86,31 @@ class SweepFolder:
     def outcomes(self) -> dict[int, Outcome]:
         """What is done, by the candidate's number. A line that was cut off as it was written counts as not done."""
         path, found = self.path / "outcomes.jsonl", {}
-        for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else ():
+        # At line feeds alone, and a line's bytes by themselves: a reason may hold any character, and be cut off in it.
+        for line in path.read_bytes().split(b"\n") if path.is_file() else ():
             try:
                 outcome = Outcome.model_validate_json(line)
             except ValidationError:
                 continue
             found[outcome.candidate.number] = outcome
         return found
+
+    @contextmanager
+    def taken(self) -> Iterator[None]:
+        """Nobody else of this machine works in the folder meanwhile.
+
+        Raises:
+            UserError: If somebody does.
+        """
+        handle = os.open(self.path, os.O_RDONLY)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise UserError(f"another wsim sweep works in {self.path}; wait until it ends, or stop it") from error
+        else:
+            yield
+        finally:
+            os.close(handle)
 
     def add(self, outcome: Outcome) -> None:
         """Keep an outcome."""

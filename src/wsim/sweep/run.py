@@ -42,7 +42,8 @@ def sweep(
         All outcomes, the best first.
     """
     done, spec = folder.outcomes(), folder.spec
-    progress("candidates", len(done), spec.count)
+    count = spec.count  # drawn anew each time that it is asked for
+    progress("candidates", len(done), count)
     try:
         for batch in batches(spec, done):
             left = [candidate for candidate in batch if candidate.number not in done]
@@ -52,11 +53,11 @@ def sweep(
                     done[outcome.candidate.number] = outcome
                 if store:
                     store.part(folder)
-                progress("candidates", min(len(done), spec.count), spec.count)
+                progress("candidates", min(len(done), count), count)
     finally:
         if done:
             write(list(done.values()), folder.path)
-    progress("candidates", spec.count, spec.count)
+    progress("candidates", count, count)
     best_first = ranked(list(done.values()))
     folder.finish(best_first)
     return best_first
@@ -73,9 +74,9 @@ def batches(spec: Spec, done: Mapping[int, Outcome]) -> Iterator[list[Candidate]
     if spec.method != "cma" or spec.points or not spec.axes:
         yield spec.candidates()
         return
-    search, first = Search(spec.axes, spec.seed, spec.batch), spec.each
+    search, first, count = Search(spec.axes, spec.seed, spec.batch), spec.each, spec.count
     yield spec.of([{}], 0)
-    while first < spec.count and not search.done:
+    while first < count and not search.done:
         batch = spec.of(search.ask(), first)
         yield batch
         # Of the programs and seeds at a point the worst counts: it is to hold for all of them.

@@ -17,6 +17,7 @@ from wsim.sweep.axis import Axis
 
 Method = Literal["sobol", "latin", "random", "grid", "saltelli", "cma"]
 Point = dict[str, float]
+MOST = 1_000_000  # points of a grid
 LEAST_ROWS = 8  # of Saltelli's design: of fewer the indices say nothing
 
 
@@ -45,12 +46,21 @@ def sample(axes: Sequence[Axis], method: Method, count: int, seed: int = 0) -> l
         listed = math.prod(len(axis.values) or 1 for axis in axes)
         # A hair is added so that the cube root of 27 is 3.
         along = max(2, math.floor((count / listed) ** (1.0 / free) + 1e-9)) if free else 1
-        columns = [axis.spread(along) for axis in axes]
-        points = np.array(list(itertools.product(*columns)))
-    else:
-        shares = _shares(method, len(axes), count, seed)
-        points = np.stack([axis.at(column) for axis, column in zip(axes, shares.T, strict=True)], axis=1)
-    return [dict(zip((axis.name for axis in axes), map(float, point), strict=True)) for point in points]
+        size = math.prod(len(axis.values) or along for axis in axes)
+        if size > MOST:
+            raise UserError(
+                f"--method grid: {size:,} points, of {along} values or more along each of {len(axes)} parameters, are "
+                f"more than {MOST:,}; vary fewer, walk some together (--zip), or draw --samples (--method sobol)"
+            )
+        return points_at(axes, np.array(list(itertools.product(*(axis.shares(along) for axis in axes)))))
+    return points_at(axes, _shares(method, len(axes), count, seed))
+
+
+def points_at(axes: Sequence[Axis], shares: np.ndarray) -> list[Point]:
+    """The points at shares of each axis: (points, axes). What goes with an axis has the same share."""
+    columns = {each.name: each.at(shares[:, k]) for k, axis in enumerate(axes) for each in axis.parameters}
+    rows = np.stack(list(columns.values()), axis=1).tolist()
+    return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
 def _shares(method: Method, dimensions: int, count: int, seed: int) -> np.ndarray:
@@ -99,17 +109,18 @@ def read_points(path: Path) -> list[Point]:
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.reader(file))
+            reader = csv.reader(file)
+            rows = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise UserError(f"--points {path}: {error}; give a CSV file with a line of names") from error
-    rows = [row for row in rows if any(cell.strip() for cell in row)]
     if len(rows) < 2:
         raise UserError(f"--points {path}: no candidates; give a line of names, then a line of numbers for each")
-    names = [name.strip() for name in rows[0]]
+    first, *rest = rows
+    names = [name.strip() for name in first[1]]
     odd = [name for name in names if not name.isidentifier() or names.count(name) > 1]
     if odd:
-        raise UserError(f"--points {path}, line 1: {odd[0]!r} is no name of a parameter, or is there twice")
-    return [_point(path, line, names, row) for line, row in enumerate(rows[1:], start=2)]
+        raise UserError(f"--points {path}, line {first[0]}: {odd[0]!r} is no name of a parameter, or is there twice")
+    return [_point(path, line, names, row) for line, row in rest]
 
 
 def _point(path: Path, line: int, names: list[str], row: list[str]) -> Point:

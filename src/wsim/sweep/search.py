@@ -14,7 +14,7 @@ import numpy as np
 
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Outcome
-from wsim.sweep.sampling import Point
+from wsim.sweep.sampling import Point, points_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class Search:
             FIRST_STEP,
             {
                 "bounds": [0.0, 1.0],
-                "seed": seed + 1,  # its 0 draws a seed from the clock
+                "seed": (seed + 1) % 2**32 or 1,  # its 0 draws a seed from the clock, and it has no greater one
                 "popsize": max(batch, 4 + math.floor(3 * math.log(dimensions))),
                 "tolx": FINE,
                 "tolfun": 0.0,
@@ -63,10 +63,7 @@ class Search:
     def ask(self) -> list[Point]:
         """The next points."""
         self._asked = self._strategy.ask()
-        columns = np.transpose(self._asked)
-        values = [axis.at(column) for axis, column in zip(self._axes, columns, strict=False)]
-        names = [axis.name for axis in self._axes]
-        return [dict(zip(names, map(float, point), strict=True)) for point in np.transpose(values)]
+        return points_at(self._axes, np.asarray(self._asked))
 
     def tell(self, outcomes: Sequence[Outcome]) -> None:
         """What came of the points that were asked for last, in their order."""

@@ -86,7 +86,7 @@ def sensitivities(spec: Spec, outcomes: Sequence[Outcome]) -> list[Sensitivity]:
         of_each = np.array([_result(by_number.get(number), result) for number in range(each, (points + 1) * each)])
         rows = of_each.reshape(-1, len(spec.axes) + 2, each).mean(axis=2)
         whole = rows[np.isfinite(rows).all(axis=1)]
-        told = indices([axis.name for axis in spec.axes], whole) if len(whole) >= LEAST_ROWS else []
+        told = indices([axis.label for axis in spec.axes], whole) if len(whole) >= LEAST_ROWS else []
         if told:
             found.append(Sensitivity(result, told, len(whole), len(rows) - len(whole)))
     return found

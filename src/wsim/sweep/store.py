@@ -7,6 +7,7 @@ part is named by where it begins, so that parts in the order of their names are 
 
 from __future__ import annotations
 
+import shutil
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -89,14 +90,17 @@ class Store:
                 raise UserError(f"{self.url} holds {outside[0]!r}, which lies outside of the sweep's folder")
             if path.exists():
                 raise UserError(f"{path} is here already; go on with it: --resume {path}, with --store for the copy")
+            partial = path.with_name(f".{path.name}.partial")  # what is cut off is no sweep to go on with
+            shutil.rmtree(partial, ignore_errors=True)
             for name in names:
                 if not name.startswith(f"{PARTS}/"):
-                    (path / name).parent.mkdir(parents=True, exist_ok=True)
-                    (path / name).write_bytes(self._files.cat_file(f"{self._root}/{name}"))
-                    self._known[name] = (path / name).stat().st_mtime
+                    (partial / name).parent.mkdir(parents=True, exist_ok=True)
+                    (partial / name).write_bytes(self._files.cat_file(f"{self._root}/{name}"))
+                    self._known[name] = (partial / name).stat().st_mtime
+            write_whole(partial / OUTCOMES, self._outcomes(names))
+            partial.rename(path)
         except OSError as error:
-            raise UserError(f"{self.url} cannot be read: {error}") from error
-        write_whole(path / OUTCOMES, self._outcomes(names))
+            raise UserError(f"{self.url} cannot be fetched: {error}") from error
         self._sent = (path / OUTCOMES).stat().st_size
         return SweepFolder(path)
 

@@ -12,6 +12,10 @@ import pyarrow.parquet
 
 from wsim.sweep.candidate import Outcome
 
+FIRST = ("rank", "candidate", "program", "seed")
+DECIDED = ("status", "slack", "decided_by")
+LAST = ("failures", "reason", "seconds", "together", "note")
+
 
 def ranked(outcomes: Sequence[Outcome]) -> list[Outcome]:
     """The best first: by verdict, then by the room to the limit that decides."""
@@ -26,15 +30,11 @@ def parameters(outcomes: Sequence[Outcome]) -> list[str]:
 def table(outcomes: Sequence[Outcome]) -> pa.Table:
     """Columns: rank, candidate, program, seed, each parameter and draw, status, slack, decided_by, each objective's
     value and margin, failures, reason, seconds, how many were simulated together, note. Nothing stands where one has
-    none."""
+    none; a parameter that is called as one of the other columns is `parameter: NAME`."""
     best_first = ranked(outcomes)
     rows = [_row(rank, outcome) for rank, outcome in enumerate(best_first, start=1)]
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    params, objectives = parameters(outcomes), _objectives(outcomes)
-    last = ["failures", "reason", "seconds", "together", "note"]
-    order = [*[name for name in names if name not in (*params, *last) and name not in objectives]]
-    at = order.index("status")
-    order = [*order[:at], *params, *order[at:], *objectives, *last]
+    params, objectives = map(_column, parameters(outcomes)), _objectives(outcomes)
+    order = [*FIRST, *params, *DECIDED, *objectives, *LAST] if rows else []
     return pa.table({name: [row.get(name) for row in rows] for name in order})
 
 
@@ -53,10 +53,15 @@ def _objectives(outcomes: Sequence[Outcome]) -> list[str]:
     return [f"{what}: {name}" for name in names for what in ("value", "margin")]
 
 
+def _column(name: str) -> str:
+    return f"parameter: {name}" if name in (*FIRST, *DECIDED, *LAST) else name
+
+
 def _row(rank: int, outcome: Outcome) -> dict[str, Any]:
     candidate = outcome.candidate
     row: dict[str, Any] = {"rank": rank, "candidate": candidate.number, "program": candidate.program}
-    row |= {"seed": candidate.seed, **candidate.values}
+    row |= {"seed": candidate.seed}
+    row |= {_column(name): value for name, value in candidate.values.items()}
     row |= {"status": outcome.status, "slack": outcome.slack, "decided_by": outcome.decided_by}
     row |= {f"value: {name}": value for name, value in outcome.values.items()}
     row |= {f"margin: {name}": value for name, value in outcome.margins.items()}

@@ -35,6 +35,20 @@ def test_what_cannot_be_explained_is_left_as_by_all_columns_at_once(seed: int) -
     assert np.linalg.norm(wanted - matrix @ strength) == pytest.approx(left, rel=1e-6)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_each_body_is_left_the_same_where_many_contacts_are_alike(seed: int) -> None:
+    """As of faces that share many points, in several frames; also where the change is hardly beyond what they can."""
+    random, enough = np.random.default_rng(300 + seed), 1e-2
+    few = contacts(seed).toarray()[:, : PAIRS // 4]
+    matrix = csr_matrix(np.concatenate([few * random.uniform(0.5, 2.0), few, few, few + 1e-3 * few[:, ::-1]], axis=1))
+    given = np.maximum(random.normal(size=matrix.shape[1]), 0.0) / np.linalg.norm(few, axis=0).mean()
+    wanted = matrix @ given + 10.0 ** random.uniform(-1.5, 1.5) * random.normal(size=6 * BODIES)
+    left = wanted - matrix @ pushing(matrix, wanted, enough)
+    exact = wanted - matrix @ nnls(matrix.toarray(), wanted, maxiter=10 * matrix.shape[1])[0]
+    assert np.linalg.norm(exact.reshape(-1, 6), axis=1).max() > enough
+    assert np.linalg.norm((left - exact).reshape(-1, 6), axis=1).max() < 0.1 * enough
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_what_can_be_explained_is_left_by_no_body_with_more_than_is_enough(seed: int) -> None:
     matrix, enough = contacts(seed), 1e-3

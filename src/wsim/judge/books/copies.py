@@ -56,12 +56,12 @@ def work_out(copies: Sequence[Evidence]) -> None:
             evidence.kept[Touching] = Touching.of(copies[0])
     for evidence, books in zip(copies, Balance(*copies).every(), strict=True):
         evidence.kept[Books] = books
-    for evidence, lacking in zip(copies, standing(copies), strict=True):
-        evidence.kept[Lacking] = creeps(evidence) + lacking
+    for evidence, *lacking in zip(copies, creeps(copies), standing(copies), strict=True):
+        evidence.kept[Lacking] = lacking[0] + lacking[1]
 
 
 def lasting(evidence: Evidence) -> list[Lacking]:
     """What bodies lack to creep, or to stand, as they do."""
     if Lacking not in evidence.kept:
-        evidence.kept[Lacking] = creeps(evidence) + standing([evidence])[0]
+        evidence.kept[Lacking] = creeps([evidence])[0] + standing([evidence])[0]
     return cast("list[Lacking]", evidence.kept[Lacking])

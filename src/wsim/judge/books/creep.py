@@ -8,7 +8,7 @@ something creeps that friction would hold, or would stop.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,10 +17,12 @@ from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import STILL, Poses, pushes
-from wsim.judge.books.touching import Contacts, Touching
+from wsim.judge.books.touching import Contacts, Touching, touching_of
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -47,8 +49,17 @@ class Lacking:
     force: Floats  # (3,) [m/s^2], of its mass: what nothing gives
 
 
-def creeps(evidence: Evidence) -> list[Lacking]:
-    """All of a recording, in spans that overlap by a half."""
+def creeps(copies: Sequence[Evidence]) -> list[list[Lacking]]:
+    """All of some recordings of similar worlds, in spans that overlap by a half."""
+    spans = [(n, first, calm) for n, evidence in enumerate(copies) for first, calm in _spans(evidence)]
+    found: list[list[Lacking]] = [[] for _ in copies]
+    for (n, first, calm), contacts in zip(spans, _contacts(copies, spans), strict=True):
+        found[n] += _of_span(copies[n], contacts, calm, first, first + INTERVALS)
+    return found
+
+
+def _spans(evidence: Evidence) -> list[tuple[int, NDArray[np.bool_]]]:
+    """Where a recording's bodies may creep: from which frame on, and those that nothing hits (B,)."""
     motion, books = evidence.motion, Books.of(evidence)
     firsts = np.arange(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2)
     moved = lengths(motion.com[firsts + INTERVALS] - motion.com[firsts])
@@ -56,17 +67,28 @@ def creeps(evidence: Evidence) -> list[Lacking]:
     calm = ~motion.jointed & ~motion.kinematic & ~hit
     least = CREEP * (evidence.time[firsts + INTERVALS] - evidence.time[firsts])
     spans = np.flatnonzero(np.any(calm & (moved > least[:, None]), axis=1))
-    return [
-        lacking
-        for span in spans
-        for lacking in _of_span(evidence, books, calm[span], int(firsts[span]), int(firsts[span]) + INTERVALS)
-    ]
+    return [(int(firsts[span]), calm[span]) for span in spans]
 
 
-def _of_span(evidence: Evidence, books: Books, calm: NDArray[np.bool_], first: int, last: int) -> list[Lacking]:
-    motion, touching, middle, size = evidence.motion, Touching.of(evidence), (first + last) // 2, books.size
+def _contacts(copies: Sequence[Evidence], spans: Sequence[tuple[int, int, NDArray[np.bool_]]]) -> list[Contacts]:
+    """Those in the middle of each span, as each recording by itself counts bodies and shapes."""
+    if not spans:
+        return []
+    touching, every = touching_of(copies), np.arange(len(spans))
+    poses = np.stack([copies[n].body_q[first + INTERVALS // 2] for n, first, _ in spans])
+    which = np.array([n for n, *_ in spans])
+    contacts = touching.of_many(poses, np.full(len(spans), NEAR), every, which)
+    bodies, shapes = poses.shape[1], len(touching.shapes) // len(touching.worlds)
+    at = np.maximum(contacts.one, contacts.two) // max(bodies, 1)
+    one, two = (np.where(rows >= 0, rows - at * bodies, rows) for rows in (contacts.one, contacts.two))
+    own = replace(contacts, one=one, two=two, shapes=contacts.shapes % max(shapes, 1))
+    return [own.only(at == k) for k in every]
+
+
+def _of_span(evidence: Evidence, contacts: Contacts, calm: NDArray[np.bool_], first: int, last: int) -> list[Lacking]:
+    books, middle = Books.of(evidence), (first + last) // 2
+    motion, touching, size = evidence.motion, Touching.of(evidence), books.size
     poses = Poses(evidence.body_q[middle], motion.com[middle], motion.v[middle], motion.w[middle])
-    contacts = touching.at(poses.q, NEAR)
     if not len(contacts):
         return []
     drift = _drifts(evidence, touching, contacts, first, last)

@@ -132,7 +132,7 @@ def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], w
     evidence, motion, dt = courses.evidence, courses.evidence.motion, courses.dt
     before, after = (courses.at(k, side, when) for side in (0, 1))
     reach = 2.0 * APART * dt * float(motion.surface_speed[k : k + 2].max())
-    contacts = touching.at(before.q, reach)
+    contacts = touching.at(before.q, reach, [row for row in pair if row >= 0])
     closing = _closing(touching, contacts, before)
     ours = np.flatnonzero((contacts.one == pair[0]) & (contacts.two == pair[1]))
     if not len(ours) or closing[ours].max() <= 0.0:
@@ -246,7 +246,8 @@ def _changing(
     `speeds` are those with which it closes just before, and just after.
     """
     other = courses.at(k, side, when + (2 * side - 1) * courses.dt)
-    contacts = touching.at(other.q, 2.0 * abs(speeds[0]) * courses.dt + float(abs(contact.gap[0])))
+    reach = 2.0 * abs(speeds[0]) * courses.dt + float(abs(contact.gap[0]))
+    contacts = touching.at(other.q, reach, [int(row) for row in (contact.one[0], contact.two[0]) if row >= 0])
     same = np.flatnonzero(np.all(contacts.shapes == contact.shapes[0], axis=1))
     apart = np.linalg.norm(contacts.point[same] - contact.point[0], axis=1)
     if not len(same):

@@ -162,11 +162,13 @@ class Touching:
         item.add_geom(**fields)
         self.shapes.append((row, owner, shape))
 
-    def at(self, poses: Floats, reach: float) -> Contacts:
-        """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]."""
-        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp))
+    def at(self, poses: Floats, reach: float, about: Sequence[int] | None = None) -> Contacts:
+        """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]; those of the bodies `about` alone."""
+        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp), about=about)
 
-    def of_many(self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None) -> Contacts:
+    def of_many(
+        self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None, about: Sequence[int] | None = None
+    ) -> Contacts:
         """Contacts at several poses.
 
         Args:
@@ -174,9 +176,14 @@ class Touching:
             reach: Of each pose, (K,) [m].
             rows: A body's row is that of these by B, (K,).
             worlds: Which of the joined worlds each is a pose of, (K,); None: all of the first.
+            about: Rows of bodies; contacts that none of them has are left out.
         """
         which = np.zeros(len(poses), dtype=np.intp) if worlds is None or len(self.worlds) == 1 else worlds
         shapes, place, normal, gap, at = self._found(poses, reach, which)
+        if about is not None:  # before further points are looked for
+            chosen = np.flatnonzero(np.isin(self._row_of_shape[shapes], about).any(axis=1))
+            shapes, at = shapes[chosen], at[chosen]
+            place, normal, gap = place[chosen], normal[chosen], gap[chosen]
         one, two = self._row_of_shape[shapes].T
         contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
@@ -186,6 +193,9 @@ class Touching:
             at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
             order = np.argsort(at, kind="stable")  # what is of one pose stays together
             contacts, at = together([contacts, *others, further.only(near)]).only(order), at[order]
+            if about is not None and self._meshes:
+                chosen = np.flatnonzero(np.isin(contacts.one, about) | np.isin(contacts.two, about))
+                contacts, at = contacts.only(chosen), at[chosen]
         by = rows[at] * poses.shape[1]
         one, two = (np.where(row >= 0, row + by, row) for row in (contacts.one, contacts.two))
         contacts = replace(contacts, one=one, two=two)
@@ -216,6 +226,19 @@ class Touching:
         shapes = self._shape_of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
+    def deepest(self, poses: Floats) -> Floats:
+        """How deep shapes are in each other at most at each of several poses (K, B, 7), meshes aside, (K,) [m]."""
+        every = np.zeros(len(poses), dtype=np.intp)
+        shapes, _, _, gap, at = self._found(poses, np.zeros(len(poses)), every)
+        found, meet = np.zeros(len(poses)), self._meet[shapes[:, 0], shapes[:, 1]]
+        np.maximum.at(found, at[meet], -gap[meet])
+        return found
+
+    @property
+    def triangles(self) -> bool:
+        """Whether any shape is a mesh."""
+        return bool(self._meshes)
+
     @cached_property
     def _meet(self) -> NDArray[np.bool_]:
         """Whether two shapes may touch at all: not where a joint ties their objects, or they are made to pass."""
@@ -235,7 +258,7 @@ class Touching:
         """Further points of what is flat among contacts, each at one of several poses; and at which these are."""
         if not self._flat:
             return NONE, NONE.one
-        places = self._placed(pairs, poses[at])
+        places = self._placed(pairs, poses, at[:, None])
         further = flats(pairs, normal, at, [shape for _, _, shape in self.shapes], places)
         shapes = pairs[further.of]
         gap = further.gap - self._margin[shapes].sum(axis=1)
@@ -264,13 +287,13 @@ class Touching:
                 found.append(Contacts(*rows, np.tile([m, k], (count, 1)), point, normal, near.gap))
         return together(found)
 
-    def _placed(self, shapes: Rows, poses: Floats) -> Floats:
-        """Where shapes are in the world, (..., 7), each at poses of its own (..., B, 7) or at the same (B, 7)."""
+    def _placed(self, shapes: Rows, poses: Floats, at: Rows | None = None) -> Floats:
+        """Where shapes (...) are in the world, (..., 7), at poses (B, 7), or each `at` one of several (K, B, 7)."""
         own, rows = self._own[shapes], self._row_of_shape[shapes]
         if not poses.shape[-2]:
             return own
         body = np.maximum(rows, 0)
-        q = poses[body] if poses.ndim == 2 else poses[np.arange(len(poses))[:, None], body]
+        q = poses[body] if at is None else poses[at, body]
         place = q[..., :3] + rotate(q[..., 3:], own[..., :3])
         moved = np.concatenate([place, multiply(q[..., 3:], own[..., 3:])], axis=-1)
         return np.where((rows >= 0)[..., None], moved, own)

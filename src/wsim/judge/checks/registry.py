@@ -31,6 +31,7 @@ from wsim.judge.checks import (
     plan_joints,
     plan_motion,
     recorded,
+    recorded_state,
     recorded_ties,
     rest,
     rolling,
@@ -45,9 +46,9 @@ if TYPE_CHECKING:
 
 RUN = (run,)
 PHYSICS = (
-    physics, settled, stated, continuity, motion, forces, recorded, recorded_ties, impacts, rolling, catches, energy,
-    contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion, fluid, fluid_books,
-    fluid_push, lift, fluid_height, water, camera,
+    physics, settled, stated, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts, rolling,
+    catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion,
+    fluid, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 
 

@@ -136,7 +136,7 @@ class _Evaluation:
             return node, self._of_predicate(node)
         assert isinstance(node.of, Predicate)  # as a plan makes sure
         shape = (self.signals.count, len(self.signals.time))
-        frames = slice(self._first_of_last(node.seconds), None)
+        frames = slice(first_of_last(self.signals.time, node.seconds), None)
         return node.of, [measure.averaged(shape, frames) for measure in self._of_predicate(node.of)]
 
     def _of_predicate(self, predicate: Predicate) -> list[Measure]:
@@ -217,7 +217,7 @@ class _Evaluation:
 
     def _of_means(self, mean: Mean) -> Trace:
         """The same at each frame; what decides is where the means begin."""
-        trace, first = self._frames(mean), self._first_of_last(mean.seconds)
+        trace, first = self._frames(mean), first_of_last(self.signals.time, mean.seconds)
         frames = len(self.signals.time)
         return Trace(trace.robustness, (trace.source // frames * frames + first).astype(np.int32))
 
@@ -237,18 +237,9 @@ class _Evaluation:
         time = self.signals.time
         if len(inner) < len(time):
             raise MissingError("what is to hold at the end looks beyond it; take the window out of it")
-        low = self._first_of_last(seconds)
+        low = first_of_last(time, seconds)
         least = extreme(inner, np.array([low]), np.array([len(time)]), greatest=False)
         return Trace(np.repeat(least.robustness, len(time), axis=1), np.repeat(least.source, len(time), axis=1))
-
-    def _first_of_last(self, seconds: float | None) -> int:
-        """The first frame of the last seconds, or of the final window; MissingError where they are not covered."""
-        time = self.signals.time
-        span = float(time[-1] - time[0])
-        wanted = final_window(span) if seconds is None else seconds
-        if wanted > span + self.signals.step / 2:
-            raise MissingError(f"the last {wanted:g} s are not covered: the recording has {span:.4g} s; record longer")
-        return int(np.searchsorted(time, time[-1] - wanted - 1e-6))
 
     def _one_after_another(self, formula: Then) -> Trace:
         """From the last event backwards: this event, and in its window after it the rest; at any time from now on."""
@@ -259,6 +250,15 @@ class _Evaluation:
             rest = pick(first, following(rest, time, window, first), greatest=False)
         low, high = span_of(time, len(rest), None)
         return extreme(rest, low, high, greatest=True)
+
+
+def first_of_last(time: Floats, seconds: float | None) -> int:
+    """The first frame of the last seconds, or of the final window; MissingError where they are not covered."""
+    span, step = float(time[-1] - time[0]), float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+    wanted = final_window(span) if seconds is None else seconds
+    if wanted > span + step / 2:
+        raise MissingError(f"the last {wanted:g} s are not covered: the recording has {span:.4g} s; record longer")
+    return int(np.searchsorted(time, time[-1] - wanted - 1e-6))
 
 
 def final_window(span: float) -> float:

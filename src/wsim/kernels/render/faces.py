@@ -52,7 +52,8 @@ def fresnel(cos_angle: float, ior_from: float, ior_to: float) -> float:
         return 0.0
     # Glass against water hardly reflects at grazing angles either: the grazing term needs a real step of index.
     grazing = wp.clamp(f0 * 25.0, 0.0, 1.0)
-    return f0 + grazing * (1.0 - f0) * wp.pow(1.0 - wp.clamp(cos_angle, 0.0, 1.0), 5.0)
+    off = 1.0 - wp.clamp(cos_angle, 0.0, 1.0)
+    return f0 + grazing * (1.0 - f0) * off * off * off * off * off
 
 
 @wp.func
@@ -115,12 +116,12 @@ def face_of_mesh(mesh: wp.uint64, origin: wp.vec3, direction: wp.vec3, t: float)
 
 
 @wp.func
-def face_of_fluid(media: Media, origin: wp.vec3, direction: wp.vec3, t: float) -> Face:
-    """The first face of a fluid's surface after `t`, its normal interpolated between the vertices."""
+def face_of_fluid(media: Media, origin: wp.vec3, direction: wp.vec3, t: float, reach: float) -> Face:
+    """The first face of a fluid's surface after `t`, up to `reach` on, its normal interpolated between the vertices."""
     face = Face()
     face.t = FAR
     mesh = media.fluid_mesh
-    query = wp.mesh_query_ray(mesh, origin + direction * t, direction, FAR)
+    query = wp.mesh_query_ray(mesh, origin + direction * t, direction, reach)
     if query.result:
         face.t = t + query.t
         face.inside = query.sign < 0.0
@@ -149,11 +150,11 @@ def exit_of_fluid(media: Media, entry: Face, origin: wp.vec3, direction: wp.vec3
             face.t = FAR
             break
         start = face.t + 2.0e-5 * (1.0 + face.t)
-        again = face_of_fluid(media, origin, direction, start)
+        again = face_of_fluid(media, origin, direction, start, gap)
         if again.inside or again.t - face.t > gap:
             break
         start = again.t + 2.0e-5 * (1.0 + again.t)
-        face = face_of_fluid(media, origin, direction, start)
+        face = face_of_fluid(media, origin, direction, start, FAR)
     return face
 
 
@@ -162,7 +163,7 @@ def fluid_after(media: Media, known: Face, origin: wp.vec3, direction: wp.vec3, 
     """The fluid's first face after `start`: the known one while it lies ahead."""
     face = known
     if media.fluid_mesh != wp.uint64(0) and known.t < start:
-        face = face_of_fluid(media, origin, direction, start)
+        face = face_of_fluid(media, origin, direction, start, FAR)
         if face.inside:
             face = exit_of_fluid(media, face, origin, direction, t_end)
     return face

@@ -4,12 +4,15 @@ import warp as wp
 
 from wsim.kernels.sph.density import Method
 from wsim.kernels.sph.grid import Grid, wrap
-from wsim.kernels.sph.pair_sums import PairSums
+from wsim.kernels.sph.pair_sums import AtWalls, PairSums
 from wsim.kernels.sph.records import load_record
 from wsim.kernels.sph.species import BODIES, FLUID, WALLS, Species, is_near
 
 # Of h^2: keeps two particles at one place from dividing by zero. Monaghan's 0.01 would weaken viscosity by 1.5 %.
 COINCIDENT = wp.constant(1.0e-4)
+# Sum of V W over a wall, seen from its flat face: half of the kernel. In an edge of a tank it is reached 0.34 spacings
+# off both faces, in a corner 0.52 off all three: they are a little round.
+ON_FACE = wp.constant(0.5)
 
 
 @wp.func
@@ -19,9 +22,26 @@ def _viscosities(method: Method, rest_density: float, viscosity: float) -> wp.ve
     return wp.vec3(artificial, method.laminar_factor * viscosity, COINCIDENT * method.h * method.h)
 
 
+@wp.func
+def _stop_at_face(at_walls: AtWalls, v: wp.vec3) -> wp.vec3:
+    """What a wall adds to the velocity of a particle that has come to its face, so that it goes no further.
+
+    Pressure alone does not keep a particle out. It rises with sum V W, and of a particle that leaves the water the part
+    over the fluid falls as that over the wall rises: one that a landing block pressed out went from 0.27 + 0.49 to
+    0.04 + 0.81. The little that it gains is lost to its neighbours by the density diffusion, so that others creep into
+    the edges of a tank at a hundredth of c; and stretched ones are drawn in. But no water passes a wall: v.n >= 0 on
+    its face. The blow is inelastic.
+    """
+    stop = wp.vec3(0.0, 0.0, 0.0)
+    if at_walls[3] > ON_FACE:
+        out = wp.normalize(wp.vec3(at_walls[4], at_walls[5], at_walls[6]))
+        stop = -wp.min(wp.dot(v, out), 0.0) * out
+    return stop
+
+
 def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
     """The kernel that sums forces and moves the fluid, given the kinds of solids."""
-    of_fluid, of_walls, of_bodies = (sums.force[kind] for kind in (FLUID, WALLS, BODIES))
+    of_fluid, of_walls, of_bodies = sums.force[FLUID], sums.force_at_walls, sums.force[BODIES]
 
     @wp.kernel(**sums.options)
     def momentum(
@@ -51,8 +71,8 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         where r^2 stands for r^2 + 1e-4 h^2. The pressure term is the adjoint of the continuity equation's divergence,
         so that fluid pairs exchange no energy but by the viscous terms. Every pair's force is along x_ij and opposite
         for j: momentum and angular momentum are kept to rounding. K is 2(d + 2) where the sum is an integral (Violeau
-        2012); `ConfigSPH.laminar_factor` has it for a sum. Velocity is kicked first, and the new velocity moves the
-        particle (symplectic Euler).
+        2012); `ConfigSPH.laminar_factor` has it for a sum. Velocity is kicked first, walls stop what is on their face,
+        and the new velocity moves the particle (symplectic Euler).
         """
         s = first + wp.tid()
         i = fluid.order[s]
@@ -64,16 +84,19 @@ def make_momentum(sums: PairSums, solids: tuple[int, ...]) -> wp.Kernel:
         viscous = _viscosities(method, rest_density[world], viscosity[world])
         own = m[3] + 2.0 * method.background_pressure
         total = of_fluid(grid, fluid, fluid, s, world, method.shape, x, v, own, viscous)
+        at_walls = AtWalls()
         if wp.static(WALLS in solids):
-            of_wall = wp.vec3(0.0, 0.0, 0.0)
             if is_near(grid, walls, world, x):
-                of_wall = of_walls(grid, fluid, walls, s, world, method.shape, x, v, own, viscous)
-                total += of_wall
-            on_walls[i] = -p[3] * of_wall
+                at_walls = of_walls(grid, fluid, walls, s, world, method.shape, x, v, own, viscous)
+                total += wp.vec3(at_walls[0], at_walls[1], at_walls[2])
         if wp.static(BODIES in solids):
             if is_near(grid, bodies, world, x):
                 total += of_bodies(grid, fluid, bodies, s, world, method.shape, x, v, own, viscous)
         v = v + dt * (p[3] / mass[i] * total + gravity[world])
+        if wp.static(WALLS in solids):
+            stop = _stop_at_face(at_walls, v)
+            v += stop
+            on_walls[i] = -p[3] * wp.vec3(at_walls[0], at_walls[1], at_walls[2]) - mass[i] / dt * stop
         velocity[i] = v
         position[i] = wrap(grid, x + dt * v)
 

@@ -24,6 +24,9 @@ BLOCK = 128  # threads of a CUDA block; 3 % quicker than 256 for sums over neigh
 # Sums of W, of W times pressure, and of V v.grad W.
 Flux = wp.vec3
 
+# Force per volume (3), sum of V W, and the way out of the wall (3), up to a factor.
+AtWalls = wp.types.vector(length=7, dtype=wp.float32)
+
 # Sums of W, of W times pressure, of W times velocity (3), and of W times the way to the fluid (3).
 Extrapolated = wp.types.vector(length=8, dtype=wp.float32)
 
@@ -162,12 +165,31 @@ _MOMENTUM = (
     """
             const float approach = (v0 - n.x) * d0 + (v1 - n.y) * d1 + (v2 - n.z) * d2;
             const float push = approach < 0.0f ? (artificial + laminar) * approach : laminar * approach;
-            const float force = q.w * (t2 * t) * (push / (r2 + eta2) - p - n.w);
+            const float slope = q.w * (t2 * t);
+            const float force = slope * (push / (r2 + eta2) - p - n.w);
             a0 += force * d0;
             a1 += force * d1;
             a2 += force * d2;
     """,
     "return wp::vec_t<3, float>(slope_norm * a0, slope_norm * a1, slope_norm * a2);",
+)
+
+_MOMENTUM_AT_WALLS = (
+    _MOMENTUM[0] + "float share = 0.0f, n0 = 0.0f, n1 = 0.0f, n2 = 0.0f;",
+    _MOMENTUM[1]
+    + """
+            share += q.w * (t2 * t2) * (1.0f + 4.0f * u);
+            n0 += slope * d0;
+            n1 += slope * d1;
+            n2 += slope * d2;
+    """,
+    """
+    wp::vec_t<7, float> sums;
+    sums[0] = slope_norm * a0, sums[1] = slope_norm * a1, sums[2] = slope_norm * a2;
+    sums[3] = -0.05f * slope_norm * support2 * share;  // W is norm t^4 (1 + 4 u), and slope_norm -5 norm / h^2
+    sums[4] = n0, sums[5] = n1, sums[6] = n2;
+    return sums;
+    """,
 )
 
 _FIND = """
@@ -203,7 +225,8 @@ class PairSums:
         continuity_at_bodies: Over bodies: sums of V_j v_ij.grad W and of 1 - r / 2h.
         flux: `Flux`, over fluid around what stands still.
         extrapolation: `Extrapolated`, over fluid.
-        force: Force on a particle per volume, over each kind.
+        force: Force on a particle per volume, over fluid or bodies.
+        force_at_walls: `AtWalls`, over walls.
         find: Write the neighbours of one kind behind `start` others, but `itself`; returns how many there are then.
             For lists alone.
         options: What `wp.kernel` is to do with a kernel that sums.
@@ -215,6 +238,7 @@ class PairSums:
     flux: wp.Function
     extrapolation: wp.Function
     force: dict[int, wp.Function]
+    force_at_walls: wp.Function
     find: wp.Function
     options: dict[str, Any]
 
@@ -281,7 +305,8 @@ def make_pair_sums(lists: bool, periodic: tuple[bool, bool, bool], branch: bool,
         continuity_at_bodies=total(_CONTINUITY_AT_BODIES, wp.vec2, BODIES),
         flux=total(_FLUX, Flux),
         extrapolation=total(_EXTRAPOLATION, Extrapolated),
-        force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, WALLS, BODIES)},
+        force={kind: total(_MOMENTUM, wp.vec3, kind) for kind in (FLUID, BODIES)},
+        force_at_walls=total(_MOMENTUM_AT_WALLS, AtWalls, WALLS),
         find=find,
         options=options,
     )
