@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ Array = NDArray[np.float64]
 _CORNER = math.radians(45.0)  # a way that turns by as much at a point has a corner there, and is straight up to it
 _LONG = 2.0  # a stretch so much longer than the next is straight, and the next begins to bend
 _BENT = math.radians(1.0)  # a link that turns by less is on a straight line
+_FIRST = math.sqrt(0.5)  # of the angle of a link on a bend, after which the first touches
 _FINE = 64  # samples of a stretch, by which its arc length is found
 
 
@@ -33,9 +35,9 @@ def laid(way: Array, links: int) -> Array:
         links: How many, two or more.
     """
     curve = _Curve(way)
-    touched = _touched(curve, links)
+    touched, ends = _touched(curve, links)
     touch, along = curve.at(touched)
-    joints, _ = curve.at(np.array([0.0, *0.5 * (touched[1:] + touched[:-1]), curve.length]))
+    joints, _ = curve.at(ends)
     for k in range(1, links):
         met = _meet(touch[k - 1], along[k - 1], touch[k], along[k], float(touched[k] - touched[k - 1]))
         if met is not None:
@@ -43,23 +45,46 @@ def laid(way: Array, links: int) -> Array:
     return joints
 
 
-def _touched(curve: _Curve, links: int) -> Array:
-    """Arc lengths at which each link touches the way in its middle, (links,) [m].
+def _touched(curve: _Curve, links: int) -> tuple[Array, Array]:
+    """Arc lengths at which each link touches the way, (links,), and nearest to its ends, (links + 1,) [m]."""
+    mean = curve.length / links
+    bounds, bent = curve.bends(mean)
+    if not 0 < len(bounds) < links:
+        even: Array = np.arange(links + 1, dtype=np.float64)
+        return mean * (even[:-1] + 0.5), mean * even
+    where = np.array([0.0, *bounds, curve.length])
+    before = np.array([0.5, *np.full(len(bounds), _FIRST), 0.5])  # of a link on a bend, from an end of that
+    more = np.where(bent, before[:-1] + before[1:] - 1.0, 0.0)
+    into = np.array([0.0, *np.full(len(bounds), 0.5 * _FIRST), 0.0])  # of a link, by which a line's last passes its end
+    longer = np.where(bent, -more, into[:-1] + into[1:])
+    counts = _dealt(np.maximum(np.diff(where) + longer * mean, 0.0), links)
+    shares = np.diff(where) / (counts + more)
+    touched: list[float] = []
+    ends = [0.0]
+    for k, (start, end) in enumerate(pairwise(where)):
+        if bent[k]:
+            own = start + shares[k] * (before[k] + np.arange(counts[k]))
+            joints = np.array([*0.5 * (own[1:] + own[:-1]), end - into[k + 1] * shares[k]])
+        else:
+            last = end + (into[k + 1] * shares[k + 1] if k + 1 < len(shares) else 0.0)
+            joints = np.linspace(ends[-1], last, counts[k] + 1)
+            own = np.clip(0.5 * (joints[1:] + joints[:-1]), start, end)
+            joints = joints[1:]
+        touched += own.tolist()
+        ends += joints.tolist()
+    return np.array(touched), np.array(ends)
 
-    An end of the chain has half a link at least, what is between two such places one. The others are dealt out one by
-    one, each to where it takes most off the sum of (share - mean share)^2 of all links, which makes that the least
-    (Fox, Operations Research 14, 1966).
+
+def _dealt(lengths: Array, links: int) -> NDArray[np.int64]:
+    """How many links each of some lengths gets, one at least.
+
+    One by one, each to where it takes most off the sum of (share - mean share)^2 of all links, which makes that the
+    least (Fox, Operations Research 14, 1966).
     """
-    middles: Array = np.arange(links, dtype=np.float64) + 0.5
-    bends = curve.bends(curve.length / links)
-    if not 0 < len(bends) <= links:
-        return curve.length / links * middles
-    where = np.array([0.0, *bends, curve.length])
-    counts = np.ones(len(bends) + 1)
-    counts[[0, -1]] = 0.5
-    for _ in range(links - len(bends)):
-        counts[np.argmax(np.diff(where) ** 2 / (counts * (counts + 1.0)))] += 1.0
-    return np.interp(middles, [0.0, *np.cumsum(counts)], where)
+    counts = np.ones(len(lengths), dtype=np.int64)
+    for _ in range(links - len(lengths)):
+        counts[np.argmax(lengths**2 / (counts * (counts + 1.0)))] += 1
+    return counts
 
 
 def _meet(one: Array, way: Array, other: Array, onward: Array, apart: float) -> Array | None:
@@ -107,11 +132,15 @@ class _Curve:
         self._where = np.concatenate([[0.0], (np.arange(len(long))[:, None] + share[1:]).ravel()])
         self.length = float(self._reach[-1])
 
-    def bends(self, share: float) -> Array:
-        """Arc lengths at which a line begins to bend or is straight again [m]: turns by a degree in a `share` [m]."""
+    def bends(self, share: float) -> tuple[Array, NDArray[np.bool_]]:
+        """Arc lengths at which a line begins to bend or is straight again [m], and which of what is between is bent.
+
+        What turns by a degree in a `share` [m] is.
+        """
         ends = self._reach[::_FINE]
         bent = self._turn / np.diff(ends) * share > _BENT
-        return ends[1:-1][bent[1:] != bent[:-1]]
+        changes = np.flatnonzero(bent[1:] != bent[:-1])
+        return ends[1:-1][changes], bent[np.array([0, *changes + 1])]
 
     def at(self, s: Array) -> tuple[Array, Array]:
         """Points at arc lengths [m], and the directions there, (M, 3) each."""
