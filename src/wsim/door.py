@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -28,21 +29,28 @@ def keep_what_loads() -> None:
     _lasts = True
 
 
-def load_module(name: str) -> ModuleType:
-    """Import a module without looking for garbage on the way.
+@contextmanager
+def unsearched() -> Iterator[None]:
+    """Load without looking for garbage on the way.
 
     A package such as Newton makes a million objects as it loads and drops none of them, and Python's collector goes
-    through all that there are again and again: a tenth of the time.
+    through all that there are again and again: a third of the time.
     """
     collects = gc.isenabled()
     gc.disable()
     try:
-        return import_module(name)
+        yield
     finally:
         if _lasts:
             gc.freeze()
         if collects:
             gc.enable()
+
+
+def load_module(name: str) -> ModuleType:
+    """Import a module, unsearched."""
+    with unsearched():
+        return import_module(name)
 
 
 def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -40,6 +41,17 @@ def sleeps_at_two(task: int) -> int:
 
 def raises(task: int) -> int:
     raise LookupError(str(task))
+
+
+def searched(task: int) -> tuple[int, int, bool]:
+    """What a worker keeps from the search for garbage, what it searches, and whether it does."""
+    return gc.get_freeze_count(), len(gc.get_objects()), gc.isenabled()
+
+
+def test_what_a_worker_loads_is_kept_from_the_search_for_garbage() -> None:
+    ((_, (kept, looked_at, collects)),) = each(searched, [0], 1, 60.0)
+    assert kept > 20 * looked_at
+    assert collects
 
 
 def test_every_task_has_its_result() -> None:

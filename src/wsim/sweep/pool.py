@@ -7,6 +7,7 @@ import ctypes
 import math
 import multiprocessing
 import os
+import pickle
 import signal
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -15,6 +16,7 @@ from functools import partial
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
+from wsim.door import keep_what_loads, unsearched
 from wsim.scene import usd_threads
 from wsim.sweep.shards import Attempt, Dealer, Heard, Lost, run
 
@@ -143,7 +145,7 @@ def _start(work: Callable[[Any], Iterable[Sequence[Found]]], environment: Mappin
     ours, theirs = context.Pipe()
     threads = {name: value for name, value in ONE_THREAD.items() if name not in os.environ}
     with _environment({**threads, **environment}):
-        process = context.Process(target=_serve, args=(theirs, work), daemon=True)
+        process = context.Process(target=_serve, args=(theirs, pickle.dumps(work)), daemon=True)
         process.start()
     theirs.close()
     return _Worker(process, ours)
@@ -164,12 +166,20 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
                 os.environ[name] = value
 
 
-def _serve(pipe: Connection, work: Callable[[Any], Iterable[Sequence[Found]]]) -> None:
-    """In a process: do what comes, until nobody is there to send it. It ends when who started it is killed."""
+def _serve(pipe: Connection, packed: bytes) -> None:
+    """In a process: do what comes, until nobody is there to send it. It ends when who started it is killed.
+
+    Args:
+        pipe: Tasks come by it, and what is found goes.
+        packed: The pickled `work`; what it needs, the simulator too, is loaded as it is unpacked.
+    """
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     parent = multiprocessing.parent_process()
     if parent is None or not parent.is_alive():
         return
+    keep_what_loads()
+    with unsearched():
+        work: Callable[[Any], Iterable[Sequence[Found]]] = pickle.loads(packed)
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pipe.recv()

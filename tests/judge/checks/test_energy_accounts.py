@@ -152,3 +152,57 @@ def test_what_is_set_down_from_a_hair_above_loses_that_and_no_more(account, gap)
     """
     assert account(heap(gap)) == 0
     assert account(heap(gap), change=slowed(0.04)) == -1
+
+
+def row(restitution, radii, densities, gaps, wall=None, speed=2.0):
+    """A heavy ball that runs into ever lighter ones, in one line without gravity, before a wall or none."""
+
+    def build(scene):
+        scene.simulation(duration=0.25, frame_rate=24.0, gravity=(0, 0, 0))
+        speeds, place = [speed, 0.0, 0.0, 0.0, 0.0], 0.0
+        for i, (radius, density, gap) in enumerate(zip(radii, densities, gaps, strict=True)):
+            place += radius
+            scene.sphere(f"ball_{i}", radius=radius, density=density, position=(place, 0, 0), restitution=restitution,
+                         velocity=(speeds[i], 0, 0))  # fmt: skip
+            place += radius + gap
+        if wall is not None:
+            scene.box("wall", size=(0.2, 1, 1), position=(place + 0.1 + wall, 0, 0), static=True,
+                      restitution=restitution)  # fmt: skip
+
+    return build
+
+
+def drawn_row(seed):
+    random = np.random.default_rng(1000 + seed)
+    restitution, first, speed = random.choice([0.5, 0.7, 0.9]), random.uniform(0.005, 0.03), random.uniform(1, 3)
+    radii, densities, gaps = [0.1], [8000.0], [first]
+    for _ in range(random.integers(2, 5)):
+        radii.append(radii[-1] * random.uniform(0.5, 0.9))
+        densities.append(densities[-1] * random.uniform(0.3, 0.9))
+        gaps.append(random.uniform(0.0005, 0.003))
+    wall = random.uniform(0.001, 0.05) if random.random() < 0.6 else None
+    return row(float(restitution), radii, densities, gaps, wall, speed)
+
+
+@pytest.mark.parametrize("seed", [0, 2, 8, 20, 24, 25, 26])
+def test_light_balls_that_are_hit_several_times_within_a_frame(account, seed):
+    """Thrown to and fro between a wall and a heavy ball they are slow at both ends of a frame, and fast between.
+
+    What each blow takes goes by how fast the blows before it may have made them: by the momentum that these gave, and
+    the energy that all had.
+    """
+    assert account(drawn_row(seed), seconds=0.25) == 0
+
+
+@pytest.mark.parametrize("share", [0.2, 0.4])
+def test_what_such_balls_lose_in_flight_is_lost(account, share):
+    """Of elastic balls, whose blows take nothing, all of it."""
+
+    def change(recording):
+        qd = np.array(recording.body_qd)
+        qd[4:] *= np.sqrt(1.0 - share)
+        return replace(recording, body_qd=qd)
+
+    build = row(1.0, [0.1, 0.07, 0.05], [8000.0, 4000.0, 1000.0], [0.01, 0.001, 0.0])
+    assert account(build, seconds=0.25) == 0
+    assert account(build, change=change, seconds=0.25) == -1

@@ -15,6 +15,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.recorded import RecordedContacts
@@ -122,15 +124,14 @@ class Losses:
         across = contacts.slip - np.einsum("nei,ni->ne", contacts.slip, normal)[..., None] * normal[:, None]
         slip = np.linalg.norm(across, axis=2).max(axis=1)
         h = motion.h[frame - 1]
-        fastest = 2.0 * motion.surface_speed[:, rows].max(axis=1)
-        fastest = np.maximum(fastest[frame], fastest[frame - 1])
-        steady = self._steady
+        fall = self._evidence.gravity * h
+        closes = np.abs(np.einsum("ni,ni->n", contacts.slip[:, 0], normal))
+        speeds, steady = self._within(rows, (pressed > self._steady) | (closes > 2.0 * fall))
         lasts = np.where(track.frame == 1, 0.0, steady)  # what stands may have been set down from a hair above: a blow
         hit = pressed > steady
         many = hit & self._shared  # a blow goes on to others, and frames show nothing of how fast
-        fall = self._evidence.gravity * h
-        approach = np.where(many, fastest, closing) + fall
-        slip = np.where(many, np.maximum(slip, fastest), slip + np.where(pressed > lasts, fall, 0.0))
+        approach = np.where(many, speeds[0], closing) + fall
+        slip = np.where(many, np.maximum(slip, speeds[1]), slip + np.where(pressed > lasts, fall, 0.0))
         bounce, rolling = self._laws
         blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
         blow += 0.5 * (1.0 - bounce) * (np.minimum(pressed, steady) - np.minimum(pressed, lasts)) * (closing + fall)
@@ -141,6 +142,55 @@ class Losses:
         rocks, turned = self._turned(pressed, normal, frame, rolling)
         blow += 0.5 * (1.0 - bounce) * pressed * rocks
         return np.asarray(blow + contacts.rubbed * (slip + rocks) + turned)
+
+    def _within(self, rows: Rows, blow: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+        """How fast surfaces may meet, and slip, within intervals, (2, n) [m/s]; what of each contact is no blow, (n,).
+
+        A blow that comes to a ball goes on to all that it touches, however steadily these were pressed around it.
+        """
+        frame = np.maximum(self._contacts.track.frame, 1)
+        fastest = 2.0 * self._motion.surface_speed[:, rows].max(axis=1)
+        fastest = np.maximum(fastest[frame], fastest[frame - 1])
+        before, most = self._between_balls(rows)
+        balls = most > 0.0
+        speeds = np.where(balls, np.stack([np.minimum(before, most), before]), fastest)
+        return speeds, np.where(balls & self._passed_on(blow), 0.0, self._steady)
+
+    def _between_balls(self, rows: Rows) -> tuple[Floats, Floats]:
+        """How fast each contact's surfaces may meet within its interval, of loose balls, (n,) each [m/s]; else 0.
+
+        They met as they came into the interval, or what others gave them since brought them together: that is at most
+        what was between them, and all that the others' impulses change of both; those of their own part them. And two
+        that meet at u have (1 / m + 1 / m')^-1 u^2 / 2 at least, of what all had.
+        """
+        contacts, motion, h = self._contacts, self._motion, self._motion.h
+        frame, body = contacts.track.frame, contacts.body
+        own, there = np.maximum(body, 0), body >= 0
+        light = np.where(there, 1.0 / motion.mass[own], 0.0)
+        turns = np.where(there, (motion.radius**2 / np.linalg.eigvalsh(motion.inertia)[:, 0])[own], 0.0)
+        pressed, rubbed = contacts.track.pressed.astype(np.float64)[:, None], contacts.rubbed[:, None]
+        changes = (pressed + rubbed) * light + rubbed * turns
+        every = np.zeros((len(self._evidence.time), len(motion.mass)))
+        np.add.at(every, (frame[:, None].repeat(2, axis=1)[there], body[there]), changes[there])
+        others = np.where(there, every[frame[:, None], own] - changes, 0.0).sum(axis=1)
+        speed, weight = motion.speed[:-1, rows], motion.mass[rows] * self._evidence.gravity
+        falls = (weight * (speed + self._evidence.gravity * h[:, None])).sum(axis=1) * h
+        had = motion.kinetic[:-1, rows].sum(axis=1) + falls
+        most = np.sqrt(2.0 * had[np.maximum(frame, 1) - 1] * light.sum(axis=1))
+        balls = np.array([all(shape.kind == "sphere" for shape in body.shapes) for body in self._evidence.world.bodies])
+        loose = ~there | (balls & ~motion.jointed & ~motion.kinematic)[own]
+        asked = loose.all(axis=1) & ~motion.jointed[rows].any()
+        before = np.linalg.norm(contacts.slip[:, 0], axis=1) + others
+        return np.where(asked, before, 0.0), np.where(asked, most, 0.0)
+
+    def _passed_on(self, blow: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether a contact hangs together with one that is a blow in its interval, by bodies that touch, (n,)."""
+        bodies = len(self._motion.mass)
+        node = self._contacts.track.frame[:, None].astype(np.int64) * bodies + self._contacts.body
+        node = np.where(self._contacts.body >= 0, node, node[:, ::-1])  # what never moves passes nothing on
+        links = coo_matrix((np.ones(len(node)), tuple(node.T)), (bodies * len(self._evidence.time),) * 2)
+        label = connected_components(links, directed=False)[1][node[:, 0]]
+        return np.isin(label, label[blow])
 
     @cached_property
     def _steady(self) -> Floats:

@@ -349,3 +349,17 @@ def told_by_record(copies: Sequence[Evidence], size: Floats, ks: Rows, judged: B
     left = np.concatenate([books.force, torque], axis=2)[ks]
     may = SOLVED * books.moved[..., None] + np.stack([books.stepped, books.lagging], axis=2)
     return [(np.where(judged[..., None], left, 0.0), may[ks])]
+
+
+def met(evidence: Evidence) -> Bools:
+    """Whether a contact is recorded of a body with one of another mechanism in each interval, (T - 1, B).
+
+    Frames do not show all who meet: a ball that is thrown on and caught within one interval is slow at both its ends.
+    """
+    motion, track = evidence.motion, evidence.recording.contacts
+    found = np.zeros((len(evidence.time), len(motion.mass)), dtype=bool)
+    if track is not None and len(track.frame):
+        body = RecordedContacts(evidence, track).body
+        other = (body >= 0).all(axis=1) & (motion.unit[body[:, 0]] != motion.unit[body[:, 1]])
+        found[track.frame[other][:, None], body[other]] = True
+    return found[1:]

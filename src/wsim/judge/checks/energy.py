@@ -10,6 +10,7 @@ import numpy as np
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.losses import Losses
 from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
+from wsim.judge.books.recorded import met
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
@@ -188,7 +189,7 @@ class CheckEnergy(Check):
         if not len(units):
             return []
         of = motion.unit[:, None] == units  # (B, mechanisms)
-        meets = (motion.meets @ of.astype(np.float32)) > 0.0
+        meets = ((motion.meets | met(evidence)) @ of.astype(np.float32)) > 0.0
         held, phase, sinks = _summed(stored, of), hidden(evidence) @ of, sinking(evidence) @ of
         gave = np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
 
