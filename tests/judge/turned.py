@@ -56,17 +56,21 @@ def turned(recording, q):
     ]
     made = {"bodies": bodies, "statics": statics, "joints": joints, "cameras": cameras}
     place, turn = all_of(recording.body_q[..., :3]), recording.body_q[..., 3:].astype(np.float64)
-    twist = recording.body_qd
+
+    def both_of(six):
+        return np.concatenate([all_of(six[..., :3]), all_of(six[..., 3:])], axis=-1)
+
     return replace(
         recording,
         world=world.model_copy(update={**made, "gravity": vector(world.gravity)}),
         body_q=np.concatenate([place, multiply(np.broadcast_to(q, turn.shape), turn)], axis=-1).astype(np.float32),
-        body_qd=np.concatenate([all_of(twist[..., :3]), all_of(twist[..., 3:])], axis=-1),
+        body_qd=both_of(recording.body_qd),
         contact_force=all_of(recording.contact_force),
         applied_impulse=all_of(recording.applied_impulse),
         applied_turn=all_of(recording.applied_turn),
         control_impulse=all_of(recording.control_impulse),
         wall_impulse=all_of(recording.wall_impulse),
+        lead=None if recording.lead is None else both_of(recording.lead),
         contacts=None if recording.contacts is None else _turned_contacts(recording.contacts, all_of),
         ties=None if recording.ties is None else _turned_ties(recording.ties, all_of),
     )

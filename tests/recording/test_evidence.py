@@ -18,11 +18,12 @@ def test_impulse_and_work_come_back_bit_for_bit(world, make_frame, tmp_path):
             work = rng.standard_normal(len(world.bodies)).astype(np.float32)
             turn, control = rng.standard_normal((2, len(world.bodies), 3)).astype(np.float32)
             others = {"applied_turn": turn, "control_impulse": control, "wall_impulse": rng.standard_normal(3)}
+            others["lead"] = rng.standard_normal((len(world.bodies), 6)).astype(np.float32)
             frames.append(replace(make_frame(k), applied_impulse=impulse, applied_work=work, **others))
             writer.frame(0.1 * k, frames[-1])
     recording = read(tmp_path / "r.rrd")
     assert recording.applied_impulse.tobytes() == np.stack([f.applied_impulse for f in frames]).tobytes()
-    for name in ("applied_work", "applied_turn", "control_impulse", "wall_impulse"):
+    for name in ("applied_work", "applied_turn", "control_impulse", "wall_impulse", "lead"):
         written = np.stack([getattr(frame, name) for frame in frames]).astype(np.float32)
         assert getattr(recording, name).tobytes() == written.tobytes()
 
@@ -33,7 +34,7 @@ def test_a_recording_without_them_has_none(world, make_frame, tmp_path):
     recording = read(tmp_path / "r.rrd")
     assert recording.applied_impulse is None and recording.applied_work is None and recording.seen == {}
     assert recording.applied_turn is None and recording.control_impulse is None and recording.wall_impulse is None
-    assert recording.contacts is None
+    assert recording.contacts is None and recording.lead is None
 
 
 def test_they_come_in_all_frames_or_in_none(world, make_frame, tmp_path):

@@ -138,8 +138,8 @@ def test_what_the_program_would_refuse_is_refused_first(swept: SweepFolder, give
 def test_a_folder_without_a_sweep_is_said(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="no sweep"):
         SweepFolder.open(tmp_path)
-    (tmp_path / "sweep.json").write_text('{"samples": 0}')
-    with pytest.raises(UserError, match=r"samples: .*greater than or equal to 1"):
+    (tmp_path / "sweep.json").write_text('{"repeats": 0}')
+    with pytest.raises(UserError, match=r"repeats: .*greater than or equal to 1"):
         _ = SweepFolder.open(tmp_path).spec
 
 

@@ -4,80 +4,42 @@ from typing import Any
 
 import warp as wp
 
-LARGEST_TURN = wp.constant(wp.float64(0.05))  # [rad] of a part of a step
-MOST_PARTS = wp.constant(1000)
+from wsim.kernels.free_turns import free_turn, in_axes, spin_after, spin_of
+
 NO_FORCE = wp.constant(wp.float64(2.0**-126))  # [N] or [N m]: below single precision, where GPUs flush what is left
-
-
-@wp.func
-def about(axis: wp.vec3d, angle: wp.float64) -> wp.quatd:
-    """The turn about a unit vector."""
-    half = wp.float64(0.5) * angle
-    return wp.quatd(axis * wp.sin(half), wp.cos(half))
-
-
-@wp.func
-def turned_by(vector: wp.vec3d) -> wp.quatd:
-    """The turn about a vector by its length [rad]."""
-    angle = wp.length(vector)
-    if angle > wp.float64(0.0):
-        return about(vector / angle, angle)
-    return wp.quatd(wp.float64(0.0), wp.float64(0.0), wp.float64(0.0), wp.float64(1.0))
-
-
-@wp.func
-def free_turn(principal: wp.quatd, moments: wp.vec3d, spin: wp.vec3d, h: wp.float64) -> wp.quatd:
-    """How a rigid body turns in `h` [s] if nothing acts on it, from its spin, in its own axes.
-
-    The energy is |L|^2 / 2 I_2 plus a part of L_1 and one of L_3 alone, the moments in rising order. Each part turns
-    the body about one axis, that of the first about L itself; these turns, put together symmetrically (Touma and Wisdom
-    1994), keep the momentum and add no energy over time, and of a body with two equal moments they are the motion.
-    """
-    momentum = wp.cw_mul(moments, wp.quat_rotate_inv(principal, spin))
-    turning = wp.length(spin) * h / LARGEST_TURN
-    parts = MOST_PARTS
-    if turning < wp.float64(MOST_PARTS):
-        parts = wp.max(1, int(wp.ceil(turning)))
-    s = h / wp.float64(parts)
-    none = wp.float64(0.0)
-    one = wp.float64(1.0)
-    first, third = wp.vec3d(one, none, none), wp.vec3d(none, none, one)
-    k1 = wp.float64(0.5) * s * (one / moments[0] - one / moments[1])
-    k3 = s * (one / moments[2] - one / moments[1])
-    turn = wp.quatd(none, none, none, one)
-    for _ in range(parts):
-        a = about(first, k1 * momentum[0])
-        momentum = wp.quat_rotate_inv(a, momentum)
-        b = about(third, k3 * momentum[2])
-        momentum = wp.quat_rotate_inv(b, momentum)
-        c = about(first, k1 * momentum[0])
-        momentum = wp.quat_rotate_inv(c, momentum)
-        turn = turn * a * b * c
-    turn = turn * turned_by(momentum * (h / moments[1]))
-    return principal * turn * wp.quat_inverse(principal)
-
-
 ALWAYS = wp.constant(2**30)  # steps, of what has been even since the start
-SETTLING = wp.constant(3)  # steps that a start takes
 
 
 @wp.func
-def in_axes(principal: wp.quatd, moments: wp.vec3d, spin: wp.vec3d) -> wp.vec3d:
-    """Angular momentum about the centre of mass, in the body's axes."""
-    return wp.quat_rotate(principal, wp.cw_mul(moments, wp.quat_rotate_inv(principal, spin)))
-
-
-@wp.func
-def spin_after(principal: wp.quatd, moments: wp.vec3d, spin: wp.vec3d, turn: wp.quatd) -> wp.vec3d:
-    """Spin with which a free body ends its turn, in its own axes."""
-    own = wp.quat_rotate_inv(principal, wp.quat_rotate_inv(turn, in_axes(principal, moments, spin)))
-    return wp.quat_rotate(principal, wp.cw_div(own, moments))
+def along(vector: wp.vec3d, way: wp.vec3d) -> wp.vec3d:
+    """The part of a vector along a way."""
+    square = wp.dot(way, way)
+    if square > wp.float64(0.0):
+        return wp.dot(vector, way) / square * way
+    return wp.vec3d()
 
 
 @wp.func
 def three(values: wp.array2d(dtype=wp.float64), world: int, first: int) -> wp.vec3d:
     """Three numbers of a row."""
     return wp.vec3d(values[world, first], values[world, first + 1], values[world, first + 2])
+
+
+@wp.func
+def catch_up(
+    world: int,
+    k: int,
+    gain: wp.array3d(dtype=wp.vec3d),
+    behind: wp.array2d(dtype=int),
+    shift: wp.array3d(dtype=wp.vec3d),
+) -> bool:
+    """Count what the velocities of a body lack as theirs; whether they do lack it."""
+    if behind[world, k] == 0:
+        return False
+    behind[world, k] = 0
+    for i in range(2):
+        shift[world, k, i] = shift[world, k, i] + gain[world, k, i]
+    return True
 
 
 @wp.kernel(enable_backward=False)
@@ -92,7 +54,12 @@ def recall(
     qd_start: wp.array(dtype=int),
     place: wp.array(dtype=int),  # where a joint of MuJoCo's stands in qpos, -1 where its state is not ours
     freedom: wp.array(dtype=int),
+    row: wp.array(dtype=int),  # of its body among the loose ones, or below 0
+    gain: wp.array3d(dtype=wp.vec3d),
     # Data out:
+    behind: wp.array2d(dtype=int),
+    shift: wp.array3d(dtype=wp.vec3d),
+    since: wp.array2d(dtype=int),
     true_q: wp.array2d(dtype=wp.float64),
     true_qd: wp.array2d(dtype=wp.float64),
     qpos: wp.array2d(dtype=Any),
@@ -120,6 +87,9 @@ def recall(
             qvel[world, n] = qvel.dtype(true_qd[world, n])
         else:
             true_qd[world, n] = wp.float64(qvel[world, n])
+    if not same and row[k] >= 0:
+        catch_up(world, row[k], gain, behind, shift)
+        since[world, row[k]] = 0
 
 
 @wp.kernel(enable_backward=False)
@@ -133,6 +103,63 @@ def keep(
     world, k = wp.tid()
     if values.dtype(kept[world, k]) != values[world, k]:
         kept[world, k] = wp.float64(values[world, k])
+
+
+@wp.kernel(enable_backward=False)
+def say(
+    # Data in:
+    place: wp.array(dtype=int),  # of each loose body, in qpos
+    freedom: wp.array(dtype=int),
+    center: wp.array2d(dtype=wp.vec3d),
+    principal: wp.array2d(dtype=wp.quatd),
+    moments: wp.array2d(dtype=wp.vec3d),
+    true_q: wp.array2d(dtype=wp.float64),
+    true_qd: wp.array2d(dtype=wp.float64),
+    gain: wp.array3d(dtype=wp.vec3d),
+    behind: wp.array2d(dtype=int),
+    centred: int,
+    # Data out:
+    qvel: wp.array2d(dtype=Any),
+):
+    """Give MuJoCo the velocities of where bodies are, or those that their steps go on from."""
+    world, k = wp.tid()
+    own = world % moments.shape[0]
+    p, f = place[k], freedom[k]
+    q = wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3])
+    way, spin = wp.vec3d(), wp.vec3d()
+    if centred * behind[world, k] > 0:
+        spin = spin_of(principal[own, k], moments[own, k], wp.quat_rotate_inv(q, gain[world, k, 1]))
+        way = gain[world, k, 0] - wp.quat_rotate(q, wp.cross(spin, center[own, k]))
+    for i in range(3):
+        qvel[world, f + i] = qvel.dtype(true_qd[world, f + i] + way[i])
+        qvel[world, f + 3 + i] = qvel.dtype(true_qd[world, f + 3 + i] + spin[i])
+
+
+@wp.func
+def change_order(
+    world: int,
+    k: int,
+    lags: bool,
+    gained: wp.vec3d,
+    turning: wp.vec3d,
+    # Data out:
+    gain: wp.array3d(dtype=wp.vec3d),
+    behind: wp.array2d(dtype=int),
+    shift: wp.array3d(dtype=wp.vec3d),
+) -> int:
+    """Note what half a step gains, and whether velocities lack it from now on; 1 where no longer, -1 where anew."""
+    changes = int(0)
+    if not lags:
+        if catch_up(world, k, gain, behind, shift):
+            changes = 1
+    elif behind[world, k] == 0:
+        changes = -1
+        behind[world, k] = 1
+        shift[world, k, 0] = shift[world, k, 0] - gained
+        shift[world, k, 1] = shift[world, k, 1] - turning
+    gain[world, k, 0] = gained
+    gain[world, k, 1] = turning
+    return changes
 
 
 @wp.kernel(enable_backward=False)
@@ -176,13 +203,17 @@ def fly(
     held: wp.array2d(dtype=Any),  # what constraints push with
     pushed: wp.array2d(dtype=Any),  # what all else pushes with
     bias: wp.array2d(dtype=Any),  # gravity's part of that, and the spin's own, the other way
-    tied: wp.array(dtype=int),  # whether a rope or a loop may hold it
+    tied: wp.array(dtype=int),  # 1 where a rope or a loop may hold it, -1 where bodies are fixed to it, else 0
     arm: wp.array2d(dtype=wp.float64),  # by which a turn counts beside a way: its greatest radius of gyration [m]
     even: wp.float64,  # change of an acceleration that is none [m/s^2]
-    patience: wp.float64,  # for which it must have been even [s]
+    patience: wp.float64,  # without a jolt, for which it is even [s]
+    rough: wp.float64,  # change of an acceleration in a step, from which on it is a jolt [m/s^2]
     # Data out:
-    known: wp.array3d(dtype=wp.vec3d),  # acceleration and turning since when it is even, along the world's axes
-    calm: wp.array2d(dtype=int),  # steps since then
+    known: wp.array3d(dtype=wp.vec3d),  # acceleration and turning when it was free, or began, in the world's axes
+    gain: wp.array3d(dtype=wp.vec3d),  # of velocity and angular momentum in half of the last step, likewise
+    calm: wp.array2d(dtype=int),  # steps since the last jolt, or up to where a start is over
+    behind: wp.array2d(dtype=int),  # whether velocities lack that
+    shift: wp.array3d(dtype=wp.vec3d),  # what they were given so far without an impulse
     since: wp.array2d(dtype=int),  # the last exact step: steps of the first order
     true_q: wp.array2d(dtype=wp.float64),
     true_qd: wp.array2d(dtype=wp.float64),
@@ -193,15 +224,18 @@ def fly(
 
     Its centre of mass goes straight, or the body would not keep its momentum as it turns; only where a rope or a loop
     holds a body its origin does, whose velocity those have seen.
-    Under gravity and contacts alone, which jolt nothing after the step's blows, it goes by the mean of the velocities
-    before and after, where it accelerates evenly: then it is where it should be. Of a force that changes with the
-    place, a spring's, or that of a gutter in which a ball rolls to and fro at w [rad/s], that would add w^2 h / 2 of
-    the energy a second; steps of the first order are symplectic and keep it.
+    In free fall, and while a contact changes nothing, it goes by the mean of the velocities before and after, and is
+    where it should be. Of a force that changes with the place, as that of a gutter in which a ball rolls to and fro at
+    w [rad/s] does, that would add w^2 h / 2 of the energy a second. There steps are the leapfrog's, v' = v + a h,
+    x' = x + v' h, symplectic: v is the velocity of half a step before (Hairer, Lubich, Wanner 2003). So a velocity
+    loses a h / 2 where such steps begin, and has it back, of the last a, where they end. A contact turns the velocity
+    by itself, and only what is along the way counts; where it jolts, its impulses stand as they are.
     """
     world, k = wp.tid()
     own = world % moments.shape[0]
     p, f, c, axes, inertia = place[k], freedom[k], center[own, k], principal[own, k], moments[own, k]
     v, w, x = three(true_qd, world, f), three(true_qd, world, f + 3), three(true_q, world, p)
+    start = w
     q = wp.normalize(wp.quatd(true_q[world, p + 4], true_q[world, p + 5], true_q[world, p + 6], true_q[world, p + 3]))
     push, twist = wp.vec3d(), wp.vec3d()
     free, alone = bool(True), bool(True)
@@ -215,23 +249,41 @@ def fly(
     pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
     spun = wp.quat_rotate(q, kick)
     off = wp.length(pull - known[world, k, 0]) + arm[own, k] * wp.length(spun - known[world, k, 1])
-    steps = calm[world, k]
-    begins = steps >= ALWAYS - SETTLING and steps < ALWAYS  # it may close a gap of rounding
-    if not (off <= even):
-        known[world, k, 0] = pull
-        known[world, k, 1] = spun
-        steps = wp.where(begins, steps, -1)
-    calm[world, k] = wp.where(wp.isnan(off), ALWAYS - SETTLING, wp.min(steps + 1, ALWAYS))
     late = wp.float64(0.0)  # how much of the step's change of velocity its way lacks
-    if alone and (free or (tied[k] == 0 and wp.float64(calm[world, k]) * h >= patience)):
+    begins = calm[world, k] < 0  # it may close a gap of rounding
+    if alone and (free or (tied[k] <= 0 and since[world, k] == 0 and (begins or not (off > even)))):
         late = wp.float64(0.5) * h
+        if free or begins:
+            known[world, k, 0] = pull
+            known[world, k, 1] = spun
+    centred = free or tied[k] <= 0
+    gained, spun_up = wp.float64(0.5) * h * pull, wp.float64(0.5) * h * kick
+    if not free:
+        gained = along(gained, v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull)
+        spun_up = along(spun_up, w + h * kick)
+    turning = wp.quat_rotate(q, in_axes(axes, inertia, spun_up))
+    before = wp.vec3d(gain[world, k, 0])
+    spun_before = spin_of(axes, inertia, wp.quat_rotate_inv(q, gain[world, k, 1]))
+    jolt = wp.length(gained - before) + arm[own, k] * wp.length(spun_up - spun_before)
+    rests = begins or not (jolt > wp.float64(0.5) * h * rough)
+    calm[world, k] = wp.where(rests, wp.min(calm[world, k] + 1, ALWAYS), 0)
+    lasts = wp.float64(calm[world, k]) * h >= patience
+    lags = late == wp.float64(0.0) and alone and tied[k] == 0 and lasts
+    lacks = wp.vec3d()
+    changes = change_order(world, k, lags, gained, turning, gain, behind, shift)
+    if changes > 0:
+        lacks = before
+        w = w + spun_before
+    elif changes < 0:
+        lacks = -gained
+        w = w - spun_up
     since[world, k] = wp.where(late > wp.float64(0.0), 0, since[world, k] + 1)
     kicked = w + h * kick
     turn = free_turn(axes, inertia, kicked - late * kick, h)
     after = spin_after(axes, inertia, kicked, turn)
     end = wp.normalize(q * turn)
-    if free or tied[k] == 0:
-        way = v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull
+    if centred:
+        way = lacks + v + wp.quat_rotate(q, wp.cross(start, c)) + h * pull
         x += wp.quat_rotate(q, c) + h * (way - late * pull) - wp.quat_rotate(end, c)
         v = way - wp.quat_rotate(end, wp.cross(after, c))
     else:
@@ -254,6 +306,7 @@ def fly(
 for _number in (float, wp.float64):
     _rows: Any = wp.array2d(dtype=_number)
     wp.overload(recall, {"qpos": _rows, "qvel": _rows})
+    wp.overload(say, {"qvel": _rows})
     wp.overload(keep, {"values": _rows})
     wp.overload(tumble, {"bias": _rows})
     wp.overload(fly, dict.fromkeys(("qacc", "held", "pushed", "bias", "qpos", "qvel"), _rows))

@@ -18,12 +18,16 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float32]
 
-WIDTHS = {names.APPLIED: 4, names.APPLIED_TURN: 3, names.CONTROLLED: 3}  # of a body's
+WIDTHS = {names.APPLIED: 4, names.APPLIED_TURN: 3, names.CONTROLLED: 3, names.LEAD: 6}  # of a body's
 
 
 def of_bodies(frame: Frame) -> dict[str, Floats]:
     """A frame's, by column, (B, width)."""
-    found = {names.APPLIED_TURN: frame.applied_turn, names.CONTROLLED: frame.control_impulse}
+    found = {
+        names.APPLIED_TURN: frame.applied_turn,
+        names.CONTROLLED: frame.control_impulse,
+        names.LEAD: frame.lead,
+    }
     if frame.applied_impulse is not None and frame.applied_work is not None:
         found[names.APPLIED] = np.c_[frame.applied_impulse, frame.applied_work]
     return {name: array for name, array in found.items() if array is not None}

@@ -42,6 +42,7 @@ ANGULAR_VELOCITY = "wsim.Body:angular_velocity"
 CONTACT_FORCE = "wsim.Body:contact_force"
 APPLIED = "wsim.Body:applied"  # impulse and work
 APPLIED_TURN = "wsim.Body:applied_turn"  # angular impulse
+LEAD = "wsim.Body:lead"  # momentum and angular momentum that velocities gained beside all impulses
 CONTROLLED = "wsim.Body:controlled"  # impulse of control, which is part of the applied one
 SEEN = "wsim.Camera:seen"
 SEEN_OBJECTS = "wsim.Camera:objects"

@@ -45,8 +45,9 @@ def read(path: str | Path) -> Recording:
     frame_ns, frame_time = table.get(names.FRAME_ENTITY, names.FRAME_TIME, (), np.float64)
     clock = Clock(frame_ns, frame_time)
     body_q, body_qd, force = _bodies(table, world, frame_ns, path)
-    applied, turn, control = (
-        read_bodies(table, world, frame_ns, name) for name in (names.APPLIED, names.APPLIED_TURN, names.CONTROLLED)
+    applied, turn, control, lead = (
+        read_bodies(table, world, frame_ns, name)
+        for name in (names.APPLIED, names.APPLIED_TURN, names.CONTROLLED, names.LEAD)
     )
     return Recording(
         path=path,
@@ -65,6 +66,7 @@ def read(path: str | Path) -> Recording:
         applied_work=None if applied is None else applied[:, :, 3],
         applied_turn=turn,
         control_impulse=control,
+        lead=lead,
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
         contacts=read_contacts(table, frame_ns),
         ties=read_ties(table, world, frame_ns),

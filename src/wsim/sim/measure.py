@@ -42,10 +42,12 @@ def measure(built: Built, state: Any, rigid: RigidBodies | None, fluid: SolverSP
             scalars.update({name: float(value[0]) for name, value in rigid.breakage().items()})
         if built.world.springs:
             scalars["energy/potential_springs"] = _spring_energy(built, body_q, body_qd)
+        if rigid:
+            applied["lead"] = rigid.take_lead()[built.bodies].astype(np.float32)
         if rigid and rigid.ledger:
             entry = rigid.ledger.take()
             scalars.update({name: float(value[0]) for name, value in drive_scalars(built, rigid.ledger, entry).items()})
-            applied = {name: value[0] for name, value in applied_of(built, rigid.ledger, entry).items()}
+            applied |= {name: value[0] for name, value in applied_of(built, rigid.ledger, entry).items()}
     scalars["energy/kinetic"] = scalars.get("energy/kinetic_bodies", 0.0) + scalars.get("energy/kinetic_fluid", 0.0)
     parts = ("bodies", "fluid", "springs")
     scalars["energy/potential"] = sum(scalars.get(f"energy/potential_{part}", 0.0) for part in parts)

@@ -168,6 +168,11 @@ class RigidBodies:
         """The sums of joints and cords since the last call; None where nobody keeps them."""
         return self.solver.tie_impulses.take() if self.solver.tie_impulses else None
 
+    def take_lead(self) -> np.ndarray:
+        """What bodies of the first world gained since the last call beside all impulses: those of half a step that
+        their velocities are ahead of them, (bodies, 6) [N s, N m s]."""
+        return self.solver.take_lead()
+
     def reset(self, state: Any) -> None:
         """Forget the steps taken so far; `state` is where the next one starts."""
         self._kinematic.reset(state)

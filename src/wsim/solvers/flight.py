@@ -5,7 +5,8 @@ energy, by the square of what it turns in a step. Here the spin of the step's en
 step; contacts see it as a smooth force. Where gravity, and what touches a body, are all that acts on it after the
 step's blows, and it accelerates evenly, the step goes the way of the mean of its first and last velocities: falls,
 throws, slides and rolling are exact, where v += a h, x += v h would come a t h / 2 too far. What a contact leads to and
-fro, or round a bend, goes by the latter, which is symplectic: by the mean it would gain energy. Newton's state is in
+fro, or round a bend, goes by the latter, which is symplectic: by the mean it would gain energy. There its velocity is
+that of half a step before, and the state is told the one at its place. Newton's state is in
 single precision, where a kilometre has steps of 0.06 mm: what is true between two steps is kept beside it in double,
 for as long as nobody else writes the state.
 """
@@ -21,13 +22,15 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.blows import jump
-from wsim.kernels.flight import fly, keep, recall, tumble
+from wsim.kernels.flight import fly, keep, recall, say, tumble
 
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
 NEVER = 2**30  # steps
+SETTLING = 3  # steps that a start takes
 EVEN = 0.1  # change of an acceleration that is none [m/s^2]: five times what a gap of 3e-8 m, rounding, makes of it
-PATIENCE = 0.2  # for which an acceleration must have been even [s]: at the ends of a swing it is for a while
+PATIENCE = 0.02  # without a jolt, for which it must have been even [s]
+ROUGH = 0.3  # change of an acceleration in a step, from which on it is a jolt [m/s^2]
 
 
 class Flight:
@@ -54,6 +57,7 @@ class Flight:
         center, principal, moments, arm = (np.stack(each) for each in zip(*of_worlds, strict=True))
         jnt = solver.mj_model.body_jntadr[loose]
         shape = self._qpos.shape[0], len(loose)
+        self._bodies = loose
         rows = _rows_of_bodies(solver, loose, place[kinematic[model.joint_child.numpy()[: self.joints]]])
         with wp.ScopedDevice(model.device):
             self._joints = [wp.array(np.where(ours, start, -1), dtype=int) for start in (place, freedom)]
@@ -64,17 +68,19 @@ class Flight:
             self._moments = wp.array(moments, dtype=wp.vec3d)
             self._change = wp.zeros(shape, dtype=wp.vec3d)
             self._arm = wp.array(arm, dtype=wp.float64)
-            self._known = wp.zeros((*shape, 2), dtype=wp.vec3d)
-            self._calm = wp.zeros(shape, dtype=int)
+            self._known, self._gain, self._shift = (wp.zeros((*shape, 2), dtype=wp.vec3d) for _ in range(3))
             self.row = wp.array(rows, dtype=int)  # of each of MuJoCo's bodies among the loose ones, or below 0
             self._tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
+            self._behind, self._calm = (wp.zeros(shape, dtype=int) for _ in range(2))
+            self._loose = wp.array(_rows_of_joints(place, solver.mj_model.jnt_qposadr[jnt]), dtype=int)
             self.since = wp.zeros(shape, dtype=int)  # the last exact step: steps of the first order
             self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
             self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
         # Of C's numbers: a kernel's launch takes longer than a step of a small world.
         in_c = [(true.numpy(), array.numpy()) for true, array in zip(self._true, (self._qpos, self._qvel), strict=True)]
         self._shared = in_c if isinstance(data.qpos, Array) else []
-        self._row_c, self._since_c = rows, self.since.numpy()[0]
+        self._row_c, self._since_c, self._behind_c = rows, self.since.numpy()[0], self._behind.numpy()
+        self._lead = np.zeros((*shape, 2, 3))
         self.forget()
 
     def forget(self) -> None:
@@ -82,7 +88,11 @@ class Flight:
         for told in self._told:
             told.fill_(math.nan)
         self._known.fill_(math.nan)
-        self.since.zero_()
+        self._gain.fill_(math.nan)  # nothing is a jolt at a start
+        self._calm.fill_(-SETTLING)
+        for array in (self._shift, self._behind, self.since):
+            array.zero_()
+        self._lead[:] = 0.0
 
     def recall(self, state: Any) -> None:
         """Put what is true of `state` into MuJoCo's data, which has it in single precision."""
@@ -92,11 +102,41 @@ class Flight:
             dim=(self._qpos.shape[0], self.joints),
             inputs=[
                 state.joint_q, state.joint_qd, *self._told, self.joints, model.joint_q_start, model.joint_qd_start,
-                *self._joints,
+                *self._joints, self._loose, self._gain,
             ],
-            outputs=[*self._true, self._qpos, self._qvel],
+            outputs=[self._behind, self._shift, self.since, *self._true, self._qpos, self._qvel],
             device=model.device,
         )  # fmt: skip
+
+    def say(self, *, centred: bool) -> None:
+        """Give MuJoCo the velocities that loose bodies have where they are, or those that their steps go on from."""
+        if self._shared and not self._behind_c.any():
+            return
+        wp.launch(
+            say,
+            dim=self._change.shape,
+            inputs=[
+                self._place, self._freedom, self._center, self._principal, self._moments, *self._true, self._gain,
+                self._behind, int(centred),
+            ],
+            outputs=[self._qvel],
+            device=self.model.device,
+        )  # fmt: skip
+
+    def take_lead(self) -> tuple[Array, Array]:
+        """What velocities of loose bodies gained since the last call that no force gave them.
+
+        Where a velocity is told half a step after the one that steps go on from, the force that acts in between is not
+        known yet: it is taken for the last one.
+
+        Returns:
+            MuJoCo's numbers of the bodies, (bodies,), and for each world the gain of the velocity of their centres of
+            mass [m/s] and of their angular momentum about them [kg m^2/s], (worlds, bodies, 2, 3).
+        """
+        lags = self._behind.numpy()[..., None, None] > 0
+        lead = self._shift.numpy() + np.where(lags, self._gain.numpy(), 0.0)
+        gained, self._lead = lead - self._lead, lead
+        return self._bodies, gained
 
     def tell(self, state: Any) -> None:
         """Note what `state` says of MuJoCo's data."""
@@ -150,9 +190,12 @@ class Flight:
             inputs=[
                 self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
                 self._qacc, self._held, self._pushed, self._bias, self._tied, self._arm, wp.float64(EVEN),
-                wp.float64(PATIENCE),
+                wp.float64(PATIENCE), wp.float64(ROUGH),
             ],
-            outputs=[self._known, self._calm, self.since, *self._true, self._qpos, self._qvel],
+            outputs=[
+                self._known, self._gain, self._calm, self._behind, self._shift, self.since, *self._true, self._qpos,
+                self._qvel,
+            ],
             device=self.model.device,
         )  # fmt: skip
 
@@ -180,8 +223,14 @@ def _rows_of_bodies(solver: Any, loose: Array, led: Array) -> Array:
     return rows
 
 
+def _rows_of_joints(place: Array, loose: Array) -> Array:
+    """Of joints that stand at these places in qpos the rows of the loose bodies' among them, or -1."""
+    same = place[:, None] == loose[None]
+    return np.where(same.any(axis=1), same.argmax(axis=1) if len(loose) else 0, -1)
+
+
 def _tied(mujoco: Any, model: Any, loose: Array) -> Array:
-    """Whether a tendon or an equality may hold each of some bodies, (bodies,)."""
+    """1 where a tendon or an equality may hold each of some bodies, -1 where others are fixed to it, (bodies,)."""
     kinds = mujoco.mjtWrap
     sites = model.wrap_objid[model.wrap_type == int(kinds.mjWRAP_SITE)]
     geoms = model.wrap_objid[np.isin(model.wrap_type, [int(kinds.mjWRAP_SPHERE), int(kinds.mjWRAP_CYLINDER)])]
@@ -190,7 +239,8 @@ def _tied(mujoco: Any, model: Any, loose: Array) -> Array:
     body, site = (model.eq_objtype == int(kind) for kind in (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE))
     for ends in (model.eq_obj1id, model.eq_obj2id):
         bodies += [ends[acts & body], model.site_bodyid[ends[acts & site]]]
-    return np.isin(loose, np.concatenate(bodies)).astype(np.int32)
+    carries = np.isin(loose, model.body_parentid)
+    return np.where(np.isin(loose, np.concatenate(bodies)), 1, np.where(carries, -1, 0)).astype(np.int32)
 
 
 def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Array, Array]:

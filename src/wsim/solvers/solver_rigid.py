@@ -244,6 +244,18 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             ties = TieImpulsesC(self.import_mujoco()[0], self.mj_model, joints, cords, law.owners.of_body)
             self.tie_impulses = law.ties = ties
 
+    def take_lead(self) -> Array:
+        """Momentum and angular momentum that velocities of the first world gained since the last call and no force
+        gave them yet (`Flight.take_lead`), by Newton's bodies, (bodies, 6) [N s, N m s]."""
+        bodies = self.model.body_count // max(1, self.model.world_count)
+        found = np.zeros((bodies, 6))
+        if self._flight:
+            ours, gained = self._flight.take_lead()
+            newtons = self.mjc_body_to_newton.numpy()[0, ours]
+            mass = self.model.body_mass.numpy()[newtons, None]
+            found[newtons] = np.concatenate([mass * gained[0, :, 0], gained[0, :, 1]], axis=1)
+        return found
+
     def mend(self) -> None:
         """Make all joints whole that broke."""
         if self.breaking is not None:
@@ -321,8 +333,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _update_newton_state(self, model: Any, state: Any, mj_data: Any, *args: Any, **options: Any) -> None:
         if self._flight:
             self._flight.keep()
+            self._flight.say(centred=True)
         super()._update_newton_state(model, state, mj_data, *args, **options)
         if self._flight:
+            self._flight.say(centred=False)
             self._flight.tell(state)
             if self.use_mujoco_cpu:
                 self._place_bodies(state)

@@ -63,7 +63,7 @@ def test_steps_by_the_mean_velocity_are_found_where_contacts_lead(tmp_path, monk
         return [sorted({finding.check for finding in failures}) for failures in found]
 
     assert verdicts("right.rrd") == [[], []]
-    monkeypatch.setattr(flight, "PATIENCE", 0.0)
+    monkeypatch.setattr(flight, "EVEN", math.inf)
     assert ["CheckEnergy" in failed for failed in verdicts("wrong.rrd")] == [True, True]
 
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 OURS = "loose_order"  # what wsim's simulator says of itself: another engine's model may start anywhere
+LEADS = 0.15  # half a change of an acceleration in a step, from which on it is a jolt to the simulator [m/s^2]
 CHUNK = 64  # frames whose distances between all bodies are held at once
 OF_FRAMES = (
     "com", "speed", "rate", "surface_speed", "acceleration", "touched", "spin", "angular_momentum", "torque", "kinetic",
@@ -133,12 +134,35 @@ class Motion:
 
     @cached_property
     def acceleration(self) -> Floats:
-        """Mean acceleration over each interval less what fluid and control gave, (T - 1, B, 3) [m/s^2]."""
-        impulse = self._recorded.recording.applied_impulse
+        """Mean acceleration over each interval less what fluid and control gave, (T - 1, B, 3) [m/s^2].
+
+        So much of it as contacts, ties and gravity gave: what velocities are ahead of those is no force's.
+        """
+        impulse, lead = self._recorded.recording.applied_impulse, self.lead
         gained = np.diff(self.v, axis=-3)
+        if lead is not None:
+            gained = gained - lead[..., :3] / self.mass[:, None]
         if impulse is not None:
             gained = gained - np.asarray(impulse[1:], dtype=np.float64) / self.mass[:, None]
         found: Floats = gained / self.h[:, None, None]
+        return found
+
+    @cached_property
+    def lead(self) -> Floats | None:
+        """Momentum and angular momentum that velocities gained in each interval beside all impulses, (T - 1, B, 6).
+
+        Where a body goes by steps of the first order, its velocity is told half a step after that which impulses have
+        given it. This is what that grew by, where it is recorded, and no more than it can: in a step such a body's
+        acceleration changes by less than 2 `LEADS`, or its velocity is told as it is.
+        """
+        recorded = self._recorded.recording.lead
+        if recorded is None:
+            return None
+        most = LEADS * self.h[:, None] * self.mass
+        found = np.asarray(recorded[1:], dtype=np.float64)
+        for part, limit in ((slice(3), most), (slice(3, 6), most * self.radius)):
+            size = lengths(found[..., part])
+            found[..., part] *= np.minimum(1.0, limit / np.maximum(size, 1e-300))[..., None]
         return found
 
     @cached_property
@@ -160,8 +184,10 @@ class Motion:
     @cached_property
     def torque(self) -> Floats:
         """Mean torque over each interval less what fluid and control gave, where that was recorded, (T - 1, B, 3)."""
-        turn = self._recorded.recording.applied_turn
+        turn, lead = self._recorded.recording.applied_turn, self.lead
         gained = np.diff(self.angular_momentum, axis=-3)
+        if lead is not None:
+            gained = gained - lead[..., 3:]
         if turn is not None:
             gained = gained - np.asarray(turn[1:], dtype=np.float64)
         found: Floats = gained / self.h[:, None, None]
