@@ -1,5 +1,7 @@
 """What bodies do is kept on the device: the same numbers as are read from state and solver frame by frame."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -41,10 +43,11 @@ def told_by(simulation):
 
 @pytest.mark.parametrize("device", ["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
 def test_tracks_are_what_the_state_and_the_solver_say(tmp_path, device):
+    """On a GPU two runs add up in different orders: what rests creeps by 1e-7 m/s, in each by its own."""
     stage = stage_of(tmp_path)
     kept = collect(Simulation(stage, device=device, world_count=WORLDS, seeds=range(WORLDS)))
     simulation = Simulation(stage, device=device, world_count=WORLDS, seeds=range(WORLDS))
-    rows, same = simulation.built.bodies, np.array_equal if device == "cpu" else np.allclose
+    rows, same = simulation.built.bodies, np.array_equal if device == "cpu" else partial(np.allclose, atol=1e-5)
     for frame in range(len(kept.time)):
         if frame:
             simulation.advance_frame()

@@ -10,7 +10,7 @@ from pxr import Gf, Sdf, UsdGeom, UsdPhysics
 
 from wsim.defaults import DURATION, FRAME_RATE, GRAVITY
 from wsim.scene import schema
-from wsim.scene.articulation import mark_articulations
+from wsim.scene.articulation import joints_of, mark_articulations
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
 from wsim.scene.cables import Cables
 from wsim.scene.catalogued import Catalogued
@@ -19,7 +19,6 @@ from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
 from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE, MIN_TIME_STEP
 from wsim.scene.motions import Motions
-from wsim.scene.rooting import better_roots
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.views import Views
 
@@ -172,8 +171,7 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         side = target.with_name(f".{target.stem}.part{target.suffix}")
         if any(joint_problems(self._stage)):
             mark_articulations(self._stage)  # joints that the program made through USD alone
-        if tops := better_roots(self._stage):
-            mark_articulations(self._stage, tops)
+        self._root_well()
         self._bake_paths(self._duration, self._frame_rate)
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)
@@ -182,6 +180,14 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
         if opened:
             opened.Reload(True)
         return target
+
+    def _root_well(self) -> None:
+        """Begin trees of joints that hang on nothing where single precision can factor their mass matrix."""
+        if any(joints_of(self._stage)):
+            from wsim.scene.rooting import better_roots  # brings pydantic, as masses do
+
+            if tops := better_roots(self._stage):
+                mark_articulations(self._stage, tops)
 
     def _author_run(self, step: float | None, seed: int | None) -> None:
         double = Sdf.ValueTypeNames.Double
