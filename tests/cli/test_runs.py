@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from wsim.cli import app
-from wsim.cli.sweep import _show
+from wsim.cli.sweep_show import show
 from wsim.sweep.axis import Axis
 from wsim.sweep.candidate import Candidate, Outcome
 from wsim.sweep.folder import SweepFolder
@@ -58,5 +58,5 @@ def test_a_ranking_by_number_is_said(
         Outcome(candidate=Candidate(number=k), status="accepted", reason="", slack=slack)
         for k, slack in enumerate(slacks)
     ]
-    _show(outcomes)
+    show(outcomes)
     assert ("by their numbers" in capsys.readouterr().out) == said

@@ -39,6 +39,7 @@ def test_a_crate_that_hovers_or_slides_up_a_height_field_is_found(tmp_path):
     assert failing(sound) == set()
     assert failing(edited(sound, "body_q", (slice(None), 0, 2), 0.1)) == {
         "CheckForces",
+        "CheckRecordedEnergy",
         "CheckRecordedForces",
         "CheckStart",
         "CheckSupport",

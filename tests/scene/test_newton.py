@@ -197,6 +197,20 @@ def test_raw_physics_prims_agree(tmp_path: Path) -> None:
     assert world.body("/World/group/hammer").mass == pytest.approx(handle_mass + head_mass + 0.3, rel=1e-5)
 
 
+@pytest.mark.parametrize("axis", "XYZ")
+def test_a_cone_is_round_though_it_is_drawn_with_flat_sides(tmp_path: Path, axis: str) -> None:
+    scene = Scene()
+    cone = UsdGeom.Cone.Define(scene.stage, "/World/cone")
+    cone.CreateRadiusAttr(0.05)
+    cone.CreateHeightAttr(0.12)
+    cone.CreateAxisAttr(axis)
+    UsdPhysics.CollisionAPI.Apply(cone.GetPrim())
+    UsdPhysics.RigidBodyAPI.Apply(cone.GetPrim())
+    UsdPhysics.MassAPI.Apply(cone.GetPrim()).CreateDensityAttr(600.0)
+    world = assert_same_masses(scene.save(tmp_path / "stage.usda"))
+    assert world.bodies[0].mass == pytest.approx(600.0 * math.pi * 0.05**2 * 0.12 / 3.0, rel=1e-6)
+
+
 def test_reading_first_does_not_hinder_newton(stage_path: Path) -> None:
     Usd.Stage.Open(str(stage_path))
     assert load(stage_path).result["path_body_map"].keys() == {body.prim for body in describe(stage_path).bodies}

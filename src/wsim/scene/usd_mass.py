@@ -10,7 +10,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.rotations import matrices
 from wsim.scene.usd_prims import rigid_frame
-from wsim.scene.usd_shapes import Array, read_shape, solid, to_quat
+from wsim.scene.usd_shapes import CONE_SIDES, Array, Solid, read_shape, solid, to_quat
 from wsim.scene.world import Shape
 
 _SMALL_SPHERE = 0.1  # [m]: radius of the ball that USD takes a body without colliders for
@@ -39,7 +39,7 @@ def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:
     USD resolves what is authored: the body's mass or density, a collider's own, its material's density, 1000 kg/m^3.
     The shapes give volume, centre and inertia.
     """
-    solids = {shape.prim: (shape, solid(shape)) for shape in shapes if shape.collides}
+    solids = {shape.prim: (shape, _solid(prim.GetStage(), shape)) for shape in shapes if shape.collides}
     volume = sum(each.volume for _, each in solids.values())
     if volume <= 0.0:
         return _without_geometry(prim)
@@ -71,6 +71,24 @@ def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:
     turn = matrices(np.array(to_quat(axes)))
     inertia = turn @ np.diag(np.array(diagonal, dtype=np.float64)) @ turn.T
     return Mass(float(mass), np.array(com, dtype=np.float64), inertia, volume)
+
+
+def _solid(stage: Usd.Stage, shape: Shape) -> Solid:
+    """Volume, centre and inertia of a shape at density 1; of a cone, drawn with flat sides, those of a round one.
+
+    Of n sides by t = 2 pi / n each the base has sin(t) / t of a circle's area, and (2 + cos t) / 3 of the mean square
+    of its points' way from the axis.
+    """
+    found = solid(shape)
+    cone = UsdGeom.Cone(stage.GetPrimAtPath(shape.prim))
+    if not cone or found.volume <= 0.0:
+        return found
+    side = 2.0 * math.pi / CONE_SIDES
+    wider = np.full(3, math.sqrt(3.0 / (2.0 + math.cos(side))))
+    wider["XYZ".index(cone.GetAxisAttr().Get())] = 1.0
+    spread = (0.5 * np.trace(found.inertia) * np.eye(3) - found.inertia) * np.outer(wider, wider)
+    inertia = (np.trace(spread) * np.eye(3) - spread) * (side / math.sin(side))
+    return Solid(found.volume * side / math.sin(side), found.com, inertia)
 
 
 def _without_geometry(prim: Usd.Prim) -> Mass:

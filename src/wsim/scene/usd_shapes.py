@@ -14,7 +14,7 @@ from wsim.scene.world import Quat, Shape, ShapeKind, Vec3
 
 Array = NDArray[np.float64]
 
-_CONE_SIDES = 32
+CONE_SIDES = 32
 _TO_X = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))  # turns Z to X
 _TO_Y = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))  # turns Z to Y
 
@@ -218,12 +218,12 @@ def _corner_normals(
 
 def _cone(cone: UsdGeom.Cone) -> tuple[Array, NDArray[np.int64]]:
     r, h = cone.GetRadiusAttr().Get(), cone.GetHeightAttr().Get()
-    angle = np.linspace(0.0, 2.0 * math.pi, _CONE_SIDES, endpoint=False)
-    ring = np.stack([r * np.cos(angle), r * np.sin(angle), np.full(_CONE_SIDES, -h / 2.0)], 1)
+    angle = np.linspace(0.0, 2.0 * math.pi, CONE_SIDES, endpoint=False)
+    ring = np.stack([r * np.cos(angle), r * np.sin(angle), np.full(CONE_SIDES, -h / 2.0)], 1)
     points = np.concatenate([ring, [[0.0, 0.0, -h / 2.0], [0.0, 0.0, h / 2.0]]])
-    first = np.arange(_CONE_SIDES)
-    then = (first + 1) % _CONE_SIDES
-    bottom, top = np.full(_CONE_SIDES, _CONE_SIDES), np.full(_CONE_SIDES, _CONE_SIDES + 1)
+    first = np.arange(CONE_SIDES)
+    then = (first + 1) % CONE_SIDES
+    bottom, top = np.full(CONE_SIDES, CONE_SIDES), np.full(CONE_SIDES, CONE_SIDES + 1)
     triangles = np.concatenate([np.stack([then, first, bottom], 1), np.stack([first, then, top], 1)])
     along = "XYZ".index(cone.GetAxisAttr().Get())
     order = {0: [2, 0, 1], 1: [1, 2, 0], 2: [0, 1, 2]}[along]
