@@ -130,7 +130,8 @@ def test_two_sweeps_in_one_folder_are_refused(tmp_path: Path) -> None:
         assert not (folder.path / "outcomes.jsonl").exists()
 
 
-def test_ctrl_c_twice_ends_it_once_and_leaves_nobody_behind(tmp_path: Path) -> None:
+@pytest.mark.parametrize("between", [0.002, 0.05])
+def test_ctrl_c_twice_ends_it_once_and_leaves_nobody_behind(tmp_path: Path, between: float) -> None:
     folder = made(tmp_path, axes=[Axis(name="status", low=0.05, high=0.2)], samples=200)
     asked = [*SWEEP, "--resume", str(folder.path)]
     with started(asked, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
@@ -138,7 +139,7 @@ def test_ctrl_c_twice_ends_it_once_and_leaves_nobody_behind(tmp_path: Path) -> N
         while not (folder.path / "outcomes.jsonl").exists() and time.monotonic() < until:
             time.sleep(0.02)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-        time.sleep(0.05)
+        time.sleep(between)
         os.killpg(process.pid, signal.SIGINT)
         _, said = process.communicate(timeout=STUCK)
         assert process.returncode == 130

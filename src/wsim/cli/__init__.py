@@ -42,6 +42,15 @@ def main() -> None:
     keep_what_loads()
     atexit.register(gc.freeze)  # Python would look for garbage among all that Newton made, for seconds
     try:
+        _run()
+    except KeyboardInterrupt:  # pressed again while it was winding down
+        sys.exit(STOPPED)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # nothing is left to stop but Python's own end
+
+
+def _run() -> None:
+    try:
         app(prog_name="wsim")
     except UserError as error:
         print(f"wsim: {error}", file=sys.stderr)
