@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.recording import columns as names
-from wsim.recording.ties import CORD_WIDTH, JOINT_WIDTH, TieTrack, cord_ends
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,8 +35,6 @@ def of_bodies(frame: Frame) -> dict[str, Floats]:
 def of_frame(frame: Frame) -> dict[str, Floats]:
     """What a frame has once, by column, each a row."""
     found = {} if frame.wall_impulse is None else {names.WALL_IMPULSE: frame.wall_impulse}
-    if frame.ties is not None:
-        found |= {names.JOINT_SUMS: frame.ties.joints.ravel(), names.CORD_SUMS: frame.ties.cords.ravel()}
     return {name: np.array(row, dtype=np.float32) for name, row in found.items() if len(row)}
 
 
@@ -50,28 +47,6 @@ def read_bodies(table: Table, world: World, frame_ns: NDArray[np.int64], column:
             return None
         found[:, i] = values[np.searchsorted(ns, frame_ns)]
     return found if world.bodies else None
-
-
-def check_ties(frame: Frame, world: World) -> None:
-    """ValueError where the sums of joints and cords are not those of the world's."""
-    if frame.ties is None:
-        return
-    expected = (len(world.joints), JOINT_WIDTH), (len(cord_ends(world)), CORD_WIDTH)
-    if (given := (frame.ties.joints.shape, frame.ties.cords.shape)) != expected:
-        raise ValueError(f"frame: ties have shapes {given[0]} and {given[1]}, the world's {expected[0]}, {expected[1]}")
-
-
-def read_ties(table: Table, world: World, frame_ns: NDArray[np.int64]) -> TieTrack | None:
-    """What joints and cords gave, where it was recorded: recordings of before have none, and of them none is asked."""
-    counts = (len(world.joints), JOINT_WIDTH), (len(cord_ends(world)), CORD_WIDTH)
-    found = [np.zeros((len(frame_ns), *count), np.float32) for count in counts]
-    for k, (name, count) in enumerate(zip((names.JOINT_SUMS, names.CORD_SUMS), counts, strict=True)):
-        ns, values = table.get(names.FRAME_ENTITY, name, count, np.float32)
-        if count[0] and not len(ns):
-            return None
-        if count[0]:
-            found[k] = values[np.searchsorted(ns, frame_ns)]
-    return TieTrack(*found) if any(count[0] for count in counts) else None
 
 
 def read_frames(table: Table, frame_ns: NDArray[np.int64], column: str) -> Floats | None:

@@ -129,13 +129,14 @@ class ContactLawC:
         if parts == 1:
             self._end(data, touching)
             return
+        self.blows.undo(data)
         model.opt.timestep = h / parts
-        for k in range(parts):
-            if k == 0:
-                self.blows.undo(data)
-            self.flight.keep()
-            self._end(data, self._begin(data))
-        model.opt.timestep = h
+        try:
+            for _ in range(parts):
+                self.flight.keep()
+                self._end(data, self._begin(data))
+        finally:
+            model.opt.timestep = h
 
     def _begin(self, data: Any) -> bool:
         """The blows of a step and the accelerations after them; whether a contact, a stop or dry friction may be among
