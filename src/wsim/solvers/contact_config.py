@@ -11,8 +11,6 @@ class ContactConfig:
 
     impedance: float = 0.9999
     """Share of what is asked for that a contact alone reaches; MuJoCo's largest."""
-    kinematic_impedance: float = 0.99
-    """The same of the weld that holds a kinematic body to its way; nearer to one it shakes what rides on it."""
     solver_tolerance: float = 1e-10
     """MuJoCo's tolerance. Contacts are so hard that their forces are known far worse than the accelerations: at 1e-7
     what they turn a box by that begins to slip is 3.5 % of m g R off, at 1e-9 0.2 %; 1e-10 takes no more time."""

@@ -55,7 +55,7 @@ def _condition(mujoco: Any, model: Any) -> float:
     return _scaled_condition(mass[np.ix_(held, held)] + loops.T @ (data.efc_D[rows, None] * loops))
 
 
-def last_tolerance(mujoco: Any, model: Any, config: ContactConfig) -> float:
+def last_tolerance(model: Any, config: ContactConfig) -> float:
     """MuJoCo's tolerance at which a step's last forces leave at most `config.unbalanced` of any body's acceleration.
 
     MuJoCo ends where a turn lowers the cost by less than this times the trace of M, the masses of all bodies among
@@ -63,15 +63,10 @@ def last_tolerance(mujoco: Any, model: Any, config: ContactConfig) -> float:
     with d its impedance: so the lightest body counts, and how much heavier all others are.
 
     Args:
-        mujoco: The module.
         model: MuJoCo's model, of the first of worlds that differ.
         config: The law's.
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    mujoco.mj_makeM(model, data)
-    trace = float(data.M[model.M_rowadr + model.M_rownnz - 1].sum())
+    trace = float(model.stat.meaninertia * model.nv)
     masses = model.body_mass[(model.body_treeid >= 0) & (model.body_mass > 0.0)]
     if not len(masses) or trace <= 0.0:
         return config.solver_tolerance_warp
