@@ -296,7 +296,8 @@ def test_a_plough_pushes_and_a_turntable_turns(simulate):
     run = simulate(build, 1.0)
     assert run.v["box"][-1, 0] == pytest.approx(0.5, abs=1e-3)
     load = run.q["load"][-1] - (3, 0, 0.6)
-    assert math.degrees(math.atan2(load[1], load[0])) == pytest.approx(90.0 * run.simulation.time, abs=3.0)
+    lag = 2.946  # [deg], by integration of Coulomb's friction on its four corners until it goes with the table
+    assert math.degrees(math.atan2(load[1], load[0])) == pytest.approx(90.0 * run.simulation.time - lag, abs=0.1)
     assert np.linalg.norm(load[:2]) == pytest.approx(0.2, abs=0.01)
 
 

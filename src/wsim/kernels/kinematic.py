@@ -165,3 +165,25 @@ def arrive(
         joint_q[coordinate[k] + i] = target[k][i]
     if k == 0:
         step[0] = step[0] + 1
+
+
+@wp.kernel(enable_backward=False)
+def push(
+    # Data in:
+    freedom: wp.array(dtype=int),  # of kinematic bodies in qvel
+    inertia: wp.array2d(dtype=float),  # of each, in all worlds alike or in each
+    dt: float,
+    # Data out:
+    before: wp.array2d(dtype=float),  # the velocity of the step before, or not a number
+    qvel: wp.array2d(dtype=float),
+    qfrc_applied: wp.array2d(dtype=float),
+):
+    """Start with the velocity of the step before, with the force by which a step of `dt` [s] ends with that in qvel."""
+    world, k = wp.tid()
+    speed = qvel[world, freedom[k]]
+    start = before[world, k]
+    if wp.isnan(start):
+        start = speed
+    qfrc_applied[world, freedom[k]] = inertia[world % inertia.shape[0], k] * (speed - start) / dt
+    qvel[world, freedom[k]] = start
+    before[world, k] = speed

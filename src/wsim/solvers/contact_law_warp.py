@@ -90,7 +90,8 @@ class ContactLawWarp:
             self._nearest = wp.zeros(data.nworld, dtype=float)
             self._seeking = wp.zeros(1, dtype=int)
             self._bow = wp.zeros(data.naconmax, dtype=float)
-            self._last_tolerance = wp.array([last_tolerance(host, config)], dtype=float)
+            usual = float(model.opt.tolerance.numpy()[0])
+            self._last_tolerance = wp.array([last_tolerance(host, usual, config)], dtype=float)
             self._ropes = RopesWarp(self._mujoco_warp, data) if host.tendon_limited.any() else None
         self._smooth_steps: Any = None
         if smooth:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
+import warp as wp
+
+from wsim.kernels.kinematic import push
 
 Array = np.ndarray
 RATIO = 1e6  # of a kinematic body's inertia to that of all that moves: what these move it by is lost in single precision
@@ -32,3 +36,52 @@ def locked(mujoco: Any, model: Any, bodies: Array) -> Array:
         armature[first : first + 3] = mass
         armature[first + 3 : first + 6] = mass * max(1.0, float(far.max())) ** 2
     return armature
+
+
+class LeadsC:
+    """Takes kinematic bodies from the velocity of one step to that of the next by a force that lasts all the step.
+
+    What hangs on such a body has a velocity relative to it, and would else go along with every change of it as if it
+    had no inertia: a pendulum would not feel that its pivot is pulled away.
+
+    Args:
+        freedoms: Of the bodies in qvel, (n,).
+        inertia: Theirs (`locked`), (n,).
+    """
+
+    def __init__(self, freedoms: Array, inertia: Array) -> None:
+        self._freedoms, self._inertia = freedoms, inertia
+        self.forget()
+
+    def forget(self) -> None:
+        """Have the next step start with its own velocity."""
+        self._before: Array = np.full(len(self._freedoms), np.nan)
+
+    def push(self, data: Any, dt: float) -> None:
+        """Have `data`, which has the velocity of a step of `dt` [s], start with that of the step before."""
+        speed = data.qvel[self._freedoms]
+        start = np.where(np.isnan(self._before), speed, self._before)
+        data.qfrc_applied[self._freedoms] = self._inertia * (speed - start) / dt
+        data.qvel[self._freedoms], self._before = start, speed
+
+
+class LeadsWarp:
+    """The same in all worlds of a batch; the inertia is that of all alike, or of each, (N, n)."""
+
+    def __init__(self, freedoms: Array, inertia: Array, worlds: int) -> None:
+        self._freedoms, self._inertia = wp.array(freedoms, dtype=int), wp.array(inertia, dtype=float)
+        self._before = wp.full((worlds, len(freedoms)), math.nan, dtype=float)
+
+    def forget(self) -> None:
+        """Have the next step start with its own velocity."""
+        self._before.fill_(math.nan)
+
+    def push(self, data: Any, dt: float) -> None:
+        """Have `data`, which has the velocity of a step of `dt` [s], start with that of the step before."""
+        wp.launch(
+            push,
+            dim=self._before.shape,
+            inputs=[self._freedoms, self._inertia, dt],
+            outputs=[self._before, data.qvel, data.qfrc_applied],
+            device=self._before.device,
+        )

@@ -25,7 +25,7 @@ def soften_for_single_precision(mujoco: Any, model: Any, config: ContactConfig) 
         model: MuJoCo's model; `eq_solimp` is changed.
         config: The law's.
     """
-    hard = np.flatnonzero(model.eq_solimp[:, 0] == config.impedance) if model.neq else ()
+    hard = np.flatnonzero((model.eq_solimp[:, 0] == config.impedance) & (model.eq_active0 != 0))
     if not len(hard):
         return
     condition = _condition(mujoco, model)
@@ -55,24 +55,24 @@ def _condition(mujoco: Any, model: Any) -> float:
     return _scaled_condition(mass[np.ix_(held, held)] + loops.T @ (data.efc_D[rows, None] * loops))
 
 
-def last_tolerance(model: Any, config: ContactConfig) -> float:
+def last_tolerance(model: Any, usual: float, config: ContactConfig) -> float:
     """MuJoCo's tolerance at which a step's last forces leave at most `config.unbalanced` of any body's acceleration.
 
-    MuJoCo ends where a turn lowers the cost by less than this times the trace of M, the masses of all bodies among
-    them. A contact of a body of mass m that lacks a force r of what moves the body costs r^2 / (2 D), D = m d / (1 - d)
+    MuJoCo Warp ends where a turn lowers the cost by less than this times the trace of M. A contact of a body of mass m that lacks a force r of what moves the body costs r^2 / (2 D), D = m d / (1 - d)
     with d its impedance: so the lightest body counts, and how much heavier all others are.
 
     Args:
         model: MuJoCo's model, of the first of worlds that differ.
+        usual: That of other solutions: `config.solver_tolerance_warp`, or less where the trace has what is locked in it.
         config: The law's.
     """
     trace = float(model.stat.meaninertia * model.nv)
     masses = model.body_mass[(model.body_treeid >= 0) & (model.body_mass > 0.0)]
     if not len(masses) or trace <= 0.0:
-        return config.solver_tolerance_warp
+        return usual
     harder = config.impedance / (1.0 - config.impedance)
     enough = float(config.unbalanced**2 * masses.min() / (2.0 * harder * trace))
-    return min(enough, config.solver_tolerance_warp)
+    return usual * min(1.0, enough / config.solver_tolerance_warp)
 
 
 def soften_contacts_for_single_precision(mujoco: Any, model: Any, config: ContactConfig) -> bool:
@@ -99,6 +99,7 @@ def soften_contacts_for_single_precision(mujoco: Any, model: Any, config: Contac
         if len(bodies) > 1 and len(geoms):
             chosen = np.flatnonzero(model.dof_treeid == tree)
             touching = np.unique(model.geom_bodyid[geoms])
+            touching = touching[model.body_invweight0[touching, 0] > 0.0]  # a kinematic body does not yield
             pushes = _pushes(mujoco, model, data, touching, config)[:, chosen]
             if _scaled_condition(mass[np.ix_(chosen, chosen)] + pushes.T @ pushes) > LARGEST_CONDITION:
                 ill += geoms.tolist()
@@ -108,7 +109,7 @@ def soften_contacts_for_single_precision(mujoco: Any, model: Any, config: Contac
 
 def _pushes(mujoco: Any, model: Any, data: Any, bodies: Array, config: ContactConfig) -> Array:
     """Rows of sqrt(D) J, (3 bodies, coordinates), as if all these bodies touched something that does not move."""
-    share, rows = config.impedance / (1.0 - config.impedance), []
+    share, rows = config.impedance / (1.0 - config.impedance), [np.zeros((0, model.nv))]
     for body in bodies:
         push = np.zeros((3, model.nv))
         mujoco.mj_jacBodyCom(model, data, push, None, body)

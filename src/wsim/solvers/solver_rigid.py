@@ -20,7 +20,7 @@ from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
 from wsim.solvers.host_models import host_models
-from wsim.solvers.locking import locked
+from wsim.solvers.locking import LeadsC, LeadsWarp, locked
 from wsim.solvers.single_precision import (
     soften_contacts_for_single_precision,
     soften_for_single_precision,
@@ -62,8 +62,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         cylinders: CylinderContacts | None = None,
         **options: Any,
     ) -> None:
-        self.contact_config = ContactConfig()
+        self.contact_config, self._dt = ContactConfig(), time_step
         self._flight: Flight | None = None
+        self._leads: LeadsC | LeadsWarp | None = None
         self.impulses: ContactImpulsesC | ContactImpulsesWarp | None = None
         self.tie_impulses: TieImpulsesC | None = None
         super().__init__(
@@ -199,9 +200,18 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_data.eq_active[welds] = 0
         if not self.use_mujoco_cpu:
             self._give_warp("dof_armature", inertia)
+            tolerance = self.mjw_model.opt.tolerance
+            free = self.mj_model.stat.meaninertia * self.mj_model.nv  # of M's trace, by which it is multiplied
+            tolerance.assign(tolerance.numpy() * free / (free + inertia[0].sum()))
             active = self.mjw_data.eq_active.numpy()
             active[:, welds] = False
             self.mjw_data.eq_active.assign(active)
+        freedoms = (self.mj_model.body_dofadr[bodies][:, None] + np.arange(6)).ravel()
+        if self.use_mujoco_cpu:
+            self._leads = LeadsC(freedoms, inertia[0, freedoms])
+        else:
+            with wp.ScopedDevice(self.model.device):
+                self._leads = LeadsWarp(freedoms, inertia[:, freedoms], self.mjw_data.nworld)
         return bodies
 
     def _harden_constraints(self, h: float) -> None:
@@ -340,6 +350,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
 
     def reset(self, state: Any, *args: Any, **options: Any) -> None:
         """Start anew from `state`; see `newton.solvers.SolverMuJoCo.reset`."""
+        if self._leads:
+            self._leads.forget()
         super().reset(state, *args, **options)
         if self._flight:
             self._flight.forget()
@@ -351,6 +363,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         super()._update_mjc_data(mj_data, model, state, *args, **options)
         if self._flight and state is not None:
             self._flight.recall(state)
+        if self._leads:
+            self._leads.push(mj_data, self._dt)
 
     def _update_newton_state(self, model: Any, state: Any, mj_data: Any, *args: Any, **options: Any) -> None:
         if self._flight:
