@@ -138,3 +138,19 @@ def test_a_piston_pushes_and_leaves(simulate, worlds):
     assert run.v["piston"][round(0.5 / run.dt) - 1, 0] == pytest.approx(1.0 + 1 / 12, rel=0.02)
     assert run.v["puck"][-1, 0] == pytest.approx(run.v["piston"][:, 0].max(), rel=0.01)
     assert np.abs(run.v["piston"][-1]).max() == 0.0 and run.q["piston"][-1, 0] == pytest.approx(0.6, abs=1e-6)
+
+
+@BOTH
+def test_what_a_kinematic_body_weighs_does_not_matter_to_what_it_meets(simulate, worlds):
+    """A ball of 300 kg leaves a paddle of 10 g at u + e (u - v); a ton stays on a lift of 10 g."""
+
+    def build(scene):
+        light = {"kinematic": True, "mass": 0.01}
+        scene.box("paddle", size=(0.1, 0.5, 0.5), position=(0, 0, 2), velocity=(1, 0, 0), restitution=0.5, **light)
+        scene.sphere("ball", radius=0.2, mass=300, position=(0.35, 0, 2), velocity=(-2, 0, 0), restitution=0.5)
+        scene.box("lift", size=(1, 1, 0.1), position=(3, 0, 0.5), velocity=(0, 0, 0.5), **light)
+        scene.box("load", size=(0.4,) * 3, mass=1000, position=(3, 0, 0.75))
+
+    run = simulate(build, 0.2, worlds)
+    assert run.v["ball"][-1, 0] == pytest.approx(2.5, rel=1e-3)
+    assert run.q["load"][-1, 2] - run.q["lift"][-1, 2] == pytest.approx(0.25, abs=2e-4)

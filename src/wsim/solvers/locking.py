@@ -11,7 +11,9 @@ import warp as wp
 from wsim.kernels.kinematic import push
 
 Array = np.ndarray
-RATIO = 1e6  # of a kinematic body's inertia to that of all that moves: what these move it by is lost in single precision
+RATIO = (
+    1e6  # of a kinematic body's inertia to that of all that moves: what these move it by is lost in single precision
+)
 
 
 def locked(mujoco: Any, model: Any, bodies: Array) -> Array:
@@ -85,3 +87,18 @@ class LeadsWarp:
             outputs=[self._before, data.qvel, data.qfrc_applied],
             device=self._before.device,
         )
+
+
+def leads(model: Any, inertia: Array, bodies: Array, worlds: int | None) -> LeadsC | LeadsWarp:
+    """Of some kinematic bodies in C, or in so many worlds of Warp's.
+
+    Args:
+        model: MuJoCo's.
+        inertia: `locked`, of all worlds alike or of each, (N, nv).
+        bodies: MuJoCo's numbers of them.
+        worlds: None in C.
+    """
+    freedoms = (model.body_dofadr[bodies][:, None] + np.arange(6)).ravel()
+    if worlds is None:
+        return LeadsC(freedoms, inertia[0, freedoms])
+    return LeadsWarp(freedoms, inertia[:, freedoms], worlds)

@@ -20,11 +20,8 @@ from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
 from wsim.solvers.host_models import host_models
-from wsim.solvers.locking import LeadsC, LeadsWarp, locked
-from wsim.solvers.single_precision import (
-    soften_contacts_for_single_precision,
-    soften_for_single_precision,
-)
+from wsim.solvers.locking import LeadsC, LeadsWarp, leads, locked
+from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
@@ -206,12 +203,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             active = self.mjw_data.eq_active.numpy()
             active[:, welds] = False
             self.mjw_data.eq_active.assign(active)
-        freedoms = (self.mj_model.body_dofadr[bodies][:, None] + np.arange(6)).ravel()
-        if self.use_mujoco_cpu:
-            self._leads = LeadsC(freedoms, inertia[0, freedoms])
-        else:
-            with wp.ScopedDevice(self.model.device):
-                self._leads = LeadsWarp(freedoms, inertia[:, freedoms], self.mjw_data.nworld)
+        with wp.ScopedDevice(self.model.device):
+            self._leads = leads(self.mj_model, inertia, bodies, None if self.use_mujoco_cpu else self.mjw_data.nworld)
         return bodies
 
     def _harden_constraints(self, h: float) -> None:
