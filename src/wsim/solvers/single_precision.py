@@ -58,12 +58,13 @@ def _condition(mujoco: Any, model: Any) -> float:
 def last_tolerance(model: Any, usual: float, config: ContactConfig) -> float:
     """MuJoCo's tolerance at which a step's last forces leave at most `config.unbalanced` of any body's acceleration.
 
-    MuJoCo Warp ends where a turn lowers the cost by less than this times the trace of M. A contact of a body of mass m that lacks a force r of what moves the body costs r^2 / (2 D), D = m d / (1 - d)
-    with d its impedance: so the lightest body counts, and how much heavier all others are.
+    MuJoCo Warp ends where a turn lowers the cost by less than this times the trace of M. A contact of a body of mass m
+    that lacks a force r of what moves the body costs r^2 / (2 D), D = m d / (1 - d) with d its impedance: so the
+    lightest body counts, and how much heavier all others are.
 
     Args:
         model: MuJoCo's model, of the first of worlds that differ.
-        usual: That of other solutions: `config.solver_tolerance_warp`, or less where the trace has what is locked in it.
+        usual: That of other solutions: `config.solver_tolerance_warp`, less where what is locked is in the trace.
         config: The law's.
     """
     trace = float(model.stat.meaninertia * model.nv)
