@@ -107,6 +107,37 @@ def test_gears_reduce_inertia_and_keep_their_ratio(simulate):
     assert run.v["rack"][-1, 0] == pytest.approx(-radii[2] * run.w["w2"][-1, 2], rel=1e-4)
 
 
+def two_wheels(scene, **follower):
+    """Two that mesh, 1 : 2, of one moment of inertia as the first feels it; it starts with 2 rad/s."""
+    scene.simulation(gravity=(0, 0, 0))
+    spins = math.degrees(2.0), -math.degrees(1.0)
+    for k, (radius, mass) in enumerate(((0.1, 2.0), (0.2, 2.0))):
+        scene.cylinder(
+            f"wheel{k}", radius=radius, height=0.05, axis="Y", mass=mass, position=(0.5 * k, 0, 1),
+            angular_velocity_deg=(0, spins[k], 0),
+        )  # fmt: skip
+    scene.joint_revolute("leader", None, "wheel0", axis="Y")
+    scene.joint_revolute("follower", None, "wheel1", axis="Y", **follower)
+    scene.gear("mesh", "leader", "follower", ratio=-0.5)
+
+
+def test_a_stop_of_one_wheel_stops_what_meshes_with_it(simulate):
+    """At twice the angle, and both stay there."""
+    run = simulate(partial(two_wheels, limits_deg=(-10.0, 0.0)), 0.3)
+    for name, end in (("wheel0", 20.0), ("wheel1", -10.0)):
+        turned = np.degrees(2.0 * np.arctan2(run.turn[name][-5:, 1], run.turn[name][-5:, 3]))
+        assert turned == pytest.approx(end, abs=0.01)
+        assert np.abs(run.w[name][-5:]).max() < 1e-3
+
+
+def test_friction_of_one_wheel_slows_what_meshes_with_it(simulate):
+    """I0 + I1 / 4 = 0.02 kg m^2 as the first feels it, and half of 0.04 N m."""
+    run = simulate(partial(two_wheels, friction=0.04), 0.5)
+    slowed = 2.0 - 0.02 / 0.02 * run.t
+    assert run.w["wheel0"][:, 1] == pytest.approx(slowed, abs=2e-3)
+    assert run.w["wheel1"][:, 1] == pytest.approx(-0.5 * slowed, abs=2e-3)
+
+
 # ---- joints that break
 LOADS = {
     "pulled fixed": ("joint_fixed", (0, 0, 2), {"break_force": 2.0 * G}),
