@@ -19,6 +19,7 @@ from wsim.solvers.contact_law_warp import ContactLawWarp
 from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
+from wsim.solvers.gears import gears_to_turn, turned
 from wsim.solvers.host_models import host_models
 from wsim.solvers.single_precision import (
     soften_contacts_for_single_precision,
@@ -83,6 +84,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
         gives = [yielding(host) for host in self._hosts()]
         self.mj_model.body_invweight0[:, 0] = gives[0]
+        self._turn_gears()
         self._harden_constraints(time_step)
         self.breaking = self._breaking(breakable) if breakable and breakable[0] else None
         self._touching = touching
@@ -177,6 +179,20 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.eq_data[:] = held[0]
         if not self.use_mujoco_cpu:
             self._give_warp("eq_data", held)
+
+    def _turn_gears(self) -> None:
+        """Write gears by the joint in which they are as hard as all else, in all worlds as in the first."""
+        host = self.mj_model
+        gears = gears_to_turn(self.import_mujoco()[0], host)
+        if not len(gears):
+            return
+        ends = host.eq_obj1id.copy(), host.eq_obj2id.copy()
+        host.eq_obj1id[gears], host.eq_obj2id[gears] = ends[1][gears], ends[0][gears]
+        host.eq_data[:] = turned(host.eq_data, gears)
+        if not self.use_mujoco_cpu:
+            for name in ("eq_obj1id", "eq_obj2id"):
+                getattr(self.mjw_model, name).assign(getattr(host, name))
+            self.mjw_model.eq_data.assign(turned(self.mjw_model.eq_data.numpy(), gears))
 
     def _harden_constraints(self, h: float) -> None:
         """Loops, gears and what may break are as hard as contacts, the welds that drive kinematic bodies nearly so.
