@@ -1,7 +1,7 @@
 """Which of two joints a gear's row counts in, for the row to be as hard as all others.
 
 MuJoCo gives the row q1 = c0 + c1 q2 a regularisation by the mobilities of both joints, w1 + w2, where the row itself
-feels w1 + c1^2 w2. Written the other way it feels w2 + w1 / c1^2, so one of the two is nearer. A rack of 1 kg that hangs
+feels w1 + c1^2 w2. Written the other way it feels w2 + w1 / c1^2: one of the two is nearer. A rack of 1 kg that hangs
 on the friction of a pinion of 10 g, c1 = 5 mm, w1 = 1 / kg and w2 = 8e6 / (kg m^2), sank by 0.13 m in 0.3 s.
 """
 
