@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from wsim.geometry.ropes import Stop, path_length, strands
 
@@ -57,3 +59,39 @@ def test_strands_of_a_rope_that_leaves_its_cylinder():
     assert on_it[1] == pytest.approx(0.0, abs=1e-12)
     assert on_it[0, 2] < -0.5
     assert np.linalg.norm(first.end[0]) == pytest.approx(0.2, abs=1e-9)
+
+
+def just_so_long(reaches, radius, gap):
+    """A way past a cylinder at `gap` from its rim, from one reach before it to another after, in closed form."""
+    if gap >= 0.0:
+        return sum(reaches)
+    high, total = radius + gap, 0.0
+    for reach in reaches:
+        strand = np.sqrt(reach**2 + gap * (high + radius))
+        turn = np.arcsin(-gap * (high + radius) / (radius * reach + high * strand))
+        total += reach + gap * (high + radius) / (strand + reach) + radius * turn
+    return total
+
+
+@settings(deadline=None)
+@given(
+    radius=st.floats(0.01, 1.0),
+    before=st.floats(0.3, 30.0),
+    after=st.floats(0.3, 30.0),
+    power=st.floats(-16.0, -2.0),
+    side=st.sampled_from([-1.0, 0.0, 1.0]),
+    angle=st.floats(0.0, 6.3),
+    centre=st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)),
+)
+def test_a_rope_that_just_touches_a_cylinder_is_straight(radius, before, after, power, side, angle, centre):
+    """From either side, and where rounding decides on which."""
+    gap, reaches = side * radius * 10.0**power, (radius * before, radius * after)
+    across, along = np.array([np.cos(angle), np.sin(angle), 0.0]), np.array([-np.sin(angle), np.cos(angle), 0.0])
+    middle = np.array([*centre, 0.0])
+    ends = [(middle + (radius + gap) * across + x * along)[None] for x in (-reaches[0], reaches[1])]
+    post = Stop(middle[None], radius, np.array([[0.0, 0.0, 1.0]]), across[None])
+    way = [Stop(ends[0]), post, Stop(ends[1])]
+    assert path_length(way)[0] == pytest.approx(just_so_long(reaches, radius, gap), rel=1e-10)
+    first, second = strands(way)
+    turn = 2.0 * 10.0**power / min(before, after, 1.0)
+    assert float(first.along[0] @ second.along[0]) == pytest.approx(1.0, abs=turn**2 + 1e-9)

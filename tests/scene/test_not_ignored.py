@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from pxr import UsdPhysics
 
 from wsim.errors import UserError
 from wsim.scene import Drive, Part, Scene, SceneError
@@ -48,7 +49,14 @@ REFUSED: dict[str, tuple[Build, str]] = {
     ),
     "tight points": (lambda s: tight(s, points=[(0, 0, 0), (1, 0, 0), (1, 0.2, 0), (0, 0.2, 0)]), "points["),
     "mass of a static": (lambda s: crate(s, static=True, mass=3.0), "mass = 3 kg on a static object"),
-    "density of a static": (lambda s: crate(s, static=True, density=300.0), "density = 300 kg/m^3 on a static object"),
+    "speed of a static": (
+        lambda s: crate(s, static=True, velocity=(1, 0, 0)),
+        "velocity = (1.0, 0.0, 0.0) on a static object; leave it out, or give static=False",
+    ),
+    "density of a static": (
+        lambda s: crate(s, static=True, density=300.0),
+        "density = 300 kg/m^3 on a static object, which nothing moves; leave it out, or give static=False",
+    ),
     "two belts": (
         lambda s: [
             s.surface_velocity(crate(s, static=True), velocity=(1, 0, 0)),
@@ -105,17 +113,51 @@ def test_it_is_one_line_that_names_the_value(case: str) -> None:
     assert "\n" not in str(error.value)
 
 
-def test_a_pair_that_a_joint_ties_never_touches(tmp_path) -> None:
+TIES: dict[str, tuple[Build, str]] = {
+    "hinge": (lambda s: s.joint_revolute("tie", "one", "two"), "never .*: the joint </World/tie> ties them; leave"),
+    "glue": (
+        lambda s: s.joint_fixed("tie", "one", "two", break_force=9.0),
+        "never .*: the joint </World/tie> ties them, and they pass each other once it broke; leave",
+    ),
+    "static": (lambda s: s.joint_fixed("tie", "post", "two"), "never .*: the joint </World/tie> ties them; leave"),
+    "gear": (lambda s: s.gear("tie", "axle", "bearing", ratio=-1.0), "never .*: the gear </World/tie> meshes them"),
+}
+
+
+def of_a_pair(tie: str) -> tuple[Scene, tuple[str, str]]:
     scene = Scene()
-    scene.ground()
     scene.box("post", size=(0.1, 0.1, 1), position=(0, 0, 0.5), static=True)
-    scene.box("arm", size=(1, 0.1, 0.1), position=(0.5, 0, 0.9))
-    scene.joint_revolute("hinge", "post", "arm", anchor=(0, 0, 0.9), axis="Y")
-    scene.contact("post", "arm", friction=0.3)
-    with pytest.raises(UserError, match="never touch: the joint </World/hinge> ties them"):
-        scene.save(tmp_path / "tied.usda")
-        problems = list(check_stage(tmp_path / "tied.usda", [tmp_path]))
-        raise UserError("; ".join(problems))
+    scene.box("one", size=(0.1,) * 3, position=(0, 0, 2))
+    scene.box("two", size=(0.1,) * 3, position=(0.1, 0, 2))
+    if tie == "gear":
+        scene.joint_revolute("axle", None, "one")
+        scene.joint_revolute("bearing", None, "two")
+    return scene, ("post" if tie == "static" else "one", "two")
+
+
+@pytest.mark.parametrize("tie", TIES)
+def test_a_pair_that_is_tied_never_touches(tie: str) -> None:
+    """In either order, and the call that comes last leaves nothing behind."""
+    made, says = TIES[tie]
+    scene, pair = of_a_pair(tie)
+    made(scene)
+    with pytest.raises(SceneError, match=says):
+        scene.contact(*pair, friction=0.3)
+    scene, pair = of_a_pair(tie)
+    scene.contact(*pair, friction=0.3)
+    with pytest.raises(SceneError, match=says):
+        made(scene)
+    assert not scene.stage.GetPrimAtPath("/World/tie")
+
+
+def test_a_stage_may_state_no_pair_that_is_tied(tmp_path) -> None:
+    scene, pair = of_a_pair("glue")
+    scene.contact(*pair, friction=0.3)
+    joint = UsdPhysics.FixedJoint.Define(scene.stage, "/World/tie")
+    joint.CreateBody0Rel().SetTargets(["/World/one"])
+    joint.CreateBody1Rel().SetTargets(["/World/two"])
+    problems = check_stage(scene.save(tmp_path / "tied.usda"), [tmp_path])
+    assert any("never touch: the joint </World/tie> ties them; leave" in problem for problem in problems)
 
 
 def test_an_asset_starts_as_it_is_told(tmp_path) -> None:

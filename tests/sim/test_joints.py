@@ -109,6 +109,53 @@ def test_gears_reduce_inertia_and_keep_their_ratio(simulate):
     assert run.v["rack"][-1, 0] == pytest.approx(-radii[2] * run.w["w2"][-1, 2], rel=1e-4)
 
 
+def two_wheels(scene, **follower):
+    """Two that mesh, 1 : 2, of one moment of inertia as the first feels it; it starts with 2 rad/s."""
+    scene.simulation(gravity=(0, 0, 0))
+    spins = math.degrees(2.0), -math.degrees(1.0)
+    for k, (radius, mass) in enumerate(((0.1, 2.0), (0.2, 2.0))):
+        scene.cylinder(
+            f"wheel{k}", radius=radius, height=0.05, axis="Y", mass=mass, position=(0.5 * k, 0, 1),
+            angular_velocity_deg=(0, spins[k], 0),
+        )  # fmt: skip
+    scene.joint_revolute("leader", None, "wheel0", axis="Y")
+    scene.joint_revolute("follower", None, "wheel1", axis="Y", **follower)
+    scene.gear("mesh", "leader", "follower", ratio=-0.5)
+
+
+def test_a_stop_of_one_wheel_stops_what_meshes_with_it(simulate):
+    """At twice the angle, and both stay there."""
+    run = simulate(partial(two_wheels, limits_deg=(-10.0, 0.0)), 0.3)
+    for name, end in (("wheel0", 20.0), ("wheel1", -10.0)):
+        turned = np.degrees(2.0 * np.arctan2(run.turn[name][-5:, 1], run.turn[name][-5:, 3]))
+        assert turned == pytest.approx(end, abs=0.01)
+        assert np.abs(run.w[name][-5:]).max() < 1e-3
+
+
+def test_friction_of_one_wheel_slows_what_meshes_with_it(simulate):
+    """I0 + I1 / 4 = 0.02 kg m^2 as the first feels it, and half of 0.04 N m."""
+    run = simulate(partial(two_wheels, friction=0.04), 0.5)
+    slowed = 2.0 - 0.02 / 0.02 * run.t
+    assert run.w["wheel0"][:, 1] == pytest.approx(slowed, abs=2e-3)
+    assert run.w["wheel1"][:, 1] == pytest.approx(-0.5 * slowed, abs=2e-3)
+
+
+@pytest.mark.parametrize("named", ["pinion first", "rack first"])
+def test_a_rack_hangs_on_the_friction_of_its_pinion(simulate, named):
+    """Of 5 mm and 10 g, which 0.06 N m hold against 0.049: gears named either way are as hard as all else."""
+
+    def build(scene):
+        scene.cylinder("pinion", radius=0.005, height=0.01, axis="Y", mass=0.01, position=(0, 0, 2))
+        scene.box("rack", size=(0.1,) * 3, mass=1.0, position=(0.3, 0, 2))
+        scene.joint_revolute("axle", None, "pinion", axis="Y", friction=0.06)
+        scene.joint_prismatic("rail", None, "rack", axis="Z")
+        pair, ratio = (("axle", "rail"), 0.005) if named == "pinion first" else (("rail", "axle"), 200.0)
+        scene.gear("mesh", *pair, ratio=ratio)
+
+    run = simulate(build, 0.2)
+    assert run.q["rack"][:, 2] == pytest.approx(2.0, abs=5e-5)
+
+
 # ---- joints that break
 LOADS = {
     "pulled fixed": ("joint_fixed", (0, 0, 2), {"break_force": 2.0 * G}),

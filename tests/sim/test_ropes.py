@@ -13,6 +13,7 @@ from wsim.geometry.rotations import rotate
 from wsim.judge import judge
 from wsim.recording import read
 from wsim.scene import Scene
+from wsim.scene.cord_paths import moving_stops
 from wsim.sim import Simulation
 
 G = 9.81
@@ -182,6 +183,32 @@ def test_a_rope_runs_along_a_cylinder_as_a_line_on_it_rolled_out():
     assert path_length(helix)[0] == pytest.approx(math.hypot(2.0 + math.pi * 0.5, 0.7))
     above = [stop(-1, 0, 0.6), post, stop(1, 0, 0.6)]
     assert path_length(above)[0] == pytest.approx(2.0)
+
+
+@BOTH
+@pytest.mark.parametrize("wide", [0.04, 0.5], ids=["groove", "post"])
+def test_a_rope_that_just_touches_a_post_winds_on_or_leaves_it(tmp_path, worlds, wide):
+    """Or misses it by as much as rounding does: what swings on it at 2 m/s, about nothing else, keeps its speed."""
+    gaps = [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-8, -1e-8, 1e-7, -1e-7, -9e-7, -1e-6, -1.1e-6, 1e-5, -1e-5, 1e-4]
+    scene = Scene()
+    scene.simulation(frame_rate=100.0, gravity=(0, 0, 0))
+    for k, gap in enumerate([*gaps, *gaps]):
+        x, y, way = 3.0 * (k % 6), 3.0 * (k // 6), 2.0 if k < len(gaps) else -2.0
+        at, fixed = (x + 0.6, y + 0.1 + gap, 1.0), (x - 0.5, y + 0.1 + gap, 1.0)
+        post = scene.cylinder(f"post{k}", radius=0.1, height=wide, axis="Z", position=(x, y, 1), static=True)
+        bob = scene.sphere(f"bob{k}", radius=0.03, mass=1.0, position=at, velocity=(0, way, 0))
+        scene.rope(f"rope{k}", None, bob, anchor_a=fixed, anchor_b=at, around=[(post, (0, 1, 0))])
+    simulation = Simulation(scene.save(tmp_path / "stage.usda"), "cpu", worlds)
+    rows = simulation.built.bodies
+    for _ in range(10):
+        simulation.advance_frame()
+        speed = np.linalg.norm(simulation.state.body_qd.numpy()[rows, :3], axis=1)
+        assert speed == pytest.approx(2.0, abs=2e-3)
+    assert simulation.problems() == []
+    poses = simulation.state.body_q.numpy()[rows].astype(float)
+    for rope, pose in zip(simulation.world.ropes, poses, strict=True):
+        way = path_length(moving_stops(rope.path, {rope.path[-1].body: pose[None]}))[0]
+        assert way == pytest.approx(rope.length, abs=2e-5)
 
 
 def test_the_solver_and_the_judge_agree_on_a_ropes_way(tmp_path):

@@ -8,6 +8,8 @@ import numpy as np
 
 Array = np.ndarray
 ARC_STEP = 0.2  # [rad] between the points that draw an arc
+TOUCHES = 1e-6  # [rad] short of a whole turn, from which on an arc is none
+ON_RIM = 1.0 - 1e-6  # of a cylinder's radius: what is so far from its axis is not inside
 
 
 @dataclass(frozen=True)
@@ -192,6 +194,7 @@ def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
         t0, t1 = bearing[0] + turn * open_[0], bearing[1] - turn * open_[1]
         # Over the cylinder's own side, direction 0, and not round it once more, with strands that cross.
         swept = np.mod(turn * (t1 - t0), 2.0 * np.pi)
+        swept = np.where(swept > 2.0 * np.pi - TOUCHES, 0.0, swept)  # a rope that just touches it, less rounding
         middle = t0 + turn * 0.5 * swept
         off = swept + np.where(np.cos(middle) >= 0.0, 0.0, 2.0 * np.pi)
         better = off < best
@@ -201,7 +204,7 @@ def _wrap(start: Array, end: Array, stop: Stop) -> _Wrap:
     share = np.clip(-((q - p) * p).sum(axis=1) / np.maximum(straight**2, 1e-24), 0.0, 1.0)
     nearest = p + share[:, None] * (q - p)
     past = (np.linalg.norm(nearest, axis=1) > r) & (nearest[:, 0] >= 0.0)
-    past |= (far[0] < r) | (far[1] < r)
+    past |= (far[0] < ON_RIM * r) | (far[1] < ON_RIM * r)
     flat = np.where(past, straight, lines[0] + r * np.abs(angle) + lines[1])
     touch = np.where(past[:, None], p, _on_circle(r, first))
     climb = rise / np.maximum(flat, 1e-12)

@@ -172,7 +172,7 @@ class Bodies(Materials):
             call.fail(f"mass = {mass:g} kg and density = {density:g} kg/m^3 are both given; give one")
         if options.static and not (mass is None and density is None):
             said = f"density = {density:g} kg/m^3" if mass is None else f"mass = {mass:g} kg"
-            call.fail(f"{said} on a static object, which nothing moves; leave it out, or static=True")
+            call.fail(f"{said} on a static object, which nothing moves; leave it out, or give static=False")
         return mass, density
 
     def _moving(self, call: Call, options: BodyOptions, velocity: Vec3, spin: Vec3) -> bool:
@@ -180,7 +180,7 @@ class Bodies(Materials):
             call.fail("static = True and kinematic = True are both given; a static object never moves")
         if options.static and (any(velocity) or any(spin)):
             field, value = ("velocity", velocity) if any(velocity) else ("angular_velocity_deg", spin)
-            call.fail(f"{field} = {value} on a static object; leave it out, or static=True")
+            call.fail(f"{field} = {value} on a static object; leave it out, or give static=False")
         return not options.static
 
     def _spin_of(

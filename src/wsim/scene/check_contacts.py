@@ -29,13 +29,13 @@ def contact_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
     seen: dict[frozenset[Sdf.Path], Sdf.Path] = {}
     listed = list(prims)
     pairs = [prim for prim in listed if schema.has(prim, schema.CONTACT)]
-    joints = tied(listed) if pairs else {}
+    ties = tied(listed) if pairs else {}
     for prim in pairs:
-        yield from _pair(prim, seen, joints)
+        yield from _pair(prim, seen, ties)
 
 
 def _pair(
-    prim: Usd.Prim, seen: dict[frozenset[Sdf.Path], Sdf.Path], joints: dict[frozenset[Sdf.Path], Sdf.Path]
+    prim: Usd.Prim, seen: dict[frozenset[Sdf.Path], Sdf.Path], ties: dict[frozenset[Sdf.Path], str]
 ) -> Iterator[str]:
     for name in ("first", "second"):
         relation = prim.GetRelationship(f"wsim:{name}")
@@ -53,11 +53,8 @@ def _pair(
             f"{prim.GetPath()}.wsim:second: <{paths[1]}> is static or kinematic, as wsim:first is; no contact moves "
             "either"
         )
-    elif pair in joints:
-        yield (
-            f"{prim.GetPath()}: <{paths[0]}> and <{paths[1]}> never touch: the joint <{joints[pair]}> ties them; leave "
-            "the pair out"
-        )
+    elif pair in ties:
+        yield f"{prim.GetPath()}: <{paths[0]}> and <{paths[1]}> never touch: {ties[pair]}; leave the pair out"
     elif not stated(prim):
         yield f"{prim.GetPath()}: states nothing; give {', '.join(f'wsim:{name}' for name in COEFFICIENTS)}"
     elif pair in seen:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from pxr import Usd
 
-from wsim.geometry.ropes import path_length, strayed
+from wsim.geometry.ropes import ON_RIM, path_length, strayed
 from wsim.scene import schema
 from wsim.scene.check_leads import led
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
@@ -90,7 +90,7 @@ def _rope(rope: Rope, prim: Usd.Prim) -> Iterator[str]:
             return
         for near in (k - 1, k + 1):
             apart = stops[near].position[0] - stop.position[0]
-            if np.linalg.norm(np.cross(apart, stop.axis[0])) < stop.radius:
+            if np.linalg.norm(np.cross(apart, stop.axis[0])) < ON_RIM * stop.radius:
                 where = _name(rope.path[near])
                 yield f"{rope.prim}: {where} lies inside the cylinder of <{guide.owner}> that it runs round"
                 return

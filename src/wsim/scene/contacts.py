@@ -6,7 +6,7 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.authoring import CONTACTS, Author, Handle, note_line
-from wsim.scene.usd_contacts import ends, owner, yields
+from wsim.scene.usd_contacts import ends, owner, tied, yields
 from wsim.scene.validate import Call, shown
 
 
@@ -32,7 +32,8 @@ class Contacts(Author):
             rolling: Rolling resistance, 0 to 1, as that of `material`.
 
         Raises:
-            SceneError: If an object is not there, nothing is given or out of range, or the pair has been stated.
+            SceneError: If an object is not there, nothing is given or out of range, the pair has been stated, or it
+                never touches: two that a joint ties, or a gear meshes.
         """
         call = Call("contact", f"{_name(a)}, {_name(b)}")
         first, second = self._solid_of(call, "a", a), self._solid_of(call, "b", b)
@@ -66,6 +67,12 @@ class Contacts(Author):
             call.fail(
                 f"a = {shown(first.GetName())}, b = {shown(second.GetName())}: both are static or kinematic; no "
                 "contact moves either: name a loose body"
+            )
+        tie = tied(self._stage.Traverse()).get(frozenset((one, other)))
+        if tie is not None:
+            call.fail(
+                f"a = {shown(first.GetName())}, b = {shown(second.GetName())}: they never touch: {tie}; leave the "
+                "pair out"
             )
         scope = self._stage.GetPrimAtPath(CONTACTS)
         if scope and any(set(ends(pair)) == {one, other} for pair in scope.GetChildren()):

@@ -10,9 +10,10 @@ from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, mark_articulations, may_break
-from wsim.scene.authoring import Author, Handle, note_line, world_pose
+from wsim.scene.authoring import CONTACTS, Author, Handle, note_line, world_pose
 from wsim.scene.gears import contradicts, meshes_of
 from wsim.scene.limits import MAX_POSITION, SHORTEST_WAY
+from wsim.scene.usd_contacts import ends, tied
 from wsim.scene.validate import Call, shown
 
 _MAX_GAIN = 1e9
@@ -199,17 +200,31 @@ class Joints(Author):
         return joint.GetPrim()
 
     def _spanned(self, call: Call, prim: Usd.Prim, kind: str = "joint") -> Handle:
-        """Choose the joints of the trees anew; what `call` made is taken back where there is no choice."""
+        """Choose the joints of the trees anew; what `call` made is taken back where that, or a contact, forbids it."""
         stuck = mark_articulations(self._stage).stuck
-        if stuck:
+        names = ", ".join(path.name for path in stuck)
+        wrong = (
+            f"the joints {names} make a loop in which each slides, or has a drive, limits, friction or a gear; "
+            "a loop needs one plain hinge, ball or fixed joint, or bodies in between"
+            if stuck
+            else self._stated_apart(prim)
+        )
+        if wrong:
             self._stage.RemovePrim(prim.GetPath())
             mark_articulations(self._stage)
-            names = ", ".join(path.name for path in stuck)
-            call.fail(
-                f"the joints {names} make a loop in which each slides, or has a drive, limits, friction or a gear; "
-                "a loop needs one plain hinge, ball or fixed joint, or bodies in between"
-            )
+            call.fail(wrong)
         return Handle(name=prim.GetName(), path=str(prim.GetPath()), kind=kind)
+
+    def _stated_apart(self, prim: Usd.Prim) -> str:
+        """What is wrong where a contact was stated of two that a joint or a gear keeps from touching, else nothing."""
+        scope = self._stage.GetPrimAtPath(CONTACTS)
+        ties = tied([prim]) if scope else {}
+        for pair in scope.GetChildren() if ties else []:
+            tie = ties.get(frozenset(ends(pair)))
+            if tie is not None:
+                one, other = (shown(end.name) for end in ends(pair))
+                return f"contact states how {one} and {other} touch, and they never do: {tie}; leave one of the two out"
+        return ""
 
     def _body(self, call: Call, field: str, what: Handle | str) -> Usd.Prim:
         prim = self._find(call, field, what)

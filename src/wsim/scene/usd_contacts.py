@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pxr import Sdf, Usd, UsdPhysics
 
 from wsim.scene import schema
-from wsim.scene.articulation import WORLD_END, body_above, is_kinematic
+from wsim.scene.articulation import WORLD_END, body_above, is_kinematic, joint_ends, may_break
 
 if TYPE_CHECKING:
     from wsim.scene.world import Contact
@@ -65,13 +65,32 @@ def yields(prim: Usd.Prim) -> bool:
     return any(part.HasAPI(UsdPhysics.RigidBodyAPI) and not is_kinematic(part) for part in parts)
 
 
-def tied(prims: Iterable[Usd.Prim]) -> dict[frozenset[Sdf.Path], Sdf.Path]:
-    """The pairs that a joint ties, which never touch, and the joint."""
-    found: dict[frozenset[Sdf.Path], Sdf.Path] = {}
+def tied(prims: Iterable[Usd.Prim]) -> dict[frozenset[Sdf.Path], str]:
+    """The pairs that never touch, and what says so: a joint ties them, also once it broke, or a gear meshes them."""
+    found: dict[frozenset[Sdf.Path], str] = {}
     for prim in prims:
         if prim.IsA(UsdPhysics.Joint):
             names = ("physics:body0", "physics:body1", "wsim:fixture")
-            targets = [path for name in names if (to := prim.GetRelationship(name)) for path in to.GetTargets()]
-            ends = frozenset(owner(body).GetPath() for path in targets if (body := prim.GetStage().GetPrimAtPath(path)))
-            found.setdefault(ends, prim.GetPath())
+            why = f"the joint <{prim.GetPath()}> ties them"
+            why += ", and they pass each other once it broke" if may_break(UsdPhysics.Joint(prim)) else ""
+            found.setdefault(_owners(prim.GetStage(), _targets(prim, names)), why)
+        if meshed := _meshed(prim):
+            held = [joint_ends(UsdPhysics.Joint(joint))[1] for joint in meshed]
+            found.setdefault(_owners(prim.GetStage(), held), f"the gear <{prim.GetPath()}> meshes them")
     return found
+
+
+def _meshed(prim: Usd.Prim) -> list[Usd.Prim]:
+    """The joints that a gear or a mimic couples; none of any other prim."""
+    joints = [prim.GetStage().GetPrimAtPath(path) for path in _targets(prim, ("wsim:joint0", "wsim:joint1"))]
+    if prim.HasRelationship("newton:mimicJoint"):
+        joints = [prim, *(prim.GetStage().GetPrimAtPath(path) for path in _targets(prim, ("newton:mimicJoint",)))]
+    return joints if all(joint and joint.IsA(UsdPhysics.Joint) for joint in joints) else []
+
+
+def _targets(prim: Usd.Prim, names: Iterable[str]) -> list[Sdf.Path]:
+    return [path for name in names if (to := prim.GetRelationship(name)) for path in to.GetTargets()]
+
+
+def _owners(stage: Usd.Stage, paths: Iterable[Sdf.Path]) -> frozenset[Sdf.Path]:
+    return frozenset(owner(prim).GetPath() for path in paths if (prim := stage.GetPrimAtPath(path)))

@@ -20,13 +20,10 @@ def tied_groups(mujoco: Any, model: Any) -> Array:
         model: MuJoCo's model.
     """
     kinds, groups = mujoco.mjtObj, np.asarray(model.body_treeid + 1)
-    owners = {
-        int(kinds.mjOBJ_BODY): np.arange(model.nbody),
-        int(kinds.mjOBJ_SITE): model.site_bodyid,
-        int(kinds.mjOBJ_JOINT): model.jnt_bodyid,
-    }
+    owners = {int(kinds.mjOBJ_BODY): np.arange(model.nbody), int(kinds.mjOBJ_SITE): model.site_bodyid}
+    gear = int(mujoco.mjtEq.mjEQ_JOINT)  # of which MuJoCo leaves the kind of its ends unsaid
     for k in np.flatnonzero(model.eq_active0):
-        owner = owners.get(int(model.eq_objtype[k]))
+        owner = model.jnt_bodyid if model.eq_type[k] == gear else owners.get(int(model.eq_objtype[k]))
         if owner is None or model.eq_obj2id[k] < 0:
             continue
         one, two = (int(groups[owner[end[k]]]) for end in (model.eq_obj1id, model.eq_obj2id))

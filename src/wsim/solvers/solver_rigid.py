@@ -19,8 +19,9 @@ from wsim.solvers.contact_law_warp import ContactLawWarp
 from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC, DrivesWarp, drive_rows
 from wsim.solvers.flight import Flight
+from wsim.solvers.gears import gears_to_turn, turned
 from wsim.solvers.host_models import host_models
-from wsim.solvers.locking import LeadsC, LeadsWarp, leads, locked
+from wsim.solvers.locking import LeadsC, LeadsWarp, lock
 from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
@@ -80,9 +81,10 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)
         self.mj_model.geom_margin[:] = reach
         self.mj_model.body_margin[:] = reach[0] if len(reach) else 0.0
-        kinematic = self._lock_kinematic()
+        kinematic, self._leads = lock(self, self._hosts())
         gives = [yielding(host, kinematic) for host in self._hosts()]
         self.mj_model.body_invweight0[:, 0] = gives[0]
+        self._turn_gears()
         self._harden_constraints(time_step)
         self.breaking = self._breaking(breakable) if breakable and breakable[0] else None
         self._touching = touching
@@ -157,7 +159,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self.mj_model.geom_surfacevel[:] = moving[0]
         self.mj_model.flg_surfacevel = 1
         if not self.use_mujoco_cpu:
-            self._give_warp("geom_surfacevel", moving)
+            self.give_warp("geom_surfacevel", moving)
             self.mjw_model.flg_surfacevel = True
 
     def hold_points(self, points: Array) -> None:
@@ -176,36 +178,21 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         held[:, chosen, 3:6] = points[:, rows[chosen]]
         self.mj_model.eq_data[:] = held[0]
         if not self.use_mujoco_cpu:
-            self._give_warp("eq_data", held)
+            self.give_warp("eq_data", held)
 
-    def _lock_kinematic(self) -> Array:
-        """Give kinematic bodies inertia that nothing moves, in place of the welds by which Newton holds them.
-
-        A weld yields: by it a bob of 100 kg on a body of 10 g fell 26 % too slowly.
-
-        Returns:
-            MuJoCo's numbers of these bodies.
-        """
-        welds = self._kinematic_weld_eq_np if self._kinematic_weld_eq is not None else np.zeros(0, dtype=int)
-        welds = welds[self.mj_model.eq_active0[welds] != 0]
-        bodies: Array = self.mj_model.eq_obj1id[welds].copy()
-        if not len(welds):
-            return bodies
-        inertia = np.array([locked(self._mujoco, host, bodies) for host in self._hosts()])
-        self.mj_model.dof_armature[:] = inertia[0]
-        self.mj_model.eq_active0[welds] = 0
-        self.mj_data.eq_active[welds] = 0
+    def _turn_gears(self) -> None:
+        """Write gears by the joint in which they are as hard as all else, in all worlds as in the first."""
+        host = self.mj_model
+        gears = gears_to_turn(self.import_mujoco()[0], host)
+        if not len(gears):
+            return
+        ends = host.eq_obj1id.copy(), host.eq_obj2id.copy()
+        host.eq_obj1id[gears], host.eq_obj2id[gears] = ends[1][gears], ends[0][gears]
+        host.eq_data[:] = turned(host.eq_data, gears)
         if not self.use_mujoco_cpu:
-            self._give_warp("dof_armature", inertia)
-            tolerance = self.mjw_model.opt.tolerance
-            free = self.mj_model.stat.meaninertia * self.mj_model.nv  # of M's trace, by which it is multiplied
-            tolerance.assign(tolerance.numpy() * free / (free + inertia[0].sum()))
-            active = self.mjw_data.eq_active.numpy()
-            active[:, welds] = False
-            self.mjw_data.eq_active.assign(active)
-        with wp.ScopedDevice(self.model.device):
-            self._leads = leads(self.mj_model, inertia, bodies, None if self.use_mujoco_cpu else self.mjw_data.nworld)
-        return bodies
+            for name in ("eq_obj1id", "eq_obj2id"):
+                getattr(self.mjw_model, name).assign(getattr(host, name))
+            self.mjw_model.eq_data.assign(turned(self.mjw_model.eq_data.numpy(), gears))
 
     def _harden_constraints(self, h: float) -> None:
         """Loops, gears and what may break are as hard as contacts.
@@ -225,9 +212,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     def _tell_warp(self, *names: str) -> None:
         """Give all worlds of MuJoCo Warp's model what MuJoCo's model has under these names."""
         for name in names:
-            self._give_warp(name, getattr(self.mj_model, name)[None])
+            self.give_warp(name, getattr(self.mj_model, name)[None])
 
-    def _give_warp(self, name: str, values: Array) -> None:
+    def give_warp(self, name: str, values: Array) -> None:
         """Give MuJoCo Warp's model what all worlds have under a name, or each, (N, …); it counts worlds modulo N."""
         array = getattr(self.mjw_model, name)
         if len(values) > array.shape[0]:
@@ -303,7 +290,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._tell_warp("geom_solimp")
         weights = self.mjw_model.body_invweight0.numpy()[: len(gives)]
         weights[..., 0] = gives
-        self._give_warp("body_invweight0", weights)
+        self.give_warp("body_invweight0", weights)
         margin = self.mjw_model.geom_margin
         margin.assign(np.full(margin.shape, 0.5 * self.contact_config.reach, dtype=np.float32))
 

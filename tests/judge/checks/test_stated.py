@@ -147,6 +147,25 @@ def test_the_repair_states_what_happened(tmp_path, program, check, stated, happe
     assert stated not in program
 
 
+def meshed(scene, spin=0.0):
+    scene.simulation(duration=0.2, frame_rate=30)
+    for k, spins in enumerate((spin, 0.0)):
+        turning = {"position": (k, 0, 1), "density": 500, "angular_velocity_deg": (0, 0, spins)}
+        scene.cylinder(f"wheel{k}", radius=0.1, height=0.05, **turning)
+        scene.joint_revolute(f"axle{k}", None, f"wheel{k}", axis="Z")
+    scene.gear("mesh", "axle0", "axle1", ratio=-1.0)
+
+
+def test_what_a_gear_turns_is_not_stated_to_stand(tmp_path):
+    """What it meshes with is stated to turn; where nothing is, neither does."""
+
+    def turned(scene):
+        meshed(scene, spin=100.0)
+
+    assert all(finding.passed for finding in CheckStart().run(evidence(tmp_path, turned)))
+    assert not all(finding.passed for finding in CheckStart().run(evidence(tmp_path, meshed, spin=100.0)))
+
+
 def hung(scene, speed=0.0, spin=0.0):
     scene.simulation(duration=0.2, frame_rate=30)
     scene.sphere("bob", radius=0.1, position=(0, 0, 1), density=500, velocity=(speed, 0, 0))

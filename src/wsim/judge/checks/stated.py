@@ -138,13 +138,16 @@ def _led(body: Body, time: Floats) -> tuple[Floats, Floats]:
 
 
 def _free(evidence: Evidence) -> NDArray[np.bool_]:
-    """Whether a body starts as it is stated, at rest where nothing is, (B,): joints give it no speed of another's."""
+    """Whether a body starts as it is stated, at rest where nothing is, (B,): joints and gears give it no speed."""
     world = evidence.world
     row = {body.prim: i for i, body in enumerate(world.bodies)}
     unit = np.arange(len(row))
-    for joint in world.joints:
-        if joint.parent in row and joint.child in row:
-            unit[unit == unit[row[joint.child]]] = unit[row[joint.parent]]
+    child = {joint.prim: joint.child for joint in world.joints}
+    pairs: list[tuple[str | None, str | None]] = [(joint.parent, joint.child) for joint in world.joints]
+    pairs += [(child.get(gear.first), child.get(gear.second)) for gear in world.gears]
+    for one, other in pairs:
+        if one in row and other in row:
+            unit[unit == unit[row[other]]] = unit[row[one]]
     moves = [any((*body.velocity, *body.angular_velocity)) or body.path is not None for body in world.bodies]
     ends = {end for joint in world.joints for end in (joint.parent, joint.child)}
     tied = np.array([prim in ends for prim in row], dtype=bool)
