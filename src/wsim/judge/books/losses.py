@@ -19,9 +19,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
+from wsim.judge.books.led import STEADY, Led, over, told
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
-from wsim.judge.evidence.carriers import carriers
+from wsim.judge.evidence.carriers import carriers, leads
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.contact import pair_law
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 
 STRAY = 0.2  # of the way of a step: places that are farther off tell nothing of the steps' order
 WINDOW = 5  # intervals
-STEADY = 2.0  # times what a contact or a rope gives before or after: more than that is a blow
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class Taken:
 
     damped: Floats  # by springs' dampers, by their law
     most: Floats  # by all else, at most
-    unsure: Floats  # of the drives' work and the dampers'
-    driven: Floats  # what drives put in
+    unsure: Floats  # of the work of drives, of dampers and of what is led
+    driven: Floats  # what drives put in, and what is led
     held: float  # what drives hold as springs do, from its least to its most [J]
 
 
@@ -61,8 +61,7 @@ class Losses:
     def of(evidence: Evidence) -> Losses | None:
         """None where what acts is not recorded, or is work that is not known."""
         recording, world = evidence.recording, evidence.world
-        ties = recording.ties is not None or not (world.joints or world.cords)
-        if recording.contacts is None or not ties or world.fluids or recording.metadata.get("controlled"):
+        if recording.contacts is None or not told(evidence) or world.fluids or recording.metadata.get("controlled"):
             return None
         about = recording.metadata
         if str(about.get("device", "cpu")) != "cpu" or int(about.get("world_count") or 1) > 1:
@@ -78,22 +77,19 @@ class Losses:
 
     @cached_property
     def groups(self) -> list[Rows]:
-        """The bodies that hang together or touch at some time; but not those that something leads, or carries.
+        """The bodies that hang together or touch at some time, but not those that touch a mesh's triangles.
 
-        Nor those that touch a mesh's triangles: from facet to facet a step turns the normal, and what of the velocity
-        is along the new one is lost in no blow that frames show.
+        From facet to facet a step turns the normal, and what of the velocity is along the new one is lost in no blow
+        that frames show.
         """
         motion, unit = self._motion, self._motion.unit.copy()
-        led = {shape.body for shape in carriers(self._evidence)} | set(np.flatnonzero(motion.kinematic).tolist())
-        belts = {shape.shape.prim for shape in carriers(self._evidence) if shape.body < 0}
-        touched = [k for k, shape in enumerate(self._contacts.shapes) if shape.prim in belts or shape.exact]
-        carried = {int(row) for pair, rows in zip(self._contacts.track.pair, self._contacts.body, strict=True)
-                   if np.isin(pair, touched).any() for row in rows}  # fmt: skip
+        exact = np.array([shape.exact for shape in self._contacts.shapes], dtype=bool)[self._contacts.track.pair]
+        faceted = set(self._contacts.body[exact.any(axis=1)].ravel().tolist())
         for one, two in np.unique(self._contacts.body, axis=0).tolist():
-            if min(one, two) >= 0:
+            if min(one, two) >= 0 and not motion.kinematic[[one, two]].any():
                 unit[unit == unit[two]] = unit[one]
-        found = [np.flatnonzero(unit == each) for each in np.unique(unit)]
-        return [rows for rows in found if not (led | carried) & set(rows.tolist())]
+        found = [np.flatnonzero((unit == each) & ~motion.kinematic) for each in np.unique(unit)]
+        return [rows for rows in found if len(rows) and not faceted & set(rows.tolist())]
 
     def of_group(self, rows: Rows) -> Taken:
         """What may have gone from a group of bodies."""
@@ -111,6 +107,8 @@ class Losses:
         damped, most, unsure, driven = (
             np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, unsure + off, driven)
         )
+        led = Led.of(self._evidence)
+        driven, unsure = driven + led.work[:, rows].sum(axis=1), unsure + led.unsure[:, rows].sum(axis=1)
         return Taken(damped, most, unsure, driven, self._held(ours))
 
     # ---- contacts
@@ -282,7 +280,7 @@ class Losses:
         at_most = joint.drive is not None and joint.drive.max_effort is not None
         if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
             stretch = joint.drive.position - held.position
-            rubs, doubt = joint.drive.damping * np.array(self._integrated(rate * (rate - joint.drive.velocity)))
+            rubs, doubt = joint.drive.damping * np.array(over(self._evidence, rate * (rate - joint.drive.velocity)))
             return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
         drive = np.asarray(self._ties.track.drive[1:, k], dtype=np.float64)
         mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
@@ -344,21 +342,8 @@ class Losses:
             if spring.damping == 0.0 or not held & ours:
                 continue
             rate = track_of_spring(self._evidence, spring).rate
-            found += spring.damping * np.array(self._integrated(rate**2))
+            found += spring.damping * np.array(over(self._evidence, rate**2))
         return found[0], found[1]
-
-    def _integrated(self, power: Floats) -> tuple[Floats, Floats]:
-        """A power over each interval, and how unsure that is, (T - 1,) each [J].
-
-        By Euler and Maclaurin, with slopes by differences; where those jump they are no slopes.
-        """
-        h = self._motion.h
-        slope = np.gradient(power, self._evidence.time, edge_order=2 if len(power) > 2 else 1)
-        bend = h**2 / 12.0 * np.diff(slope)
-        jump = np.abs(np.diff(bend, prepend=0.0, append=0.0))
-        return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(
-            np.maximum(jump[1:], jump[:-1]), np.abs(bend)
-        )
 
     def _jerked(self, ours: set[int]) -> Floats:
         """What ropes that come taut may take, (T - 1,) [J]."""

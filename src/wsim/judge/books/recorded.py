@@ -233,7 +233,10 @@ class RecordedContacts:
                     arm = point - 0.5 * (motion.com[before, rows] + motion.com[self.track.frame, rows])
                     speed = motion.v[frame, rows] + np.cross(motion.w[frame, rows], arm)
                     found[:, end] += sign * np.where(moves, speed, 0.0)
-                found[:, end] += sign * self._belt(side, frame)
+                for k in np.unique(self.track.pair[:, side]):
+                    if any(self.shapes[k].surface_velocity):
+                        ours = self.track.pair[:, side] == k
+                        found[ours, end] += sign * self.belt(k)[frame[ours]]
         return found
 
     def swing(self, normal: Floats, speed: Floats) -> Floats:
@@ -269,18 +272,11 @@ class RecordedContacts:
             found += np.where(self.body[:, side] >= 0, off, 0.0)
         return found
 
-    def _belt(self, side: int, frame: Rows) -> Floats:
-        """How the surfaces of one side run by themselves, (n, 3) [m/s]."""
-        belts = np.array([shape.surface_velocity for shape in self.shapes], dtype=np.float64).reshape(-1, 3)
-        own = belts[self.track.pair[:, side]]
-        rows = self.body[:, side]
-        if not own.any() or not len(self._evidence.world.bodies):
-            return own
-        turn = np.where(
-            (rows >= 0)[:, None], self._evidence.body_q[frame, np.maximum(rows, 0), 3:], (0.0, 0.0, 0.0, 1.0)
-        )
-        found: Floats = rotate(turn, own)
-        return found
+    def belt(self, k: int) -> Floats:
+        """How the surface of shape k runs by itself, (T, 3) [m/s]."""
+        own, body = np.array(self.shapes[k].surface_velocity, dtype=np.float64)[None], self._owner[k]
+        found: Floats = np.repeat(own, len(self._evidence.time), axis=0)
+        return found if body < 0 or not own.any() else rotate(self._evidence.body_q[:, body, 3:], own)
 
     def gap(self, share: float) -> tuple[Floats, Floats]:
         """How far each row's place is from the surfaces that it is said to be of, and may be, (n,) each [m].

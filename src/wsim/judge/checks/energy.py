@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import lengths
+from wsim.judge.books.led import Led, untold
 from wsim.judge.books.losses import Losses
 from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
 from wsim.judge.books.recorded import met
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
-from wsim.judge.evidence.carriers import carried_work
 from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
@@ -47,7 +47,8 @@ class CheckEnergy(Check):
         energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
-        energy = energy - carried_work(evidence)
+        led = Led.of(evidence)
+        energy = energy - led.work - led.unsure
         energy[:, motion.kinematic] = 0.0  # they go where they are told to
         stored = self._stored(evidence)
         none = np.zeros(len(evidence.time))
@@ -126,13 +127,9 @@ class CheckEnergy(Check):
         recording, world = evidence.recording, evidence.world
         pushed = bool(world.fluids) or bool(recording.metadata.get("controlled"))
         driven = any(joint.drive for joint in world.joints)
-        held = {end for joint in world.joints for end in (joint.parent, joint.child)}
-        led = any(
-            body.kinematic and body.prim in held for body in world.bodies
-        )  # by joints, whose forces are not known
         return (
             len(world.bodies) == 0
-            or led
+            or untold(evidence)
             or (pushed and recording.applied_work is None)
             or (driven and "work/drives" not in recording.scalars)
         )

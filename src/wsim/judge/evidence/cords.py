@@ -36,10 +36,11 @@ def length_of_rope(recorded: Recorded, rope: Rope) -> Floats:
 
 
 def spring_energy(recorded: Recorded) -> Floats:
-    """Energy that springs hold, shared by the bodies at the ends of each, (T, B) [J]."""
+    """Energy that springs hold, shared by the bodies at the ends of each that move by themselves, (T, B) [J]."""
     energy = np.zeros((len(recorded.time), len(recorded.world.bodies)))
     for spring in recorded.world.springs:
-        rows = [recorded.index(guide.body) for guide in spring.path if guide.body is not None]
+        held = [recorded.index(guide.body) for guide in spring.path if guide.body is not None]
+        rows = [row for row in held if not recorded.world.bodies[row].kinematic] or held
         for row in rows:
             energy[:, row] += track_of_spring(recorded, spring).energy / len(rows)
     return energy
