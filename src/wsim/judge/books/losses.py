@@ -22,7 +22,7 @@ from wsim.geometry.rotations import rotate
 from wsim.judge.books.led import STEADY, Led, over, told
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
-from wsim.judge.evidence.carriers import carriers, leads
+from wsim.judge.evidence.carriers import leads, surface_speed
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.contact import pair_law
@@ -45,6 +45,7 @@ class Taken:
 
     damped: Floats  # by springs' dampers, by their law
     most: Floats  # by all else, at most
+    least: Floats  # of that, by friction at least; asked of what something leads
     unsure: Floats  # of the work of drives, of dampers and of what is led
     driven: Floats  # what drives put in, and what is led
     held: float  # what drives hold as springs do, from its least to its most [J]
@@ -96,7 +97,11 @@ class Losses:
         intervals, ours = len(self._motion.h), set(rows.tolist())
         most, unsure, driven = (np.zeros(intervals) for _ in range(3))
         inside = np.isin(self._contacts.body, rows).any(axis=1) & (self._contacts.track.frame > 0)
-        most += np.bincount(self._contacts.track.frame[inside] - 1, self._by_contacts(rows)[inside], intervals)
+        frame = self._contacts.track.frame[inside] - 1
+        most += np.bincount(frame, self._by_contacts(rows)[inside], intervals)
+        led = Led.of(self._evidence)
+        gives = bool(led.work[:, rows].any())
+        least = np.bincount(frame, self._rubbed_off[inside] * gives, intervals)
         damped, off = self._damped(ours)
         if self._ties is not None:
             for k, pair in enumerate(self._ties.pairs):
@@ -104,12 +109,11 @@ class Losses:
                     work, doubt, lost = self._of_joint(k)
                     driven, unsure, most = driven + work, unsure + doubt, most + lost
             most += self._jerked(ours)
-        damped, most, unsure, driven = (
-            np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, unsure + off, driven)
+        damped, most, least, unsure, driven = (
+            np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, least, unsure + off, driven)
         )
-        led = Led.of(self._evidence)
         driven, unsure = driven + led.work[:, rows].sum(axis=1), unsure + led.unsure[:, rows].sum(axis=1)
-        return Taken(damped, most, unsure, driven, self._held(ours))
+        return Taken(damped, most, least, unsure, driven, self._held(ours))
 
     # ---- contacts
     def _by_contacts(self, rows: Rows) -> Floats:
@@ -141,13 +145,39 @@ class Losses:
         blow += 0.5 * (1.0 - bounce) * pressed * rocks
         return np.asarray(blow + contacts.rubbed * (slip + rocks) + turned)
 
+    @cached_property
+    def _run(self) -> NDArray[np.bool_]:
+        """Whether one of a contact's surfaces is a belt's, (n,)."""
+        runs = np.array([any(shape.surface_velocity) for shape in self._contacts.shapes], dtype=bool)
+        return np.asarray(runs[self._contacts.track.pair].any(axis=1))
+
+    @cached_property
+    def _rubbed_off(self) -> Floats:
+        """What friction takes at least where surfaces slip, (n,) [J].
+
+        What is led works all the while, and most of that may go into friction: what it takes at most would hide as much
+        of a gain. Within an interval slip and turning are no less than at both its ends, less half of what they change
+        by here or in the intervals beside. Nothing is asked of blows.
+        """
+        contacts, track = self._contacts, self._contacts.track
+        turn, rate = contacts.twisting
+        push = track.impulse.astype(np.float64) - track.along
+        taken = -np.einsum("nei,ni->ne", contacts.slip, push) - np.einsum("nei,ni->ne", rate, turn)
+        unsure = np.zeros(len(taken))
+        for size, speed in ((contacts.rubbed, contacts.slip), (np.linalg.norm(turn, axis=1), rate)):
+            change = np.linalg.norm(speed[:, 1] - speed[:, 0], axis=1)
+            unsure += 0.5 * size * np.max([change, *self._beside(change)], axis=0)
+        lasts = contacts.lasting & (track.pressed <= self._steady)
+        return np.where(lasts, np.maximum(taken.min(axis=1) - unsure, 0.0), 0.0)
+
     def _within(self, rows: Rows, blow: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """How fast surfaces may meet, and slip, within intervals, (2, n) [m/s]; what of each contact is no blow, (n,).
 
         A blow that comes to a ball goes on to all that it touches, however steadily these were pressed around it.
         """
         frame = np.maximum(self._contacts.track.frame, 1)
-        fastest = 2.0 * self._motion.surface_speed[:, rows].max(axis=1)
+        led = self._motion.surface_speed[:, leads(self._evidence)].max(axis=1, initial=surface_speed(self._evidence))
+        fastest = 2.0 * np.maximum(self._motion.surface_speed[:, rows].max(axis=1), led)
         fastest = np.maximum(fastest[frame], fastest[frame - 1])
         before, most = self._between_balls(rows)
         balls = most > 0.0
@@ -177,7 +207,7 @@ class Losses:
         most = np.sqrt(2.0 * had[np.maximum(frame, 1) - 1] * light.sum(axis=1))
         balls = np.array([all(shape.kind == "sphere" for shape in body.shapes) for body in self._evidence.world.bodies])
         loose = ~there | (balls & ~motion.jointed & ~motion.kinematic)[own]
-        asked = loose.all(axis=1) & ~motion.jointed[rows].any()
+        asked = loose.all(axis=1) & ~motion.jointed[rows].any() & ~self._run
         before = np.linalg.norm(contacts.slip[:, 0], axis=1) + others
         return np.where(asked, before, 0.0), np.where(asked, most, 0.0)
 
@@ -193,19 +223,22 @@ class Losses:
     @cached_property
     def _steady(self) -> Floats:
         """What each contact would press with if it went on as it does before and after, twice (n,) [N s]."""
+        frame = self._contacts.track.frame
+        before, after = self._beside(self._contacts.track.pressed.astype(np.float64))
+        after = np.where(frame == len(self._evidence.time) - 1, before, after)
+        return STEADY * np.minimum(np.where(frame == 1, after, before), after)
+
+    def _beside(self, values: Floats) -> tuple[Floats, Floats]:
+        """Of numbers of each contact (n,) those of its pair in the interval before and after, 0 where it has none."""
         track, count = self._contacts.track, len(self._contacts.shapes)
         key = (track.frame.astype(np.int64) * count + track.pair[:, 0]) * count + track.pair[:, 1]
-        order = np.argsort(key, kind="stable")
-        step, pressed = np.int64(count) ** 2, track.pressed.astype(np.float64)
+        order, step = np.argsort(key, kind="stable"), np.int64(count) ** 2
 
         def at(other: NDArray[np.int64]) -> Floats:
             place = np.minimum(np.searchsorted(key[order], other), max(len(key) - 1, 0))
-            return np.where(key[order][place] == other, pressed[order][place], 0.0)
+            return np.where(key[order][place] == other, values[order][place], 0.0)
 
-        last = len(self._evidence.time) - 1
-        before, after = at(key - step), at(key + step)
-        after = np.where(track.frame == last, before, after)
-        return STEADY * np.minimum(np.where(track.frame == 1, after, before), after)
+        return at(key - step), at(key + step)
 
     @cached_property
     def _shared(self) -> NDArray[np.bool_]:

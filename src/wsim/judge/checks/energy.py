@@ -86,7 +86,7 @@ class CheckEnergy(Check):
             doubt, phase = taken.unsure + stray, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
             found += [
-                self._changed(evidence, rows, known - doubt, (gives, phase), limits, "gains"),
+                self._changed(evidence, rows, known - doubt + taken.least, (gives, phase), limits, "gains"),
                 self._changed(evidence, rows, -known - doubt - taken.most, (gives, phase), limits, "loses"),
             ]
         return [max(found, key=lambda each: each[0])[1]] if found else []
