@@ -18,7 +18,7 @@ import numpy as np
 
 from wsim.judge.books.laws import Laws
 from wsim.judge.books.recorded import RecordedContacts
-from wsim.judge.evidence.carriers import carried_work, leads
+from wsim.judge.evidence.carriers import carried_work, carriers, leads
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,15 +32,16 @@ STEADY = 2.0  # times what something gives before or after: more than that is a 
 
 @dataclass(frozen=True)
 class Led:
-    """What loose bodies were given by what is led since the start, (T, B) each [J]; a share of what ties several."""
+    """What loose bodies were given by what is led since the start, (T, B) each [J]; at most, where it is not told."""
 
     work: Floats
     unsure: Floats
-    exact: bool  # or the most that it may be
 
     @staticmethod
     def of(evidence: Evidence) -> Led:
         """Of a recording, worked out once for all who ask."""
+        if Led not in evidence.kept and not leads(evidence).any() and not carriers(evidence):
+            evidence.kept[Led] = Led(*np.zeros((2, *evidence.motion.speed.shape)))
         if Led not in evidence.kept:
             evidence.kept[Led] = _of_record(evidence) if told(evidence) else _at_most(evidence)
         kept = evidence.kept[Led]
@@ -55,13 +56,15 @@ def told(evidence: Evidence) -> bool:
     return recording.contacts is not None and ties
 
 
-def untold(evidence: Evidence) -> bool:
-    """Whether something that is led does work by a rope or a joint whose force is not known."""
-    world, goes = evidence.world, leads(evidence)
+def untold(evidence: Evidence) -> NDArray[np.bool_]:
+    """The bodies of mechanisms on which something led works by a rope or a joint whose force is not known, (B,)."""
+    world, unit, goes = evidence.world, evidence.motion.unit, leads(evidence)
+    if told(evidence):
+        return np.zeros(len(goes), dtype=bool)
     held = {end for joint in world.joints for end in (joint.parent, joint.child)}
     held |= {guide.body for rope in world.ropes for guide in rope.path}
-    led = any(goes[i] and body.prim in held for i, body in enumerate(world.bodies))
-    return led and not told(evidence)
+    led = [goes[i] and body.prim in held for i, body in enumerate(world.bodies)]
+    return np.isin(unit, unit[np.array(led, dtype=bool)])
 
 
 def _of_record(evidence: Evidence) -> Led:
@@ -75,7 +78,7 @@ def _of_record(evidence: Evidence) -> Led:
     for to, push, speed in _belts(contacts, ~motion.kinematic):
         found[:, 1:, to] += works(evidence, push, speed)
     work, unsure = np.cumsum(found, axis=1)
-    return Led(work, unsure, exact=True)
+    return Led(work, unsure)
 
 
 def works(evidence: Evidence, push: Floats, speed: Floats) -> tuple[Floats, Floats]:
@@ -84,6 +87,7 @@ def works(evidence: Evidence, push: Floats, speed: Floats) -> tuple[Floats, Floa
     Of what comes all at once, a blow, no frame tells at which of the velocities between it came.
 
     Args:
+        evidence: Of the recording.
         push: Impulses and angular impulses since the frame before, (T, n).
         speed: The velocities and angular velocities of where they act, (T, n).
     """
@@ -163,7 +167,7 @@ def _at_most(evidence: Evidence) -> Led:
                 work, doubt = over(evidence, -np.einsum("ti,ti->t", wrench, twist))
                 found[:, 1:, other] += work, np.where(law.known, doubt, np.abs(work))
     work, unsure = np.cumsum(found, axis=1)
-    return Led(work + carried_work(evidence, pulled), unsure, exact=False)
+    return Led(work + carried_work(evidence, pulled), unsure)
 
 
 def over(evidence: Evidence, power: Floats) -> tuple[Floats, Floats]:
@@ -175,6 +179,4 @@ def over(evidence: Evidence, power: Floats) -> tuple[Floats, Floats]:
     slope = np.gradient(power, evidence.time, edge_order=2 if len(power) > 2 else 1)
     bend = h**2 / 12.0 * np.diff(slope)
     jump = np.abs(np.diff(bend, prepend=0.0, append=0.0))
-    return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(
-        np.maximum(jump[1:], jump[:-1]), np.abs(bend)
-    )
+    return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(np.maximum(jump[1:], jump[:-1]), np.abs(bend))

@@ -98,10 +98,12 @@ class Losses:
         most, unsure, driven = (np.zeros(intervals) for _ in range(3))
         inside = np.isin(self._contacts.body, rows).any(axis=1) & (self._contacts.track.frame > 0)
         frame = self._contacts.track.frame[inside] - 1
-        most += np.bincount(frame, self._by_contacts(rows)[inside], intervals)
         led = Led.of(self._evidence)
-        gives = bool(led.work[:, rows].any())
-        least = np.bincount(frame, self._rubbed_off[inside] * gives, intervals)
+        lost, least = self._by_contacts(rows), np.zeros(len(inside))
+        if led.work[:, rows].any():
+            lost, least = np.minimum(lost, self._rubs[1]), self._rubs[0]
+        most += np.bincount(frame, lost[inside], intervals)
+        least = np.bincount(frame, least[inside], intervals)
         damped, off = self._damped(ours)
         if self._ties is not None:
             for k, pair in enumerate(self._ties.pairs):
@@ -152,23 +154,26 @@ class Losses:
         return np.asarray(runs[self._contacts.track.pair].any(axis=1))
 
     @cached_property
-    def _rubbed_off(self) -> Floats:
-        """What friction takes at least where surfaces slip, (n,) [J].
+    def _rubs(self) -> tuple[Floats, Floats]:
+        """What friction takes at least and at most where surfaces go on slipping, (n,) each [J]; 0 and inf elsewhere.
 
-        What is led works all the while, and most of that may go into friction: what it takes at most would hide as much
-        of a gain. Within an interval slip and turning are no less than at both its ends, less half of what they change
-        by here or in the intervals beside. Nothing is asked of blows.
+        What is led works all the while, and most of that may go into friction: what this takes at most by its size
+        alone would hide as much of a gain or of a loss. Within an interval slip and turning are those of both its ends,
+        to within half of what they change by here or in the intervals beside.
         """
         contacts, track = self._contacts, self._contacts.track
         turn, rate = contacts.twisting
-        push = track.impulse.astype(np.float64) - track.along
-        taken = -np.einsum("nei,ni->ne", contacts.slip, push) - np.einsum("nei,ni->ne", rate, turn)
+        push, pressed = track.impulse.astype(np.float64), np.maximum(track.pressed.astype(np.float64), 1e-30)
+        taken = -np.einsum("nei,ni->ne", contacts.slip, push - track.along) - np.einsum("nei,ni->ne", rate, turn)
         unsure = np.zeros(len(taken))
         for size, speed in ((contacts.rubbed, contacts.slip), (np.linalg.norm(turn, axis=1), rate)):
             change = np.linalg.norm(speed[:, 1] - speed[:, 0], axis=1)
             unsure += 0.5 * size * np.max([change, *self._beside(change)], axis=0)
-        lasts = contacts.lasting & (track.pressed <= self._steady)
-        return np.where(lasts, np.maximum(taken.min(axis=1) - unsure, 0.0), 0.0)
+        rocks, _ = self._turned(pressed, track.along / pressed[:, None], np.maximum(track.frame, 1), self._laws[1])
+        lasts = contacts.lasting & (pressed <= self._steady)
+        least = np.maximum(taken.min(axis=1) - unsure, 0.0)
+        most = np.maximum(taken.max(axis=1), 0.0) + unsure + (contacts.rubbed + pressed) * rocks
+        return np.where(lasts, least, 0.0), np.where(lasts, most, np.inf)
 
     def _within(self, rows: Rows, blow: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """How fast surfaces may meet, and slip, within intervals, (2, n) [m/s]; what of each contact is no blow, (n,).

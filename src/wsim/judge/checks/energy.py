@@ -49,7 +49,8 @@ class CheckEnergy(Check):
             energy = energy - motion.applied_work
         led = Led.of(evidence)
         energy = energy - led.work - led.unsure
-        energy[:, motion.kinematic] = 0.0  # they go where they are told to
+        unknown = untold(evidence)
+        energy[:, motion.kinematic | unknown] = 0.0  # they go where they are told to
         stored = self._stored(evidence)
         none = np.zeros(len(evidence.time))
         worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
@@ -58,7 +59,7 @@ class CheckEnergy(Check):
         found = [] if driven or one else self._by_mechanism(evidence, energy, stored)
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
         rows = np.flatnonzero(~motion.kinematic)
-        if any(not finding.passed for finding in found):
+        if unknown.any() or any(not finding.passed for finding in found):
             return found  # what one gains all have together
         losses = Losses.of(evidence)
         if len(rows) and (losses is None or not losses.whole or (one and not driven)):
@@ -129,7 +130,6 @@ class CheckEnergy(Check):
         driven = any(joint.drive for joint in world.joints)
         return (
             len(world.bodies) == 0
-            or untold(evidence)
             or (pushed and recording.applied_work is None)
             or (driven and "work/drives" not in recording.scalars)
         )

@@ -86,8 +86,8 @@ def carried_work(evidence: Evidence, pulled: Floats) -> Floats:
                 fastest = np.maximum(fastest, np.where(here, np.linalg.norm(u, axis=1) + spread, 0.0))
             else:
                 beside[:, i] |= here
-    # Beside something else, or tied to it, it may be pressed harder than its own momentum tells, and it may pass on what
-    # it is given.
+    # Beside something else, or tied to it, a body may be pressed harder than its own momentum tells, and may pass on
+    # what it is given.
     for rows in tied:
         size[:, rows] = size[:, rows].sum(axis=1, keepdims=True)
         beside[:, rows] |= near[:, rows].any(axis=1, keepdims=True)
