@@ -5,8 +5,13 @@ contacts, by springs, ropes and joints. Over an interval P . u is that of both m
 changes more (Euler and Maclaurin), where both change evenly. A belt works by the impulse of its contacts times the
 velocity that its surface has by itself, and friction takes what of that no body gets (`wsim.judge.books.losses`).
 
-Impulses are those that a recording has. Where it has none, those of springs follow from their laws, and what contacts
-gave is what changed a body's momentum, less gravity's and the springs' shares: an upper bound of their work.
+A body on a path has in each step the velocity that takes it to the step's end, and frames show it half a step late. So
+are the velocities that ropes, joints and friction give, those of the solver's steps; what surfaces press by their depth
+goes with them as they are now, and shows as much slip. A spring pulls by places, which are late nowhere: its work is
+its force, by its law, times the way of its end.
+
+Impulses of contacts, ropes and joints are those that a recording has. Where it has none, what contacts gave is what
+changed a body's momentum, less gravity's and the springs' shares: an upper bound of their work.
 """
 
 from __future__ import annotations
@@ -21,11 +26,15 @@ from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.evidence.carriers import carried_work, carriers, leads
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
+    from wsim.judge.books.recorded_ties import RecordedTies
     from wsim.judge.evidence.evidence import Evidence
 
     Floats = NDArray[np.float64]
+    Rows = NDArray[np.intp]
 
 STEADY = 2.0  # times what something gives before or after: more than that is a blow
 
@@ -36,12 +45,13 @@ class Led:
 
     work: Floats
     unsure: Floats
+    late: Floats  # what it is more as surfaces go now, of what presses
 
     @staticmethod
     def of(evidence: Evidence) -> Led:
         """Of a recording, worked out once for all who ask."""
         if Led not in evidence.kept and not leads(evidence).any() and not carriers(evidence):
-            evidence.kept[Led] = Led(*np.zeros((2, *evidence.motion.speed.shape)))
+            evidence.kept[Led] = Led(*np.zeros((3, *evidence.motion.speed.shape)))
         if Led not in evidence.kept:
             evidence.kept[Led] = _of_record(evidence) if told(evidence) else _at_most(evidence)
         kept = evidence.kept[Led]
@@ -71,38 +81,71 @@ def _of_record(evidence: Evidence) -> Led:
     motion, goes = evidence.motion, leads(evidence)
     assert evidence.recording.contacts is not None
     contacts = RecordedContacts(evidence, evidence.recording.contacts)
-    found = np.zeros((2, len(evidence.time), len(motion.mass)))
+    found = np.zeros((3, len(evidence.time), len(motion.mass)))
     twist = np.concatenate([motion.v, motion.w], axis=2)
     for (row, to), push in _pushes(contacts, goes, ~motion.kinematic).items():
-        found[:, 1:, to] += works(evidence, push, twist[:, row])
+        change = np.diff(twist[:, row], axis=0)
+        found[:2, 1:, to] += works(evidence, push[1:], _mean(evidence, twist[:, row]), change)
     for to, push, speed in _belts(contacts, ~motion.kinematic):
-        found[:, 1:, to] += works(evidence, push, speed)
-    work, unsure = np.cumsum(found, axis=1)
-    return Led(work, unsure)
+        found[:2, 1:, to] += works(evidence, push[1:], _mean(evidence, speed), np.diff(speed, axis=0))
+    for to, frame, late in _late(contacts, goes):
+        np.add.at(found[2], (frame, to), late)
+    laws = contacts.ties.laws if contacts.ties is not None else Laws(evidence)
+    found[:2, 1:] += _by_springs(evidence, laws, contacts.ties)
+    return Led(*np.cumsum(found, axis=1))
 
 
-def works(evidence: Evidence, push: Floats, speed: Floats) -> tuple[Floats, Floats]:
+def works(evidence: Evidence, push: Floats, mean: Floats, change: Floats) -> tuple[Floats, Floats]:
     """The work of impulses at what moves by itself, and how unsure it is, (T - 1,) each [J].
 
     Of what comes all at once, a blow, no frame tells at which of the velocities between it came.
 
     Args:
         evidence: Of the recording.
-        push: Impulses and angular impulses since the frame before, (T, n).
-        speed: The velocities and angular velocities of where they act, (T, n).
+        push: Impulses and angular impulses in each interval, (T - 1, n).
+        mean: The mean velocity and angular velocity of where they act, (T - 1, n).
+        change: By how much these change within, (T - 1, n).
     """
-    h, given = evidence.motion.h[:, None], push[1:]
-    change, mean = np.diff(speed, axis=0), 0.5 * (speed[1:] + speed[:-1])
-    slope = np.gradient(speed, evidence.time, axis=0) if len(speed) > 1 else np.zeros_like(speed)
-    mean -= h / 12.0 * np.diff(slope, axis=0)
-    force = np.gradient(given / h, axis=0) if len(given) > 1 else np.zeros_like(given)
+    h = evidence.motion.h[:, None]
+    force = np.gradient(push / h, axis=0) if len(push) > 1 else np.zeros_like(push)
     bend = h * force * change / 12.0
     jump = np.abs(np.diff(bend, axis=0, prepend=0.0, append=0.0))
-    size = np.abs(given)
+    size = np.abs(push)
     around = np.pad(size, ((1, 1), (0, 0)))
     blow = np.maximum(size - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
     doubt = 0.5 * np.minimum(np.maximum(jump[1:], jump[:-1]), np.abs(bend)) + 0.5 * blow * np.abs(change)
-    return np.sum(given * mean + bend, axis=1), np.sum(doubt, axis=1)
+    return np.sum(push * mean + bend, axis=1), np.sum(doubt, axis=1)
+
+
+def _mean(evidence: Evidence, values: Floats) -> Floats:
+    """Of values at frames (T, n) over each interval, (T - 1, n), by Euler and Maclaurin with slopes by differences."""
+    slope = np.gradient(values, evidence.time, axis=0) if len(values) > 1 else np.zeros_like(values)
+    found: Floats = 0.5 * (values[1:] + values[:-1]) - evidence.motion.h[:, None] / 12.0 * np.diff(slope, axis=0)
+    return found
+
+
+def _by_springs(evidence: Evidence, laws: Laws, ties: RecordedTies | None) -> Floats:
+    """The work of springs' led ends on what is at their other ends, and how unsure it is, (2, T - 1, B) [J].
+
+    Of what swings faster than frames tell the impulse is the recorded one: that of forces where steps start, half a
+    step earlier than the places go.
+    """
+    motion, goes = evidence.motion, leads(evidence)
+    found, h = np.zeros((2, len(motion.h), len(motion.mass))), motion.h[:, None]
+    for cord, (spring, law) in enumerate(zip(evidence.world.springs, laws.springs, strict=True)):
+        for end, (row, to, wrench) in enumerate(((law.one, law.two, law.back), (law.two, law.one, law.wrench))):
+            if min(row, to) < 0 or not goes[row] or motion.kinematic[to]:
+                continue
+            place, force, known = laws.end(spring.path[end]), wrench[:, :3], law.known
+            speed = motion.v[:, row] + np.cross(motion.w[:, row], laws.arm(row, place))
+            push = -h * _mean(evidence, force)
+            if ties is not None:
+                given = ties.track.cords[1:, ties.ends.index((cord, row)), :3].astype(np.float64)
+                push = np.where(known[:, None], push, -given - 0.5 * np.minimum(motion.dt, h) * np.diff(force, axis=0))
+                known = np.ones_like(known)
+            work, doubt = works(evidence, push, np.diff(place, axis=0) / h, np.diff(speed, axis=0))
+            found[:, :, to] += work, np.where(known, doubt, np.abs(work))
+    return found
 
 
 def _pushes(
@@ -111,8 +154,9 @@ def _pushes(
     """Impulses and angular impulses, (T, 6), that led bodies gave by way of loose ones: by both their rows."""
     track, ties, frames = contacts.track, contacts.ties, len(contacts.given[0])
     found: dict[tuple[int, int], Floats] = {}
+    every = np.arange(frames)
 
-    def give(led: int, to: int, frame: NDArray[np.intp] | slice, back: Floats) -> None:
+    def give(led: int, to: int, back: Floats, frame: Rows = every) -> None:
         np.subtract.at(found.setdefault((led, to), np.zeros((frames, 6))), frame, back)
 
     for side, sign in ((0, -1.0), (1, 1.0)):
@@ -121,20 +165,38 @@ def _pushes(
         ours = (own >= 0) & goes[own] & (other >= 0) & loose[other]
         for led, to in np.unique(np.stack([own, other], axis=1)[ours], axis=0).tolist():
             rows = np.flatnonzero(ours & (own == led) & (other == to))
-            give(led, to, track.frame[rows].astype(np.intp), back[rows])
+            give(led, to, back[rows], track.frame[rows].astype(np.intp))
     for k, pair in enumerate(ties.pairs if ties is not None else ()):
         assert ties is not None
         for side, sign in ((0, -1.0), (1, 1.0)):
             led, to = pair[side], pair[1 - side]
             if min(led, to) >= 0 and goes[led] and loose[to]:
                 back = np.concatenate([sign * ties.track.impulse[:, k], ties.track.turn[:, k, side]], axis=1)
-                give(led, to, slice(None), back.astype(np.float64))
+                give(led, to, back.astype(np.float64))
+    springs = len(ties.laws.springs) if ties is not None else 0
     for n, (cord, led) in enumerate(ties.ends if ties is not None else ()):
         assert ties is not None
         held = [row for other, row in ties.ends if other == cord and loose[row]]
-        if held and goes[led]:
-            give(led, held[0], slice(None), ties.track.cords[:, n, :6].astype(np.float64))
+        if held and goes[led] and cord >= springs:  # what springs give follows from their law
+            give(led, held[0], ties.track.cords[:, n, :6].astype(np.float64))
     return found
+
+
+def _late(contacts: RecordedContacts, goes: NDArray[np.bool_]) -> Iterator[tuple[Rows, Rows, Floats]]:
+    """What presses works as surfaces go now, of those that are shown half a step late: bodies, frames and that [J].
+
+    No more of it than slip shows.
+    """
+    motion, track = contacts.motion, contacts.track
+    push, slip = track.along.astype(np.float64), contacts.slip.mean(axis=1)
+    seen = np.einsum("ni,ni->n", push, slip)
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        own, other = contacts.body[:, side], contacts.body[:, 1 - side]
+        rows = np.flatnonzero((own >= 0) & goes[own] & (other >= 0) & ~motion.kinematic[other] & (track.frame > 0))
+        speed, frame = contacts.speed(side)[rows], track.frame[rows].astype(np.intp)
+        step = 0.5 * np.minimum(motion.dt / motion.h[frame - 1], 1.0)
+        late = sign * step * np.einsum("ni,ni->n", push[rows], speed[:, 1] - speed[:, 0])
+        yield other[rows], frame, np.clip(seen[rows], np.minimum(late, 0.0), np.maximum(late, 0.0))
 
 
 def _belts(contacts: RecordedContacts, loose: NDArray[np.bool_]) -> list[tuple[int, Floats, Floats]]:
@@ -155,19 +217,14 @@ def _belts(contacts: RecordedContacts, loose: NDArray[np.bool_]) -> list[tuple[i
 
 def _at_most(evidence: Evidence) -> Led:
     """Of a recording without impulses: by springs as their laws say, by contacts no more than this."""
-    motion = evidence.motion
-    laws, goes = Laws(evidence), leads(evidence)
-    found, pulled = np.zeros((2, len(evidence.time), len(motion.mass))), np.zeros((*motion.acceleration.shape[:2], 3))
+    motion, laws = evidence.motion, Laws(evidence)
+    pulled = np.zeros((len(motion.h), len(motion.mass), 3))
     for law in laws.springs:
-        for row, other, wrench in ((law.one, law.two, law.back), (law.two, law.one, law.wrench)):
-            if row >= 0 and not motion.kinematic[row]:
+        for row, wrench in ((law.one, law.back), (law.two, law.wrench)):
+            if row >= 0:
                 pulled[:, row] += 0.5 * (wrench[1:, :3] + wrench[:-1, :3]) * motion.h[:, None]
-            elif row >= 0 and goes[row] and other >= 0 and not motion.kinematic[other]:
-                twist = np.concatenate([motion.v[:, row], motion.w[:, row]], axis=1)
-                work, doubt = over(evidence, -np.einsum("ti,ti->t", wrench, twist))
-                found[:, 1:, other] += work, np.where(law.known, doubt, np.abs(work))
-    work, unsure = np.cumsum(found, axis=1)
-    return Led(work + carried_work(evidence, pulled), unsure)
+    work, unsure = np.cumsum(np.pad(_by_springs(evidence, laws, None), ((0, 0), (1, 0), (0, 0))), axis=1)
+    return Led(work + carried_work(evidence, pulled), unsure, np.zeros_like(work))
 
 
 def over(evidence: Evidence, power: Floats) -> tuple[Floats, Floats]:

@@ -99,11 +99,11 @@ class Losses:
         inside = np.isin(self._contacts.body, rows).any(axis=1) & (self._contacts.track.frame > 0)
         frame = self._contacts.track.frame[inside] - 1
         led = Led.of(self._evidence)
-        lost, least = self._by_contacts(rows), np.zeros(len(inside))
+        lost, rubbed = self._by_contacts(rows), np.zeros(len(inside))
         if led.work[:, rows].any():
-            lost, least = np.minimum(lost, self._rubs[1]), self._rubs[0]
+            lost, rubbed = np.minimum(lost, self._rubs[1]), self._rubs[0]
         most += np.bincount(frame, lost[inside], intervals)
-        least = np.bincount(frame, least[inside], intervals)
+        least: Floats = np.bincount(frame, rubbed[inside], intervals)
         damped, off = self._damped(ours)
         if self._ties is not None:
             for k, pair in enumerate(self._ties.pairs):
@@ -114,7 +114,8 @@ class Losses:
         damped, most, least, unsure, driven = (
             np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, least, unsure + off, driven)
         )
-        driven, unsure = driven + led.work[:, rows].sum(axis=1), unsure + led.unsure[:, rows].sum(axis=1)
+        driven = driven + (led.work + led.late)[:, rows].sum(axis=1)
+        unsure = unsure + led.unsure[:, rows].sum(axis=1)
         return Taken(damped, most, least, unsure, driven, self._held(ours))
 
     # ---- contacts

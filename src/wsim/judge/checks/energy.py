@@ -48,7 +48,8 @@ class CheckEnergy(Check):
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
         led = Led.of(evidence)
-        energy = energy - led.work - led.unsure
+        late = np.maximum(np.diff(led.late, axis=0, prepend=led.late[:1]), 0.0)
+        energy = energy - led.work - led.unsure - np.cumsum(late, axis=0)
         unknown = untold(evidence)
         energy[:, motion.kinematic | unknown] = 0.0  # they go where they are told to
         stored = self._stored(evidence)
