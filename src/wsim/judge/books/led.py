@@ -26,8 +26,6 @@ from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.evidence.carriers import carried_work, carriers, leads
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
     from wsim.judge.books.recorded_ties import RecordedTies
@@ -88,8 +86,10 @@ def _of_record(evidence: Evidence) -> Led:
         found[:2, 1:, to] += works(evidence, push[1:], _mean(evidence, twist[:, row]), change)
     for to, push, speed in _belts(contacts, ~motion.kinematic):
         found[:2, 1:, to] += works(evidence, push[1:], _mean(evidence, speed), np.diff(speed, axis=0))
-    for to, frame, late in _late(contacts, goes):
-        np.add.at(found[2], (frame, to), late)
+    for side in (0, 1):
+        own, to = contacts.body[:, side], contacts.body[:, 1 - side]
+        rows = np.flatnonzero((own >= 0) & goes[own] & (to >= 0) & ~motion.kinematic[to])
+        np.add.at(found[2], (contacts.track.frame[rows], to[rows]), late(contacts)[rows])
     laws = contacts.ties.laws if contacts.ties is not None else Laws(evidence)
     found[:2, 1:] += _by_springs(evidence, laws, contacts.ties)
     return Led(*np.cumsum(found, axis=1))
@@ -182,21 +182,20 @@ def _pushes(
     return found
 
 
-def _late(contacts: RecordedContacts, goes: NDArray[np.bool_]) -> Iterator[tuple[Rows, Rows, Floats]]:
-    """What presses works as surfaces go now, of those that are shown half a step late: bodies, frames and that [J].
+def late(contacts: RecordedContacts) -> Floats:
+    """How much more each contact works as led surfaces go now, of those that are shown half a step late, (n,) [J].
 
-    No more of it than slip shows.
+    By what presses, and no more of it than slip shows.
     """
     motion, track = contacts.motion, contacts.track
-    push, slip = track.along.astype(np.float64), contacts.slip.mean(axis=1)
-    seen = np.einsum("ni,ni->n", push, slip)
+    push, interval, found = track.along.astype(np.float64), np.maximum(track.frame - 1, 0), np.zeros(len(track.frame))
+    step = 0.5 * np.minimum(motion.dt / motion.h[interval], 1.0)
     for side, sign in ((0, 1.0), (1, -1.0)):
-        own, other = contacts.body[:, side], contacts.body[:, 1 - side]
-        rows = np.flatnonzero((own >= 0) & goes[own] & (other >= 0) & ~motion.kinematic[other] & (track.frame > 0))
-        speed, frame = contacts.speed(side)[rows], track.frame[rows].astype(np.intp)
-        step = 0.5 * np.minimum(motion.dt / motion.h[frame - 1], 1.0)
-        late = sign * step * np.einsum("ni,ni->n", push[rows], speed[:, 1] - speed[:, 0])
-        yield other[rows], frame, np.clip(seen[rows], np.minimum(late, 0.0), np.maximum(late, 0.0))
+        moves = np.append(motion.kinematic, False)[contacts.body[:, side]]
+        speed = contacts.speed(side)
+        found += np.where(moves, sign * step * np.einsum("ni,ni->n", push, speed[:, 1] - speed[:, 0]), 0.0)
+    seen = np.einsum("ni,ni->n", push, contacts.slip.mean(axis=1))
+    return np.clip(seen, np.minimum(found, 0.0), np.maximum(found, 0.0))
 
 
 def _belts(contacts: RecordedContacts, loose: NDArray[np.bool_]) -> list[tuple[int, Floats, Floats]]:

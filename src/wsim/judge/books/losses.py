@@ -19,9 +19,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
-from wsim.judge.books.led import STEADY, Led, over, told
+from wsim.judge.books.led import STEADY, Led, late, over, told
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
+from wsim.judge.books.rubbing import beside, taken
 from wsim.judge.evidence.carriers import leads, surface_speed
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
@@ -95,7 +96,7 @@ class Losses:
     def of_group(self, rows: Rows) -> Taken:
         """What may have gone from a group of bodies."""
         intervals, ours = len(self._motion.h), set(rows.tolist())
-        most, unsure, driven = (np.zeros(intervals) for _ in range(3))
+        most, least, unsure, driven = (np.zeros(intervals) for _ in range(4))
         inside = np.isin(self._contacts.body, rows).any(axis=1) & (self._contacts.track.frame > 0)
         frame = self._contacts.track.frame[inside] - 1
         led = Led.of(self._evidence)
@@ -103,7 +104,7 @@ class Losses:
         if led.work[:, rows].any():
             lost, rubbed = np.minimum(lost, self._rubs[1]), self._rubs[0]
         most += np.bincount(frame, lost[inside], intervals)
-        least: Floats = np.bincount(frame, rubbed[inside], intervals)
+        least += np.bincount(frame, rubbed[inside], intervals)
         damped, off = self._damped(ours)
         if self._ties is not None:
             for k, pair in enumerate(self._ties.pairs):
@@ -163,17 +164,13 @@ class Losses:
         to within half of what they change by here or in the intervals beside.
         """
         contacts, track = self._contacts, self._contacts.track
-        turn, rate = contacts.twisting
-        push, pressed = track.impulse.astype(np.float64), np.maximum(track.pressed.astype(np.float64), 1e-30)
-        taken = -np.einsum("nei,ni->ne", contacts.slip, push - track.along) - np.einsum("nei,ni->ne", rate, turn)
-        unsure = np.zeros(len(taken))
-        for size, speed in ((contacts.rubbed, contacts.slip), (np.linalg.norm(turn, axis=1), rate)):
-            change = np.linalg.norm(speed[:, 1] - speed[:, 0], axis=1)
-            unsure += 0.5 * size * np.max([change, *self._beside(change)], axis=0)
+        pressed = np.maximum(track.pressed.astype(np.float64), 1e-30)
+        found, unsure = taken(contacts)
+        found = found + late(contacts)[:, None]
         rocks, _ = self._turned(pressed, track.along / pressed[:, None], np.maximum(track.frame, 1), self._laws[1])
         lasts = contacts.lasting & (pressed <= self._steady)
-        least = np.maximum(taken.min(axis=1) - unsure, 0.0)
-        most = np.maximum(taken.max(axis=1), 0.0) + unsure + (contacts.rubbed + pressed) * rocks
+        least = np.maximum(found.min(axis=1) - unsure, 0.0)
+        most = np.maximum(found.max(axis=1), 0.0) + unsure + (contacts.rubbed + pressed) * rocks
         return np.where(lasts, least, 0.0), np.where(lasts, most, np.inf)
 
     def _within(self, rows: Rows, blow: NDArray[np.bool_]) -> tuple[Floats, Floats]:
@@ -230,21 +227,9 @@ class Losses:
     def _steady(self) -> Floats:
         """What each contact would press with if it went on as it does before and after, twice (n,) [N s]."""
         frame = self._contacts.track.frame
-        before, after = self._beside(self._contacts.track.pressed.astype(np.float64))
+        before, after = beside(self._contacts, self._contacts.track.pressed.astype(np.float64))
         after = np.where(frame == len(self._evidence.time) - 1, before, after)
         return STEADY * np.minimum(np.where(frame == 1, after, before), after)
-
-    def _beside(self, values: Floats) -> tuple[Floats, Floats]:
-        """Of numbers of each contact (n,) those of its pair in the interval before and after, 0 where it has none."""
-        track, count = self._contacts.track, len(self._contacts.shapes)
-        key = (track.frame.astype(np.int64) * count + track.pair[:, 0]) * count + track.pair[:, 1]
-        order, step = np.argsort(key, kind="stable"), np.int64(count) ** 2
-
-        def at(other: NDArray[np.int64]) -> Floats:
-            place = np.minimum(np.searchsorted(key[order], other), max(len(key) - 1, 0))
-            return np.where(key[order][place] == other, values[order][place], 0.0)
-
-        return at(key - step), at(key + step)
 
     @cached_property
     def _shared(self) -> NDArray[np.bool_]:
@@ -394,8 +379,9 @@ class Losses:
                 continue
             done.add(cord)
             tension = np.maximum(self._ties.track.tension[1:, n].astype(np.float64), 0.0)
-            around = np.concatenate([tension[:1], tension, tension[-1:]])
-            excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
             rate = np.abs(self._ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
+            starts = tension[:1] * (rate[0] <= self._evidence.gravity * self._motion.h[0])  # or it comes taut at once
+            around = np.concatenate([starts, tension, tension[-1:]])
+            excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
             found += excess * (np.maximum(rate[1:], rate[:-1]) + self._evidence.gravity * self._motion.h)
         return found

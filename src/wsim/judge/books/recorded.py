@@ -249,23 +249,6 @@ class RecordedContacts:
             found[:, end] = np.where(moves, motion.v[at, rows] + np.cross(motion.w[at, rows], arm), 0.0)
         return found
 
-    @cached_property
-    def twisting(self) -> tuple[Floats, Floats]:
-        """Angular impulse on the second body about each row's place, (n, 3) [N m s], and how fast it turns over the
-        first at both ends, (n, 2, 3) [rad/s].
-        """
-        motion, track, push = self._evidence.motion, self.track, self.track.impulse.astype(np.float64)
-        rate, turn = np.zeros((len(push), 2, 3)), np.zeros_like(push)
-        before = np.maximum(track.frame - 1, 0)
-        for side, sign in ((0, -1.0), (1, 1.0)):  # both bodies' tell the same, where both move
-            moves, rows = (self.body[:, side] >= 0)[:, None], np.maximum(self.body[:, side], 0)
-            if len(motion.mass):
-                arm = track.point.astype(np.float64) - 0.5 * (motion.com[before, rows] + motion.com[track.frame, rows])
-                turn = np.where(moves, sign * track.turn[:, side] - np.cross(arm, push), turn)
-                for end, frame in enumerate((before, track.frame)):
-                    rate[:, end] += sign * np.where(moves, motion.w[frame, rows], 0.0)
-        return turn, rate
-
     def swing(self, normal: Floats, speed: Floats) -> Floats:
         """How far the slips of a pair's points may turn from their mean's way, (n,) [rad].
 
