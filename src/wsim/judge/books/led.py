@@ -87,9 +87,9 @@ def _of_record(evidence: Evidence) -> Led:
     for to, push, speed in _belts(contacts, ~motion.kinematic):
         found[:2, 1:, to] += works(evidence, push[1:], _mean(evidence, speed), np.diff(speed, axis=0))
     for side in (0, 1):
-        own, to = contacts.body[:, side], contacts.body[:, 1 - side]
-        rows = np.flatnonzero((own >= 0) & goes[own] & (to >= 0) & ~motion.kinematic[to])
-        np.add.at(found[2], (contacts.track.frame[rows], to[rows]), late(contacts)[rows])
+        own, other = contacts.body[:, side], contacts.body[:, 1 - side]
+        rows = np.flatnonzero((own >= 0) & goes[own] & (other >= 0) & ~motion.kinematic[other])
+        np.add.at(found[2], (contacts.track.frame[rows], other[rows]), late(contacts)[rows])
     laws = contacts.ties.laws if contacts.ties is not None else Laws(evidence)
     found[:2, 1:] += _by_springs(evidence, laws, contacts.ties)
     return Led(*np.cumsum(found, axis=1))

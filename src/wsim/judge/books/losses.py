@@ -20,6 +20,7 @@ from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.led import STEADY, Led, late, over, told
+from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
 from wsim.judge.books.rubbing import beside, taken
@@ -316,9 +317,9 @@ class Losses:
     def ahead(self, rows: Rows) -> tuple[Floats, Floats]:
         """What steps of the first order show too little of the energy that they keep, and how unsure it is, (T,) [J].
 
-        v += a dt, z += v dt keeps E + m v . g dt / 2, and takes places along their way by dv dt / 2 farther than
-        the mean of both ends' velocities, less h^2 / 12 of the change of accelerations, where velocities change by dv;
-        steps of higher orders do not. Poses tell of a few intervals together which it was.
+        v += a dt, z += v dt keeps E - dV/dt dt / 2 (`wsim.judge.books.phases`), and takes places along their way by
+        dv dt / 2 farther than the mean of both ends' velocities, less h^2 / 12 of the change of accelerations, where
+        velocities change by dv; steps of higher orders do not. Poses tell of a few intervals together which it was.
         """
         motion = self._motion
         v, h = motion.v[:, rows], motion.h[:, None, None]
@@ -333,7 +334,7 @@ class Losses:
         share = found / np.maximum(most, 1e-30)
         known = (most > (4.0 * rounding) ** 2) & (share > -STRAY) & (share < 1.0 + STRAY)
         share = np.where(known, np.clip(share, 0.0, 1.0), 0.5)
-        gained = 0.5 * motion.dt * (change @ motion.gravity) @ motion.mass[rows]
+        gained = 0.5 * motion.dt * np.diff(sinking(self._evidence)[:, rows].sum(axis=1))
         doubt = np.abs(gained) * np.where(known, 2.0 * share * (1.0 - share), 0.5)
         correction, unsure = (np.concatenate([[0.0], np.cumsum(each)]) for each in (share * gained, doubt))
         return correction, unsure

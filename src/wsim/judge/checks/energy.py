@@ -10,7 +10,7 @@ import numpy as np
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.led import Led, untold
 from wsim.judge.books.losses import Losses
-from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
+from wsim.judge.books.phases import falling, hidden, latest, least, sinking, turned_over
 from wsim.judge.books.recorded import met
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
@@ -201,7 +201,7 @@ class CheckEnergy(Check):
 
         late, gains = least(gain, len(units), latest(evidence))
         limit, scale = self._limit(evidence, of)
-        limit = limit + turned_over(evidence, sinks)
+        limit = limit + turned_over(evidence, falling(evidence) @ of)
         worst = int(np.argmax(np.maximum(gains, 0.0) / np.where(limit > 0.0, limit, 1.0)))
         rows = np.flatnonzero(of[:, worst])
         unseen = phase[:, worst], held[:, worst]
@@ -220,7 +220,7 @@ class CheckEnergy(Check):
                 1, latest(evidence),
             )  # fmt: skip
             balance = balance + late * sinks
-            limit += float(turned_over(evidence, sinks[:, None])[0])
+            limit += float(turned_over(evidence, falling(evidence)[:, rows].sum(axis=1)[:, None])[0])
         else:
             limit += float(self._late(evidence)[rows].sum())
         return self._finding(evidence, rows, balance, (phase, held), (limit, scale))
