@@ -103,7 +103,7 @@ class Losses:
         led = Led.of(self._evidence)
         lost, rubbed = self._by_contacts(rows), np.zeros(len(inside))
         if led.work[:, rows].any():
-            lost, rubbed = np.minimum(lost, self._rubs[1]), self._rubs[0]
+            rubbed, lost = self._rubs[0], np.where(np.isfinite(self._rubs[1]), self._rubs[1], lost)
         most += np.bincount(frame, lost[inside], intervals)
         least += np.bincount(frame, rubbed[inside], intervals)
         damped, off = self._damped(ours)
@@ -141,6 +141,10 @@ class Losses:
         slip = np.where(many, np.maximum(slip, speeds[1]), slip + np.where(pressed > lasts, fall, 0.0))
         bounce, rolling = self._laws
         blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
+        # One that surfaces still come nearer in at the end goes on: its part loses by the mean of both speeds.
+        goes_on = np.maximum(-np.einsum("ni,ni->n", contacts.slip[:, 1], normal), 0.0)
+        goes_on = np.where(hit & (goes_on > fall), goes_on + bounce * approach, 0.0)
+        blow += 0.5 * np.where(hit, pressed - steady, 0.0) * goes_on
         blow += 0.5 * (1.0 - bounce) * (np.minimum(pressed, steady) - np.minimum(pressed, lasts)) * (closing + fall)
         blow += np.where(
             bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0
