@@ -19,9 +19,12 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
+from wsim.judge.books.led import STEADY, Led, late, over, told
+from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
-from wsim.judge.evidence.carriers import carriers
+from wsim.judge.books.rubbing import beside, taken
+from wsim.judge.evidence.carriers import leads, surface_speed
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.contact import pair_law
@@ -36,7 +39,6 @@ if TYPE_CHECKING:
 
 STRAY = 0.2  # of the way of a step: places that are farther off tell nothing of the steps' order
 WINDOW = 5  # intervals
-STEADY = 2.0  # times what a contact or a rope gives before or after: more than that is a blow
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,9 @@ class Taken:
 
     damped: Floats  # by springs' dampers, by their law
     most: Floats  # by all else, at most
-    unsure: Floats  # of the drives' work and the dampers'
-    driven: Floats  # what drives put in
+    least: Floats  # of that, by friction at least; asked of what something leads
+    unsure: Floats  # of the work of drives, of dampers and of what is led
+    driven: Floats  # what drives put in, and what is led
     held: float  # what drives hold as springs do, from its least to its most [J]
 
 
@@ -61,8 +64,7 @@ class Losses:
     def of(evidence: Evidence) -> Losses | None:
         """None where what acts is not recorded, or is work that is not known."""
         recording, world = evidence.recording, evidence.world
-        ties = recording.ties is not None or not (world.joints or world.cords)
-        if recording.contacts is None or not ties or world.fluids or recording.metadata.get("controlled"):
+        if recording.contacts is None or not told(evidence) or world.fluids or recording.metadata.get("controlled"):
             return None
         about = recording.metadata
         if str(about.get("device", "cpu")) != "cpu" or int(about.get("world_count") or 1) > 1:
@@ -78,29 +80,32 @@ class Losses:
 
     @cached_property
     def groups(self) -> list[Rows]:
-        """The bodies that hang together or touch at some time; but not those that something leads, or carries.
+        """The bodies that hang together or touch at some time, but not those that touch a mesh's triangles.
 
-        Nor those that touch a mesh's triangles: from facet to facet a step turns the normal, and what of the velocity
-        is along the new one is lost in no blow that frames show.
+        From facet to facet a step turns the normal, and what of the velocity is along the new one is lost in no blow
+        that frames show.
         """
         motion, unit = self._motion, self._motion.unit.copy()
-        led = {shape.body for shape in carriers(self._evidence)} | set(np.flatnonzero(motion.kinematic).tolist())
-        belts = {shape.shape.prim for shape in carriers(self._evidence) if shape.body < 0}
-        touched = [k for k, shape in enumerate(self._contacts.shapes) if shape.prim in belts or shape.exact]
-        carried = {int(row) for pair, rows in zip(self._contacts.track.pair, self._contacts.body, strict=True)
-                   if np.isin(pair, touched).any() for row in rows}  # fmt: skip
+        exact = np.array([shape.exact for shape in self._contacts.shapes], dtype=bool)[self._contacts.track.pair]
+        faceted = set(self._contacts.body[exact.any(axis=1)].ravel().tolist())
         for one, two in np.unique(self._contacts.body, axis=0).tolist():
-            if min(one, two) >= 0:
+            if min(one, two) >= 0 and not motion.kinematic[[one, two]].any():
                 unit[unit == unit[two]] = unit[one]
-        found = [np.flatnonzero(unit == each) for each in np.unique(unit)]
-        return [rows for rows in found if not (led | carried) & set(rows.tolist())]
+        found = [np.flatnonzero((unit == each) & ~motion.kinematic) for each in np.unique(unit)]
+        return [rows for rows in found if len(rows) and not faceted & set(rows.tolist())]
 
     def of_group(self, rows: Rows) -> Taken:
         """What may have gone from a group of bodies."""
         intervals, ours = len(self._motion.h), set(rows.tolist())
-        most, unsure, driven = (np.zeros(intervals) for _ in range(3))
+        most, least, unsure, driven = (np.zeros(intervals) for _ in range(4))
         inside = np.isin(self._contacts.body, rows).any(axis=1) & (self._contacts.track.frame > 0)
-        most += np.bincount(self._contacts.track.frame[inside] - 1, self._by_contacts(rows)[inside], intervals)
+        frame = self._contacts.track.frame[inside] - 1
+        led = Led.of(self._evidence)
+        lost, rubbed = self._by_contacts(rows), np.zeros(len(inside))
+        if led.work[:, rows].any():
+            rubbed, lost = self._rubs[0], np.where(np.isfinite(self._rubs[1]), self._rubs[1], lost)
+        most += np.bincount(frame, lost[inside], intervals)
+        least += np.bincount(frame, rubbed[inside], intervals)
         damped, off = self._damped(ours)
         if self._ties is not None:
             for k, pair in enumerate(self._ties.pairs):
@@ -108,10 +113,12 @@ class Losses:
                     work, doubt, lost = self._of_joint(k)
                     driven, unsure, most = driven + work, unsure + doubt, most + lost
             most += self._jerked(ours)
-        damped, most, unsure, driven = (
-            np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, unsure + off, driven)
+        damped, most, least, unsure, driven = (
+            np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, least, unsure + off, driven)
         )
-        return Taken(damped, most, unsure, driven, self._held(ours))
+        driven = driven + (led.work + led.late)[:, rows].sum(axis=1)
+        unsure = unsure + led.unsure[:, rows].sum(axis=1)
+        return Taken(damped, most, least, unsure, driven, self._held(ours))
 
     # ---- contacts
     def _by_contacts(self, rows: Rows) -> Floats:
@@ -134,6 +141,10 @@ class Losses:
         slip = np.where(many, np.maximum(slip, speeds[1]), slip + np.where(pressed > lasts, fall, 0.0))
         bounce, rolling = self._laws
         blow = 0.5 * (1.0 - bounce) * np.where(hit, pressed - steady, 0.0) * approach
+        # One that surfaces still come nearer in at the end goes on: its part loses by the mean of both speeds.
+        goes_on = np.maximum(-np.einsum("ni,ni->n", contacts.slip[:, 1], normal), 0.0)
+        goes_on = np.where(hit & (goes_on > fall), goes_on + bounce * approach, 0.0)
+        blow += 0.5 * np.where(hit, pressed - steady, 0.0) * goes_on
         blow += 0.5 * (1.0 - bounce) * (np.minimum(pressed, steady) - np.minimum(pressed, lasts)) * (closing + fall)
         blow += np.where(
             bounce > 0.0, pressed * self._evidence.gravity * motion.dt, 0.0
@@ -143,13 +154,38 @@ class Losses:
         blow += 0.5 * (1.0 - bounce) * pressed * rocks
         return np.asarray(blow + contacts.rubbed * (slip + rocks) + turned)
 
+    @cached_property
+    def _run(self) -> NDArray[np.bool_]:
+        """Whether one of a contact's surfaces is a belt's, (n,)."""
+        runs = np.array([any(shape.surface_velocity) for shape in self._contacts.shapes], dtype=bool)
+        return np.asarray(runs[self._contacts.track.pair].any(axis=1))
+
+    @cached_property
+    def _rubs(self) -> tuple[Floats, Floats]:
+        """What friction takes at least and at most where surfaces go on slipping, (n,) each [J]; 0 and inf elsewhere.
+
+        What is led works all the while, and most of that may go into friction: what this takes at most by its size
+        alone would hide as much of a gain or of a loss. Within an interval slip and turning are those of both its ends,
+        to within half of what they change by here or in the intervals beside.
+        """
+        contacts, track = self._contacts, self._contacts.track
+        pressed = np.maximum(track.pressed.astype(np.float64), 1e-30)
+        found, unsure = taken(contacts)
+        found = found + late(contacts)[:, None]
+        rocks, _ = self._turned(pressed, track.along / pressed[:, None], np.maximum(track.frame, 1), self._laws[1])
+        lasts = contacts.lasting & (pressed <= self._steady)
+        least = np.maximum(found.min(axis=1) - unsure, 0.0)
+        most = np.maximum(found.max(axis=1), 0.0) + unsure + (contacts.rubbed + pressed) * rocks
+        return np.where(lasts, least, 0.0), np.where(lasts, most, np.inf)
+
     def _within(self, rows: Rows, blow: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """How fast surfaces may meet, and slip, within intervals, (2, n) [m/s]; what of each contact is no blow, (n,).
 
         A blow that comes to a ball goes on to all that it touches, however steadily these were pressed around it.
         """
         frame = np.maximum(self._contacts.track.frame, 1)
-        fastest = 2.0 * self._motion.surface_speed[:, rows].max(axis=1)
+        led = self._motion.surface_speed[:, leads(self._evidence)].max(axis=1, initial=surface_speed(self._evidence))
+        fastest = 2.0 * np.maximum(self._motion.surface_speed[:, rows].max(axis=1), led)
         fastest = np.maximum(fastest[frame], fastest[frame - 1])
         before, most = self._between_balls(rows)
         balls = most > 0.0
@@ -179,7 +215,7 @@ class Losses:
         most = np.sqrt(2.0 * had[np.maximum(frame, 1) - 1] * light.sum(axis=1))
         balls = np.array([all(shape.kind == "sphere" for shape in body.shapes) for body in self._evidence.world.bodies])
         loose = ~there | (balls & ~motion.jointed & ~motion.kinematic)[own]
-        asked = loose.all(axis=1) & ~motion.jointed[rows].any()
+        asked = loose.all(axis=1) & ~motion.jointed[rows].any() & ~self._run
         before = np.linalg.norm(contacts.slip[:, 0], axis=1) + others
         return np.where(asked, before, 0.0), np.where(asked, most, 0.0)
 
@@ -195,19 +231,10 @@ class Losses:
     @cached_property
     def _steady(self) -> Floats:
         """What each contact would press with if it went on as it does before and after, twice (n,) [N s]."""
-        track, count = self._contacts.track, len(self._contacts.shapes)
-        key = (track.frame.astype(np.int64) * count + track.pair[:, 0]) * count + track.pair[:, 1]
-        order = np.argsort(key, kind="stable")
-        step, pressed = np.int64(count) ** 2, track.pressed.astype(np.float64)
-
-        def at(other: NDArray[np.int64]) -> Floats:
-            place = np.minimum(np.searchsorted(key[order], other), max(len(key) - 1, 0))
-            return np.where(key[order][place] == other, pressed[order][place], 0.0)
-
-        last = len(self._evidence.time) - 1
-        before, after = at(key - step), at(key + step)
-        after = np.where(track.frame == last, before, after)
-        return STEADY * np.minimum(np.where(track.frame == 1, after, before), after)
+        frame = self._contacts.track.frame
+        before, after = beside(self._contacts, self._contacts.track.pressed.astype(np.float64))
+        after = np.where(frame == len(self._evidence.time) - 1, before, after)
+        return STEADY * np.minimum(np.where(frame == 1, after, before), after)
 
     @cached_property
     def _shared(self) -> NDArray[np.bool_]:
@@ -282,7 +309,7 @@ class Losses:
         at_most = joint.drive is not None and joint.drive.max_effort is not None
         if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
             stretch = joint.drive.position - held.position
-            rubs, doubt = joint.drive.damping * np.array(self._integrated(rate * (rate - joint.drive.velocity)))
+            rubs, doubt = joint.drive.damping * np.array(over(self._evidence, rate * (rate - joint.drive.velocity)))
             return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
         drive = np.asarray(self._ties.track.drive[1:, k], dtype=np.float64)
         mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
@@ -294,9 +321,9 @@ class Losses:
     def ahead(self, rows: Rows) -> tuple[Floats, Floats]:
         """What steps of the first order show too little of the energy that they keep, and how unsure it is, (T,) [J].
 
-        v += a dt, z += v dt keeps E + m v . g dt / 2, and takes places along their way by dv dt / 2 farther than
-        the mean of both ends' velocities, less h^2 / 12 of the change of accelerations, where velocities change by dv;
-        steps of higher orders do not. Poses tell of a few intervals together which it was.
+        v += a dt, z += v dt keeps E - dV/dt dt / 2 (`wsim.judge.books.phases`), and takes places along their way by
+        dv dt / 2 farther than the mean of both ends' velocities, less h^2 / 12 of the change of accelerations, where
+        velocities change by dv; steps of higher orders do not. Poses tell of a few intervals together which it was.
         """
         motion = self._motion
         v, h = motion.v[:, rows], motion.h[:, None, None]
@@ -311,7 +338,7 @@ class Losses:
         share = found / np.maximum(most, 1e-30)
         known = (most > (4.0 * rounding) ** 2) & (share > -STRAY) & (share < 1.0 + STRAY)
         share = np.where(known, np.clip(share, 0.0, 1.0), 0.5)
-        gained = 0.5 * motion.dt * (change @ motion.gravity) @ motion.mass[rows]
+        gained = 0.5 * motion.dt * np.diff(sinking(self._evidence)[:, rows].sum(axis=1))
         doubt = np.abs(gained) * np.where(known, 2.0 * share * (1.0 - share), 0.5)
         correction, unsure = (np.concatenate([[0.0], np.cumsum(each)]) for each in (share * gained, doubt))
         return correction, unsure
@@ -344,21 +371,8 @@ class Losses:
             if spring.damping == 0.0 or not held & ours:
                 continue
             rate = track_of_spring(self._evidence, spring).rate
-            found += spring.damping * np.array(self._integrated(rate**2))
+            found += spring.damping * np.array(over(self._evidence, rate**2))
         return found[0], found[1]
-
-    def _integrated(self, power: Floats) -> tuple[Floats, Floats]:
-        """A power over each interval, and how unsure that is, (T - 1,) each [J].
-
-        By Euler and Maclaurin, with slopes by differences; where those jump they are no slopes.
-        """
-        h = self._motion.h
-        slope = np.gradient(power, self._evidence.time, edge_order=2 if len(power) > 2 else 1)
-        bend = h**2 / 12.0 * np.diff(slope)
-        jump = np.abs(np.diff(bend, prepend=0.0, append=0.0))
-        return 0.5 * h * (power[1:] + power[:-1]) - bend, 0.5 * np.minimum(
-            np.maximum(jump[1:], jump[:-1]), np.abs(bend)
-        )
 
     def _jerked(self, ours: set[int]) -> Floats:
         """What ropes that come taut may take, (T - 1,) [J]."""
@@ -370,8 +384,9 @@ class Losses:
                 continue
             done.add(cord)
             tension = np.maximum(self._ties.track.tension[1:, n].astype(np.float64), 0.0)
-            around = np.concatenate([tension[:1], tension, tension[-1:]])
-            excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
             rate = np.abs(self._ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
+            starts = tension[:1] * (rate[0] <= self._evidence.gravity * self._motion.h[0])  # or it comes taut at once
+            around = np.concatenate([starts, tension, tension[-1:]])
+            excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
             found += excess * (np.maximum(rate[1:], rate[:-1]) + self._evidence.gravity * self._motion.h)
         return found

@@ -1,9 +1,9 @@
 """What a frame's phase hides of energy: where in its step it is seen, and what contacts do from step to step.
 
 Steps of the first order, v' = v + a h and x' = x + v' h, do not keep E but E - t dV/dt with t = h / 2, V what gravity
-holds (Hairer, Lubich and Wanner, Geometric Numerical Integration, 2006, IX.3: the modified energy of the symplectic
-Euler method); those of the second order keep E, t = 0. A frame says nothing of which it was; but whatever t is, what is
-led to and fro comes back to the same dV/dt, so that a gain that lasts is one for every t.
+and springs hold (Hairer, Lubich and Wanner, Geometric Numerical Integration, 2006, IX.3: the modified energy of the
+symplectic Euler method); those of the second order keep E, t = 0. A frame says nothing of which it was; but whatever t
+is, what is led to and fro comes back to the same dV/dt, so that a gain that lasts is one for every t.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import lengths
+from wsim.judge.evidence.cords import spring_power
 from wsim.judge.evidence.motion import FLOAT32, OURS
 
 if TYPE_CHECKING:
@@ -35,20 +36,26 @@ def latest(evidence: Evidence) -> float:
 
 
 def sinking(evidence: Evidence) -> Floats:
-    """How fast each body gives away what gravity holds, -dV/dt, (T, B) [W]."""
+    """How fast each body gives away what gravity and springs hold, -dV/dt, (T, B) [W]."""
+    found: Floats = falling(evidence) + spring_power(evidence)
+    return found
+
+
+def falling(evidence: Evidence) -> Floats:
+    """How fast each body gives away what gravity holds, (T, B) [W]."""
     motion = evidence.motion
     found: Floats = motion.mass * (motion.v @ motion.gravity)
     return found
 
 
-def turned_over(evidence: Evidence, sinks: Floats) -> Floats:
-    """What mechanisms gain where steps change from one order to the other once, (n,) [J], of their -dV/dt (T, n).
+def turned_over(evidence: Evidence, falls: Floats) -> Floats:
+    """What mechanisms gain where steps change from one order to the other once, (n,) [J], of their falling (T, n).
 
     As those of the simulator do at a start; what it does again and again adds up, and is a gain. None where a
     recording does not say that steps are of both orders.
     """
     orders = evidence.recording.metadata.get(OURS) == 2
-    return np.asarray(np.abs(sinks).max(axis=0) * latest(evidence) * orders)
+    return np.asarray(np.abs(falls).max(axis=0) * latest(evidence) * orders)
 
 
 def least(gain: Callable[[Floats], Floats], count: int, most: float) -> tuple[Floats, Floats]:

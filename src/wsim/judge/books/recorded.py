@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.motion import Motion
     from wsim.recording.contacts import ContactTrack
 
     Floats = NDArray[np.float64]
@@ -58,6 +59,11 @@ class RecordedContacts:
         self.shapes = shapes_of(evidence.world)
         bodies = [i for i, body in enumerate(evidence.world.bodies) for _ in body.shapes]
         self._owner = np.array(bodies + [-1] * (len(self.shapes) - len(bodies)), dtype=np.intp)
+
+    @property
+    def motion(self) -> Motion:
+        """Of the bodies."""
+        return self._evidence.motion
 
     @cached_property
     def body(self) -> Rows:
@@ -217,23 +223,30 @@ class RecordedContacts:
 
     @cached_property
     def slip(self) -> Floats:
-        """Velocity of the second shape over the first at the place of each row, at both ends, (n, 2, 3) [m/s].
+        """Velocity of the second shape over the first at the place of each row, at both ends, (n, 2, 3) [m/s]."""
+        found: Floats = self.speed(1) - self.speed(0)
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            for k in np.unique(self.track.pair[:, side]):
+                if any(self.shapes[k].surface_velocity):
+                    ours = np.flatnonzero(self.track.pair[:, side] == k)
+                    after = np.maximum(self.track.frame[ours], 1)
+                    found[ours] += sign * self.belt(k)[np.stack([after - 1, after], axis=1)]
+        return found
+
+    def speed(self, side: int) -> Floats:
+        """Velocity of the bodies of one side at the place of each row, at both ends, (n, 2, 3) [m/s].
 
         The place is that of the middle of the interval, relative to where the bodies are halfway.
         """
-        found = np.zeros((len(self.track.frame), 2, 3))
-        motion, point = self._evidence.motion, self.track.point.astype(np.float64)
+        motion, point, frame = self._evidence.motion, self.track.point.astype(np.float64), self.track.frame
+        found, rows = np.zeros((len(frame), 2, 3)), np.maximum(self.body[:, side], 0)
+        if not len(motion.mass):
+            return found
+        moves, before = (self.body[:, side] >= 0)[:, None], np.maximum(frame - 1, 0)
+        arm = point - 0.5 * (motion.com[before, rows] + motion.com[frame, rows])
         for end in (0, 1):
-            frame = np.maximum(self.track.frame - 1 + end, 0)
-            for side, sign in ((0, -1.0), (1, 1.0)):
-                rows = np.maximum(self.body[:, side], 0)
-                moves = (self.body[:, side] >= 0)[:, None]
-                if len(motion.mass):
-                    before = np.maximum(self.track.frame - 1, 0)
-                    arm = point - 0.5 * (motion.com[before, rows] + motion.com[self.track.frame, rows])
-                    speed = motion.v[frame, rows] + np.cross(motion.w[frame, rows], arm)
-                    found[:, end] += sign * np.where(moves, speed, 0.0)
-                found[:, end] += sign * self._belt(side, frame)
+            at = np.maximum(frame - 1 + end, 0)
+            found[:, end] = np.where(moves, motion.v[at, rows] + np.cross(motion.w[at, rows], arm), 0.0)
         return found
 
     def swing(self, normal: Floats, speed: Floats) -> Floats:
@@ -269,18 +282,11 @@ class RecordedContacts:
             found += np.where(self.body[:, side] >= 0, off, 0.0)
         return found
 
-    def _belt(self, side: int, frame: Rows) -> Floats:
-        """How the surfaces of one side run by themselves, (n, 3) [m/s]."""
-        belts = np.array([shape.surface_velocity for shape in self.shapes], dtype=np.float64).reshape(-1, 3)
-        own = belts[self.track.pair[:, side]]
-        rows = self.body[:, side]
-        if not own.any() or not len(self._evidence.world.bodies):
-            return own
-        turn = np.where(
-            (rows >= 0)[:, None], self._evidence.body_q[frame, np.maximum(rows, 0), 3:], (0.0, 0.0, 0.0, 1.0)
-        )
-        found: Floats = rotate(turn, own)
-        return found
+    def belt(self, k: int) -> Floats:
+        """How the surface of shape k runs by itself, (T, 3) [m/s]."""
+        own, body = np.array(self.shapes[k].surface_velocity, dtype=np.float64)[None], self._owner[k]
+        found: Floats = np.repeat(own, len(self._evidence.time), axis=0)
+        return found if body < 0 or not own.any() else rotate(self._evidence.body_q[:, body, 3:], own)
 
     def gap(self, share: float) -> tuple[Floats, Floats]:
         """How far each row's place is from the surfaces that it is said to be of, and may be, (n,) each [m].

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import lengths
+from wsim.judge.books.led import Led, untold
 from wsim.judge.books.losses import Losses
-from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
+from wsim.judge.books.phases import falling, hidden, latest, least, sinking, turned_over
 from wsim.judge.books.recorded import met
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
-from wsim.judge.evidence.carriers import carried_work
 from wsim.judge.evidence.contact import overlaps
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
@@ -47,8 +47,11 @@ class CheckEnergy(Check):
         energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
-        energy = energy - carried_work(evidence)
-        energy[:, motion.kinematic] = 0.0  # they go where they are told to
+        led = Led.of(evidence)
+        late = np.maximum(np.diff(led.late, axis=0, prepend=led.late[:1]), 0.0)
+        energy = energy - led.work - led.unsure - np.cumsum(late, axis=0)
+        unknown = untold(evidence)
+        energy[:, motion.kinematic | unknown] = 0.0  # they go where they are told to
         stored = self._stored(evidence)
         none = np.zeros(len(evidence.time))
         worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
@@ -57,7 +60,7 @@ class CheckEnergy(Check):
         found = [] if driven or one else self._by_mechanism(evidence, energy, stored)
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
         rows = np.flatnonzero(~motion.kinematic)
-        if any(not finding.passed for finding in found):
+        if unknown.any() or any(not finding.passed for finding in found):
             return found  # what one gains all have together
         losses = Losses.of(evidence)
         if len(rows) and (losses is None or not losses.whole or (one and not driven)):
@@ -85,7 +88,7 @@ class CheckEnergy(Check):
             doubt, phase = taken.unsure + stray, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
             found += [
-                self._changed(evidence, rows, known - doubt, (gives, phase), limits, "gains"),
+                self._changed(evidence, rows, known - doubt + taken.least, (gives, phase), limits, "gains"),
                 self._changed(evidence, rows, -known - doubt - taken.most, (gives, phase), limits, "loses"),
             ]
         return [max(found, key=lambda each: each[0])[1]] if found else []
@@ -126,13 +129,8 @@ class CheckEnergy(Check):
         recording, world = evidence.recording, evidence.world
         pushed = bool(world.fluids) or bool(recording.metadata.get("controlled"))
         driven = any(joint.drive for joint in world.joints)
-        held = {end for joint in world.joints for end in (joint.parent, joint.child)}
-        led = any(
-            body.kinematic and body.prim in held for body in world.bodies
-        )  # by joints, whose forces are not known
         return (
             len(world.bodies) == 0
-            or led
             or (pushed and recording.applied_work is None)
             or (driven and "work/drives" not in recording.scalars)
         )
@@ -203,7 +201,7 @@ class CheckEnergy(Check):
 
         late, gains = least(gain, len(units), latest(evidence))
         limit, scale = self._limit(evidence, of)
-        limit = limit + turned_over(evidence, sinks)
+        limit = limit + turned_over(evidence, falling(evidence) @ of)
         worst = int(np.argmax(np.maximum(gains, 0.0) / np.where(limit > 0.0, limit, 1.0)))
         rows = np.flatnonzero(of[:, worst])
         unseen = phase[:, worst], held[:, worst]
@@ -222,7 +220,7 @@ class CheckEnergy(Check):
                 1, latest(evidence),
             )  # fmt: skip
             balance = balance + late * sinks
-            limit += float(turned_over(evidence, sinks[:, None])[0])
+            limit += float(turned_over(evidence, falling(evidence)[:, rows].sum(axis=1)[:, None])[0])
         else:
             limit += float(self._late(evidence)[rows].sum())
         return self._finding(evidence, rows, balance, (phase, held), (limit, scale))

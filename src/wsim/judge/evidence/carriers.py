@@ -22,11 +22,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def carriers(evidence: Evidence) -> list[Placed]:
-    """The colliding shapes that move, and are moved by nothing that they touch."""
+def leads(evidence: Evidence) -> NDArray[np.bool_]:
+    """Which bodies are kinematic, and move at some time, (B,)."""
     motion = evidence.motion
     goes = motion.kinematic.copy()
     goes[goes] = (motion.speed[:, goes] != 0.0).any(axis=0) | (motion.w[:, goes] != 0.0).any(axis=(0, 2))
+    return goes
+
+
+def carriers(evidence: Evidence) -> list[Placed]:
+    """The colliding shapes that move, and are moved by nothing that they touch."""
+    goes = leads(evidence)
     return [
         shape
         for shape in evidence.placed
@@ -45,8 +51,13 @@ def rides(evidence: Evidence, i: int, intervals: NDArray[np.intp]) -> bool:
     return any(bool(evidence.motion.approaches(shape, i, intervals).any()) for shape in carriers(evidence))
 
 
-def carried_work(evidence: Evidence) -> Floats:
-    """The most that carriers may have given to each body since the start, (T, B) [J]."""
+def carried_work(evidence: Evidence, pulled: Floats) -> Floats:
+    """The most that carriers may have given to each body since the start, (T, B) [J].
+
+    Args:
+        evidence: Of a recording that does not say what contacts gave.
+        pulled: What springs gave each body in each interval, (T - 1, B, 3) [N s].
+    """
     motion = evidence.motion
     frames, bodies = motion.speed.shape
     work = np.zeros((frames, bodies))
@@ -54,8 +65,8 @@ def carried_work(evidence: Evidence) -> Floats:
     if not moving or frames < 2:
         return work
     every = np.arange(frames - 1)
-    impulse = motion.mass[:, None] * (motion.acceleration - motion.gravity) * motion.h[:, None, None]
-    size = np.linalg.norm(impulse, axis=2)
+    impulse = motion.mass[:, None] * (motion.acceleration - motion.gravity) * motion.h[:, None, None] - pulled
+    size, tied = np.linalg.norm(impulse, axis=2), _tied(evidence)
     loose = np.flatnonzero(~motion.kinematic)
     by_carrier = np.zeros((frames - 1, bodies))
     beside = np.zeros((frames - 1, bodies), dtype=bool)
@@ -75,11 +86,24 @@ def carried_work(evidence: Evidence) -> Floats:
                 fastest = np.maximum(fastest, np.where(here, np.linalg.norm(u, axis=1) + spread, 0.0))
             else:
                 beside[:, i] |= here
-    # Beside something else it may be pressed harder than its own momentum tells, and it may pass on what it is given.
+    # Beside something else, or tied to it, a body may be pressed harder than its own momentum tells, and may pass on
+    # what it is given.
+    for rows in tied:
+        size[:, rows] = size[:, rows].sum(axis=1, keepdims=True)
+        beside[:, rows] |= near[:, rows].any(axis=1, keepdims=True)
     most = fastest[:, None] * size
     given = np.where(near & ~beside, by_carrier, np.where(beside, most, 0.0))
     work[1:] = np.cumsum(np.where(motion.kinematic, 0.0, given), axis=0)
     return work
+
+
+def _tied(evidence: Evidence) -> list[NDArray[np.intp]]:
+    """The loose bodies of each mechanism in which ropes or joints pass something on."""
+    world, unit, loose = evidence.world, evidence.motion.unit, ~evidence.motion.kinematic
+    held = {end for joint in world.joints for end in (joint.parent, joint.child)}
+    held |= {guide.body for rope in world.ropes for guide in rope.path}
+    units = {int(unit[i]) for i, body in enumerate(world.bodies) if body.prim in held}
+    return [np.flatnonzero((unit == each) & loose) for each in sorted(units)]
 
 
 def _velocity(evidence: Evidence, shape: Placed, i: int) -> tuple[Floats, Floats]:
