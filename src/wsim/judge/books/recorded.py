@@ -318,15 +318,15 @@ class RecordedContacts:
 
 
 def plain(evidence: Evidence) -> Bools:
-    """Bodies of mechanisms of plain joints alone, without a law that a record could break, (T - 1, B)."""
+    """Bodies of mechanisms of plain joints and ropes, without a law that a record could break, (B,)."""
     world, motion = evidence.world, evidence.motion
-    bound = [guide.body for cord in world.cords for guide in cord.path if guide.body]
+    bound = [guide.body for spring in world.springs for guide in spring.path if guide.body]
     for joint in world.joints:
         stops = joint.low is not None or joint.high is not None
         if joint.drive or joint.friction or joint.moves or stops or world.gears:
             bound.append(joint.child)
     units = motion.unit[[i for i, body in enumerate(world.bodies) if body.prim in bound]]
-    return np.tile(motion.jointed & ~np.isin(motion.unit, units), (len(motion.h), 1))
+    return np.asarray(motion.jointed & ~np.isin(motion.unit, units))
 
 
 def told_by_record(copies: Sequence[Evidence], size: Floats, ks: Rows, judged: Bools) -> list[tuple[Floats, Floats]]:
