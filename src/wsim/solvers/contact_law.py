@@ -114,7 +114,6 @@ class ContactLawC:
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
-        self._lost = int(mujoco.mjtWarning.mjWARN_BADQACC)
         self._groups = tied_groups(mujoco, model)
         moves_as_one = mechanisms(mujoco, model, self._groups, flight.stated) if smooth else np.zeros(model.nbody, int)
         self.owners = Owners(mujoco, model, moves_as_one)
@@ -148,9 +147,9 @@ class ContactLawC:
             self.blows.undo(data)
             self.flight.keep()
             touching = self._forward(data)
-        lost = data.warning[self._lost].number
+        time = data.time
         self.mujoco.mj_checkAcc(self.model, data)
-        if data.warning[self._lost].number > lost:  # MuJoCo has begun the world anew, with other rows
+        if data.time < time:  # no numbers, of which it has a warning: MuJoCo has begun the world anew, with other rows
             self.blows.begin()
         return touching
 
