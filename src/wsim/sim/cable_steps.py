@@ -3,8 +3,8 @@
 A link on two ball joints is turned back into line by the pull T along it: its fastest swing is that in which each link
 turns against the next, omega² = T l / I, l the way between its joints and I its inertia across (about its middle). That
 pull is a stiffness of which no step knows beforehand: steps of the first order shake where omega h is above 2, those of
-the fourth above 2.8. On a post of radius R, where links bend by l / R each, a link is pressed by T l / R, and turned by t
-it rolls on until it is pressed R t farther along: that turns it back by T l t once more, omega^2 = 2 T l / I.
+the fourth above 2.8. On a post of radius R, where links bend by l / R each, a link is pressed by T l / R, and one that
+is turned by t rolls until it is pressed R t farther along. That turns it back by T l t once more: omega² = 2 T l / I.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ SHARE = 1.0  # of 1 / omega under what hangs at rest: what swings pulls up to th
 def cable_limits(world: World) -> dict[str, float]:
     """How long a step each link of a chain that hangs can take [s], by the weight of what hangs on it.
 
-    Of links between ball joints, where one side or neither is held: what lies over a post with a weight at either end is
-    pulled by the heavier one at most, and turned back by the post as well. The pull in what is held on both sides is not
-    known.
+    Of links between ball joints, where one side or neither is held: what lies over a post with a weight at either end
+    is pulled by the heavier one at most, and turned back by the post as well. The pull in what is held on both sides is
+    not known.
 
     Raises:
         UserError: If so much hangs on a link that no step of `MIN_TIME_STEP` or more can follow it.

@@ -225,7 +225,9 @@ class RigidBodies:
         """What single precision may have lost the numbers of, a line each; nothing where it is solved in double."""
         if self.on_c:
             return []
-        return beyond_single_precision(self.solver.import_mujoco()[0], self.solver.mj_model)
+        newtons, labels = self.solver.mjc_body_to_newton.numpy()[0], self.model.body_label
+        label = lambda body: str(labels[newtons[body]])  # noqa: E731
+        return beyond_single_precision(self.solver.import_mujoco()[0], self.solver.mj_model, label)
 
     def overflowed(self) -> np.ndarray:
         """Whether a world's contact buffers were too small at some time, (W,)."""
