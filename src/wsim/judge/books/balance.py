@@ -100,8 +100,9 @@ class Balance:
         )
         self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
         self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
-        self._plain = np.stack([plain(evidence) for evidence in copies])[np.repeat(np.arange(len(copies)), count)]
-        self._bent = np.concatenate(self._angles) ** 2 / 12.0  # share that is wrong of what an arm taken halfway gives
+        self._plain = np.concatenate([plain(evidence) for evidence in copies])  # (N, B)
+        shaken = np.concatenate([arms.shaken(evidence) for evidence in copies])
+        self._bent = np.concatenate(self._angles) ** 2 / 12.0 + shaken  # share of what an arm taken halfway gives
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
