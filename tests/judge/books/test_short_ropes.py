@@ -1,4 +1,4 @@
-"""Ropes and cables that swing faster than frames tell, and hands that draw them: right ones, and what is wrong in them."""
+"""Ropes and chains that swing faster than frames tell, and hands that draw them: right ones and wrong ones."""
 
 import math
 from dataclasses import replace

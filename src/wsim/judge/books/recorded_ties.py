@@ -290,9 +290,9 @@ class RecordedTies:
         return off, may, np.abs(tension)
 
     def _swept(self, cord: int, row: int, arm: float) -> Floats:
-        """How far a spring's way on a body turns within each interval, there and back too, (T - 1,), torques by the arm.
+        """How far a spring's way on a body turns within each interval, there and back too, (T - 1,).
 
-        As fast as the body turns at its ends, or in the intervals beside: what a light hook shakes by frames show not.
+        As fast as the body turns at its ends or in the intervals beside, and by what it shakes; torques by the arm.
         """
         springs, evidence = self._evidence.world.springs, self._evidence
         if cord >= len(springs):
