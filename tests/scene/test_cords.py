@@ -1,5 +1,8 @@
 """Springs, ropes and cables that cannot be: one line that names the call, the value and the way out."""
 
+import math
+
+import numpy as np
 import pytest
 
 from wsim.scene import Scene, SceneError
@@ -69,6 +72,16 @@ def test_a_rope_that_cannot_be(scene, more, message):
 def test_a_cable_that_cannot_be(scene, more, message):
     with pytest.raises(SceneError, match=rf'cable\("c"\): .*{message}'):
         scene.cable("c", "a", "b", **more)
+
+
+def test_a_cable_whose_way_hardly_bends_is_refused_where_links_would_be_in_each_other(scene):
+    """By 7 degrees over a post of 16 cm: the link there would be 1 cm long, and those beside it are 1.6 cm thick."""
+    lean, ring = math.radians(3.5), 0.168
+    turn = [(ring * math.sin(a), 0, ring * math.cos(a)) for a in np.linspace(-lean, lean, 5)]
+    reach = [turn[-1][k] + 0.7 * way for k, way in zip((0, 2), (math.cos(lean), -math.sin(lean)), strict=True)]
+    with pytest.raises(SceneError, match=r"through bends by so little at .* 0.0103 m long.* a radius below 0.0051 m"):
+        scene.cable("c", None, None, anchor_a=(-reach[0], 0, reach[1]), anchor_b=(reach[0], 0, reach[1]),
+                    through=turn, links=14, radius=0.008)  # fmt: skip
 
 
 def test_a_stage_states_what_the_calls_were_given(scene, tmp_path):

@@ -46,8 +46,29 @@ def test_the_step_is_one_over_the_fastest_swing_of_a_link(limits):
     assert min(limits(lambda scene: hang(scene, 400.0)).values()) == pytest.approx(0.5 * step, rel=1e-3)
 
 
-def test_what_is_held_on_both_sides_or_on_none_has_no_known_pull(limits):
+def test_what_is_held_on_both_sides_has_no_known_pull(limits):
     assert limits(lambda scene: scene.cable("c", None, None, anchor_a=(0, 0, 2), anchor_b=(1, 0, 2), length=1.2)) == {}
+
+
+def over_a_post(scene, left, right):
+    """A cable half round a post, a weight at either end."""
+    ring, hang = 0.108, 0.19
+    scene.cylinder("post", radius=0.1, height=0.3, axis="Y", static=True, friction=0.435)
+    turn = [(ring * math.cos(a), 0, ring * math.sin(a)) for a in np.linspace(math.pi, 0, 37)]
+    for name, x, mass in (("left", -ring, left), ("right", ring, right)):
+        scene.box(name, size=(0.04, 0.04, 0.04), mass=mass, position=(x, 0, -hang - 0.02))
+    scene.cable("c", "left", "right", anchor_a=(-ring, 0, -hang), anchor_b=(ring, 0, -hang), through=turn, links=16,
+                mass_per_length=0.1, radius=0.008, friction=0.435)  # fmt: skip
+
+
+def test_over_a_post_the_heavier_weight_pulls_and_the_post_turns_links_back_as_well(limits):
+    """omega^2 = 2 T l / I: the step is 1 / sqrt(2) of that of the same link with as much below it."""
+    length = (0.19 * 2 + math.pi * 0.108) / 16  # of its links, about
+    mass = 0.1 * length
+    found = limits(lambda scene: over_a_post(scene, 0.5, 2.0))
+    thin = math.sqrt(mass * length / (24.0 * G * 2.0))
+    assert thin < min(found.values()) < 1.5 * thin
+    assert min(found.values()) == pytest.approx(min(limits(lambda s: over_a_post(s, 2.0, 2.0)).values()), rel=1e-6)
 
 
 def test_a_load_that_no_step_can_follow_is_refused(limits):

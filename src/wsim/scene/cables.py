@@ -110,7 +110,17 @@ class Cables(Fluids, Cords):
         count = min(_LINKS, most) if links is None else call.integer("links", links, 2, most)
         if len(way) == 2:
             return hanging(way[0], way[1], long, count + 1)
-        return laid(way, count)
+        points = laid(way, count)
+        each = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        k = int(np.argmin(each))
+        if each[k] < 2.0 * radius:
+            at = ", ".join(f"{x:.3g}" for x in 0.5 * (points[k] + points[k + 1]))
+            call.fail(
+                f"through bends by so little at ({at}) m that the link there is {each[k]:.3g} m long, and those beside "
+                f"it, {radius:g} m thick, would be in each other: let it bend by more, or not at all, or give a radius "
+                f"below {0.5 * each[k]:.2g} m"
+            )
+        return points
 
     def _links(self, name: str, points: Array, radius: float, mass: float, look: Handle) -> list[Handle]:
         made = []

@@ -3,7 +3,8 @@
 A link on two ball joints is turned back into line by the pull T along it: its fastest swing is that in which each link
 turns against the next, omega² = T l / I, l the way between its joints and I its inertia across (about its middle). That
 pull is a stiffness of which no step knows beforehand: steps of the first order shake where omega h is above 2, those of
-the fourth above 2.8.
+the fourth above 2.8. On a post of radius R, where links bend by l / R each, a link is pressed by T l / R, and one that
+is turned by t rolls until it is pressed R t farther along. That turns it back by T l t once more: omega² = 2 T l / I.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ SHARE = 1.0  # of 1 / omega under what hangs at rest: what swings pulls up to th
 def cable_limits(world: World) -> dict[str, float]:
     """How long a step each link of a chain that hangs can take [s], by the weight of what hangs on it.
 
-    Of links between ball joints that are held on one side alone; the pull in what is held on both is not known.
+    Of links between ball joints, where one side or neither is held: what lies over a post with a weight at either end
+    is pulled by the heavier one at most, and turned back by the post as well. The pull in what is held on both sides is
+    not known.
 
     Raises:
         UserError: If so much hangs on a link that no step of `MIN_TIME_STEP` or more can follow it.
@@ -42,14 +45,16 @@ def cable_limits(world: World) -> dict[str, float]:
             continue
         sides = [_beyond(_other(joint, body.prim), body.prim, held, bodies) for joint in ends]
         hanging = [mass for mass in sides if mass is not None]
-        stiffness = _length(body, ends) * g * (sum(hanging) + body.mass)
-        if len(hanging) != 1 or stiffness <= 0.0:
+        if not hanging:
+            continue
+        stiffness = _length(body, ends) * g * (max(hanging) + body.mass) * len(hanging)
+        if stiffness <= 0.0:
             continue
         step = SHARE * math.sqrt(_across(body, ends) / stiffness)
         if step < MIN_TIME_STEP:
-            most = hanging[0] * (step / MIN_TIME_STEP) ** 2
+            most = max(hanging) * (step / MIN_TIME_STEP) ** 2
             raise UserError(
-                f"{body.prim}: {hanging[0]:.4g} kg on a link of {body.mass:.2g} kg would need a time step of "
+                f"{body.prim}: {max(hanging):.4g} kg on a link of {body.mass:.2g} kg would need a time step of "
                 f"{step:.1e} s; hang at most {most:.2g} kg on it, give it more mass_per_length or fewer links, "
                 "or use a rope"
             )

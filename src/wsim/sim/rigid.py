@@ -26,6 +26,7 @@ from wsim.sim.time_step import is_overdamped
 from wsim.solvers.breaking import Breakable
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.cylinder_contacts import CylinderContacts
+from wsim.solvers.single_precision import beyond_single_precision
 from wsim.solvers.solver_rigid import SolverRigid
 from wsim.solvers.surface_contacts import SLOTS, SurfaceContacts, SurfaceParts
 
@@ -219,6 +220,14 @@ class RigidBodies:
             if warning.number:
                 found.append(f"MuJoCo: {mujoco.mjtWarning(kind).name} {warning.number} times, last {warning.lastinfo}")
         return found
+
+    def beyond_precision(self) -> list[str]:
+        """What single precision may have lost the numbers of, a line each; nothing where it is solved in double."""
+        if self.on_c:
+            return []
+        newtons, labels = self.solver.mjc_body_to_newton.numpy()[0], self.model.body_label
+        label = lambda body: str(labels[newtons[body]])  # noqa: E731
+        return beyond_single_precision(self.solver.import_mujoco()[0], self.solver.mj_model, label)
 
     def overflowed(self) -> np.ndarray:
         """Whether a world's contact buffers were too small at some time, (W,)."""

@@ -257,6 +257,7 @@ class Simulation:
         for name, array in arrays.items():
             if array is not None and not np.isfinite(array.numpy()).all():
                 found.append(f"{name} is not finite")
+                found += self.rigid.beyond_precision() if self.rigid and name == "body_q" else []
         if self.world.ropes and not found:
             found += lost_ropes(self.world, self.built.bodies, self.model, self.state.body_q.numpy())
         return found

@@ -148,7 +148,10 @@ class ContactLawC:
             self.blows.undo(data)
             self.flight.keep()
             touching = self._forward(data)
+        time = data.time
         self.mujoco.mj_checkAcc(self.model, data)
+        if data.time < time:  # no numbers, of which it has a warning: MuJoCo has begun the world anew, with other rows
+            self.blows.begin()
         return touching
 
     def _parts(self, data: Any) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,33 @@ def soften_contacts_for_single_precision(mujoco: Any, model: Any, config: Contac
                 ill += geoms.tolist()
     model.geom_solimp[ill, :2] = SOFT_CONTACT
     return bool(ill)
+
+
+def beyond_single_precision(mujoco: Any, model: Any, label: Callable[[int], str]) -> list[str]:
+    """What hangs together and whose mass matrix single precision may not be able to solve with, a line of each.
+
+    Of a condition k the accelerations are known to some 6e-8 k of them (Higham 2002, 7.1): from 1.7e7 on, the links of
+    a chain may have any.
+
+    Args:
+        mujoco: The module.
+        model: MuJoCo's model of a world.
+        label: The name of a body, by its number in that.
+    """
+    found, (_, mass) = [], _at_start(mujoco, model)
+    for tree in range(model.ntree):
+        chosen, bodies = np.flatnonzero(model.dof_treeid == tree), np.flatnonzero(model.body_treeid == tree)
+        condition = _scaled_condition(mass[np.ix_(chosen, chosen)]) if len(bodies) > 1 else 1.0
+        if condition > LARGEST_CONDITION:
+            lightest, heaviest = (int(bodies[choose(model.body_mass[bodies])]) for choose in (np.argmin, np.argmax))
+            found.append(
+                f"{label(heaviest)}, of {model.body_mass[heaviest]:.3g} kg, hangs together with "
+                f"{len(bodies) - 1} bodies down to {model.body_mass[lightest]:.2g} kg, and the condition of their mass "
+                f"matrix is {condition:.1e}: single precision can solve up to {LARGEST_CONDITION:.0e}. Give the light "
+                "ones more mass (mass_per_length of a cable) or make them fewer (links), or run one world on a CPU, "
+                "in double precision"
+            )
+    return found
 
 
 def _pushes(mujoco: Any, model: Any, data: Any, bodies: Array, config: ContactConfig) -> Array:

@@ -76,6 +76,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             tolerance=self.contact_config.solver_tolerance if on_c else self.contact_config.solver_tolerance_warp,
             **options,
         )
+        if on_c and np.bincount(self.mj_model.body_treeid[self.mj_model.body_treeid >= 0]).max(initial=0) > 1:
+            self.mj_model.opt.tolerance = self.contact_config.chain_tolerance
         self._differ = len(surfaces.classes) > 1
         of_geoms = surfaces.taken(self.mjc_geom_to_newton_shape.numpy())
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)

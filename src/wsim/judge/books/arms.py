@@ -6,6 +6,11 @@ change by together (r' F' h^2 / 12). Of a force that turns with its arm both are
 which that turns, over 12, of F r. A force may change by more than it turns: at a dead point, where two links of a
 linkage line up, it goes through zero in a frame or two (`changing`). A rotor that spins about its own joint turns
 neither.
+
+A light link shakes faster than frames tell. Of an arm that swings by A cos(p k + q), p a frame, the mean of both ends
+misses A (cos p/2 - sin(p/2) / (p/2)) of the mean over the interval, and its turn the mean of both rates by p times as
+much, a quarter of a swing on: a share of m / p of the arm, m being the most that turns stray about there. That is
+p^2 A / 12 below 1 rad, as above, and m at most beyond (`shaken`).
 """
 
 from __future__ import annotations
@@ -14,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import rotate
+from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.evidence.joints import AXES, anchors_of
 
 if TYPE_CHECKING:
@@ -51,6 +56,28 @@ def turned(evidence: Evidence, size: Floats) -> Floats:
     for unit in np.unique(motion.unit[motion.jointed]):
         own = np.flatnonzero(motion.unit == unit)
         found[:, own] = found[:, own].max(axis=1, keepdims=True)
+    return found
+
+
+def shaken(evidence: Evidence) -> Floats:
+    """How far turns stray from the mean of the rates at both ends, (T - 1, B) [rad]: in each mechanism the most.
+
+    Of the interval and those beside it. Where a body turns by half a turn a frame or more nobody knows.
+    """
+    motion, q = evidence.motion, evidence.body_q[..., 3:]
+    found = np.zeros((len(motion.h), len(motion.mass)))
+    if not motion.jointed.any() or not len(found):
+        return found
+    turn = multiply(q[1:], conjugate(q[:-1]))
+    turn = np.where(turn[..., 3:] < 0.0, -turn, turn)
+    size = np.linalg.norm(turn[..., :3], axis=2, keepdims=True)
+    angle = 2.0 * np.arctan2(size, turn[..., 3:]) * turn[..., :3] / np.maximum(size, 1e-12)
+    off = np.linalg.norm(angle - 0.5 * (motion.w[1:] + motion.w[:-1]) * motion.h[:, None, None], axis=2)
+    off = np.pad(off, ((1, 1), (0, 0)), mode="edge")
+    off = np.max([off[:-2], off[1:-1], off[2:]], axis=0)
+    for unit in np.unique(motion.unit[motion.jointed]):
+        own = np.flatnonzero(motion.unit == unit)
+        found[:, own] = np.minimum(off[:, own].max(axis=1, keepdims=True), 1.0)
     return found
 
 

@@ -47,7 +47,6 @@ ENOUGH = 0.001  # of gravity: a rest that is as good as none
 AGAIN = 0.003  # of gravity: where more is left, contacts are looked for between the frames
 CHUNK = 4000  # bodies times intervals worked out at once
 LOADS = 3.0  # of its weight, that a body in motion may press with
-WHIPS = 0.05  # [rad]: what turns farther between frames passes on more than they tell
 FAST = 0.3  # [m]: no blow is looked for beyond
 
 
@@ -101,8 +100,9 @@ class Balance:
         )
         self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
         self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
-        self._whips = np.concatenate([plain(evidence) for evidence in copies]) & (np.concatenate(self._angles) > WHIPS)
-        self._bent = np.concatenate(self._angles) ** 2 / 12.0  # share that is wrong of what an arm taken halfway gives
+        self._plain = np.concatenate([plain(evidence) for evidence in copies])  # (N, B)
+        shaken = np.concatenate([arms.shaken(evidence) for evidence in copies])
+        self._bent = np.concatenate(self._angles) ** 2 / 12.0 + shaken  # share of what an arm taken halfway gives
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
@@ -171,10 +171,12 @@ class Balance:
                 some = ks[struck], wanted[ks[struck]], asked[struck], hit[ks[struck]], between[struck]
                 for course in (0, 1):
                     self._where_less(some[0], self._explained(*some, course=course), left, turned)
-            whips = much.any(axis=1) & (self._whips[ks] | self._pressed[ks] & hit[ks]).any(axis=1)
-            if whips.any():
-                for told in told_by_record(self._copies, self._sizes[0], ks[whips], asked[whips]):
-                    self._where_less(ks[whips], told, left, turned)
+            # How links and bobs swing between two frames these do not tell: what it gives is recorded.
+            swings = (much & self._plain[ks]).any(axis=1)
+            swings |= much.any(axis=1) & (self._pressed[ks] & hit[ks]).any(axis=1)
+            if swings.any():
+                for told in told_by_record(self._copies, self._sizes[0], ks[swings], asked[swings]):
+                    self._where_less(ks[swings], told, left, turned)
         self._landed = again(anew, self._landed)
         return again(anew, left, wanted), again(anew, turned)
 

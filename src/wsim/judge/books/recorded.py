@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, rotate
+from wsim.judge.books.laws import Laws
 from wsim.judge.books.recorded_ties import RecordedTies
 from wsim.judge.books.sharing import UPRIGHT, bend, lever, share
 from wsim.judge.evidence.motion import FLOAT32
@@ -324,15 +325,23 @@ class RecordedContacts:
 
 
 def plain(evidence: Evidence) -> Bools:
-    """Bodies of mechanisms of plain joints alone, without a law that a record could break, (T - 1, B)."""
+    """Bodies of mechanisms of joints, ropes and springs, without a law that a record could break unseen, (T - 1, B).
+
+    A spring's law frames must tell, which what is recorded of it is held to (`wsim.judge.checks.recorded_ties`).
+    """
     world, motion = evidence.world, evidence.motion
-    bound = [guide.body for cord in world.cords for guide in cord.path if guide.body]
+    bound = []
     for joint in world.joints:
         stops = joint.low is not None or joint.high is not None
         if joint.drive or joint.friction or joint.moves or stops or world.gears:
             bound.append(joint.child)
     units = motion.unit[[i for i, body in enumerate(world.bodies) if body.prim in bound]]
-    return np.tile(motion.jointed & ~np.isin(motion.unit, units), (len(motion.h), 1))
+    found = np.tile(motion.jointed & ~np.isin(motion.unit, units), (len(motion.h), 1))
+    row = {body.prim: i for i, body in enumerate(world.bodies)}
+    for spring, law in zip(world.springs, Laws(evidence).springs if world.springs else (), strict=True):
+        held = [row[guide.body] for guide in spring.path if guide.body in row]
+        found[:, np.isin(motion.unit, motion.unit[held])] &= law.known[:, None]
+    return found
 
 
 def told_by_record(copies: Sequence[Evidence], size: Floats, ks: Rows, judged: Bools) -> list[tuple[Floats, Floats]]:

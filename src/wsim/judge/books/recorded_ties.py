@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.judge.books import jolts
+from wsim.judge.books import arms, jolts
 from wsim.judge.books.laws import RESOLVED, Laws
 from wsim.judge.books.ropes import Ropes
 from wsim.judge.evidence.cords import track_of_spring
@@ -114,6 +114,10 @@ class RecordedTies:
         found: Floats = np.maximum(rate[1:], rate[:-1])
         return found
 
+    @cached_property
+    def _shaken(self) -> Floats:
+        return arms.shaken(self._evidence)
+
     # ---- joints
     def along(self, k: int) -> tuple[Floats, Floats]:
         """What joint k passes on along its own motion that no effort gives, and all of it, (T - 1,) [N s or N m s]."""
@@ -195,7 +199,8 @@ class RecordedTies:
         angle = np.max([rate[:-2], rate[1:-1], rate[2:]], axis=0) * motion.h
         size = np.linalg.norm(self.track.joints[1:, k, :12].astype(np.float64), axis=1)
         change = _jump(size) / np.maximum(size, 1e-30)
-        found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0), 2.0)
+        shaken = self._shaken[:, rows].max(axis=1, initial=0.0)
+        found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0) + shaken, 2.0)
         return np.where(angle > RESOLVED, 2.0, found)  # they may point anywhere
 
     def drive(self, k: int) -> Stated | None:
@@ -275,7 +280,7 @@ class RecordedTies:
         arm = max(float(np.linalg.norm(mean[:, 3:], axis=1).max(initial=0.0)), float(evidence.motion.radius[row]), 1e-9)
         scale = np.repeat([1.0, 1.0 / arm], 3)
         off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
-        turned = np.linalg.norm((last - first) * scale, axis=1)
+        turned = np.maximum(np.linalg.norm((last - first) * scale, axis=1), self._swept(cord, row, arm))
         change = _jump(tension)
         late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
         # One that goes from push to pull is next to nothing on the whole, and yet gives by how far its way turns: at
@@ -283,6 +288,23 @@ class RecordedTies:
         uneven = np.maximum(0.5 * np.minimum(change, np.abs(tension)), self._swings(cord) / 8.0)
         may = (uneven + (late + turned / 12.0) * np.abs(tension)) * turned
         return off, may, np.abs(tension)
+
+    def _swept(self, cord: int, row: int, arm: float) -> Floats:
+        """How far a spring's way on a body turns within each interval, there and back too, (T - 1,).
+
+        As fast as the body turns at its ends or in the intervals beside, and by what it shakes; torques by the arm.
+        """
+        springs, evidence = self._evidence.world.springs, self._evidence
+        if cord >= len(springs):
+            return np.zeros(len(evidence.motion.h))
+        com = np.array(evidence.world.bodies[row].com)
+        held = [guide.position for guide in springs[cord].path if self._row.get(guide.body or "", WORLD) == row]
+        far = max(float(np.linalg.norm(np.subtract(place, com))) for place in held)
+        rate = np.pad(self._turning[:, row], 1, mode="edge")
+        angle = np.max([rate[:-2], rate[1:-1], rate[2:]], axis=0) * evidence.motion.h + self._shaken[:, row]
+        length = track_of_spring(evidence, springs[cord]).length
+        found: Floats = angle * far * (1.0 / arm + 1.0 / np.maximum(np.minimum(length[1:], length[:-1]), arm))
+        return np.minimum(found, 2.0)
 
     def _swings(self, cord: int) -> Floats:
         """By how much the impulse of a spring's law changes where it turns from push to pull, or back, (T - 1,)."""

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     Pair = tuple[Floats, Floats]  # a value and its limit
 
 
+SHAKEN = 2.0  # times the farthest that a link strays in an interval: what its swings to and fro add up to
+
+
 @dataclass
 class CheckContinuity(Check):
     """A body goes from frame to frame by its own velocity: it does not jump, does not turn at once, does not drift."""
@@ -119,6 +122,7 @@ class CheckContinuity(Check):
         ends = motion.late * lengths(np.ptp(motion.v, axis=-3)) + (h * change).max(axis=-2) / 6.0
         # What is set down settles by a step, also along a slope.
         ends = ends + self._rounding(evidence).max(axis=-2) + evidence.gravity * motion.dt**2
+        ends = ends + np.where(_links(evidence), SHAKEN * lengths(strayed).max(axis=-2), 0.0)
         ends = (ends + self._by_hand(evidence).sum(axis=-2))[..., None, :]
         # A contact that flips from step to step tells of one phase of it, and the body stays.
         touched = motion.touched[..., 1:, :] | motion.touched[..., :-1, :]
@@ -207,6 +211,17 @@ def _most_about(each: Floats) -> Floats:
     around[..., 1:, :] = np.maximum(around[..., 1:, :], each[..., :-1, :])
     around[..., :-1, :] = np.maximum(around[..., :-1, :], each[..., 1:, :])
     return around
+
+
+def _links(evidence: Evidence) -> NDArray[np.bool_]:
+    """Bodies between two ball joints, (B,): links of a chain."""
+    row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
+    held = np.zeros(len(row), dtype=int)
+    for joint in evidence.world.joints:
+        for end in (joint.parent, joint.child):
+            if joint.kind == "spherical" and end in row:
+                held[row[end]] += 1
+    return np.asarray(held >= 2)
 
 
 def _bends(rate: Floats) -> Floats:

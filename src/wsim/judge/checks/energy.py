@@ -83,24 +83,37 @@ class CheckEnergy(Check):
             limit += self.share * (max(scale, taken.held) - scale)
             limit += losses.give(rows)
             limits = limit, max(scale, taken.held)
-            ahead, stray = losses.ahead(rows)
-            known = energy[:, rows].sum(axis=1) + ahead - taken.driven + taken.damped
-            doubt, phase = taken.unsure + stray, unseen[:, rows].sum(axis=1)
+            known, phase = energy[:, rows].sum(axis=1) - taken.driven + taken.damped, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
-            found += [
-                self._changed(evidence, rows, known - doubt + taken.least, (gives, phase), limits, "gains"),
-                self._changed(evidence, rows, -known - doubt - taken.most, (gives, phase), limits, "loses"),
-            ]
-        return [max(found, key=lambda each: each[0])[1]] if found else []
+            ahead, stray = losses.ahead(rows)
+            for verb, sign, most in (("gains", 1.0, -taken.least), ("loses", -1.0, taken.most)):
+                seen, hides = sign * known - taken.unsure - most, (gives, phase)
+                by_poses = seen + sign * ahead - stray
+                by_phase = self._by_phase(evidence, rows, seen, sign, hides, verb)
+                found.append(
+                    min((self._changed(evidence, rows, each, hides, limits, verb) for each in (by_poses, by_phase)),
+                        key=_ratio)
+                )  # fmt: skip
+        return [max(found, key=_ratio)[1]] if found else []
+
+    @staticmethod
+    def _by_phase(
+        evidence: Evidence, rows: NDArray[np.intp], seen: Floats, sign: float, unseen: tuple[Floats, Floats], verb: str
+    ) -> Floats:
+        """A balance by the one phase of all steps at which it rises least: a rise that lasts is one for every phase.
+
+        Where frames are so few that a swing bends between two of them, poses do not tell it (`Losses.ahead`).
+        """
+        sinks = sign * sinking(evidence)[:, rows].sum(axis=1)
+        late, _ = least(lambda t: np.array([_rise(seen + t * sinks, unseen, verb).max()]), 1, latest(evidence))
+        return np.asarray(seen + late * sinks)
 
     def _changed(
         self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, unseen: tuple[Floats, Floats],
         limits: tuple[float, float], verb: str,
     ) -> tuple[float, Finding]:  # fmt: skip
         """How far a balance rises, by its limit; contacts and stops may have held, or hidden, a part at either end."""
-        gives, phase = unseen
-        had = balance + phase + (gives if verb == "gains" else 0.0)
-        rise = balance - phase - (0.0 if verb == "gains" else gives) - np.minimum.accumulate(had)
+        had, rise = _had(balance, unseen, verb), _rise(balance, unseen, verb)
         end = int(np.argmax(rise))
         start, value, (limit, scale) = int(np.argmin(had[: end + 1])), max(float(rise[end]), 0.0), limits
         over = np.flatnonzero(rise > limit)
@@ -292,6 +305,23 @@ class CheckEnergy(Check):
         motion = evidence.motion
         late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * latest(evidence)
         return late
+
+
+def _had(balance: Floats, unseen: tuple[Floats, Floats], verb: str) -> Floats:
+    """What may have been there at each moment, of what contacts and stops give and a phase hides."""
+    gives, phase = unseen
+    return np.asarray(balance + phase + (gives if verb == "gains" else 0.0))
+
+
+def _rise(balance: Floats, unseen: tuple[Floats, Floats], verb: str) -> Floats:
+    """How far a balance has risen at each moment over the least that it had."""
+    gives, phase = unseen
+    lower = np.minimum.accumulate(_had(balance, unseen, verb))
+    return np.asarray(balance - phase - (0.0 if verb == "gains" else gives) - lower)
+
+
+def _ratio(found: tuple[float, Finding]) -> float:
+    return found[0]
 
 
 def _risen(balance: Floats, phase: Floats, held: Floats) -> Floats:
