@@ -56,7 +56,10 @@ class Courses:
         self._changes = np.where((changed[1:] | changed[:-1])[..., None], 0.0, np.diff(known, axis=0))
 
     def at(self, k: int, side: int, when: float, rows: list[int] | None = None) -> Poses:
-        """Bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1); all, or some."""
+        """Bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1).
+
+        All of them, or those of some rows.
+        """
         motion, frame, by = self.evidence.motion, *self._since(k, side, when)
         some = slice(None) if rows is None else rows
         v, com = self._going(k, side, when, some)

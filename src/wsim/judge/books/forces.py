@@ -70,8 +70,8 @@ class Columns:
     @staticmethod
     def of(parts: list[Columns]) -> Columns:
         """All of several."""
-        return Columns(*(np.concatenate([getattr(part, name) for part in parts])
-                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on", "most", "near")))  # fmt: skip
+        names = "one", "two", "on_one", "on_two", "both", "goes_on", "most", "near"
+        return Columns(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def slip(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:

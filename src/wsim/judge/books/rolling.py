@@ -99,7 +99,8 @@ def rolls(evidence: Evidence) -> list[Rolls]:
         calm = free & turning[first : first + INTERVALS + 1].all(axis=0) & ~odd[span].any(axis=0)
         spans += [(int(row), _asked(evidence, int(row), first)) for row in np.flatnonzero(calm)]
     near = Near.of(evidence, sorted({frame for _, frames in spans for frame in frames}), free) if spans else {}
-    found = [_of_span(evidence, near, row, frames) for row, frames in spans]
+    rounds = rounding(evidence)
+    found = [_of_span(evidence, near, row, frames, rounds[:, row]) for row, frames in spans]
     return [each for each in found if each is not None]
 
 
@@ -115,7 +116,7 @@ def _round(body: Body) -> bool:
     return len(solid) == 1 and solid[0].kind in ("sphere", "cylinder", "capsule")
 
 
-def _of_span(evidence: Evidence, near: dict[int, Near], row: int, frames: list[int]) -> Rolls | None:
+def _of_span(evidence: Evidence, near: dict[int, Near], row: int, frames: list[int], rounds: Floats) -> Rolls | None:
     motion, touching, (middle, first, last) = evidence.motion, Touching.of(evidence), frames[:3]
     ends: list[Contacts] = []
     for frame in frames:
@@ -144,9 +145,9 @@ def _of_span(evidence: Evidence, near: dict[int, Near], row: int, frames: list[i
     arm = met.point.mean(axis=0) - motion.com[middle, row]
     resisted = -float((torque - np.cross(arm, force)) @ axis) / push
     least = max(np.sqrt(1.0 - share**2) - (rolling / max(friction, 1e-12)) ** 2, 0.0)
-    rounds = float(rounding(evidence)[mean, row].mean()) / INTERVALS / push
+    unsure = float(rounds[mean].mean()) / INTERVALS / push
     radius, prim = float(motion.radius[row]), sides[0 if sign > 0 else 1][1]
-    return Rolls(row, first, last, prim, radius, resisted, rolling / bend, rolling / bend * least, rounds * radius)
+    return Rolls(row, first, last, prim, radius, resisted, rolling / bend, rolling / bend * least, unsure * radius)
 
 
 def _axis(evidence: Evidence, row: int, other: int, normal: Floats, first: int, slowest: float) -> Floats | None:

@@ -236,7 +236,7 @@ class Touching:
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
     def near(self, poses: Floats, worlds: Rows) -> Bools:
-        """Whether two bodies are near each other at several poses (K, B, 7), each of one of the joined worlds, (K, B, B)."""
+        """Whether two bodies are near each other, (K, B, B), at poses (K, B, 7), each of one of the joined worlds."""
         reach = np.full((len(poses), poses.shape[1] + 1), 0.5 * NEAR)
         which = worlds if len(self.worlds) > 1 else np.zeros_like(worlds)
         shapes, *_, at = self._found(poses, reach, which)
