@@ -39,6 +39,7 @@ class Courses:
 
     def __init__(self, evidence: Evidence, changed: Bools) -> None:
         self.evidence, self.changed, motion = evidence, changed, evidence.motion
+        self._met: dict[tuple[int, ...], float | None] = {}
         self.dt = step_of(evidence)
         falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
         # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
@@ -97,6 +98,12 @@ class Courses:
 
     def meet(self, k: int, rows: list[int]) -> float | None:
         """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
+        key = k, *rows
+        if key not in self._met:
+            self._met[key] = self._meet(k, rows)
+        return self._met[key]
+
+    def _meet(self, k: int, rows: list[int]) -> float | None:
         motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
         ends = [[self._going(k, side, when, rows)[1] for side in (0, 1)] for when in (0.0, h)]
         first, last = (before - after for before, after in ends)

@@ -79,8 +79,13 @@ def blows(evidence: Evidence) -> list[Blow]:
     if not changed.any():
         return []
     touching, courses = Touching.of(evidence), Courses(evidence, changed)
-    found = (_of_pair(courses, touching, k, (one, two)) for k, one, two in _near(evidence, touching, changed).tolist())
-    return [blow for blow in found if blow is not None]
+    found = []
+    for k, one, two in _near(evidence, touching, changed).tolist():
+        hit = [row for row in (one, two) if row >= 0 and changed[k, row]]
+        when = None if motion.jointed[[row for row in (one, two) if row >= 0]].any() else courses.meet(k, hit)
+        blow = None if when is None else _blow(courses, touching, k, (one, two), when)
+        found += [blow] if blow is not None else []
+    return found
 
 
 def _near(evidence: Evidence, touching: Touching, changed: Bools) -> Rows:
@@ -91,7 +96,12 @@ def _near(evidence: Evidence, touching: Touching, changed: Bools) -> Rows:
     contacts = touching.of_many(evidence.body_q[frames], reach, rows, about=np.repeat(changed[ks], 2, axis=0))
     at = ks[np.maximum(contacts.one, contacts.two) // bodies]
     one, two = (np.where(each >= 0, each % bodies, each) for each in (contacts.one, contacts.two))
-    return np.unique(np.column_stack([at, one, two]), axis=0)
+    # A blow's push that goes on in the next interval, or began in the one before, may take several steps.
+    around = np.pad(changed, ((1, 1), (0, 1))).astype(np.intp)
+    straddles = changed & (around[:-2] + around[1:-1] + around[2:] > 1)[:, :-1]
+    straddles = np.pad(straddles, ((0, 0), (0, 1)))
+    once = ~(straddles[at, one] | straddles[at, two])
+    return np.unique(np.column_stack([at, one, two])[once], axis=0)
 
 
 def _jumps(evidence: Evidence) -> Bools:
@@ -103,21 +113,6 @@ def _jumps(evidence: Evidence) -> Bools:
     jump = np.min([lengths(gained - other) for other in (around[:-2], around[2:], fall)], axis=0)
     fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
     return np.asarray(jump > 2.0 * evidence.gravity * step_of(evidence) + SLIGHT * fastest)
-
-
-def _of_pair(courses: Courses, touching: Touching, k: int, pair: tuple[int, int]) -> Blow | None:
-    rows = [row for row in pair if row >= 0]
-    hit = [row for row in rows if courses.changed[k, row]]
-    if courses.evidence.motion.jointed[rows].any() or not hit or _straddles(courses, k, hit):
-        return None
-    when = courses.meet(k, hit)
-    return None if when is None else _blow(courses, touching, k, pair, when)
-
-
-def _straddles(courses: Courses, k: int, rows: list[int]) -> bool:
-    """Whether a blow's push goes on in the next interval, or began in the one before: it may take several steps."""
-    around = courses.changed[max(k - 1, 0) : k + 2, rows]
-    return bool(np.any(around.sum(axis=0) > 1))
 
 
 def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], when: float) -> Blow | None:
