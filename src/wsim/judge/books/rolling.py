@@ -98,7 +98,9 @@ def rolls(evidence: Evidence) -> list[Rolls]:
         span = slice(first, first + INTERVALS)
         calm = free & turning[first : first + INTERVALS + 1].all(axis=0) & ~odd[span].any(axis=0)
         spans += [(int(row), _asked(evidence, int(row), first)) for row in np.flatnonzero(calm)]
-    near = Near.of(evidence, sorted({frame for _, frames in spans for frame in frames}), free) if spans else {}
+    if not spans:
+        return []
+    near = Near.of(evidence, sorted({frame for _, frames in spans for frame in frames}), free)
     rounds = rounding(evidence)
     found = [_of_span(evidence, near, row, frames, rounds[:, row]) for row, frames in spans]
     return [each for each in found if each is not None]
