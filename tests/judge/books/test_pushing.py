@@ -58,3 +58,15 @@ def test_what_can_be_explained_is_left_by_no_body_with_more_than_is_enough(seed:
     rest = wanted / np.abs(wanted).max() - matrix @ strength
     assert strength.min() >= 0.0
     assert np.linalg.norm(rest.reshape(-1, 6), axis=1).max() <= enough
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_sought_wholly_is_found_where_there_is_any(seed: int) -> None:
+    """Also of changes that are at their cone's edge, or just beyond it: there nothing explains all."""
+    matrix, enough, random = contacts(seed), 1e-3, np.random.default_rng(400 + seed)
+    given = np.maximum(random.normal(size=PAIRS), 0.0) * (random.random(PAIRS) < 0.2)
+    for beyond in (0.0, 1.0):
+        wanted = matrix @ given
+        wanted = wanted / np.abs(wanted).max() + beyond * random.normal(size=6 * BODIES)
+        rest = wanted - matrix @ pushing(matrix, wanted, enough, wholly=True)
+        assert (np.linalg.norm(rest.reshape(-1, 6), axis=1).max() <= enough) == (beyond == 0.0)

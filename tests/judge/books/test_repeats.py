@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.judge.theory import EDGE, G, box, edited, ground, record, resting, slab, times
-from wsim.judge.books import balance
+from wsim.judge.books import repeats
 from wsim.judge.books.balance import Balance
 from wsim.judge.evidence.evidence import Evidence
 
@@ -16,13 +16,23 @@ from wsim.judge.evidence.evidence import Evidence
 def left(recording):
     """What is left of each body's force in each interval, and which were worked out anew."""
     asked = []
-    keep = balance.fresh
-    balance.fresh = lambda *given: asked.append(keep(*given)) or asked[-1]
+    keep = repeats.fresh
+    repeats.fresh = lambda *given: asked.append(keep(*given)) or asked[-1]
     try:
         books = Balance(Evidence(recording)).books()
     finally:
-        balance.fresh = keep
-    return np.linalg.norm(books.force, axis=2), asked[0]
+        repeats.fresh = keep
+    return np.linalg.norm(books.force, axis=2), asked[0][0]  # as they were at last
+
+
+def all_left(recording):
+    """What is left of each body's force in each interval where all are worked out anew."""
+    keep = repeats.fresh
+    repeats.fresh = lambda *given: tuple(np.ones_like(each) for each in keep(*given))
+    try:
+        return np.linalg.norm(Balance(Evidence(recording)).books().force, axis=2)
+    finally:
+        repeats.fresh = keep
 
 
 def tower(away=0.0, seconds=2.0):
@@ -72,12 +82,7 @@ def test_repeating_leaves_what_solving_anew_leaves(push, noise, seed):
     place = right.body_q + rng.normal(0.0, noise, right.body_q.shape).astype(np.float32)
     told = replace(right, body_q=place, applied_impulse=impulse, applied_work=np.zeros((n, 3), dtype=np.float32))
     some = left(told)[0]
-    keep = balance.fresh
-    balance.fresh = lambda *given: np.ones_like(keep(*given))
-    try:
-        every = np.linalg.norm(Balance(Evidence(told)).books().force, axis=2)
-    finally:
-        balance.fresh = keep
+    every = all_left(told)
     assert some == pytest.approx(every, abs=2e-3 * G)
     assert (every[n // 2 + 2 :, 1].max() > 0.5 * G) == (push > 1.5) or 1.4 < push < 1.6
 
@@ -93,3 +98,30 @@ def test_a_belt_that_starts_is_told_from_one_that_stands():
     force, fresh = left(record([lift, box()], place, velocity, t, statics=[slab("far", (1, 1, 1), (9, 0, 0))]))
     assert fresh[14:, 1].all() and not fresh[1:13, 1].any()
     assert force[:13, 1].max() < 1e-2 * G and force[20, 1] == pytest.approx(0.5 * G / np.hypot(1, 0.5), rel=0.05)
+
+
+def passing(gap, hovers=0.0):
+    """A box that stands, or hovers, and one that slides by it slowly at a distance."""
+    t = times(1.0)
+    stands = np.tile([0.0, 0.0, EDGE / 2 + hovers], (len(t), 1))
+    slides = np.stack([EDGE + gap + 0.0 * t, 1.0 * t - 0.5, EDGE / 2 + 0.0 * t], axis=1)
+    place, velocity = np.stack([stands, slides], axis=1), np.zeros((len(t), 2, 3))
+    velocity[:, 1, 1] = 1.0
+    return record([box("stands"), box("slides", friction=0.0)], place, velocity, t, statics=[ground()])
+
+
+def test_what_stands_beside_what_passes_is_worked_out_once():
+    """It might be touched, and is not: what carries both explains all."""
+    told = passing(gap=0.005)
+    force, fresh = left(told)
+    assert fresh[:, 1].all() and fresh[1:, 0].sum() == 0
+    assert force == pytest.approx(all_left(told), abs=2e-3 * G) and force.max() < 2e-3 * G
+
+
+def test_what_hovers_beside_what_passes_is_looked_at_each_time():
+    """Nothing that touches it explains it: what passes might hold it by friction."""
+    told = passing(gap=0.005, hovers=0.05)
+    force, fresh = left(told)
+    assert fresh[2:-1, 0].all()  # while it is near
+    assert force[:, 0] == pytest.approx(all_left(told)[:, 0], rel=1e-6)
+    assert force[:, 0].min() > 0.9 * G

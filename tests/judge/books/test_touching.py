@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from wsim.judge.books.touching import Touching
+from wsim.judge.books.touching import NEAR, Touching
 from wsim.scene.world import Body, Shape, Static, World
 
 KINDS = {"box": (0.2, 0.3, 0.2), "sphere": (0.12,), "cylinder": (0.1, 0.3), "capsule": (0.08, 0.3)}
@@ -50,3 +50,29 @@ def test_contacts_about_some_bodies(mesh):
                 assert np.array_equal(getattr(found, name), getattr(wanted, name))
             seen += len(found)
     assert seen > 100
+
+
+def test_what_is_looked_for_as_far_as_each_body_goes():
+    """Of each pose the contacts about other bodies, within what both reach, are among all."""
+    draw, seen = np.random.default_rng(1), 0
+    world = heap(draw, mesh=False)
+    touching = Touching(world)
+    turn = draw.normal(size=(8, 6, 4))
+    place = draw.uniform([-0.3, -0.3, 0.1], [0.3, 0.3, 0.5], size=(8, 6, 3))
+    poses = np.concatenate([place, turn / np.linalg.norm(turn, axis=2, keepdims=True)], axis=2)
+    reach, about = draw.uniform(0.0, 0.05, size=(8, 7)), draw.random((8, 6)) < 0.4
+    found = touching.of_many(poses, reach, np.arange(8), about=about)
+    near = touching.near(poses, np.zeros(8, dtype=np.intp))
+    for k in range(8):
+        ours = found.only(np.flatnonzero(np.maximum(found.one, found.two) // 6 == k))
+        rows = [np.where(each >= 0, each % 6, -1) for each in (ours.one, ours.two)]
+        every = touching.at(poses[k], 0.1)
+        asked = np.append(about[k], False)
+        some = (asked[every.one] | asked[every.two]) & (every.gap <= reach[k, every.one] + reach[k, every.two])
+        pairs = {tuple(pair) for pair in every.only(some).shapes.tolist()}
+        assert {tuple(pair) for pair in ours.shapes.tolist()} == pairs
+        assert np.all(asked[rows[0]] | asked[rows[1]])
+        touch = {tuple(sorted(pair)) for pair in every.only(every.gap <= NEAR).shapes.tolist() if max(pair) < 6}
+        assert {tuple(pair) for pair in np.argwhere(np.triu(near[k])).tolist()} == touch
+        seen += len(ours)
+    assert seen > 20

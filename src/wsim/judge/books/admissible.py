@@ -41,9 +41,11 @@ class Problems:
     columns: list[Rows]
 
     @classmethod
-    def of(cls, columns: Columns, judged: Bools) -> Problems:
-        """What is not judged passes nothing on."""
+    def of(cls, columns: Columns, judged: Bools, among: Bools | None = None) -> Problems:
+        """Those of the columns `among` all, (c,). What is not judged passes nothing on."""
         ours = [(which >= 0) & judged[np.maximum(which, 0)] for which in (columns.one, columns.two)]
+        if among is not None:
+            ours = [which & among for which in ours]
         inner = ours[0] & ours[1]
         links = coo_matrix((np.ones(int(inner.sum())), (columns.one[inner], columns.two[inner])), (len(judged),) * 2)
         _, label = connected_components(links, directed=False)
@@ -59,10 +61,12 @@ class Problems:
 
 
 def explain(
-    columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float, bent: Floats | None = None
-) -> tuple[Floats, Floats]:
+    columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float, bent: Floats | None = None,
+    hit: Bools | None = None,
+) -> tuple[Floats, Floats, Bools]:  # fmt: skip
     """What is left of changes (N, 6) of N bodies, to within `enough`, and what may be missing of both parts, (N, 2).
 
+    What is at hand is asked first, but of what is hit: what that explains needs no impulses of what is apart.
     What ties pass on is known no better than the arms and axes that they do it with, and what is wrong with one body's
     ends at any that hangs together with it or touches it: a link that whips about beside a ball pushes it, too. Of none
     is it more than all of it where it is wrong, counted as what is left: the impulses that acted leave that, and those
@@ -75,14 +79,51 @@ def explain(
         scale: (N, 6), what an impulse on a body counts for.
         enough: A rest of a body that is as good as none.
         bent: Share of what ties give a body that may be wrong, (N,); None: nothing is.
+        hit: Bodies that something hits, (N,); None: none is.
+
+    Returns:
+        These two, and the bodies that took impulses of what is apart, or are not explained, (N,).
     """
-    rest, missing = wanted.copy(), np.zeros((len(wanted), 2))
+    rest, missing, apart = wanted.copy(), np.zeros((len(wanted), 2)), np.zeros(len(wanted), dtype=bool)
     problems = Problems.of(columns, judged)
+    first = columns.near | _on(columns, hit) if hit is not None else columns.near
+    some = [not first[chosen].all() and not columns.both[chosen].any() for chosen in problems.columns]
+    if any(some):
+        asked = np.zeros_like(judged)
+        asked[np.concatenate([bodies for bodies, each in zip(problems.bodies, some, strict=True) if each])] = True
+        near = Problems.of(columns, asked, first)
+        _solve(columns, near, rest, missing, scale, enough, None, wholly=True)
+        done = np.linalg.norm(rest, axis=1) <= enough
+        for bodies, chosen in zip(near.bodies, near.columns, strict=True):
+            apart[bodies] = not columns.near[chosen].all()
+        left = [not (each and done[bodies].all()) for bodies, each in zip(problems.bodies, some, strict=True)]
+        problems = Problems(*([part for part, each in zip(parts, left, strict=True) if each]
+                              for parts in (problems.bodies, problems.columns)))  # fmt: skip
+        for bodies in problems.bodies:
+            rest[bodies] = wanted[bodies]
+    _solve(columns, problems, rest, missing, scale, enough, bent)
+    for bodies, chosen in zip(problems.bodies, problems.columns, strict=True):
+        apart[bodies] = not columns.near[chosen].all()
+    return rest, missing, apart | (judged & (np.linalg.norm(rest, axis=1) > enough))
+
+
+def _on(columns: Columns, some: Bools) -> Bools:
+    """Whether each column acts on any of some bodies (N,), (c,)."""
+    rows = np.stack([columns.one, columns.two])
+    return np.asarray((some[np.maximum(rows, 0)] & (rows >= 0)).any(axis=0))
+
+
+def _solve(
+    columns: Columns, problems: Problems, rest: Floats, missing: Floats, scale: Floats, enough: float,
+    bent: Floats | None, *, wholly: bool = False,
+) -> None:  # fmt: skip
+    """Take from what is left what the columns of some problems explain; of use may be `wholly` alone."""
     hard = _easy(columns, problems, rest, scale, enough)
     for bodies, chosen in ((problems.bodies[k], problems.columns[k]) for k in hard):
         if len(bodies) > SMALL and not columns.both[chosen].any():
             sparse = _sparse(columns, bodies, chosen, scale)
-            rest[bodies] -= (sparse @ pushing(sparse, rest[bodies].ravel(), enough)).reshape(-1, 6)
+            strength = pushing(sparse, rest[bodies].ravel(), enough, wholly=wholly)
+            rest[bodies] -= (sparse @ strength).reshape(-1, 6)
             continue
         matrix = _matrices(columns, bodies[None], [chosen], scale)[0]
         new = ~columns.goes_on[chosen]
@@ -94,7 +135,6 @@ def explain(
             each *= bent[bodies, None]
             most = np.array([each[:, :3].max(), each[:, 3:].max()]) * scale[bodies][:, [0, 3]]
             missing[bodies] = np.minimum(most, np.linalg.norm(each * scale[bodies]))
-    return rest, missing
 
 
 def least(matrix: Floats, wanted: Floats, both: Bools, most: Floats) -> Floats:

@@ -39,6 +39,7 @@ class Courses:
 
     def __init__(self, evidence: Evidence, changed: Bools) -> None:
         self.evidence, self.changed, motion = evidence, changed, evidence.motion
+        self._met: dict[tuple[int, ...], float | None] = {}
         self.dt = step_of(evidence)
         falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
         # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
@@ -55,16 +56,21 @@ class Courses:
         # How what speeds bodies up changes from one interval to the next, where neither has a blow, (T - 2, B, 6).
         self._changes = np.where((changed[1:] | changed[:-1])[..., None], 0.0, np.diff(known, axis=0))
 
-    def at(self, k: int, side: int, when: float) -> Poses:
-        """All bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1)."""
+    def at(self, k: int, side: int, when: float, rows: list[int] | None = None) -> Poses:
+        """Bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1).
+
+        All of them, or those of some rows.
+        """
         motion, frame, by = self.evidence.motion, *self._since(k, side, when)
-        v, com = self._going(k, side, when)
-        w = motion.w[frame] + (self.after if side else self.before)[k, :, 3:] * by
-        angle = 0.5 * (motion.w[frame] + w) * by
+        some = slice(None) if rows is None else rows
+        v, com = self._going(k, side, when, some)
+        rate = motion.w[frame, some]
+        w = rate + (self.after if side else self.before)[k, some, 3:] * by
+        angle = 0.5 * (rate + w) * by
         size = lengths(angle)[:, None]
         turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
-        q = self.evidence.body_q[frame]
-        place = com + rotate(turn, q[:, :3] - motion.com[frame])
+        q = self.evidence.body_q[frame, some]
+        place = com + rotate(turn, q[:, :3] - motion.com[frame, some])
         return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
 
     def off(self, k: int, side: int, when: float) -> Floats:
@@ -79,11 +85,12 @@ class Courses:
         found: Floats = self._changes[at] / h * 0.5 * (h + by) * by
         return found
 
-    def _going(self, k: int, side: int, when: float) -> tuple[Floats, Floats]:
+    def _going(self, k: int, side: int, when: float, rows: list[int] | slice) -> tuple[Floats, Floats]:
         """Velocities and centres of mass, as `at`."""
         motion, frame, by = self.evidence.motion, *self._since(k, side, when)
-        v = motion.v[frame] + (self.after if side else self.before)[k, :, :3] * by
-        return v, motion.com[frame] + 0.5 * (motion.v[frame] + v) * by
+        before = motion.v[frame, rows]
+        v = before + (self.after if side else self.before)[k, rows, :3] * by
+        return v, motion.com[frame, rows] + 0.5 * (before + v) * by
 
     def _since(self, k: int, side: int, when: float) -> tuple[int, float]:
         """The frame that a course is told from, and how long after it that is [s]."""
@@ -91,22 +98,27 @@ class Courses:
 
     def meet(self, k: int, rows: list[int]) -> float | None:
         """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
+        key = k, *rows
+        if key not in self._met:
+            self._met[key] = self._meet(k, rows)
+        return self._met[key]
+
+    def _meet(self, k: int, rows: list[int]) -> float | None:
         motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
-        ends = [[self._going(k, side, when)[1] for side in (0, 1)] for when in (0.0, h)]
-        first, last = (before[rows] - after[rows] for before, after in ends)
+        ends = [[self._going(k, side, when, rows)[1] for side in (0, 1)] for when in (0.0, h)]
+        first, last = (before - after for before, after in ends)
         apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
         when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
         when = min(max(when, 0.0), h)
-        before, after = (self.at(k, side, when) for side in (0, 1))
-        far = np.linalg.norm(before.com[rows] - after.com[rows], axis=1)
-        jump = np.linalg.norm(after.v[rows] - before.v[rows], axis=1)
-        rounding = 4.0 * FLOAT32 * np.linalg.norm(motion.com[k, rows], axis=1)
+        before, after = (self.at(k, side, when, rows) for side in (0, 1))
+        far = lengths(before.com - after.com)
+        jump = lengths(after.v - before.v)
+        rounding = 4.0 * FLOAT32 * lengths(motion.com[k, rows])
         if np.any(far > WITHIN * jump * self.dt + 2.0 * self.strays[k, rows] + rounding):
             return None
-        turn = multiply(after.q[rows, 3:], conjugate(before.q[rows, 3:]))
-        angle = 2.0 * np.linalg.norm(turn[:, :3], axis=1)
-        rate = np.maximum(np.linalg.norm(before.w[rows], axis=1), np.linalg.norm(after.w[rows], axis=1))
-        spun = np.linalg.norm(after.w[rows] - before.w[rows], axis=1)
+        turn = multiply(after.q[:, 3:], conjugate(before.q[:, 3:]))
+        angle = 2.0 * lengths(turn[:, :3])
+        rate, spun = np.maximum(lengths(before.w), lengths(after.w)), lengths(after.w - before.w)
         if np.any(angle > spun * self.dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
             return None
         return when

@@ -17,7 +17,7 @@ from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import STILL, Poses, pushes
-from wsim.judge.books.touching import Contacts, Touching, touching_of
+from wsim.judge.books.touching import NEAR, Contacts, Touching, touching_of
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 INTERVALS = 16  # that a slip lasts for
-NEAR = 2e-3  # [m]: what is nearer touches
 EACH = 0.3  # of the mean: each frame adds as much to a slip that lasts
 TURN = 0.02  # [rad]: what turns by more against what it touches rolls
 ROUND = 0.1  # [rad]: what turns both by more, as a turntable does, turns the friction's way with it
@@ -105,7 +104,7 @@ def _of_span(evidence: Evidence, contacts: Contacts, calm: NDArray[np.bool_], fi
     scale = np.repeat(1.0 / motion.mass, 6).reshape(-1, 6)
     scale[:, 3:] /= size[:, None]
     wanted = books.wanted[first:last].mean(axis=0)
-    rest, _ = explain(columns, calm, wanted, scale, ENOUGH * max(evidence.gravity, 1.0))
+    rest, *_ = explain(columns, calm, wanted, scale, ENOUGH * max(evidence.gravity, 1.0))
     found = []
     for row in creeping:
         own = slips & ((contacts.one == row) | (contacts.two == row))

@@ -45,6 +45,7 @@ class Columns:
     both: NDArray[np.bool_]  # (c,) whether it may act both ways, or only as it is
     more: NDArray[np.bool_] | None = None  # (c,) whether it is the one before it, on more bodies; None: none is
     cap: Floats | None = None  # (c,) the most that its strength may be, either way; None: any
+    close: NDArray[np.bool_] | None = None  # (c,) whether it is at hand, and not a contact of what is apart; None: all
 
     @property
     def goes_on(self) -> NDArray[np.bool_]:
@@ -56,6 +57,11 @@ class Columns:
         """The greatest strength of each, (c,)."""
         return np.full(len(self.one), np.inf) if self.cap is None else self.cap
 
+    @property
+    def near(self) -> NDArray[np.bool_]:
+        """Whether each acts without a gap, (c,)."""
+        return np.ones(len(self.one), dtype=bool) if self.close is None else self.close
+
     def shifted(self, by: int) -> Columns:
         """The same on bodies whose rows are higher."""
         one, two = (np.where(rows >= 0, rows + by, rows) for rows in (self.one, self.two))
@@ -64,8 +70,8 @@ class Columns:
     @staticmethod
     def of(parts: list[Columns]) -> Columns:
         """All of several."""
-        return Columns(*(np.concatenate([getattr(part, name) for part in parts])
-                         for name in ("one", "two", "on_one", "on_two", "both", "goes_on", "most")))  # fmt: skip
+        names = "one", "two", "on_one", "on_two", "both", "goes_on", "most", "near"
+        return Columns(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def slip(touching: Touching, contacts: Contacts, poses: Poses) -> Floats:
@@ -86,7 +92,10 @@ def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) ->
     return found
 
 
-def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, rolling: Floats) -> Columns:
+def pushes(
+    contacts: Contacts, poses: Poses, friction: Floats, along: Floats, rolling: Floats,
+    near: NDArray[np.bool_] | None = None,
+) -> Columns:  # fmt: skip
     """The impulses of contacts: inside the cone, or on its edge where `along` says which ways a slip lasts.
 
     Args:
@@ -96,6 +105,7 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
         along: Ways of the lasting slip of the second body over the first, (n, 2, 3), as long as the share of friction
             that is against it: 1 but where rolling is resisted, too; 0 where there is none.
         rolling: Torque that resists turning, for a push of one, (n,) [m].
+        near: Whether each is at hand, (n,); None: all are.
     """
     n, lasting = contacts.normal, np.any(along != 0.0, axis=(1, 2))
     other = np.where(np.abs(n[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
@@ -121,7 +131,9 @@ def pushes(contacts: Contacts, poses: Poses, friction: Floats, along: Floats, ro
     arms = [contacts.surface(side) - poses.com[np.maximum(rows, 0)] for side, rows in both]
     on_two = np.concatenate([force, cross(arms[1][which], force) + spin], axis=1)
     on_one = np.concatenate([-force, -cross(arms[0][which], force) - spin], axis=1)
-    return Columns(contacts.one[which], contacts.two[which], on_one, on_two, np.zeros(len(which), dtype=bool))
+    close = None if near is None else near[which]
+    none = np.zeros(len(which), dtype=bool)
+    return Columns(contacts.one[which], contacts.two[which], on_one, on_two, none, close=close)
 
 
 def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torques: Floats) -> Columns:

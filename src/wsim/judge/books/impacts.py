@@ -79,21 +79,29 @@ def blows(evidence: Evidence) -> list[Blow]:
     if not changed.any():
         return []
     touching, courses = Touching.of(evidence), Courses(evidence, changed)
-    ks = np.flatnonzero(changed.any(axis=1))
-    near = zip(ks, _near(evidence, touching, ks), strict=True)
-    return [blow for k, pairs in near for blow in _of_interval(courses, touching, int(k), pairs)]
-
-
-def _near(evidence: Evidence, touching: Touching, ks: Rows) -> list[set[tuple[int, int]]]:
-    """Rows of the pairs that may have met in each of some intervals: that are near each other at either end."""
-    bodies = evidence.body_q.shape[1]
-    reach = 2.0 * evidence.motion.reach[ks].max(axis=1)
-    frames, rows = np.stack([ks, ks + 1], axis=1).ravel(), np.repeat(np.arange(len(ks)), 2)
-    contacts = touching.of_many(evidence.body_q[frames], np.repeat(reach, 2), rows)
-    found: list[set[tuple[int, int]]] = [set() for _ in ks]
-    for one, two in {(int(a), int(b)) for a, b in zip(contacts.one, contacts.two, strict=True)}:
-        found[max(one, two) // bodies].add((one % bodies if one >= 0 else one, two % bodies if two >= 0 else two))
+    found = []
+    for k, one, two in _near(evidence, touching, changed).tolist():
+        hit = [row for row in (one, two) if row >= 0 and changed[k, row]]
+        when = None if motion.jointed[[row for row in (one, two) if row >= 0]].any() else courses.meet(k, hit)
+        blow = None if when is None else _blow(courses, touching, k, (one, two), when)
+        found += [blow] if blow is not None else []
     return found
+
+
+def _near(evidence: Evidence, touching: Touching, changed: Bools) -> Rows:
+    """Interval and rows of the pairs that may have met there, (n, 3): near each other at either end, one `changed`."""
+    bodies, ks = evidence.body_q.shape[1], np.flatnonzero(changed.any(axis=1))
+    reach = np.repeat(np.pad(evidence.motion.reach[ks], ((0, 0), (0, 1))), 2, axis=0)
+    frames, rows = np.stack([ks, ks + 1], axis=1).ravel(), np.repeat(np.arange(len(ks)), 2)
+    contacts = touching.of_many(evidence.body_q[frames], reach, rows, about=np.repeat(changed[ks], 2, axis=0))
+    at = ks[np.maximum(contacts.one, contacts.two) // bodies]
+    one, two = (np.where(each >= 0, each % bodies, each) for each in (contacts.one, contacts.two))
+    # A blow's push that goes on in the next interval, or began in the one before, may take several steps.
+    around = np.pad(changed, ((1, 1), (0, 1))).astype(np.intp)
+    straddles = changed & (around[:-2] + around[1:-1] + around[2:] > 1)[:, :-1]
+    straddles = np.pad(straddles, ((0, 0), (0, 1)))
+    once = ~(straddles[at, one] | straddles[at, two])
+    return np.unique(np.column_stack([at, one, two])[once], axis=0)
 
 
 def _jumps(evidence: Evidence) -> Bools:
@@ -105,27 +113,6 @@ def _jumps(evidence: Evidence) -> Bools:
     jump = np.min([lengths(gained - other) for other in (around[:-2], around[2:], fall)], axis=0)
     fastest = np.maximum(motion.surface_speed[1:], motion.surface_speed[:-1])
     return np.asarray(jump > 2.0 * evidence.gravity * step_of(evidence) + SLIGHT * fastest)
-
-
-def _of_interval(courses: Courses, touching: Touching, k: int, near: set[tuple[int, int]]) -> list[Blow]:
-    motion, changed = courses.evidence.motion, courses.changed[k]
-    found = []
-    for pair in sorted(near):
-        rows = [row for row in pair if row >= 0]
-        hit = [row for row in rows if changed[row]]
-        if any(motion.jointed[row] for row in rows):
-            continue
-        when = None if not hit or _straddles(courses, k, hit) else courses.meet(k, hit)
-        blow = None if when is None else _blow(courses, touching, k, pair, when)
-        if blow is not None:
-            found.append(blow)
-    return found
-
-
-def _straddles(courses: Courses, k: int, rows: list[int]) -> bool:
-    """Whether a blow's push goes on in the next interval, or began in the one before: it may take several steps."""
-    around = courses.changed[max(k - 1, 0) : k + 2, rows]
-    return bool(np.any(around.sum(axis=0) > 1))
 
 
 def _blow(courses: Courses, touching: Touching, k: int, pair: tuple[int, int], when: float) -> Blow | None:

@@ -16,6 +16,8 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import lsq_linear, nnls
 from scipy.sparse import csc_matrix, csr_matrix
 
+from wsim.geometry.rotations import lengths
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
 RIDGE = 1e-3  # of the mean of A A^T's diagonal: what is nearly explained is not weighed by 1 / 0
 ROUNDS = 80  # of accelerated projections
+TRIAL, HOPELESS = 20, 30.0  # rounds after which what leaves so many times enough will not come to it
 STEPS = 60  # of the interior-point method, at most
 GAP = 1e-9  # of its first gap: as good as none
 ROUNDING = 1e-8  # of what is wanted: where steps go astray by more, they are at their end
@@ -30,19 +33,20 @@ SHORT = 0.995  # of the way to the nearest bound
 STIFF = 1e12  # x / s at most, for what is solved for
 
 
-def pushing(matrix: csr_matrix, wanted: Floats, enough: float) -> Floats:
+def pushing(matrix: csr_matrix, wanted: Floats, enough: float, *, wholly: bool = False) -> Floats:
     """Strengths (c,) that are not negative and leave least of what is wanted (6 b,), or `enough` of each body or less.
 
     Args:
         matrix: (6 b, c).
         wanted: Six rows a body.
         enough: A rest of a body's six rows that is as good as none.
+        wholly: Whether only strengths that leave no more are of use: they are any, where there are none.
     """
     length = np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=0)).ravel())
     unit = csr_matrix(matrix.multiply(1.0 / np.maximum(length, 1e-300)))
     strength = _projected(unit, wanted, enough)
     if _most(wanted - unit @ strength) > enough:
-        strength = _interior(unit, wanted, strength, enough)
+        strength = _interior(unit, wanted, strength, enough, wholly)
     return np.asarray(strength / np.maximum(length, 1e-300))
 
 
@@ -56,13 +60,15 @@ def _projected(unit: csr_matrix, wanted: Floats, enough: float) -> Floats:
     across = csr_matrix(unit.T)
     gram = (unit @ across).toarray()
     gram[np.diag_indices(len(gram))] += RIDGE * np.trace(gram) / len(gram)
-    inverse = np.linalg.inv(gram)
+    factor = cho_factor(gram, lower=True, check_finite=False)
     strength = ahead = np.zeros(unit.shape[1])
     made, there, pace = np.zeros(len(wanted)), np.zeros(len(wanted)), 1.0  # what strengths make, and those ahead
-    for _ in range(ROUNDS):
-        before, strength = strength, np.maximum(ahead + across @ (inverse @ (wanted - there)), 0.0)
+    for n in range(ROUNDS):
+        step = across @ cho_solve(factor, wanted - there, check_finite=False)
+        before, strength = strength, np.maximum(ahead + step, 0.0)
         last_made, made = made, unit @ strength
-        if _most(wanted - made) <= enough:
+        most = _most(wanted - made)
+        if most <= enough or (n == TRIAL and most > HOPELESS * enough):
             break
         if (ahead - strength) @ (strength - before) > 0.0:
             pace = 1.0
@@ -72,11 +78,12 @@ def _projected(unit: csr_matrix, wanted: Floats, enough: float) -> Floats:
     return np.asarray(strength)
 
 
-def _interior(unit: csr_matrix, wanted: Floats, start: Floats, enough: float) -> Floats:
+def _interior(unit: csr_matrix, wanted: Floats, start: Floats, enough: float, wholly: bool) -> Floats:
     """Positive strengths that leave nearly least of what is wanted, or `enough`, from those of a guess on.
 
     Of x the strengths, r what is left and s >= 0 how little each column gains, r + A x = b, A^T r + s = 0, x s = 0:
     Newton steps on these towards x s = mu, a share of what it is that falls as the steps find room (Mehrotra 1992).
+    An r that no column is along shows what cannot be explained: of any rest r' of each body, r b <= r r' (Farkas 1902).
     """
     across, gram = csr_matrix(unit.T), Gram(unit)
     x = np.maximum(start, 0.1 * start.mean() + 1e-12)
@@ -87,7 +94,10 @@ def _interior(unit: csr_matrix, wanted: Floats, start: Floats, enough: float) ->
     for _ in range(STEPS):
         if _most(rest) <= enough or gap <= GAP * first:
             break
-        short, off = rest - r, -(across @ r + s)
+        gain = across @ r
+        if wholly and gain.max() <= 0.0 and r @ wanted > enough * lengths(r.reshape(-1, 6)).sum():
+            break
+        short, off = rest - r, -(gain + s)
         try:
             factor = cho_factor(gram.weighed(np.minimum(x / s, STIFF)), lower=True, check_finite=False)
         except np.linalg.LinAlgError:  # it is as near as rounding lets it come

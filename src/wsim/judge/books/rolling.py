@@ -8,16 +8,16 @@ it (docs/rigid.md); a pair that states no resistance gives none.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.books.balance import SOFT, rounding
-from wsim.judge.books.creep import INTERVALS, NEAR
+from wsim.judge.books.creep import INTERVALS
 from wsim.judge.books.forces import STILL, Poses, slip
-from wsim.judge.books.touching import Contacts, Touching
+from wsim.judge.books.touching import NEAR, Contacts, Touching
 from wsim.scene.contact import curvature
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import Body
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
 
 FLAT = 1e-4  # 1 - cosine: what it rolls on turns by less
 LYING = 0.05  # cosine between a cylinder's axis and what it lies on
@@ -59,22 +60,32 @@ class Near:
     slip: Floats  # (n, 3) [m/s], of each contact
 
     @classmethod
-    def at(cls, evidence: Evidence, frame: int) -> Near:
-        """All of one frame."""
-        motion, touching = evidence.motion, Touching.of(evidence)
-        poses = Poses(evidence.body_q[frame], motion.com[frame], motion.v[frame], motion.w[frame])
-        intervals = slice(max(frame - 1, 0), frame + 1)
-        h, far = float(motion.h[intervals].max()), 2.0 * float(motion.reach[intervals].max())
-        contacts = touching.at(poses.q, NEAR + far)
-        over = slip(touching, contacts, poses)
-        apart = np.einsum("ni,ni->n", over, contacts.normal)
-        close = contacts.gap <= NEAR + np.abs(apart) * h
-        return cls(poses, contacts.only(close), over[close])
+    def of(cls, evidence: Evidence, frames: list[int], about: Bools) -> dict[int, Near]:
+        """Of some bodies (B,), in each of some frames."""
+        motion, touching, count = evidence.motion, Touching.of(evidence), len(frames)
+        bodies, arrays = len(about), (evidence.body_q, motion.com, motion.v, motion.w)
+        every = Poses(*(array[frames].reshape(-1, array.shape[2]) for array in arrays))
+        before = np.maximum(np.array(frames) - 1, 0)
+        after = np.minimum(frames, len(motion.h) - 1)
+        reach = 0.5 * NEAR + np.pad(np.maximum(motion.reach[before], motion.reach[after]), ((0, 0), (0, 1)))
+        contacts = touching.of_many(evidence.body_q[frames], reach, np.arange(count), about=np.tile(about, (count, 1)))
+        at = np.maximum(contacts.one, contacts.two) // bodies
+        over = slip(touching, contacts, every)
+        apart = np.abs(np.einsum("ni,ni->n", over, contacts.normal))
+        close = contacts.gap <= NEAR + apart * np.maximum(motion.h[before], motion.h[after])[at]
+        found = {}
+        for n, frame in enumerate(frames):
+            ours = np.flatnonzero(close & (at == n))
+            own = contacts.only(ours)
+            one, two = (np.where(rows >= 0, rows - n * bodies, rows) for rows in (own.one, own.two))
+            poses = Poses(*(array[frame] for array in arrays))
+            found[frame] = cls(poses, replace(own, one=one, two=two), over[ours])
+        return found
 
 
 def rolls(evidence: Evidence) -> list[Rolls]:
     """All of a recording, in spans that overlap by a half."""
-    motion, found = evidence.motion, []
+    motion = evidence.motion
     given, unit = evidence.recording.applied_impulse, max(evidence.gravity, 1.0)
     force = motion.acceleration - motion.gravity
     odd = np.linalg.norm(force, axis=2) > SOFT * unit  # something hit it
@@ -82,14 +93,24 @@ def rolls(evidence: Evidence) -> list[Rolls]:
         odd |= np.any(given[1:] != 0.0, axis=2)
     free = ~motion.jointed & ~motion.kinematic & np.array([_round(body) for body in evidence.world.bodies], dtype=bool)
     turning = np.linalg.norm(motion.w, axis=2) * motion.radius > STILL
-    near: dict[int, Near] = {}
+    spans = []
     for first in range(0, len(motion.h) - INTERVALS + 1, INTERVALS // 2):
         span = slice(first, first + INTERVALS)
         calm = free & turning[first : first + INTERVALS + 1].all(axis=0) & ~odd[span].any(axis=0)
-        for row in np.flatnonzero(calm):
-            each = _of_span(evidence, near, int(row), first)
-            found += [each] if each is not None else []
-    return found
+        spans += [(int(row), _asked(evidence, int(row), first)) for row in np.flatnonzero(calm)]
+    if not spans:
+        return []
+    near = Near.of(evidence, sorted({frame for _, frames in spans for frame in frames}), free)
+    rounds = rounding(evidence)
+    found = [_of_span(evidence, near, row, frames, rounds[:, row]) for row, frames in spans]
+    return [each for each in found if each is not None]
+
+
+def _asked(evidence: Evidence, row: int, first: int) -> list[int]:
+    """The frames at which it is looked what a body touches in a span: the middle, the first, the last, and others."""
+    last = first + INTERVALS
+    others = range(first + 1, last) if evidence.motion.meets[first:last, row].any() else ()
+    return [(first + last) // 2, first, last, *others]  # what comes by may touch it for a frame, or between two
 
 
 def _round(body: Body) -> bool:
@@ -97,16 +118,10 @@ def _round(body: Body) -> bool:
     return len(solid) == 1 and solid[0].kind in ("sphere", "cylinder", "capsule")
 
 
-def _of_span(evidence: Evidence, near: dict[int, Near], row: int, first: int) -> Rolls | None:
-    motion, touching, last = evidence.motion, Touching.of(evidence), first + INTERVALS
-    middle = (first + last) // 2
-    frames = [middle, first, last]
-    if motion.meets[first:last, row].any():  # what comes by may touch it for a frame, or between two
-        frames += list(range(first + 1, last))
+def _of_span(evidence: Evidence, near: dict[int, Near], row: int, frames: list[int], rounds: Floats) -> Rolls | None:
+    motion, touching, (middle, first, last) = evidence.motion, Touching.of(evidence), frames[:3]
     ends: list[Contacts] = []
     for frame in frames:
-        if frame not in near:
-            near[frame] = Near.at(evidence, frame)
         contacts = _touches(evidence, near[frame], row)
         if contacts is None:
             return None
@@ -132,9 +147,9 @@ def _of_span(evidence: Evidence, near: dict[int, Near], row: int, first: int) ->
     arm = met.point.mean(axis=0) - motion.com[middle, row]
     resisted = -float((torque - np.cross(arm, force)) @ axis) / push
     least = max(np.sqrt(1.0 - share**2) - (rolling / max(friction, 1e-12)) ** 2, 0.0)
-    rounds = float(rounding(evidence)[mean, row].mean()) / INTERVALS / push
+    unsure = float(rounds[mean].mean()) / INTERVALS / push
     radius, prim = float(motion.radius[row]), sides[0 if sign > 0 else 1][1]
-    return Rolls(row, first, last, prim, radius, resisted, rolling / bend, rolling / bend * least, rounds * radius)
+    return Rolls(row, first, last, prim, radius, resisted, rolling / bend, rolling / bend * least, unsure * radius)
 
 
 def _axis(evidence: Evidence, row: int, other: int, normal: Floats, first: int, slowest: float) -> Floats | None:

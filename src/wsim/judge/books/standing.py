@@ -12,9 +12,9 @@ import numpy as np
 
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.balance import Books
-from wsim.judge.books.creep import ENOUGH, INTERVALS, NEAR, Lacking
+from wsim.judge.books.creep import ENOUGH, INTERVALS, Lacking
 from wsim.judge.books.forces import Poses, pushes
-from wsim.judge.books.touching import touching_of
+from wsim.judge.books.touching import NEAR, touching_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -105,7 +105,7 @@ def _left(copies: Sequence[Evidence], copy: Rows, first: Rows, stands: Bools) ->
         columns = pushes(
             contacts, poses, friction, none, rolling * size.ravel()[np.maximum(contacts.one, contacts.two)]
         )
-        rest, _ = explain(columns, stands.ravel(), rest, scale, ENOUGH * max(copies[0].gravity, 1.0))
+        rest, *_ = explain(columns, stands.ravel(), rest, scale, ENOUGH * max(copies[0].gravity, 1.0))
     return rest.reshape(len(copy), bodies, 6)[..., :3]
 
 

@@ -27,9 +27,11 @@ if TYPE_CHECKING:
     from wsim.scene.world import Joint, Shape, World
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
     Rows = NDArray[np.intp]
 
 WORLD = -1  # row of what never moves
+NEAR = 2e-3  # [m]: what is nearer than this touches
 
 
 @dataclass(frozen=True)
@@ -164,37 +166,37 @@ class Touching:
 
     def at(self, poses: Floats, reach: float, about: Sequence[int] | None = None) -> Contacts:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]; those of the bodies `about` alone."""
-        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp), about=about)
+        chosen = None if about is None else np.isin(np.arange(len(poses)), about)[None]
+        return self.of_many(poses[None], np.array([reach]), np.zeros(1, dtype=np.intp), about=chosen)
 
     def of_many(
-        self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None, about: Sequence[int] | None = None
+        self, poses: Floats, reach: Floats, rows: Rows, worlds: Rows | None = None, about: Bools | None = None
     ) -> Contacts:
         """Contacts at several poses.
 
         Args:
             poses: (K, B, 7).
-            reach: Of each pose, (K,) [m].
+            reach: Of each pose, (K,) [m]; or of each body and the world, of which two have the sum, (K, B + 1).
             rows: A body's row is that of these by B, (K,).
             worlds: Which of the joined worlds each is a pose of, (K,); None: all of the first.
-            about: Rows of bodies; contacts that none of them has are left out.
+            about: Bodies, (K, B); contacts that none of them has are left out.
         """
         which = np.zeros(len(poses), dtype=np.intp) if worlds is None or len(self.worlds) == 1 else worlds
-        shapes, place, normal, gap, at = self._found(poses, reach, which)
-        if about is not None:  # before further points are looked for
-            chosen = np.flatnonzero(np.isin(self._row_of_shape[shapes], about).any(axis=1))
-            shapes, at = shapes[chosen], at[chosen]
-            place, normal, gap = place[chosen], normal[chosen], gap[chosen]
+        if reach.ndim == 1:
+            reach = np.repeat(0.5 * reach[:, None], poses.shape[1] + 1, axis=1)
+        shapes, place, normal, gap, at = self._found(poses, reach, which, about)
         one, two = self._row_of_shape[shapes].T
         contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
-            others = [self._on_meshes(each, float(far)) for each, far in zip(poses, reach, strict=True)]
+            others = [self._on_meshes(each, 2.0 * float(far.max())) for each, far in zip(poses, reach, strict=True)]
             further, of = self._flats(shapes, normal, at, poses)
-            near = further.gap <= reach[of]
+            near = further.gap <= reach[of, further.one] + reach[of, further.two]
             at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
             order = np.argsort(at, kind="stable")  # what is of one pose stays together
             contacts, at = together([contacts, *others, further.only(near)]).only(order), at[order]
             if about is not None and self._meshes:
-                chosen = np.flatnonzero(np.isin(contacts.one, about) | np.isin(contacts.two, about))
+                ours = np.pad(about, ((0, 0), (0, 1)))
+                chosen = np.flatnonzero(ours[at, contacts.one] | ours[at, contacts.two])
                 contacts, at = contacts.only(chosen), at[chosen]
         by = rows[at] * poses.shape[1]
         one, two = (np.where(row >= 0, row + by, row) for row in (contacts.one, contacts.two))
@@ -204,15 +206,22 @@ class Touching:
         own = contacts.shapes % len(self._meet)
         return contacts.only(self._meet[own[:, 0], own[:, 1]])
 
-    def _found(self, poses: Floats, reach: Floats, worlds: Rows) -> tuple[Rows, Floats, Floats, Floats, Rows]:
+    def _found(
+        self, poses: Floats, reach: Floats, worlds: Rows, about: Bools | None = None
+    ) -> tuple[Rows, Floats, Floats, Floats, Rows]:
         """What MuJoCo finds at poses (K, B, 7): shapes (n, 2), points and normals (n, 3), gaps, and at which pose."""
         qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
         margins = self._margin.reshape(len(self.worlds), -1)
+        body = self._row_of_shape[self._shape_of_geom]  # of each geom; the world's is the last
+        every = np.append(np.ones(poses.shape[1], dtype=bool), False)
+        asked = [every] * len(poses) if about is None else np.pad(about, ((0, 0), (0, 1)))
         geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
-        for pose, far, world in zip(qpos, reach, worlds, strict=True):
+        for pose, far, world, ours in zip(qpos, reach, worlds, asked, strict=True):
             model, data, margin = self._models[world], self._data[world], margins[world]
-            model.geom_margin[:] = 0.5 * far + margin[self._shape_of_geom]
-            model.body_margin[:] = 0.5 * far + margin.max(initial=0.0)
+            model.geom_margin[:] = far[body] + margin[self._shape_of_geom]
+            model.body_margin[:] = np.roll(far, 1) + margin.max(initial=0.0)
+            model.geom_conaffinity[:] = ours[body]  # two of which neither is asked for are passed over
+            model.body_conaffinity[:] = np.roll(ours, 1)
             data.qpos[:] = pose
             self._mujoco.mj_kinematics(model, data)
             self._mujoco.mj_comPos(model, data)
@@ -226,10 +235,28 @@ class Touching:
         shapes = self._shape_of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
+    def near(self, poses: Floats, worlds: Rows) -> Bools:
+        """Whether two bodies are near each other, (K, B, B), at poses (K, B, 7), each of one of the joined worlds."""
+        reach = np.full((len(poses), poses.shape[1] + 1), 0.5 * NEAR)
+        which = worlds if len(self.worlds) > 1 else np.zeros_like(worlds)
+        shapes, *_, at = self._found(poses, reach, which)
+        own = shapes % len(self._meet)
+        one, two = self._row_of_shape[shapes].T
+        meet = self._meet[own[:, 0], own[:, 1]] & (one >= 0) & (two >= 0)
+        pairs = [(at[meet], one[meet], two[meet])]
+        for k, pose in enumerate(poses if self._meshes else ()):
+            contacts = self._on_meshes(pose, NEAR)
+            both = np.flatnonzero((contacts.one >= 0) & (contacts.two >= 0))
+            pairs.append((np.full(len(both), k), contacts.one[both], contacts.two[both]))
+        found = np.zeros((len(poses), poses.shape[1], poses.shape[1]), dtype=bool)
+        for each, a, b in pairs:
+            found[each, a, b] = found[each, b, a] = True
+        return found
+
     def deepest(self, poses: Floats) -> Floats:
         """How deep shapes are in each other at most at each of several poses (K, B, 7), meshes aside, (K,) [m]."""
         every = np.zeros(len(poses), dtype=np.intp)
-        shapes, _, _, gap, at = self._found(poses, np.zeros(len(poses)), every)
+        shapes, _, _, gap, at = self._found(poses, np.zeros((len(poses), poses.shape[1] + 1)), every)
         found, meet = np.zeros(len(poses)), self._meet[shapes[:, 0], shapes[:, 1]]
         np.maximum.at(found, at[meet], -gap[meet])
         return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, matrices, multiply, rotate
+from wsim.geometry.rotations import conjugate, lengths, matrices, multiply, rotate
 from wsim.scene.contact import passing
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def given_way(evidence: Evidence, rows: list[int]) -> Floats:
 def _depth(a: Placed, b: Placed) -> Floats | None:
     near = np.ones(len(a.position), dtype=bool)
     if np.isfinite(b.radius):
-        near = np.linalg.norm(a.position - b.position, axis=1) < a.radius + b.radius
+        near = lengths(a.position - b.position) < a.radius + b.radius
     if not near.any():
         return None
     depth = np.full(len(near), -np.inf)

@@ -281,8 +281,14 @@ class Motion:
         Surfaces are nearer to each other than the other's surface is to the ball about body i: never less than true.
         """
         near = np.zeros(len(intervals), dtype=bool)
+        bodies = self._recorded.world.bodies
+        margins = np.array([max((shape.margin for shape in body.shapes), default=0.0) for body in bodies])
+        reach = self.reach[intervals] + self.radius + margins
+        far = reach + reach[:, i, None]
+        apart = [lengths(self.com[frames] - self.com[frames, i, None]) for frames in (intervals, intervals + 1)]
+        may = np.append(np.any(np.minimum(*apart) <= far, axis=0), True)  # of the others' bodies, and the world
         for shape in self._recorded.placed:
-            if shape.body != i:
+            if shape.body != i and may[shape.body]:
                 near |= self.approaches(shape, i, intervals)
         return near
 
