@@ -97,6 +97,19 @@ def test_a_soft_contact_gives_back_what_it_takes(tmp_path: Path) -> None:
     assert verdict.status == "accepted", verdict.summary
 
 
+@pytest.mark.parametrize("height", [0.154, 0.178])
+def test_a_blow_on_soft_contacts_takes_a_slip_without_all_of_its_friction(tmp_path: Path, height: float) -> None:
+    """Its tip meets a slope late in an interval: the slip dies away in the next one, inside the cone."""
+    soft = 'solref="0.005 1" solimp="0.9 0.97 0.001"'
+    rod = (
+        f'<geom type="box" pos="0 0 -0.1" euler="0 20 0" size="1 1 0.1" friction="0" {soft}/>'
+        f'<body name="rod" pos="0.03 0 {height}"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+        '<joint axis="0 1 0"/>'
+        f'<geom type="capsule" size="0.005" fromto="0 0 -0.05 0 0 0.05" friction="0.7" {soft}/></body>'
+    )
+    assert verdict_of(tmp_path, rod, '<option cone="elliptic"/>', seconds=0.5).status == "accepted"
+
+
 def test_masses_of_what_is_welded_add_up(tmp_path: Path) -> None:
     """Two balls 0.3 m apart: 2/5 m r^2 each, and Steiner's part of the reduced mass about their common centre."""
     bodies, _, _ = CARRIED["welded parts"]

@@ -21,7 +21,7 @@ from wsim.judge.books import arms, jolts
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import ONE_WAY, STILL, Columns, Poses, pushes, slip, turns
-from wsim.judge.books.landing import keeps_way, landing
+from wsim.judge.books.landing import caught, keeps_way, landing
 from wsim.judge.books.recorded import plain, told_by_record
 from wsim.judge.books.repeats import again, fresh
 from wsim.judge.books.sharing import of_contacts
@@ -124,7 +124,8 @@ class Balance:
         both = np.concatenate([force, torque], axis=2) - given * self._scale(np.arange(len(h)))
         wanted = np.where(judged[..., None], both, 0.0)
         hit = judged & (blow > SOFT * self._unit * h)
-        self._struck = [Struck(*each) for each in zip(self._copies, np.split(hit, len(laws)), strict=True)]
+        hits = list(zip(self._copies, np.split(hit, len(laws)), strict=True))
+        self._struck, self._caught = [Struck(*each) for each in hits], np.concatenate([caught(*each) for each in hits])
         self._landed = np.zeros(hit.shape)
         left, turned = self._worked_out(wanted, judged, hit)
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
@@ -209,7 +210,6 @@ class Balance:
             rest, missing = explain(all_, judged.ravel(), rest, scale, enough, bent)
         return rest.reshape(count, bodies, 6), missing.reshape(count, bodies, 2)
 
-    # ---- contacts
     def _pushes(self, ks: Rows, asked: Bools, hit: Bools, between: Bools) -> list[Columns]:
         h, frames = self._h[ks], self._first[ks]
         ends = self._poses(frames), self._poses(frames + 1)
@@ -306,7 +306,7 @@ class Balance:
         lasts = (slowest > np.maximum(self._creep(every, copy), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
-        lasts &= ~_any(hit, every) & keeps_way(every, slowest, landed)
+        lasts &= ~_any(self._caught[ks], every) & keeps_way(every, slowest, landed)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
