@@ -97,6 +97,15 @@ def test_a_soft_contact_gives_back_what_it_takes(tmp_path: Path) -> None:
     assert verdict.status == "accepted", verdict.summary
 
 
+@pytest.mark.parametrize("tilt", [30, 44, 65])
+def test_a_soft_contact_carries_the_weight_of_what_it_pushes_out(tmp_path: Path, tilt: float) -> None:
+    """A plate that drops on its edge: it is lifted by as deep as it came in, several times 0.002 of its thickness."""
+    size = 'size="0.05 0.04 0.003" mass="0.8"'
+    plate = f'<body name="cup" pos="0 0 0.07" euler="{tilt} 0 0"><freejoint/><geom type="box" {size}/></body>'
+    verdict = verdict_of(tmp_path, FLOOR + plate, seconds=0.6)
+    assert verdict.status == "accepted", verdict.summary
+
+
 @pytest.mark.parametrize("height", [0.154, 0.178])
 def test_a_blow_on_soft_contacts_takes_a_slip_without_all_of_its_friction(tmp_path: Path, height: float) -> None:
     """Its tip meets a slope late in an interval: the slip dies away in the next one, inside the cone."""

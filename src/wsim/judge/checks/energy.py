@@ -170,16 +170,17 @@ class CheckEnergy(Check):
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
-        """What soft contacts hold, (T, B) [J]: of a mass m that is in by d, and their time t, m (d / t)^2 / 2.
+        """What soft contacts hold, (T, B) [J]: of a mass m that is in by d, and their time t, m (d / t)^2 / 2 + m g d.
 
-        m is all that hangs together with the body.
+        m is all that hangs together with the body. Its weight they carry besides, as they push it out again.
         """
         motion, held = evidence.motion, np.zeros(evidence.motion.speed.shape)
         heavy = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit])
         for pair in overlaps(evidence):
-            depth = np.maximum(pair.depth, 0.0) / evidence.world.give.time
+            depth = np.maximum(pair.depth, 0.0)
+            of_one = 0.5 * (depth / evidence.world.give.time) ** 2 + evidence.gravity * depth
             for row in (row for row in (pair.a.body, pair.b.body) if row >= 0):
-                held[:, row] += 0.5 * heavy[row] * depth**2
+                held[:, row] += heavy[row] * of_one
         return held
 
     def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
