@@ -106,6 +106,13 @@ def test_a_soft_contact_carries_the_weight_of_what_it_pushes_out(tmp_path: Path,
     assert verdict.status == "accepted", verdict.summary
 
 
+def test_soft_contacts_with_a_height_field_hold_what_they_give_back(tmp_path: Path) -> None:
+    ball = '<geom type="hfield" hfield="t"/><body name="ball" pos="0.1 0 0.25"><freejoint/><geom size="0.1"/></body>'
+    slope = '<asset><hfield name="t" nrow="2" ncol="2" size="1 1 0.1 0.3" elevation="0 0 1 1"/></asset>'
+    verdict = verdict_of(tmp_path, ball, slope, seconds=0.6)
+    assert verdict.status == "accepted", verdict.summary
+
+
 @pytest.mark.parametrize("height", [0.154, 0.178])
 def test_a_blow_on_soft_contacts_takes_a_slip_without_all_of_its_friction(tmp_path: Path, height: float) -> None:
     """Its tip meets a slope late in an interval: the slip dies away in the next one, inside the cone."""

@@ -11,6 +11,7 @@ from wsim.geometry.rotations import lengths
 from wsim.judge.books.losses import Losses
 from wsim.judge.books.phases import hidden, latest, least, sinking, turned_over
 from wsim.judge.books.recorded import met
+from wsim.judge.books.touching import Touching
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.carriers import carried_work
@@ -176,12 +177,14 @@ class CheckEnergy(Check):
         """
         motion, held = evidence.motion, np.zeros(evidence.motion.speed.shape)
         heavy = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit])
+
+        def of_one(depth: Floats) -> Floats:
+            return 0.5 * (depth / evidence.world.give.time) ** 2 + evidence.gravity * depth
+
         for pair in overlaps(evidence):
-            depth = np.maximum(pair.depth, 0.0)
-            of_one = 0.5 * (depth / evidence.world.give.time) ** 2 + evidence.gravity * depth
             for row in (row for row in (pair.a.body, pair.b.body) if row >= 0):
-                held[:, row] += heavy[row] * of_one
-        return held
+                held[:, row] += heavy[row] * of_one(np.maximum(pair.depth, 0.0))
+        return np.maximum(held, heavy * of_one(_deep_in_meshes(evidence)))
 
     def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
@@ -295,6 +298,17 @@ class CheckEnergy(Check):
         motion = evidence.motion
         late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * latest(evidence)
         return late
+
+
+def _deep_in_meshes(evidence: Evidence) -> Floats:
+    """How deep bodies are in something at most by the search for contacts with meshes, (T, B) [m]; 0 without any."""
+    found, touching = np.zeros(evidence.motion.speed.shape), Touching.of(evidence)
+    if touching.triangles:
+        frames = np.arange(len(found))
+        contacts = touching.of_many(evidence.body_q, np.zeros(len(found)), frames)
+        for rows in (contacts.one, contacts.two):
+            np.maximum.at(found.reshape(-1), rows[rows >= 0], -contacts.gap[rows >= 0])
+    return np.maximum(found, 0.0)
 
 
 def _risen(balance: Floats, phase: Floats, held: Floats) -> Floats:
