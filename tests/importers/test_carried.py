@@ -113,6 +113,18 @@ def test_soft_contacts_with_a_height_field_hold_what_they_give_back(tmp_path: Pa
     assert verdict.status == "accepted", verdict.summary
 
 
+@pytest.mark.parametrize(("x", "y", "along", "aside"), [(-0.2, 0.45, -1.0, 0.4), (0.3, 0.3, 1.0, 1.0)])
+def test_a_ball_rolls_over_the_creases_of_a_height_field(
+    tmp_path: Path, x: float, y: float, along: float, aside: float
+) -> None:
+    """A hill of 3 by 3 heights: where its cells are cut says which way each side of it falls."""
+    ball = f'<body name="ball" pos="{x} {y} 0.17"><freejoint/><geom size="0.1"/></body>'
+    hill = '<asset><hfield name="t" nrow="3" ncol="3" size="1 1 0.1 0.3" elevation="0 0 0 0 1 0 0 0 0"/></asset>'
+    bodies, speeds = '<geom type="hfield" hfield="t"/>' + ball, {0: along, 1: aside}
+    verdict = verdict_of(tmp_path, bodies, hill, seconds=0.6, speeds=speeds)
+    assert verdict.status == "accepted", verdict.summary
+
+
 @pytest.mark.parametrize("height", [0.154, 0.178])
 def test_a_blow_on_soft_contacts_takes_a_slip_without_all_of_its_friction(tmp_path: Path, height: float) -> None:
     """Its tip meets a slope late in an interval: the slip dies away in the next one, inside the cone."""
