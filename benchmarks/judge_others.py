@@ -9,13 +9,14 @@ The models are in wheels; none is part of this repository:
 Those in mujoco-warp's test data are run, too, where that is installed. Each model is run by plain MuJoCo at its own
 time step from random states without deep contacts, without controls and, where it has actuators, with random ones. A
 sound trajectory must not be rejected; the same in which gravity is a tenth less, or a force pushes that the model does
-not have, should be.
+not have, should be. A run that takes more core time than `--limit` is given up, and counted as such.
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib.util
+import signal
 import sys
 import tempfile
 import time
@@ -25,7 +26,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import mujoco
 import numpy as np
@@ -40,6 +41,11 @@ RATE = 60  # frames a second, as near as the time step allows
 DEEP = 1e-3  # [m]: no state is drawn in which anything is deeper in another
 PUSH = 0.3  # of the whole weight: the ghost's force
 FAULTS = ("gravity", "ghost")
+LIMIT = 300.0  # [s] of core time, of one run and its verdict
+
+
+class TakesTooLong(BaseException):
+    """A run has passed its limit; no `Exception`, as the judge goes on past those of a check."""
 
 
 @dataclass
@@ -50,7 +56,7 @@ class Row:
     fault: str  # "" of a sound one
     status: str
     message: str
-    seconds: float
+    seconds: float  # of core time
 
     def line(self) -> str:
         """As printed."""
@@ -66,13 +72,15 @@ def main() -> None:
     parser.add_argument("--without", default="", help="parts of paths not to run, with commas between")
     parser.add_argument("--newton", action="store_true", help="and small worlds by Newton's other solvers")
     parser.add_argument("--faults", action="store_true", help="run them with faults, too")
+    parser.add_argument("--limit", type=float, default=LIMIT, help="seconds of core time after which a run is given up")
     arguments = parser.parse_args()
     warnings.simplefilter("ignore")
+    signal.signal(signal.SIGPROF, give_up)
     rows = []
     for path in models(arguments.folders):
         if arguments.only not in str(path) or any(part in str(path) for part in arguments.without.split(",") if part):
             continue
-        for row in judged(path, arguments.draws, arguments.faults):
+        for row in judged(path, arguments.draws, arguments.faults, arguments.limit):
             print(row.line(), flush=True)
             rows.append(row)
     for row in newton_rows() if arguments.newton else ():
@@ -90,7 +98,12 @@ def models(folders: list[Path]) -> list[Path]:
     return [path for folder in folders for path in sorted(folder.rglob("*.xml"))]
 
 
-def judged(path: Path, draws: int, faults: bool) -> Iterator[Row]:
+def give_up(*_: object) -> NoReturn:
+    """What the alarm of a run's limit does."""
+    raise TakesTooLong
+
+
+def judged(path: Path, draws: int, faults: bool, limit: float) -> Iterator[Row]:
     """The rows of one model; none where MuJoCo does not read it, or nothing in it moves."""
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
@@ -101,12 +114,12 @@ def judged(path: Path, draws: int, faults: bool) -> Iterator[Row]:
     for seed in range(draws):
         for controls in (False, True) if model.nu else (False,):
             name = f"{'/'.join(path.parts[-3:])} {seed}{' controls' if controls else ''}"
-            row = one(path, name, seed, controls, "")
+            row = one(path, name, seed, controls, "", limit)
             yield row
             if faults and row.status == "accepted":
                 for fault in FAULTS:
                     if fault != "gravity" or np.any(model.opt.gravity):
-                        yield one(path, name, seed, controls, fault)
+                        yield one(path, name, seed, controls, fault, limit)
 
 
 def newton_rows() -> Iterator[Row]:
@@ -115,17 +128,18 @@ def newton_rows() -> Iterator[Row]:
 
     for name, world, arrays in runs():
         for poses in (False, True):
-            start = time.perf_counter()
+            start = time.process_time()
             kept = {key: array for key, array in arrays.items() if not (poses and key == "body_qd")}
             verdict = judge(from_arrays(kept, world))
             failures = [f"{finding.check}: {finding.message}" for finding in verdict.failures]
             title = f"{name}{', poses alone' if poses else ''}"
-            yield Row(title, "", verdict.status, "; ".join(failures[:1]), time.perf_counter() - start)
+            yield Row(title, "", verdict.status, "; ".join(failures[:1]), time.process_time() - start)
 
 
-def one(path: Path, name: str, seed: int, controls: bool, fault: str) -> Row:
+def one(path: Path, name: str, seed: int, controls: bool, fault: str, limit: float) -> Row:
     """Run, import and judge one."""
-    start = time.perf_counter()
+    start = time.process_time()
+    signal.setitimer(signal.ITIMER_PROF, limit)
     try:
         with tempfile.TemporaryDirectory() as folder:
             np.savez(Path(folder) / "run.npz", **run(path, seed, controls, fault))
@@ -142,7 +156,11 @@ def one(path: Path, name: str, seed: int, controls: bool, fault: str) -> Row:
     except Exception as error:  # noqa: BLE001 - a crash is what this looks for
         status, message = "error", f"{type(error).__name__}: {error}"
         traceback.print_exc()
-    return Row(name, fault, status, message, time.perf_counter() - start)
+    except TakesTooLong:
+        status, message = "given up", f"takes more than {limit:g} s"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+    return Row(name, fault, status, message, time.process_time() - start)
 
 
 def run(path: Path, seed: int, controls: bool, fault: str) -> dict[str, np.ndarray]:
@@ -206,7 +224,7 @@ def summarize(rows: list[Row]) -> None:
     """Print the sums."""
     sound = [row for row in rows if not row.fault]
     print(f"\n{len(sound)} sound runs: {dict(Counter(row.status for row in sound))}")
-    for status in ("blocked", "rejected", "error"):
+    for status in ("blocked", "rejected", "error", "given up"):
         for message, count in Counter(cause(row) for row in sound if row.status == status).most_common():
             print(f"  {status} {count:3}: {message}")
     for fault in FAULTS:

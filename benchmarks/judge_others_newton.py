@@ -68,7 +68,8 @@ def _world(items: list[Any], solver: str) -> World:
         surface, mass = newton.ModelBuilder.ShapeConfig(), max(body.mass for body in bodies)
         springs = 4 if any(kind == "box" for kind, *_ in items) else 1  # a box lands on its corners
         give = Give(time=math.sqrt(mass / (springs * surface.ke)), creep=mass / surface.kf)
-    return World(bodies=bodies, joints=joints, statics=statics, time_step=STEP, give=give)
+    # As of other engines, whose contacts state no restitution.
+    return World(bodies=bodies, joints=joints, statics=statics, time_step=STEP, give=give, combine="larger")
 
 
 def _mass(kind: str) -> tuple[float, np.ndarray]:

@@ -97,6 +97,47 @@ def test_a_soft_contact_gives_back_what_it_takes(tmp_path: Path) -> None:
     assert verdict.status == "accepted", verdict.summary
 
 
+@pytest.mark.parametrize("tilt", [30, 44, 65])
+def test_a_soft_contact_carries_the_weight_of_what_it_pushes_out(tmp_path: Path, tilt: float) -> None:
+    """A plate that drops on its edge: it is lifted by as deep as it came in, several times 0.002 of its thickness."""
+    size = 'size="0.05 0.04 0.003" mass="0.8"'
+    plate = f'<body name="cup" pos="0 0 0.07" euler="{tilt} 0 0"><freejoint/><geom type="box" {size}/></body>'
+    verdict = verdict_of(tmp_path, FLOOR + plate, seconds=0.6)
+    assert verdict.status == "accepted", verdict.summary
+
+
+def test_soft_contacts_with_a_height_field_hold_what_they_give_back(tmp_path: Path) -> None:
+    ball = '<geom type="hfield" hfield="t"/><body name="ball" pos="0.1 0 0.25"><freejoint/><geom size="0.1"/></body>'
+    slope = '<asset><hfield name="t" nrow="2" ncol="2" size="1 1 0.1 0.3" elevation="0 0 1 1"/></asset>'
+    verdict = verdict_of(tmp_path, ball, slope, seconds=0.6)
+    assert verdict.status == "accepted", verdict.summary
+
+
+@pytest.mark.parametrize(("x", "y", "along", "aside"), [(-0.2, 0.45, -1.0, 0.4), (0.3, 0.3, 1.0, 1.0)])
+def test_a_ball_rolls_over_the_creases_of_a_height_field(
+    tmp_path: Path, x: float, y: float, along: float, aside: float
+) -> None:
+    """A hill of 3 by 3 heights: where its cells are cut says which way each side of it falls."""
+    ball = f'<body name="ball" pos="{x} {y} 0.17"><freejoint/><geom size="0.1"/></body>'
+    hill = '<asset><hfield name="t" nrow="3" ncol="3" size="1 1 0.1 0.3" elevation="0 0 0 0 1 0 0 0 0"/></asset>'
+    bodies, speeds = '<geom type="hfield" hfield="t"/>' + ball, {0: along, 1: aside}
+    verdict = verdict_of(tmp_path, bodies, hill, seconds=0.6, speeds=speeds)
+    assert verdict.status == "accepted", verdict.summary
+
+
+@pytest.mark.parametrize("height", [0.154, 0.178])
+def test_a_blow_on_soft_contacts_takes_a_slip_without_all_of_its_friction(tmp_path: Path, height: float) -> None:
+    """Its tip meets a slope late in an interval: the slip dies away in the next one, inside the cone."""
+    soft = 'solref="0.005 1" solimp="0.9 0.97 0.001"'
+    rod = (
+        f'<geom type="box" pos="0 0 -0.1" euler="0 20 0" size="1 1 0.1" friction="0" {soft}/>'
+        f'<body name="rod" pos="0.03 0 {height}"><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+        '<joint axis="0 1 0"/>'
+        f'<geom type="capsule" size="0.005" fromto="0 0 -0.05 0 0 0.05" friction="0.7" {soft}/></body>'
+    )
+    assert verdict_of(tmp_path, rod, '<option cone="elliptic"/>', seconds=0.5).status == "accepted"
+
+
 def test_masses_of_what_is_welded_add_up(tmp_path: Path) -> None:
     """Two balls 0.3 m apart: 2/5 m r^2 each, and Steiner's part of the reduced mass about their common centre."""
     bodies, _, _ = CARRIED["welded parts"]

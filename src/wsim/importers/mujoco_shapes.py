@@ -110,8 +110,9 @@ def _field(model: Any, field: int) -> dict[str, Any]:
     heights = top * model.hfield_data[first : first + rows * columns]
     vertices = np.stack([grid[0].ravel(), grid[1].ravel(), heights], axis=1)
     corner = (columns * np.arange(rows - 1)[:, None] + np.arange(columns - 1)).ravel()
-    lower = np.stack([corner, corner + 1, corner + columns], axis=1)
-    upper = np.stack([corner + 1, corner + columns + 1, corner + columns], axis=1)
+    # MuJoCo cuts each cell from its first corner to the one across.
+    lower = np.stack([corner, corner + 1, corner + columns + 1], axis=1)
+    upper = np.stack([corner, corner + columns + 1, corner + columns], axis=1)
     return _mesh(vertices, np.concatenate([lower, upper])) | {"exact": True}
 
 

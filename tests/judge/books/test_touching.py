@@ -76,3 +76,23 @@ def test_what_is_looked_for_as_far_as_each_body_goes():
         assert {tuple(pair) for pair in np.argwhere(np.triu(near[k])).tolist()} == touch
         seen += len(ours)
     assert seen > 20
+
+
+def test_contacts_with_meshes_are_those_of_each_pair_alone():
+    """That of two shapes nothing is left out because of others, or of what is far and may not touch."""
+    draw, seen = np.random.default_rng(1), 0
+    world = heap(draw, mesh=True)
+    cube = world.statics[1].shapes[0]
+    world.bodies[0].shapes[0] = world.bodies[1].shapes[0] = cube
+    for _ in range(5):
+        turn = draw.normal(size=(6, 4))
+        place = draw.uniform(-0.25, 0.25, size=(6, 3))
+        poses = np.concatenate([place, turn / np.linalg.norm(turn, axis=1, keepdims=True)], axis=1)
+        found = Touching(world).at(poses, 0.05)
+        for a, b in ((0, 1), (0, 2), (1, 5)):
+            two = world.model_copy(update={"bodies": [world.bodies[a], world.bodies[b]], "statics": []})
+            alone = Touching(two).at(poses[[a, b]], 0.05)
+            pair = found.only(np.flatnonzero(np.isin(found.one, (a, b)) & np.isin(found.two, (a, b))))
+            assert sorted(pair.gap) == pytest.approx(sorted(alone.gap), abs=1e-12)
+            seen += len(alone)
+    assert seen > 20

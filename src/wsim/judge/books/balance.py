@@ -20,6 +20,7 @@ from wsim.judge.books import arms, jolts
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.differences import followed, unknown
 from wsim.judge.books.forces import Columns, turns
+from wsim.judge.books.landing import caught
 from wsim.judge.books.meeting import Meeting
 from wsim.judge.books.recorded import plain, told_by_record
 from wsim.judge.books.repeats import Repeats
@@ -109,7 +110,9 @@ class Balance:
         both = np.concatenate([force, torque], axis=2) - given * self._scale(np.arange(len(h)))
         wanted = np.where(judged[..., None], both, 0.0)
         hit = judged & (blow > SOFT * self._unit * h)
-        self._struck = [Struck(*each) for each in zip(self._copies, np.split(hit, len(laws)), strict=True)]
+        hits = list(zip(self._copies, np.split(hit, len(laws)), strict=True))
+        self._struck = [Struck(*each) for each in hits]
+        self._meeting.caught = np.concatenate([caught(*each) for each in hits])
         left, turned = self._worked_out(wanted, judged, hit)
         pulled = np.concatenate([ties.ropes.error() for ties in self._ties])
         stepped = np.concatenate([step_error(evidence) for evidence in self._copies])

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from wsim.judge.books.forces import Poses
     from wsim.judge.books.touching import Contacts, Touching
+    from wsim.judge.evidence.evidence import Evidence
 
     Floats = NDArray[np.float64]
 
@@ -64,3 +65,18 @@ def keeps_way(contacts: Contacts, speed: Floats, landed: Floats) -> NDArray[np.b
     """Whether contacts that slip at a speed (n,) [m/s] keep their way with what landings may change, (B,) [m/s]."""
     changes = sum(np.where(rows >= 0, landed[np.maximum(rows, 0)], 0.0) for rows in (contacts.one, contacts.two))
     return np.asarray(changes <= TURNS * speed)
+
+
+def caught(evidence: Evidence, hit: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Where what hits a body between two frames (T - 1, B) may go on: as long as contacts that yield take to catch it.
+
+    Such contacts take a slip as they take an approach, in that time, and not with all of their friction.
+    """
+    time, within = evidence.time, evidence.world.give.time
+    found = hit.copy()
+    for n in range(1, len(hit)):
+        goes_on = time[n:-1] - time[1:-n] < within
+        if not goes_on.any():
+            break
+        found[n:] |= hit[:-n] & goes_on[:, None]
+    return found

@@ -52,6 +52,7 @@ class Meeting:
         self._copy = np.repeat(np.arange(len(copies)), len(motions[0].h))
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
         self._far = np.minimum(np.concatenate([motion.reach for motion in motions]), FAST)
+        self.caught = np.zeros(self._far.shape, dtype=bool)  # whose slip a blow may have ended, (N, B)
         self.landed = np.zeros(self._far.shape)  # by how much landings may change velocities, (N, B) [m/s]
 
     def pushes(self, ks: Rows, asked: Bools, hit: Bools, between: Bools, aside: Bools) -> list[Columns]:
@@ -176,7 +177,7 @@ class Meeting:
         lasts = (slowest > np.maximum(self._creep(every, copy), change)) & (
             np.sum(own * then, axis=1) > ONE_WAY * speed * speed_then
         )
-        lasts &= ~_any(hit, every) & keeps_way(every, slowest, landed)
+        lasts &= ~_any(self.caught[ks], every) & keeps_way(every, slowest, landed)
         ways = np.stack([own / np.maximum(speed, 1e-300)[:, None], then / np.maximum(speed_then, 1e-300)[:, None]])
         ways[1] += ways[0]
         ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
-from wsim.geometry.rotations import conjugate, rotate
+from wsim.geometry.rotations import conjugate, cross, lengths, rotate
 from wsim.geometry.shapes import kind_of
 
 if TYPE_CHECKING:
@@ -95,6 +95,7 @@ class Triangles:
         self.centres = self.corners.mean(axis=1)
         self.radii = np.linalg.norm(self.corners - self.centres[:, None], axis=2).max(axis=1)
         self.low, self.high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        self.radius = float(np.linalg.norm(self.vertices, axis=1).max())  # about its origin
         self._tree = cKDTree(self.centres)
 
     @cached_property
@@ -138,6 +139,10 @@ class Triangles:
             rows = np.arange(len(self.vertices))
         return self.vertices[rows[:: -(-len(rows) // MOST)]]
 
+    def beyond(self, points: Floats) -> Floats:
+        """How far points (n, 3) are from its bounding box, (n,) [m]."""
+        return lengths(np.maximum(np.maximum(self.low - points, points - self.high), 0.0))
+
     def faces_near(self, centre: Floats, reach: float) -> Rows:
         """The faces that a ball meets."""
         near = np.array(self._tree.query_ball_point(centre, reach + float(self.radii.max())), dtype=np.intp)
@@ -147,18 +152,19 @@ class Triangles:
         return np.asarray(near[apart <= reach + self.radii[near]])
 
 
+def radius_about(shape: Shape) -> float:
+    """Of the ball about a shape's origin that it is in [m]; a plane is in none."""
+    return np.inf if shape.kind == "plane" else float(kind_of(shape).radius_about)
+
+
 def touching(mesh: Triangles, shape: Shape, other: Triangles | None, pose: Floats, reach: float) -> Near | None:
     """Contacts with a shape at a pose in the mesh's frame (7,) whose gap is at most `reach` [m].
 
     `other` are the shape's own triangles where it is a mesh, too; of them its corners are asked for alone.
     """
-    kind = kind_of(shape)
     if shape.kind == "plane":
-        return _corners_on(mesh, kind.depth, pose, reach)
-    radius = float(kind.radius_about)
-    beyond = np.maximum(np.maximum(mesh.low - pose[:3], pose[:3] - mesh.high), 0.0)
-    if float(np.linalg.norm(beyond)) > radius + reach:
-        return None
+        return _corners_on(mesh, kind_of(shape).depth, pose, reach)
+    radius = radius_about(shape) if other is None else other.radius
     faces = mesh.faces_near(pose[:3], radius + reach)
     if not len(faces):
         return None
@@ -166,19 +172,18 @@ def touching(mesh: Triangles, shape: Shape, other: Triangles | None, pose: Float
     rounded = shape.size[0] if shape.kind in ("sphere", "capsule", "cylinder") else 0.0
     found = [_over_faces(mesh, faces, lowest, rounded, reach, DEEPEST * radius)]
     if other is None:
-        found.append(_edges_in(mesh, faces, kind.depth, pose, radius, reach))
+        found.append(_edges_in(mesh, faces, kind_of(shape).depth, pose, radius, reach))
     return _thinned(Near.of(found))
 
 
 def _lowest(shape: Shape, other: Triangles | None, pose: Floats, normals: Floats) -> Floats:
-    """The points of a shape that may be its lowest over faces with such normals (m, 3), (m, p, 3)."""
+    """The points of a shape that may be its lowest over faces with such normals (m, 3), (m, p, 3) or (1, p, 3)."""
     own = rotate(conjugate(pose[3:]), normals)
-    count = len(own)
     if other is not None:
-        local = np.broadcast_to(other.points, (count, *other.points.shape))
+        local = other.points[None]
     elif shape.kind == "box":
         signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
-        local = np.broadcast_to(signs * np.array(shape.size), (count, 8, 3))
+        local = (signs * np.array(shape.size))[None]
     elif shape.kind == "sphere":
         local = -shape.size[0] * own[:, None]
     elif shape.kind == "capsule":
@@ -193,29 +198,32 @@ def _lowest(shape: Shape, other: Triangles | None, pose: Floats, normals: Floats
 
 
 def _over_faces(mesh: Triangles, faces: Rows, points: Floats, rounded: float, reach: float, deepest: float) -> Near:
-    """Points (m, p, 3) that are over their face, and no deeper under it."""
+    """Points (m, p, 3), or (1, p, 3) for all faces, that are over their face, and no deeper under it."""
     corners, normals = mesh.corners[faces], mesh.normals[faces]
-    height = np.einsum("mpi,mi->mp", points - corners[:, None, 0], normals)
-    shares = _shares(corners, normals, points)
-    over = (shares.min(axis=2) > -OUTSIDE) & (height < reach) & (height > -deepest)
-    face, point = np.nonzero(over)
-    normal, at, gap = normals[face], points[face, point], height[face, point]
-    at = at - 0.5 * gap[:, None] * normal
+    along = points[0] @ normals.T if len(points) == 1 else np.einsum("mpi,mi->pm", points, normals)
+    height = (along - np.einsum("mi,mi->m", corners[:, 0], normals)).T
+    face, point = np.nonzero((height < reach) & (height > -deepest))
+    at = points[face if len(points) > 1 else 0, point]
+    shares = _shares(corners[face], normals[face], at)  # of the few that are near their face's plane
+    over = shares.min(axis=1) > -OUTSIDE
+    face, shares, gap = face[over], shares[over], height[face, point][over]
+    normal = normals[face]
+    at = at[over] - 0.5 * gap[:, None] * normal
     if mesh.smooth is not None:
-        curved = np.einsum("nk,nki->ni", shares[face, point], mesh.smooth[faces][face])
+        curved = np.einsum("nk,nki->ni", shares, mesh.smooth[faces][face])
         curved /= np.maximum(np.linalg.norm(curved, axis=1, keepdims=True), 1e-12)
         at, normal = at + rounded * (normal - curved), curved  # what is round touches where its side has the normal
     return Near(at, normal, gap)
 
 
 def _shares(corners: Floats, normals: Floats, points: Floats) -> Floats:
-    """Barycentric coordinates of points (m, p, 3) over triangles (m, 3, 3), (m, p, 3)."""
-    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    area = np.einsum("mi,mi->m", np.cross(one, two), normals)[:, None]
-    from_first = points - corners[:, None, 0]
-    second = np.einsum("mpi,mi->mp", np.cross(from_first, two[:, None]), normals) / area
-    third = np.einsum("mpi,mi->mp", np.cross(one[:, None], from_first), normals) / area
-    return np.stack([1.0 - second - third, second, third], axis=2)
+    """Barycentric coordinates of points (n, 3), each over its triangle (n, 3, 3), (n, 3)."""
+    one, two, from_first = (end - corners[:, 0] for end in (corners[:, 1], corners[:, 2], points))
+    area, second, third = (
+        np.einsum("ni,ni->n", cross(a, b), normals) for a, b in ((one, two), (from_first, two), (one, from_first))
+    )
+    second, third = second / area, third / area
+    return np.stack([1.0 - second - third, second, third], axis=1)
 
 
 def _edges_in(mesh: Triangles, faces: Rows, depth: Depth, pose: Floats, radius: float, reach: float) -> Near:

@@ -15,7 +15,7 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.flats import flats
-from wsim.judge.books.meshes import Triangles, colliding, touching
+from wsim.judge.books.meshes import Triangles, colliding, radius_about, touching
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ class Touching:
         joined._models = [model for part in parts for model in part._models]
         joined._data = [data for part in parts for data in part._data]
         joined._laws = {}
-        for name in ("_margin", "_row_of_shape", "_own", "surface_velocity"):
+        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity"):
             joined.__dict__.pop(name, None)
         return joined
 
@@ -135,6 +135,14 @@ class Touching:
     @cached_property
     def _row_of_shape(self) -> Rows:
         return np.array([row for row, _, _ in self.shapes], dtype=np.intp)
+
+    @cached_property
+    def _radii(self) -> Floats:
+        """Of the balls about shapes that they are in [m], (shapes,)."""
+        meshes = self._meshes
+        return np.array([
+            meshes[k].radius if k in meshes else radius_about(shape) for k, (_, _, shape) in enumerate(self.shapes)
+        ])  # fmt: skip
 
     @cached_property
     def _own(self) -> Floats:
@@ -300,11 +308,11 @@ class Touching:
         found = []
         for m, mesh in self._meshes.items():
             row, pose = self.shapes[m][0], places[m]
-            for k, (other, _, shape) in enumerate(self.shapes):
-                if other == row:
-                    continue
-                apart = rotate(conjugate(pose[3:]), places[k][:3] - pose[:3])
-                local = np.concatenate([apart, multiply(conjugate(pose[3:]), places[k][3:])])
+            apart = rotate(conjugate(pose[3:]), places[:, :3] - pose[:3])
+            may = self._meet[m] & (self._row_of_shape != row) & (mesh.beyond(apart) <= self._radii + reach)
+            for k in np.flatnonzero(may).tolist():
+                other, _, shape = self.shapes[k]
+                local = np.concatenate([apart[k], multiply(conjugate(pose[3:]), places[k][3:])])
                 near = touching(mesh, shape, self._meshes.get(k), local, reach)
                 if near is None or not len(near.gap):
                     continue

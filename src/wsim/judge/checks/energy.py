@@ -12,6 +12,7 @@ from wsim.judge.books.led import Led, untold
 from wsim.judge.books.losses import Losses
 from wsim.judge.books.phases import falling, hidden, latest, least, sinking, turned_over
 from wsim.judge.books.recorded import met
+from wsim.judge.books.touching import Touching
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.joint import beyond
 from wsim.judge.evidence.contact import overlaps
@@ -181,17 +182,20 @@ class CheckEnergy(Check):
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
-        """What soft contacts hold, (T, B) [J]: of a mass m that is in by d, and their time t, m (d / t)^2 / 2.
+        """What soft contacts hold, (T, B) [J]: of a mass m that is in by d, and their time t, m (d / t)^2 / 2 + m g d.
 
-        m is all that hangs together with the body.
+        m is all that hangs together with the body. Its weight they carry besides, as they push it out again.
         """
         motion, held = evidence.motion, np.zeros(evidence.motion.speed.shape)
         heavy = np.array([motion.mass[motion.unit == unit].sum() for unit in motion.unit])
+
+        def of_one(depth: Floats) -> Floats:
+            return 0.5 * (depth / evidence.world.give.time) ** 2 + evidence.gravity * depth
+
         for pair in overlaps(evidence):
-            depth = np.maximum(pair.depth, 0.0) / evidence.world.give.time
             for row in (row for row in (pair.a.body, pair.b.body) if row >= 0):
-                held[:, row] += 0.5 * heavy[row] * depth**2
-        return held
+                held[:, row] += heavy[row] * of_one(np.maximum(pair.depth, 0.0))
+        return np.maximum(held, heavy * of_one(_deep_in_meshes(evidence)))
 
     def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
@@ -322,6 +326,17 @@ def _rise(balance: Floats, unseen: tuple[Floats, Floats], verb: str) -> Floats:
 
 def _ratio(found: tuple[float, Finding]) -> float:
     return found[0]
+
+
+def _deep_in_meshes(evidence: Evidence) -> Floats:
+    """How deep bodies are in something at most by the search for contacts with meshes, (T, B) [m]; 0 without any."""
+    found, touching = np.zeros(evidence.motion.speed.shape), Touching.of(evidence)
+    if touching.triangles:
+        frames = np.arange(len(found))
+        contacts = touching.of_many(evidence.body_q, np.zeros(len(found)), frames)
+        for rows in (contacts.one, contacts.two):
+            np.maximum.at(found.reshape(-1), rows[rows >= 0], -contacts.gap[rows >= 0])
+    return np.maximum(found, 0.0)
 
 
 def _risen(balance: Floats, phase: Floats, held: Floats) -> Floats:
