@@ -21,6 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from wsim.geometry.rotations import rotate
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
+from wsim.judge.books.relaxing import taken
 from wsim.judge.evidence.carriers import carriers
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
@@ -343,8 +344,10 @@ class Losses:
             held = {self._evidence.index(guide.body) for guide in spring.path if guide.body}
             if spring.damping == 0.0 or not held & ours:
                 continue
-            rate = track_of_spring(self._evidence, spring).rate
-            found += spring.damping * np.array(self._integrated(rate**2))
+            track = track_of_spring(self._evidence, spring)
+            ratio, resolved = spring.stiffness / spring.damping, self._integrated(track.rate**2)
+            within = taken(track.rate, track.length, spring.rest_length, ratio, self._motion.h)
+            found += spring.damping * np.where(np.isnan(within), resolved, within)
         return found[0], found[1]
 
     def _integrated(self, power: Floats) -> tuple[Floats, Floats]:
