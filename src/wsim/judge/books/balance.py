@@ -102,7 +102,10 @@ class Balance:
         self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
         self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
         self._whips = np.concatenate([plain(evidence) for evidence in copies]) & (np.concatenate(self._angles) > WHIPS)
-        self._bent = np.concatenate(self._angles) ** 2 / 12.0  # share that is wrong of what an arm taken halfway gives
+        # The share that is wrong of what an arm taken halfway gives.
+        self._bent = np.concatenate(
+            [angle**2 / 12.0 + arms.early(*of) for *of, angle in zip(copies, self._angles, self._angles, strict=True)]
+        )
         self._copy = np.repeat(np.arange(len(copies)), count)
         self._first = np.arange(len(self._copy)) + self._copy  # frame of each interval: one more in each copy
 
