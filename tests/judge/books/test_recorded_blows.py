@@ -98,3 +98,29 @@ def test_what_hits_without_friction(tmp_path):
     recording = read(tmp_path / "r.rrd")
     assert ask(CheckBlowFriction(), recording)[0].passed
     assert not ask(CheckBlowFriction(), told(recording, "ice", friction=0.001))[0].passed
+
+
+@pytest.fixture(scope="module")
+def rods(tmp_path_factory):
+    """Rods that land nearly level: both ends of one lean meet the ground at once, of another one after the other."""
+    folder, scene = tmp_path_factory.mktemp("rods"), Scene()
+    scene.simulation(duration=0.16, frame_rate=60.0)
+    scene.ground(friction=0.3, restitution=1.0)
+    for k, lean in enumerate((0.0, 0.2, 0.5, 0.8)):
+        scene.capsule(
+            f"rod_{k}", radius=0.02, height=0.2, axis="X", mass=0.3, position=(0, 0.5 * k, 0.2), friction=0.3,
+            restitution=0.5, rotation_deg=(0, lean, 0), velocity=(0.3, 0, -1.2),
+        )  # fmt: skip
+    Simulation(scene.save(folder / "stage.usda"), device="cpu").run(folder / "r.rrd")
+    return read(folder / "r.rrd")
+
+
+def test_ends_that_land_one_after_the_other_are_no_single_blow(rods):
+    """Of the last rod the second end is met as the first blow leaves it: their mean parts at 0.37 of its approach."""
+    found = {blow.prims[1].split("/")[-1]: blow for blow in recorded_blows(Evidence(rods))}
+    assert "rod_3" not in found
+    assert all(finding.passed for finding in ask(CheckRestitution(), rods))
+    for name in ("rod_0", "rod_1"):
+        assert found[name].parting == pytest.approx(0.5 * found[name].approach, rel=0.005)
+        for share in (0.9, 1.1):
+            assert not ask(CheckRestitution(), told(rods, name, restitution=share * 0.5))[0].passed

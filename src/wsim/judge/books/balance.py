@@ -88,8 +88,13 @@ class Balance:
         self._angles = [arms.turned(evidence, size) for evidence, size in zip(copies, self._sizes, strict=True)]
         self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
         self._plain = np.concatenate([plain(evidence) for evidence in copies])  # (N, B)
-        shaken = np.concatenate([arms.shaken(evidence) for evidence in copies])
-        self._bent = np.concatenate(self._angles) ** 2 / 12.0 + shaken  # share of what an arm taken halfway gives
+        # The share that is wrong of what an arm taken halfway gives.
+        self._bent = np.concatenate(
+            [
+                angle**2 / 12.0 + arms.shaken(evidence) + arms.early(evidence, angle)
+                for evidence, angle in zip(copies, self._angles, strict=True)
+            ]
+        )
         self._copy = np.repeat(np.arange(len(copies)), count)
 
     def books(self) -> Books:

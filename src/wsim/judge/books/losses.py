@@ -19,6 +19,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
+from wsim.judge.books import relaxing
 from wsim.judge.books.led import STEADY, Led, late, over, told
 from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
@@ -370,8 +371,10 @@ class Losses:
             held = {self._evidence.index(guide.body) for guide in spring.path if guide.body}
             if spring.damping == 0.0 or not held & ours:
                 continue
-            rate = track_of_spring(self._evidence, spring).rate
-            found += spring.damping * np.array(over(self._evidence, rate**2))
+            track = track_of_spring(self._evidence, spring)
+            ratio, resolved = spring.stiffness / spring.damping, np.array(over(self._evidence, track.rate**2))
+            within = relaxing.taken(track.rate, track.length, spring.rest_length, ratio, self._motion.h)
+            found += spring.damping * np.where(np.isnan(within), resolved, within)
         return found[0], found[1]
 
     def _jerked(self, ours: set[int]) -> Floats:

@@ -9,6 +9,7 @@ part as their surfaces have it.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,10 @@ from wsim.geometry.rotations import conjugate, cross, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.books.followed import Course, Followed, Pose
 from wsim.judge.books.forces import ONE_WAY, STILL
-from wsim.judge.books.impacts import ACROSS, SHOWS, SLOW, STAYS, Blow, Rub
+from wsim.judge.books.impacts import ACROSS, APART, SHOWS, SLOW, STAYS, Blow, Rub
+from wsim.judge.books.pressed import answers
 from wsim.judge.books.recorded import RecordedContacts
-from wsim.judge.books.touching import Touching
+from wsim.judge.books.touching import Contacts, Touching, together
 from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
@@ -126,6 +128,7 @@ class RecordedBlows:
         unsure += max(self._followed.turned(each, point, 2) for each in poses)
         if law.restitution <= STAYS:
             unsure += self._veers(row, (one, two), when)
+        unsure += self._answered(row, (one, two), when, approach, law)
         rest = float(motion.h[k]) - when
         if approach < SLOW * self._followed.dt + unsure:
             return None
@@ -169,25 +172,67 @@ class RecordedBlows:
         What does not bounce is stopped in two steps: the first leaves it as fast as its gap asks for. Place and normal
         that are recorded are means of both; surfaces part as the second has it.
         """
-        touching, q = Touching.of(self._evidence), self._evidence.body_q[courses[0].k + 1].copy()
-        pair, rates = self._contacts.body[row].tolist(), []
+        rates = []
         for later in (when, when + self._followed.dt):
-            poses = [each.at(1, later) for each in courses]
-            for body, pose in zip(pair, poses, strict=True):
-                if body >= 0:
-                    com = np.array(self._evidence.world.bodies[body].com)
-                    q[body] = np.concatenate([pose.com - rotate(pose.q, com), pose.q])
-            contacts = touching.at(q, VEERS)
-            ours = np.flatnonzero(
-                ((contacts.one == pair[0]) & (contacts.two == pair[1]))
-                | ((contacts.one == pair[1]) & (contacts.two == pair[0]))
-            )
-            if not len(ours):
+            poses, contacts = self._touching(row, courses, (1, later), VEERS)
+            if not len(contacts):
                 return np.inf
-            n = ours[np.argmin(contacts.gap[ours])]
-            one, two = poses if contacts.one[n] == pair[0] else poses[::-1]
-            rates.append(float((two.at(contacts.point[n]) - one.at(contacts.point[n])) @ contacts.normal[n]))
+            n = int(np.argmin(contacts.gap))
+            rates.append(-float(_closing(contacts, poses)[n]))
         return abs(rates[1] - rates[0])
+
+    def _answered(self, row: int, courses: tuple[Course, Course], when: float, approach: float, law: Pair) -> float:
+        """By how much points of the pair that met one after another change how fast their mean parts [m/s].
+
+        Where two come down within a step, the one that is met second is met as the first blow leaves it, and its own
+        changes how fast the first parts: of both impulses' mean place Newton's law says nothing (`answers`). What the
+        others had of the impulse the place tells. All that meet at once part at e, and so does their mean; of two that
+        do not, one parts at less and the other at more (of what rubs not), which then is the bound.
+        """
+        dt, point = self._followed.dt, self._contacts.track.point[row].astype(np.float64)
+        poses, contacts = self._touching(row, courses, (0, when), 2.0 * APART * approach * dt)
+        near = contacts.only(contacts.gap <= contacts.gap.min(initial=np.inf) + APART * approach * dt)
+        if len(near) < 2:
+            return 0.0
+        closing, opening = _closing(near, poses), -_closing(near, (courses[0].at(1, when), courses[1].at(1, when)))
+        differ = float(np.ptp(opening / closing)) if closing.min() > 0.0 else np.inf
+        first = int(np.argmin(np.linalg.norm(near.point - point, axis=1)))
+        apart = np.delete(near.point, first, axis=0) - near.point[first]
+        share = np.clip(apart @ (point - near.point[first]) / np.maximum(np.sum(apart**2, axis=1), 1e-30), 0.0, 1.0)
+        if any(each.kind in ("hangs", "slides") for each in courses):
+            return differ * approach  # what passes the impulse on is not known
+        free = [
+            (pose, float(self._motion.mass[each.body]), self._motion.inertia[each.body])
+            for each, pose in zip(courses, poses, strict=True)
+            if each.gives
+        ]
+        answer = [answers(free, self._normal[row], near.point[first], near.point[first] + arm, law) for arm in apart]
+        return min(differ * approach, float(share @ answer) * float(self._pressed[row]))
+
+    def _touching(
+        self, row: int, courses: tuple[Course, Course], at: tuple[int, float], reach: float
+    ) -> tuple[tuple[Pose, Pose], Contacts]:
+        """Both bodies of a row at an instant, as they went before its blow (0) or after (1), and where they touch."""
+        bodies, q = self._contacts.body[row].tolist(), self._evidence.body_q[courses[0].k + 1].copy()
+        one, two = (each.at(*at) for each in courses)
+        for body, pose in zip(bodies, (one, two), strict=True):
+            if body >= 0:
+                com = np.array(self._evidence.world.bodies[body].com)
+                q[body] = np.concatenate([pose.com - rotate(pose.q, com), pose.q])
+        touching = Touching.of(self._evidence)
+        contacts = touching.at(q, reach)
+        ends = [
+            (body, self._contacts.shapes[shape].prim)
+            for body, shape in zip(bodies, self._contacts.track.pair[row].tolist(), strict=True)
+        ]
+        met = [
+            [(touching.shapes[shape][0], touching.shapes[shape][2].prim) for shape in pair]
+            for pair in contacts.shapes.tolist()
+        ]
+        ours, turned = (
+            contacts.only(np.array([pair == way for pair in met], dtype=bool)) for way in (ends, ends[::-1])
+        )
+        return (one, two), together([ours, replace(turned, one=turned.two, two=turned.one, normal=-turned.normal)])
 
     def _depth(self, row: int, poses: tuple[Pose, Pose], point: Floats) -> float:
         """How far the surfaces are in each other or apart where they push, halfway between them [m]; 0 of meshes."""
@@ -254,6 +299,12 @@ class RecordedBlows:
         most = law.friction * pressed
         unsure = ((1.0 - cosine) * most + NONE * pressed) * scale
         return Rub(impulse * scale, most * scale, before, after, most * scale, unsure)
+
+
+def _closing(contacts: Contacts, poses: tuple[Pose, Pose]) -> Floats:
+    """How fast two bodies close in on each other where they touch, (n,) [m/s]."""
+    one, two = poses
+    return np.array([(one.at(at) - two.at(at)) @ way for at, way in zip(contacts.point, contacts.normal, strict=True)])
 
 
 def _step_leaves(approach: float, restitution: float, pull: float, deep: float) -> float:
