@@ -28,6 +28,8 @@ from wsim.scene.world import (
     Camera,
     Container,
     Fluid,
+    Gear,
+    Joint,
     Light,
     Parameter,
     Shape,
@@ -53,6 +55,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
     prims = list(stage.Traverse(Usd.TraverseInstanceProxies()))
     default = stage.GetDefaultPrim()
     bodies, statics = _solids(prims, stage)
+    joints, gears = list(read_joints(prims)), list(read_gears(prims))
     return World(
         name=default.GetName() if default else "world",
         **_run(prims),
@@ -60,8 +63,9 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         statics=statics,
         containers=[_container(prim) for prim in prims if schema.has(prim, schema.CONTAINER)],
         fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
-        joints=list(read_joints(prims)),
-        gears=list(read_gears(prims)),
+        joints=joints,
+        gears=gears,
+        apart=list(_meshed(joints, gears)),
         springs=springs(prims),
         ropes=ropes(prims),
         contacts=read_contacts(prims),
@@ -69,6 +73,14 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         lights=list(_lights(prims)),
         parameters=[_parameter(prim) for prim in prims if schema.has(prim, schema.PARAMETER)],
     )
+
+
+def _meshed(joints: list[Joint], gears: list[Gear]) -> Iterator[tuple[str, str]]:
+    """The bodies that gears mesh, which do not touch: those that the joints move."""
+    child = {joint.prim: joint.child for joint in joints}
+    for gear in gears:
+        if gear.first in child and gear.second in child:
+            yield child[gear.first], child[gear.second]
 
 
 def _open(path: Path) -> Usd.Stage:

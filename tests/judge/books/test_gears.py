@@ -5,7 +5,13 @@ import pytest
 
 from tests.judge.theory import ask, ball, record, times, with_world
 from wsim.judge.checks.forces import CheckForces
+from wsim.judge.checks.physics import CheckPenetration
+from wsim.judge.checks.recorded_state import CheckRecordedDepth
+from wsim.judge.evidence.evidence import Evidence
+from wsim.scene import Scene
 from wsim.scene.world import Gear, Joint, Motor
+from wsim.sim import Simulation
+from wsim.sim.collect import collect
 
 EFFORT = 0.3  # [N m]
 
@@ -51,3 +57,16 @@ def test_a_pair_shares_its_inertia(ratio):
 def test_a_free_pair_goes_on():
     assert accepted(pair(-2.0, 0.0, start=5.0))
     assert not accepted(pair(-2.0, -0.5, start=5.0))
+
+
+def test_wheels_may_reach_into_each_other_by_their_teeth(tmp_path):
+    """What is in mesh does not touch: the simulator finds no contact there, and the judge no overlap."""
+    scene = Scene()
+    scene.simulation(duration=0.2, frame_rate=100.0, gravity=(0, 0, 0))
+    for name, radius, x in (("small", 0.1, 0.0), ("large", 0.2, 0.28)):
+        scene.cylinder(name, radius=radius, height=0.05, axis="Y", position=(x, 0, 1), mass=2.0)
+        scene.joint_revolute(f"axle_of_{name}", None, name, axis="Y")
+    scene.gear("mesh", "axle_of_small", "axle_of_large", ratio=-0.5)
+    evidence = Evidence(collect(Simulation(scene.save(tmp_path / "wheels.usda"), "cpu")).recording(0))
+    found = [*CheckPenetration().run(evidence), *CheckRecordedDepth().run(evidence)]
+    assert found and all(finding.passed for finding in found)

@@ -33,3 +33,18 @@ def test_what_hangs_under_all_that_is_solid_may_not_explode(speed):
     way = speed * (recording.time[late] - recording.time[30])
     thrown = edited(edited(recording, "body_qd", (late, 0, 2), speed), "body_q", (late, 0, 2), way)
     assert not only(ask(CheckExplosion(), thrown)).passed
+
+
+@pytest.mark.parametrize(("share", "passes"), [(2.0 / 7.0, True), (3.0, False)])
+def test_what_spins_may_run_off_by_its_rim(share, passes):
+    """Set down with a spin alone a ball comes to roll at 2/7 of the speed of its rim."""
+    still = ball()
+    rim = 30.0 * still.shapes[0].size[0]
+    t = times(0.5)
+    speed = np.zeros((len(t), 3))
+    speed[5:, 0] = share * rim
+    way = np.zeros((len(t), 3))
+    way[1:] = np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(t)[:, None], axis=0)
+    spinning = still.model_copy(update={"angular_velocity": (0.0, 30.0, 0.0)})
+    found = only(ask(CheckExplosion(), record([spinning], np.array(still.position) + way, speed, t)))
+    assert found.passed == passes

@@ -52,7 +52,7 @@ class CheckExplosion(Check):
         return found
 
     def _free_speed(self, evidence: Evidence) -> float:
-        """sqrt(v0^2 + 2 g dz): the speed of the fastest thing at the start after the longest fall there is [m/s]."""
+        """sqrt(v0^2 + 2 g dz): the fastest point of a body at the start after the longest fall there is [m/s]."""
         world = evidence.world
         tops = [float(evidence.ends(i)[1][0]) for i in range(len(world.bodies))]
         up = evidence.up
@@ -64,7 +64,10 @@ class CheckExplosion(Check):
             lows = [float((evidence.track(fluid).position @ up).min()) for fluid in world.fluids]
         lows += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
-        start = max((float(np.linalg.norm(body.velocity)) for body in world.bodies), default=0.0)
+        # What spins may hand on the speed of its rim: a joint there, or the ground, makes it another's.
+        speeds = [(np.linalg.norm(body.velocity), np.linalg.norm(body.angular_velocity)) for body in world.bodies]
+        rims = zip(speeds, evidence.motion.radius, strict=True)
+        start = max((float(speed + spin * radius) for (speed, spin), radius in rims), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:
