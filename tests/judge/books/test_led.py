@@ -162,7 +162,7 @@ def test_damping_that_is_another(tmp_path, build, by, found):
 
 @pytest.mark.parametrize("build", [shaken, shaken_rope])
 def test_half_a_step_of_what_a_path_leads_adds_up_to_nothing(tmp_path, build):
-    """Its velocity is that of the step before: with it springs' work would be 0.7 % of the energy a second too much."""
+    """Its velocity is that of the step before: with it springs' work would be 0.8 % of the energy a second too much."""
     run = record(tmp_path, build, seconds=3.0)
     evidence = Evidence(run)
     motion, led = evidence.motion, Led.of(evidence)
