@@ -30,15 +30,8 @@ def held(scene, stiffness, damping=0.0):
                  damping=damping)  # fmt: skip
 
 
-def slab(scene):
-    """The same on a kinematic slab."""
-    scene.box("slab", size=(3, 0.5, 0.1), position=(0, 0, -0.05), kinematic=True, velocity=(0.5, 0, 0), friction=0.3)
-    scene.box("block", size=(0.2, 0.2, 0.1), mass=2.0, position=(0, 0, 0.05))
-    held(scene, 15.0)
-
-
 def plate(scene):
-    """And on one that a path leads to and fro, on which it slips and sticks."""
+    """One on a plate that a path leads to and fro, on which it slips and sticks."""
     scene.box("plate", size=(2, 1, 0.1), position=(0, 0, -0.05), kinematic=True, friction=0.4)
     scene.path("plate", times=[0, 0.25, 0.5], positions=[(0, 0, -0.05), (0.1, 0, -0.05), (0, 0, -0.05)], repeat=True)
     scene.box("block", size=(0.2, 0.2, 0.1), mass=2.0, position=(0, 0, 0.05))
@@ -111,17 +104,17 @@ def hinged(scene):
     scene.joint_revolute("pivot", "tug", "bob", axis="Y", anchor=(0, 0, 1.5))
 
 
-WORLDS = [belt, slab, plate, tow, series, shaken, shaken_rope, hoist, lift, pushed, trailer, hinged]
+WORLDS = [belt, plate, tow, series, shaken, shaken_rope, hoist, lift, pushed, trailer, hinged]
 
 
-def stage(folder, build, seconds=1.0):
+def stage(folder, build, seconds=0.8):
     scene = Scene()
     scene.simulation(duration=seconds, frame_rate=60.0)
     build(scene)
     return scene.save(folder / "stage.usda")
 
 
-def record(folder, build, seconds=1.0):
+def record(folder, build, seconds=0.8):
     Simulation(stage(folder, build, seconds), device="cpu").run(folder / "run.rrd")
     return read(folder / "run.rrd")
 
@@ -169,7 +162,7 @@ def test_damping_that_is_another(tmp_path, build, by, found):
 
 @pytest.mark.parametrize("build", [shaken, shaken_rope])
 def test_half_a_step_of_what_a_path_leads_adds_up_to_nothing(tmp_path, build):
-    """Its velocity is that of the step before: with it springs' work would be 0.7 % of the energy a second too much."""
+    """Its velocity is that of the step before: with it springs' work would be 0.8 % of the energy a second too much."""
     run = record(tmp_path, build, seconds=3.0)
     evidence = Evidence(run)
     motion, led = evidence.motion, Led.of(evidence)
@@ -196,7 +189,7 @@ def test_what_is_not_told_of_one_mechanism_hides_nothing_of_another(tmp_path):
 
 
 def test_the_work_of_a_force_that_changes_as_what_it_moves_does(tmp_path):
-    """∫ sin(w t) (1 + cos(w t)) dt by the impulses of intervals of 0.25 rad: to 1e-4, and within what is unsure."""
+    """∫ sin(w t) (1 + cos(w t)) dt by the impulses of intervals of 0.25 rad: to 1e-3 of 1 / w, and as it says."""
     run = record(tmp_path, tow)
     t, w = run.time, 15.0
     force = np.diff(-np.cos(w * t) / w)[:, None]

@@ -104,7 +104,8 @@ class Losses:
         led = Led.of(self._evidence)
         lost, rubbed = self._by_contacts(rows), np.zeros(len(inside))
         if led.work[:, rows].any():
-            rubbed, lost = self._rubs[0], np.where(np.isfinite(self._rubs[1]), self._rubs[1], lost)
+            rubbed, most_rubbed, goes_on = self._rubs
+            lost = np.where(goes_on, np.maximum(lost, most_rubbed), np.minimum(lost, most_rubbed))
         most += np.bincount(frame, lost[inside], intervals)
         least += np.bincount(frame, rubbed[inside], intervals)
         damped, off = self._damped(ours)
@@ -162,8 +163,10 @@ class Losses:
         return np.asarray(runs[self._contacts.track.pair].any(axis=1))
 
     @cached_property
-    def _rubs(self) -> tuple[Floats, Floats]:
+    def _rubs(self) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """What friction takes at least and at most where surfaces go on slipping, (n,) each [J]; 0 and inf elsewhere.
+
+        And whether a blow of before goes on there: what this takes is no less than that.
 
         What is led works all the while, and most of that may go into friction: what this takes at most by its size
         alone would hide as much of a gain or of a loss. Within an interval slip and turning are those of both its ends,
@@ -173,11 +176,14 @@ class Losses:
         pressed = np.maximum(track.pressed.astype(np.float64), 1e-30)
         found, unsure = taken(contacts)
         found = found + late(contacts)[:, None]
-        rocks, _ = self._turned(pressed, track.along / pressed[:, None], np.maximum(track.frame, 1), self._laws[1])
+        normal = track.along / pressed[:, None]
+        rocks, _ = self._turned(pressed, normal, np.maximum(track.frame, 1), self._laws[1])
         lasts = contacts.lasting & (pressed <= self._steady)
         least = np.maximum(found.min(axis=1) - unsure, 0.0)
         most = np.maximum(found.max(axis=1), 0.0) + unsure + (contacts.rubbed + pressed) * rocks
-        return np.where(lasts, least, 0.0), np.where(lasts, most, np.inf)
+        closes = -np.einsum("ni,ni->n", contacts.slip[:, 0], normal)
+        goes_on = lasts & (closes > 2.0 * self._evidence.gravity * self._motion.h[np.maximum(track.frame, 1) - 1])
+        return np.where(lasts, least, 0.0), np.where(lasts, most, np.inf), goes_on
 
     def _within(self, rows: Rows, blow: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """How fast surfaces may meet, and slip, within intervals, (2, n) [m/s]; what of each contact is no blow, (n,).
