@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.judge.theory import RADIUS, G, ask, ball, box, edited, record, times
+from wsim.judge.books.arms import shaken
 from wsim.judge.books.balance import Books
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.evidence.evidence import Evidence
@@ -64,3 +65,23 @@ def test_what_is_unsure_of_a_tie_is_so_of_what_it_is_pressed_on_through_a_contac
     assert theory < lies < 2.0 * theory  # of both parts, and of each component
     away = edited(sound, "body_q", (slice(None), 1, slice(0, 2)), [3.0, 3.0])
     assert Books.of(Evidence(away)).turned[3, 1, 0] == 0.0
+
+
+@pytest.mark.parametrize("turn", [0.3, 1.0, 2.0, 2.8])
+def test_the_mean_of_an_arm_that_shakes_is_known_to_how_far_its_turns_stray(turn):
+    """A box rocks on a hinge at its middle by 0.05 rad, `turn` a frame, which frames may tell or not."""
+    t, rock = times(1.0, RATE), 0.05
+    none = 0.0 * t
+    angle, rate = rock * np.cos(turn * RATE * t + 0.4), -rock * turn * RATE * np.sin(turn * RATE * t + 0.4)
+    rotation = np.stack([none, none, np.sin(angle / 2), np.cos(angle / 2)], axis=1)
+    place = np.stack([none, none, none + 1.0], axis=1)
+    hinge = Joint(prim="/World/hinge", kind="revolute", parent=None, child="/World/box", axis="Z",
+                  parent_anchor=(0, 0, 1), child_anchor=(0, 0, 0))  # fmt: skip
+    rocks = record([box("box", (0.2, 0.2, 0.2), 1.0)], place, 0.0 * place, t, rotation=rotation,
+                   spin=np.stack([none, none, rate], axis=1), joints=[hinge])  # fmt: skip
+    swing = turn * np.arange(len(t)) + 0.4
+    mean = rock * np.diff(np.sin(swing)) / turn
+    missed = np.abs(mean - 0.5 * (angle[1:] + angle[:-1]))
+    allowed = shaken(Evidence(rocks, None))[:, 0] + (2 * rock * np.sin(min(turn, np.pi) / 2)) * turn / 12.0
+    assert np.all(missed <= allowed)
+    assert allowed.max() < max(6.0 * missed.max(), turn**2 * rock)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
+    Bools = NDArray[np.bool_]
     Floats = NDArray[np.float64]
 
 
@@ -111,16 +112,18 @@ class CheckRecordedForces(Check):
         cosine = np.einsum("ni,ni->n", across[:, 0], across[:, 1]) / np.maximum(speed.prod(axis=1), 1e-30)
         # As in the books, it lasts where it would have a frame longer: else it may have stuck, or turned and come back.
         change, slowest = np.linalg.norm(across[:, 1] - across[:, 0], axis=1), speed.min(axis=1)
-        lasts = contacts.loose & contacts.lasting & (cosine > ONE_WAY)
+        lasts = contacts.lasting & (cosine > ONE_WAY)
         lasts &= slowest > np.maximum(STILL + contacts.rolled, change)
         # Landings that turn a slip turn its friction: they change it by at most the sine of that of its speed.
+        held = self._chattering(evidence, contacts, lasts, normal, (across, speed))
+        lasts &= contacts.loose
         aside = contacts.landed(Books.of(evidence).landed)
         rows = np.flatnonzero(lasts & (contacts.friction > 0.0))
         aside[rows] += contacts.knocked(rows, normal, change[rows])
         aside /= np.maximum(slowest, 1e-30)
         rows = rows[aside[rows] < 1.0]
         if not len(rows):
-            return []
+            return held
         mean = across[rows].mean(axis=1)
         way = mean / np.linalg.norm(mean, axis=1, keepdims=True)
         rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
@@ -133,6 +136,7 @@ class CheckRecordedForces(Check):
         k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(given[worst]), float(slack[worst])
         resisted = ", with what resists rolling," if least[worst] < friction[worst] else ""
         return [
+            *held,
             self._of_row(
                 evidence, contacts, k, f"slip, and rub with {value:.3g} of what they press; their friction is"
                 f"{resisted} {expected:.3g}", abs(value - expected), limit, "1",
@@ -140,6 +144,40 @@ class CheckRecordedForces(Check):
                 f"{self.edge:g} of the friction, and how far slips turn, by what lands in between, too",
             )
         ]  # fmt: skip
+
+    def _chattering(
+        self, evidence: Evidence, contacts: RecordedContacts, lasts: Bools, normal: Floats, slips: tuple[Floats, Floats]
+    ) -> list[Finding]:
+        """All that slips of what hangs on joints rubs, together, with all its friction.
+
+        Links of a cable chatter between frames, so that each may rub otherwise for a while. A slip that changes by a
+        share x of its speed turns by x at most, and loses 1 - √(1 - x²) of its friction.
+        """
+        across, speed = slips
+        rows = np.flatnonzero(lasts & ~contacts.loose & (contacts.friction > 0.0))
+        most = contacts.rubs(normal, speed)[0] * np.maximum(contacts.track.pressed.astype(np.float64), 0.0)
+        owner = np.where(evidence.motion.jointed[np.maximum(contacts.body[:, 0], 0)] & (contacts.body[:, 0] >= 0),
+                         contacts.body[:, 0], contacts.body[:, 1])  # fmt: skip
+        found = []
+        for unit in np.unique(evidence.motion.unit[owner[rows]]):
+            own = rows[evidence.motion.unit[owner[rows]] == unit]
+            if not (total := float(most[own].sum())) > 0.0:
+                continue
+            way = across[own].mean(axis=1)
+            way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-30)
+            rubs = -np.einsum("ni,ni->n", (contacts.track.impulse - contacts.track.along)[own].astype(np.float64), way)
+            change = np.linalg.norm(across[own, 1] - across[own, 0], axis=1) / speed[own].min(axis=1)
+            lost = float((most[own] * (1.0 - np.sqrt(1.0 - np.minimum(change, 1.0) ** 2))).sum()) / total
+            share, k = float(rubs.sum()) / total, int(own[np.argmax(most[own])])
+            found.append(
+                self._of_row(
+                    evidence, contacts, k, f"and all that slips as they do rub with {share:.3g} of their friction",
+                    abs(1.0 - share), self.edge + self.cone + lost, "1",
+                    "What slips on joints rubs with all its friction",
+                    f"{self.edge:g} of the friction, and how far slips turn between two frames",
+                )
+            )  # fmt: skip
+        return found
 
     def _there(self, evidence: Evidence, contacts: RecordedContacts) -> Finding:
         """They act where both surfaces are."""
