@@ -1,7 +1,8 @@
 """Which bodies do in an interval what they did in one before, so that the same impulses explain it again.
 
-What stands is solved once: where it, and all that it may touch, is where it was and goes as it went, the impulses that
-were admissible still are. What they then leave is the change now less the change then, added to what they left.
+What stands is solved once: where it, and all that touches it, is where it was and goes as it went, the impulses that
+were admissible still are; where some of them came from what was apart, where all that it may touch does. What they then
+leave is the change now less the change then, added to what they left.
 """
 
 from __future__ import annotations

@@ -221,15 +221,14 @@ class Touching:
         qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
         margins = self._margin.reshape(len(self.worlds), -1)
         body = self._row_of_shape[self._shape_of_geom]  # of each geom; the world's is the last
-        every = np.append(np.ones(poses.shape[1], dtype=bool), False)
-        asked = [every] * len(poses) if about is None else np.pad(about, ((0, 0), (0, 1)))
+        asked = np.pad(np.ones(poses.shape[:2], dtype=bool) if about is None else about, ((0, 0), (0, 1)))
+        by_geom = reach[:, body] + margins[worlds][:, self._shape_of_geom], asked[:, body]
+        by_body = np.roll(reach, 1, axis=1) + margins.max(axis=1, initial=0.0)[worlds, None], np.roll(asked, 1, axis=1)
         geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
-        for pose, far, world, ours in zip(qpos, reach, worlds, asked, strict=True):
-            model, data, margin = self._models[world], self._data[world], margins[world]
-            model.geom_margin[:] = far[body] + margin[self._shape_of_geom]
-            model.body_margin[:] = np.roll(far, 1) + margin.max(initial=0.0)
-            model.geom_conaffinity[:] = ours[body]  # two of which neither is asked for are passed over
-            model.body_conaffinity[:] = np.roll(ours, 1)
+        for pose, world, far, ours, far_body, ours_body in zip(qpos, worlds, *by_geom, *by_body, strict=True):
+            model, data = self._models[world], self._data[world]
+            model.geom_margin[:], model.body_margin[:] = far, far_body
+            model.geom_conaffinity[:], model.body_conaffinity[:] = ours, ours_body  # others pass over each other
             data.qpos[:] = pose
             self._mujoco.mj_kinematics(model, data)
             self._mujoco.mj_comPos(model, data)
