@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.judge.theory import G, ask, with_world
+from tests.judge.theory import G, with_world
 from wsim.judge import judge
 from wsim.judge.books.led import led_work
-from wsim.judge.checks.recorded import CheckRecordedForces
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Scene
@@ -120,28 +119,3 @@ def test_a_hand_whose_rope_did_less_than_the_weight_gained_is_found(run):
     less = ties.cords.copy()
     less[:, 0, :3] *= 0.9  # on the hand alone: nothing but the energy asks for that
     assert "CheckEnergy" in failing(replace(run(drawn), ties=replace(ties, cords=less)))
-
-
-def slipping(scene):
-    """A cable that slips over a post, four times as much at one end as at the other."""
-    ring, mu = 0.108, 0.4
-    scene.cylinder("post", radius=0.1, height=0.3, axis="Y", static=True, friction=mu)
-    turn = [(ring * math.cos(a), 0, ring * math.sin(a)) for a in np.linspace(math.pi, 0, 37)]
-    for name, x, mass in (("left", -ring, 0.25), ("right", ring, 1.0)):
-        scene.box(name, size=(0.05,) * 3, mass=mass, position=(x, 0, -0.225))
-    scene.cable("c", "left", "right", anchor_a=(-ring, 0, -0.2), anchor_b=(ring, 0, -0.2), through=turn, links=14,
-                mass_per_length=0.1, radius=0.008, friction=mu)  # fmt: skip
-
-
-@pytest.mark.parametrize(("share", "found"), [(1.0, False), (1.5, True)])
-def test_friction_at_the_post_that_is_a_third_less_than_stated_is_found(run, share, found):
-    recording = run(slipping)
-
-    def rubs(thing):
-        shapes = [shape.model_copy(update={"friction": share * shape.friction}) for shape in thing.shapes]
-        return thing.model_copy(update={"shapes": shapes})
-
-    world = recording.world
-    stated = with_world(recording, bodies=[*map(rubs, world.bodies)], statics=[*map(rubs, world.statics)])
-    off = [finding for finding in ask(CheckRecordedForces(), stated) if not finding.passed]
-    assert bool(off) == found
