@@ -26,13 +26,13 @@ class Books:
             for part in ("mass", "inertia", "com")
         )
         self._gravity = np.array(self.simulation.world.gravity)
-        self.kinetic, self.energy, self.momentum, self.spin, self.v = [], [], [], [], []
+        self.kinetic, self.energy, self.momentum, self.spin, self.v, self.center = [], [], [], [], [], []
         self._note()
         while self.simulation.time < seconds - 1e-9:
             self.simulation.step()
             self._note()
         assert self.simulation.problems() == []
-        parts = ("kinetic", "energy", "momentum", "spin", "v")
+        parts = ("kinetic", "energy", "momentum", "spin", "v", "center")
         for part in parts:
             setattr(self, part, np.array(getattr(self, part)))
 
@@ -49,6 +49,7 @@ class Books:
         self.momentum.append((mass * v).sum(axis=0))
         self.spin.append((np.cross(center, mass * v) + rotate(pose[:, 3:], turning)).sum(axis=0))
         self.v.append(v)
+        self.center.append(center)
 
     @property
     def gain(self):

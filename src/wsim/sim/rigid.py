@@ -100,7 +100,9 @@ class RigidBodies:
         # gains 1.9 % of its potential energy with MuJoCo's first-order default, and 2e-6 of it with Runge-Kutta.
         # Beside a fluid the acoustic step is shorter, and the fluid's wrench is first-order anyway.
         swings = bool(world.joints or world.springs)
-        smooth = swings and model.particle_count == 0 and not any(is_overdamped(each, dt) for each in worlds)
+        smooth = swings and model.particle_count == 0
+        if not self.on_c:  # there no step but the first order's is implicit in drives
+            smooth = smooth and not any(is_overdamped(each, dt) for each in worlds)
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
         rims = CylinderContacts(cylinders, ContactConfig().reach) if cylinders else None

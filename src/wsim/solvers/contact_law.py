@@ -80,7 +80,7 @@ class ContactLawC:
         model: MuJoCo's model.
         flight: Steps the loose bodies.
         surfaces: Of the geoms of the one world.
-        smooth: Whether steps without contacts and stops are by Runge and Kutta's fourth order.
+        smooth: Whether mechanisms may go by Runge and Kutta's fourth order.
         config: How the law is applied.
         breaking: What breaks joints, if any may break.
         touching: Finds contacts with what MuJoCo does not know.
@@ -115,9 +115,12 @@ class ContactLawC:
         self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
         self._groups = tied_groups(mujoco, model)
-        moves_as_one = mechanisms(mujoco, model, self._groups, flight.stated) if smooth else np.zeros(model.nbody, int)
+        moves_as_one = np.zeros(model.nbody, dtype=int)
+        if smooth:
+            moves_as_one = mechanisms(mujoco, model, self._groups, flight.stated, driven=True)
         self.owners = Owners(mujoco, model, moves_as_one)
-        self.smooth_steps = SmoothStepsC(mujoco, model, self.owners)
+        self.smooth_steps = SmoothStepsC(mujoco, model, self.owners, drives)
+        self._stiff = drives is not None and bool(drives.stiff.any())
         self.blows = BlowsC(mujoco, model, config, self._aim_others)
         self._divides = touching is None and not flight.stated[1:].any()
         tilt_cylinders(mujoco, model)
@@ -169,15 +172,17 @@ class ContactLawC:
     def _end(self, data: Any, touching: bool) -> None:
         """Move by the time step."""
         model = self.model
-        whole = self.smooth and not touching
+        whole = self._is_whole(touching)
         force = self.blows.forces_after(data)
         smooth, pushed = self.smooth_steps.choose(data, whole, force)
         struck = self.owners.with_motion(self.blows.jump)
         # Rows that close a loop ask that a speed be gone by the step's end, as the first order has it; of what they
         # then push with at its start Runge and Kutta's stages give 5/8, and that is not what is recorded.
         smooth &= ~(struck & self.owners.closed)
-        parts = self.smooth_steps.parts(data, smooth)
-        alone = smooth & (pushed | struck | (parts > 1))  # of which all of the step is recorded by itself
+        rate = data.qacc - self.blows.jump / model.opt.timestep
+        parts = max(self.smooth_steps.parts(data, smooth), self.smooth_steps.parts_of_reversal(data, rate, smooth))
+        alone = smooth & (pushed | struck | self.smooth_steps.rubbed(data) | (parts > 1))
+        # Of these all of the step is recorded by itself.
         note = self._tell_ties(data, force, smooth, struck, alone)
         self.blows.take_from(data)
         if whole and parts == 1:
@@ -217,6 +222,10 @@ class ContactLawC:
             return None
         return lambda beside, span: ties.add(beside, span * alone)
 
+    def _is_whole(self, touching: bool) -> bool:
+        """Whether all of the world goes by the fourth order, without a row of contacts, stops, friction or drives."""
+        return self.smooth and not touching and not self._stiff
+
     def _forward(self, data: Any) -> bool:
         """The blows of the step, and accelerations after them; whether a contact, a stop or dry friction may be among
         their causes."""
@@ -224,7 +233,7 @@ class ContactLawC:
         self._position(data)
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
-            self.drives.choose(data, are_rows=touching or not self.smooth)
+            self.drives.choose(data, are_rows=not self._is_whole(touching))
         self._accelerate(data, touching)
         contacts = self._contacts(data)
         if contacts is None:
@@ -244,7 +253,7 @@ class ContactLawC:
         """Accelerations without constraints, at the present velocities."""
         mujoco, model = self.mujoco, self.model
         mujoco.mj_fwdVelocity(model, data)
-        if touching or not self.smooth:
+        if not self._is_whole(touching):
             self.flight.tumble(model.opt.timestep)
         mujoco.mj_fwdActuation(model, data)
         if self.drives is not None:

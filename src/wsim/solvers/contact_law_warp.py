@@ -65,7 +65,9 @@ class ContactLawWarp:
         self._touching, self._cylinders = touching, cylinders
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
         groups = tied_groups(mujoco, host)
-        moves_as_one = mechanisms(mujoco, host, groups, flight.stated) if smooth else np.zeros(host.nbody, dtype=int)
+        moves_as_one = np.zeros(host.nbody, dtype=int)
+        if smooth:
+            moves_as_one = mechanisms(mujoco, host, groups, flight.stated, driven=False)
         owners = Owners(mujoco, host, moves_as_one)
         self._memory = KeptMemory(data.qpos.device)
         wp.load_module(slips, device=data.qpos.device)  # before a graph is captured: a first step may touch nothing

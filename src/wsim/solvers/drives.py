@@ -17,6 +17,10 @@ import warp as wp
 
 from wsim.kernels.drives import aim_drives, take_over
 
+Array = np.ndarray
+STIFF_SHARE = 0.5  # of a speed, lost in a step
+STIFF_GROUP = 30  # of MuJoCo's actuators, the last that can be disabled
+
 
 @dataclass(frozen=True)
 class DriveRow:
@@ -53,15 +57,20 @@ def _damping(model: Any, actuators: tuple[int, ...]) -> float:
 
 
 class DrivesC:
-    """Drives as rows of MuJoCo in C, in steps of the first order alone.
+    """Drives as rows of MuJoCo in C, in whatever step is solved for accelerations.
 
     Args:
         mujoco: The module.
-        model: MuJoCo's model.
+        model: MuJoCo's model; the actuators of drives that are stiff get a group of their own.
         rows: Its drives.
+        time_step: Of the steps to come [s].
+
+    Attributes:
+        stiff: Whether a drive takes a speed away in about a step, so that Runge and Kutta's stages cannot follow it.
+        held: MuJoCo's flag of the actuators of those.
     """
 
-    def __init__(self, mujoco: Any, model: Any, rows: list[DriveRow]) -> None:
+    def __init__(self, mujoco: Any, model: Any, rows: list[DriveRow], time_step: float) -> None:
         self.mujoco, self.model, self._rows = mujoco, model, rows
         self._dofs = np.array([row.dof for row in rows])
         self._of_tendon = {row.tendon: k for k, row in enumerate(rows)}
@@ -70,6 +79,35 @@ class DrivesC:
         for k, row in enumerate(rows):
             self._moment[k, list(row.actuators)] = 1.0
         self._off, self._are_rows = int(mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS), True
+        self.stiff = self._rates() * time_step > STIFF_SHARE
+        self.held = 1 << STIFF_GROUP
+        for k in np.flatnonzero(self.stiff).tolist():
+            model.actuator_group[list(rows[k].actuators)] = STIFF_GROUP
+
+    def _rates(self) -> Array:
+        """How fast the damping of all of them may take away each one's speed, where the model starts, (drives,) [1/s].
+
+        These are Gershgorin's circles of the mobility times the damping.
+        """
+        mujoco, model = self.mujoco, self.model
+        data, unit = mujoco.MjData(model), np.eye(model.nv)[self._dofs]
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_makeM(model, data)
+        mujoco.mj_factorM(model, data)
+        yields = np.zeros_like(unit)
+        mujoco.mj_solveM(model, data, yields, unit)
+        return np.asarray(np.abs(yields[:, self._dofs]) @ self._damping)
+
+    def stiff_rows(self, data: Any) -> Array:
+        """The rows of stiff drives in a solution."""
+        rows, order = self._drive_rows(data)
+        return np.asarray(rows[self.stiff[order]])
+
+    def _drive_rows(self, data: Any) -> tuple[Array, Array]:
+        """The rows of drives in a solution, and the drives that they are of."""
+        rows = np.flatnonzero(data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON)
+        return rows, np.array([self._of_tendon[tendon] for tendon in data.efc_id[rows].tolist()], dtype=int)
 
     def choose(self, data: Any, are_rows: bool) -> None:
         """Let the drives be rows in this step, or else MuJoCo's actuators, as Runge and Kutta's stages take them."""
@@ -86,8 +124,7 @@ class DrivesC:
         if not self._are_rows:
             return
         data.qfrc_actuator[self._dofs] = 0.0
-        rows = np.flatnonzero(data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON)
-        order = [self._of_tendon[tendon] for tendon in data.efc_id[rows].tolist()]
+        rows, order = self._drive_rows(data)
         weight = self._damping[order] * self.model.opt.timestep
         data.efc_D[rows], data.efc_R[rows] = weight, 1.0 / weight
         if data.nisland:  # MuJoCo solves copies, sorted by what hangs together

@@ -32,23 +32,24 @@ def tied_groups(mujoco: Any, model: Any) -> Array:
     return groups
 
 
-def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array) -> Array:
+def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array, *, driven: bool) -> Array:
     """Of each of MuJoCo's bodies the number of its mechanism, (bodies,): 0 for what is of none.
 
     A mechanism is a group with a joint, or what springs and ropes tie to it or to each other, all of which its smooth
-    step moves: one with a part that goes as stated, or with a drive that is a constraint row, is none.
+    step moves: one with a part that goes as stated is none.
 
     Args:
         mujoco: The module.
         model: MuJoCo's model.
         groups: Of the bodies (`tied_groups`).
         stated: Whether a body goes as is stated, (bodies,).
+        driven: Whether what has a drive that is a constraint row may be one.
     """
     together, barred = groups.copy(), set(groups[stated].tolist())
     for tendon in range(model.ntendon):
         bodies = tendon_bodies(mujoco, model, tendon)
         own = sorted({int(together[body]) for body in bodies} - {0})
-        if model.wrap_type[model.tendon_adr[tendon]] == mujoco.mjtWrap.mjWRAP_JOINT:
+        if not driven and model.wrap_type[model.tendon_adr[tendon]] == mujoco.mjtWrap.mjWRAP_JOINT:
             barred |= {int(groups[body]) for body in bodies}
         together[np.isin(together, own)] = own[0] if own else 0
     barred = {int(together[body]) for body in np.flatnonzero(np.isin(groups, list(barred)))} | {0}
@@ -58,6 +59,17 @@ def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array) -> Array:
         if len(parts) > 1 or np.count_nonzero(model.dof_bodyid == parts[0]) < FREE:
             found[parts] = found.max() + 1
     return found
+
+
+def joint_root(model: Any, one: int, two: int) -> int:
+    """The body that two bodies both hang on, which may be one of them; 0 where that is the world."""
+    above = {one}
+    while one:
+        one = int(model.body_parentid[one])
+        above.add(one)
+    while two not in above:
+        two = int(model.body_parentid[two])
+    return two
 
 
 def tendon_bodies(mujoco: Any, model: Any, tendon: int) -> list[int]:

@@ -3,7 +3,8 @@
 A push that is held over a step lags behind what it does, by half a step. Where its normal stays as it is, as on a
 floor, that is nothing, since what it presses does not move along it. Where the normal turns at w, as across a gutter,
 it gives w^2 h / 2 of the energy a second, as with loose bodies (`wsim.solvers.flight`); steps of the first order keep
-it. A blow, and what presses for an instant, have no time to.
+it. A blow, and what presses for an instant, have no time to. What hangs on the same body is pushed in the coordinates
+of the joints between, which turn with that body: from there the normals are seen.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import math
 from typing import Any
 
 import numpy as np
+
+from wsim.solvers.groups import joint_root
 
 Array = np.ndarray
 FAR = 0.2  # that a normal has turned by since its contact presses, of what is led [rad]
@@ -28,9 +31,16 @@ class Led:
     """
 
     def __init__(self, model: Any, of_geom: Array) -> None:
-        self._of_geom, self._count = of_geom, int(of_geom.max(initial=0)) + 1
+        self._model, self._of_geom, self._count = model, of_geom, int(of_geom.max(initial=0)) + 1
+        self._roots: dict[tuple[int, int], int] = {}
         self._seen: dict[tuple[int, int], tuple[float, float, float, Array]] = {}
         # since when each presses, until when, how far it turned, its normal
+
+    def root(self, one: int, two: int) -> int:
+        """The body that the bodies of two geoms both hang on; 0 for the world."""
+        if (one, two) not in self._roots:
+            self._roots[one, two] = joint_root(self._model, *self._model.geom_bodyid[[one, two]].tolist())
+        return self._roots[one, two]
 
     def mechanisms(self, data: Any, rows: Array) -> Array:
         """Mechanisms that contacts lead, (mechanisms,); these are `rows` of MuJoCo's that push now."""
@@ -39,7 +49,8 @@ class Led:
         ours = self._of_geom[geoms].any(axis=1)
         normals: dict[tuple[int, int], Array] = {}
         for (one, two), normal in zip(geoms[ours].tolist(), data.contact.frame[rows[ours], :3], strict=True):
-            normals[one, two] = normals.get((one, two), 0.0) + normal
+            turn = data.xmat[self.root(one, two)].reshape(3, 3)
+            normals[one, two] = normals.get((one, two), 0.0) + normal @ turn
         for pair, normal in normals.items():
             normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
             since, last, turned, before = self._seen.get(pair, (now, -math.inf, 0.0, normal))

@@ -1,26 +1,34 @@
-"""Steps of Runge and Kutta's fourth order for those mechanisms that touch nothing, and for worlds that do not.
+"""Steps of Runge and Kutta's fourth order for mechanisms, each by itself, and for worlds that touch nothing.
 
-A mechanism keeps its energy only with a higher order, and contacts and stops know none: each takes the one step or the
-other as it has, at the step's start, a stop or dry friction, or a contact that pushes. Beside a crate that rests a
-double pendulum gained 1.8 % of its energy in 5 s by steps of the first order, and a hinged pair that tumbled blew up.
-What is hit flies on from the speeds after its blows: by the first order a chain that a ball hit gained up to two thirds
-of its energy.
+A mechanism keeps its energy and its momentum only with a higher order, and stops and taut ropes know none: each takes
+the one step or the other as it has one at the step's start. Beside a crate that rests a double pendulum gained 1.8 % of
+its energy in 5 s by steps of the first order, and a hinged pair that tumbled blew up. What is hit flies on from the
+speeds after its blows: by the first order a chain that a ball hit gained up to two thirds of its energy.
+
+In C what a contact or a stiffly damped drive gives is that of the step's rows, implicit, and held over the step; dry
+friction and other drives are known to its stages. In Warp mechanisms with either, and what contacts push, go by the
+first order.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
 import warp as wp
 
 from wsim.kernels.smooth_steps import count_touching, find_touching, keep_where_touched
+from wsim.solvers.drives import DrivesC
 from wsim.solvers.groups import tendon_bodies
 from wsim.solvers.led import Led
 
 Array = np.ndarray
 LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
+REVERSAL_PARTS = 16  # of a step in which dry friction ends a motion or turns
+STILL = 1e-3  # of the speed that dry friction takes away in a step
 
 
 class Owners:
@@ -59,16 +67,20 @@ class SmoothStepsC:
         mujoco: The module.
         model: MuJoCo's model.
         owners: Which mechanism is whose.
+        drives: The drives that damp, if there are any.
     """
 
-    def __init__(self, mujoco: Any, model: Any, owners: Owners) -> None:
-        self._mujoco, self._model, self._owners = mujoco, model, owners
+    def __init__(self, mujoco: Any, model: Any, owners: Owners, drives: DrivesC | None) -> None:
+        self._mujoco, self._model, self._owners, self._drives = mujoco, model, owners, drives
         bits, rows = mujoco.mjtDisableBit, mujoco.mjtConstraint
-        self._unilateral = int(bits.mjDSBL_CONTACT | bits.mjDSBL_LIMIT | bits.mjDSBL_FRICTIONLOSS)
-        self._of_rows = (
+        self._unilateral, self._dry = int(bits.mjDSBL_CONTACT | bits.mjDSBL_LIMIT), int(bits.mjDSBL_FRICTIONLOSS)
+        self._stops = (
             (int(rows.mjCNSTR_LIMIT_JOINT), owners.of_joint),
-            (int(rows.mjCNSTR_FRICTION_DOF), owners.of_dof),
             (int(rows.mjCNSTR_LIMIT_TENDON), owners.of_tendon),
+        )
+        self._rubs = (
+            (int(rows.mjCNSTR_FRICTION_DOF), owners.of_dof),
+            (int(rows.mjCNSTR_FRICTION_TENDON), owners.of_tendon),
         )
         self._all = int(mujoco.mjtState.mjSTATE_INTEGRATION)
         self._state = np.zeros(mujoco.mj_stateSize(model, self._all))
@@ -81,19 +93,28 @@ class SmoothStepsC:
     def choose(self, data: Any, whole: bool, force: Array) -> tuple[Array, Array]:
         """Mechanisms that go by the fourth order, and those of them that contacts push, (mechanisms,) each.
 
-        That is all of a `whole` world, and else those without a stop, a taut rope or dry friction now. What contacts
-        push by their rows' `force` does where they do not lead it, and nothing closes a loop in it.
+        That is all of a `whole` world, and else those without a stop or a taut rope now. What contacts push by their
+        rows' `force` does where they do not lead it, and nothing closes a loop in it.
         """
         smooth, pushed = np.full(self._owners.count, whole), np.zeros(self._owners.count, dtype=bool)
         if not whole and self._owners.count > 1:
             rows = self._pushing(data, force)
             smooth[1:], pushed = True, self._of_contacts(data, rows)
-            for kind, owner in self._of_rows:
-                smooth[owner[data.efc_id[data.efc_type == kind]]] = False
+            smooth &= ~self._with(data, self._stops)
             smooth &= ~(pushed & (self._owners.closed | self._led.mechanisms(data, rows)))
             smooth[0] = False
         self.since = np.where(smooth, 0, self.since + 1)
         return smooth, pushed & smooth
+
+    def rubbed(self, data: Any) -> Array:
+        """Mechanisms with dry friction, or drives that are rows of the constraints, (mechanisms,)."""
+        return self._with(data, self._rubs)
+
+    def _with(self, data: Any, kinds: Sequence[tuple[int, Array]]) -> Array:
+        found = np.zeros(self._owners.count, dtype=bool)
+        for kind, owner in kinds:
+            found[owner[data.efc_id[data.efc_type == kind]]] = True
+        return found
 
     def pressed(self, data: Any, force: Array) -> Array:
         """Mechanisms that a contact pushes by its row's `force`, (mechanisms,)."""
@@ -118,11 +139,28 @@ class SmoothStepsC:
         turn = h * np.abs(data.qvel[ours]) + h * h * np.abs(data.qacc[ours])
         return int(min(max(1.0, np.ceil(turn.max() / LARGEST_TURN)), MOST_PARTS))
 
+    def parts_of_reversal(self, data: Any, rate: Array, which: Array) -> int:
+        """In how many parts a step is made near whose end dry friction in some mechanisms stops a motion, or turns.
+
+        A stage asks that a speed be gone a step later, so that friction gives way before what slips has come to rest.
+
+        Args:
+            data: MuJoCo's.
+            rate: Accelerations of its coordinates in the step, (nv,).
+            which: Of the mechanisms, (mechanisms,).
+        """
+        rows = np.flatnonzero(data.efc_type == self._rubs[0][0])
+        rows = rows[which[self._owners.of_dof[data.efc_id[rows]]]]
+        dofs, h = data.efc_id[rows], self._model.opt.timestep
+        speed = data.efc_vel[rows]
+        slips = np.abs(speed) > STILL * data.efc_frictionloss[rows] * self._model.dof_invweight0[dofs] * h
+        return REVERSAL_PARTS if (slips & (speed * (speed + 2.0 * h * rate[dofs]) <= 0.0)).any() else 1
+
     def step(self, data: Any) -> None:
         """Advance all of `data`, whose forces are known."""
         # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
         flags = self._model.opt.disableflags
-        self._model.opt.disableflags = flags | self._unilateral
+        self._model.opt.disableflags = flags | self._unilateral | self._dry
         self._mujoco.mj_RungeKutta(self._model, data, 4)
         self._model.opt.disableflags = flags
 
@@ -131,9 +169,11 @@ class SmoothStepsC:
     ) -> None:
         """Make the step from the state of `data` beside it, and keep it.
 
+        Its stages know dry friction and all drives but the stiff ones.
+
         Args:
             data: MuJoCo's.
-            force: Of its constraint rows, of which those of contacts are held over the step.
+            force: Of its constraint rows, of which those of contacts and of stiff drives are held over the step.
             pushed: Mechanisms that they push, (mechanisms,).
             parts: By how many steps.
             note: Told of what acts at the ends of each of these, and for how long that counts [s].
@@ -141,25 +181,108 @@ class SmoothStepsC:
         mujoco, model, beside = self._mujoco, self._model, self._beside
         mujoco.mj_getState(model, data, self._state, self._all)
         mujoco.mj_setState(model, beside, self._state, self._all)
-        if pushed.any():
-            beside.xfrc_applied[:] += np.where(pushed[self._owners.of_body, None], self._pushes(data, force), 0.0)
-        flags, h = model.opt.disableflags, model.opt.timestep
-        model.opt.disableflags, model.opt.timestep = flags | self._unilateral, h / parts
+        if self._drives is not None:
+            beside.qfrc_applied[:] += self._along_joints(data, force, self._drives.stiff_rows(data))
+        outer, inner, rows = self._contacts(data, pushed)
+        beside.xfrc_applied[:] += self._pushes(data, force, outer)
+        own = self._pushes(data, force, inner), self._along_joints(data, force, rows)
+        beside.qfrc_applied[:] += own[1]
+        with self._stages(parts):
+            self._advance(parts, note and partial(self._tell, note, own))
+
+    @contextmanager
+    def _stages(self, parts: int) -> Iterator[None]:
+        """Have MuJoCo's steps be parts of one, with drives for actuators and not for rows."""
+        option, loss = self._model.opt, self._model.tendon_frictionloss
+        kept = option.disableflags, option.timestep, option.disableactuator, loss.copy()
+        option.disableflags = (kept[0] | self._unilateral) & ~self._dry
+        option.timestep /= parts
+        self._model.dof_solref[:] = 0.0, -1.0 / option.timestep  # dry friction asks that a speed be gone by the end
+        if self._drives is not None:
+            option.disableactuator, loss[:] = self._drives.held, 0.0
+        try:
+            yield
+        finally:
+            option.disableflags, option.timestep, option.disableactuator, loss[:] = kept
+
+    def _advance(self, parts: int, note: Callable[[Any, float], None] | None) -> None:
+        mujoco, model, beside = self._mujoco, self._model, self._beside
+        h = model.opt.timestep
         mujoco.mj_forward(model, beside)
         for k in range(parts):
             if note is not None:
-                note(beside, (0.5 if k == 0 else 1.0) * h / parts)
+                note(beside, (0.5 if k == 0 else 1.0) * h)
             mujoco.mj_RungeKutta(model, beside, 4)
             if note is not None or k + 1 < parts:
                 mujoco.mj_forward(model, beside)
-        model.opt.disableflags, model.opt.timestep = flags, h
         if note is not None:
-            note(beside, 0.5 * h / parts)
+            note(beside, 0.5 * h)
 
-    def _pushes(self, data: Any, force: Array) -> Array:
-        """What contacts give each body, about its centre of mass, (bodies, 6)."""
+    def _tell(self, note: Callable[[Any, float], None], own: tuple[Array, Array], beside: Any, span: float) -> None:
+        """Tell of what parts of a mechanism push each other with as of what pushes bodies, as other contacts do.
+
+        Args:
+            note: Whom.
+            own: What that is on the bodies at the step's start, and what of it is held along the coordinates.
+            beside: MuJoCo's data.
+            span: For which it counts [s].
+        """
+        pushes, along = own
+        if not along.any():
+            note(beside, span)
+            return
+        acts = beside.xfrc_applied.copy(), beside.qfrc_applied.copy()
+        beside.xfrc_applied[:] += pushes + self._about_joints(beside, along - self._given_along(beside, pushes))
+        beside.qfrc_applied[:] -= along
+        note(beside, span)
+        beside.xfrc_applied[:], beside.qfrc_applied[:] = acts
+
+    def _given_along(self, data: Any, pushes: Array) -> Array:
+        """What some pushes on bodies, (bodies, 6), give along the coordinates, (nv,)."""
+        found = np.zeros(self._model.nv)
+        for body in np.flatnonzero(pushes.any(axis=1)).tolist():
+            push, turn = pushes[body, :3], pushes[body, 3:]
+            self._mujoco.mj_applyFT(self._model, data, push, turn, data.xipos[body], body, found)
+        return found
+
+    def _about_joints(self, data: Any, along: Array) -> Array:
+        """Pushes on bodies, (bodies, 6), between ends of their joints, that give this along the coordinates, (nv,)."""
+        model, found = self._model, np.zeros((self._model.nbody, 6))
+        for dof in np.flatnonzero(along).tolist():
+            body = int(model.dof_bodyid[dof])
+            turn, push = along[dof] * data.cdof[dof, :3], along[dof] * data.cdof[dof, 3:]
+            slides = not turn.any()
+            found[body] += np.concatenate([push if slides else np.zeros(3), turn])
+            above = int(model.body_parentid[body])
+            arm = data.xipos[body] - data.xipos[above]
+            found[above] -= np.concatenate([push, np.cross(arm, push)] if slides else [np.zeros(3), turn])
+        found[0] = 0.0
+        return found
+
+    def _contacts(self, data: Any, pushed: Array) -> tuple[Array, Array, Array]:
+        """Contacts that push some mechanisms, (mechanisms,): from without, and between what hangs on the same body.
+
+        The rows of those come last. Held in the coordinates of the joints between them, these turn with the body that
+        both hang on, and give it nothing.
+        """
+        contact = data.contact
+        found = np.flatnonzero(contact.efc_address[: data.ncon] >= 0)
+        found = found[pushed[self._owners.of_geom[contact.geom[found]]].any(axis=1)]
+        inner = np.array([self._led.root(one, two) > 0 for one, two in contact.geom[found].tolist()], dtype=bool)
+        rows = [np.arange(contact.dim[k]) + contact.efc_address[k] for k in found[inner]]
+        return found[~inner], found[inner], np.concatenate([np.zeros(0, dtype=int), *rows])
+
+    def _along_joints(self, data: Any, force: Array, rows: Array) -> Array:
+        """What some rows give along the coordinates, (nv,)."""
+        found, only = np.zeros(self._model.nv), np.zeros(data.nefc)
+        if len(rows):
+            only[rows] = force[rows]
+            self._mujoco.mj_mulJacTVec(self._model, data, found, only)
+        return found
+
+    def _pushes(self, data: Any, force: Array, rows: Array) -> Array:
+        """What some contacts give each body, about its centre of mass, (bodies, 6)."""
         contact, found = data.contact, np.zeros((self._model.nbody, 6))
-        rows = np.flatnonzero(contact.efc_address[: data.ncon] >= 0)
         at = contact.efc_address[rows, None] + np.arange(6)
         each = np.where(np.arange(6) < contact.dim[rows, None], force[np.minimum(at, len(force) - 1)], 0.0)
         push, spin = np.moveaxis(

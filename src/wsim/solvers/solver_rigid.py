@@ -38,7 +38,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         model: The Newton model.
         surfaces: Of the shapes of all worlds alike, or of each; where of each, worlds differ in numbers.
         on_c: Whether MuJoCo in C steps the first world alone.
-        smooth: Whether steps that touch nothing are of the fourth order.
+        smooth: Whether steps that touch nothing are of the fourth order; in C all the same where drives are stiff.
         may_touch: Whether any contact, stop or dry friction can come up.
         time_step: Of the steps to come [s].
         breakable: The joints that may break, of all worlds alike or of each.
@@ -102,7 +102,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if on_c:
             if cylinders:
                 cylinders.bind_c(self.mj_model, self.mj_data)
-            drives: Any = DrivesC(mujoco, self.mj_model, driven) if driven else None
+            drives: Any = DrivesC(mujoco, self.mj_model, driven, time_step) if driven else None
             self._law_c = ContactLawC(
                 mujoco,
                 self.mj_model,
