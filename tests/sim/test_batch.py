@@ -80,7 +80,9 @@ def test_each_world_moves_as_among_copies_of_itself(tmp_path: Path, build: Build
         np.testing.assert_allclose(batch.body_q[k], alone.body_q[0], atol=2e-5)
         np.testing.assert_allclose(batch.body_qd[k], alone.body_qd[0], atol=2e-3)
         for name, values in alone.scalars.items():
-            np.testing.assert_allclose(batch.scalars[name][k], values[0], rtol=1e-3, atol=1e-2, err_msg=name)
+            # Each solution may leave 0.02 m/s^2 of a body's acceleration without a cause (`ContactConfig.unbalanced`).
+            off = 2 * 0.02 * 2.5 if name.startswith("force/") else 1e-2
+            np.testing.assert_allclose(batch.scalars[name][k], values[0], rtol=1e-3, atol=off, err_msg=name)
     assert np.abs(batch.body_q[1:] - batch.body_q[:1]).max(axis=(0, 1, 3)).min() > 1e-3  # they do differ
     assert np.abs(batch.body_q - batch.body_q[:, :1]).max(axis=(0, 1, 3)).min() > 1e-2  # and move
 

@@ -113,12 +113,14 @@ def lock(solver: Any, hosts: Iterable[Any]) -> tuple[Array, LeadsC | LeadsWarp |
     model.eq_active0[welds] = 0
     solver.mj_data.eq_active[welds] = 0
     freedoms = (model.body_dofadr[bodies][:, None] + np.arange(6)).ravel()
+    free = model.stat.meaninertia * model.nv  # of M's trace, by which MuJoCo multiplies its tolerance
+    share = free / (free + float(inertia[0].sum()))
+    model.opt.tolerance *= share
     if on_c:
         return bodies, LeadsC(freedoms, inertia[0, freedoms])
     solver.give_warp("dof_armature", inertia)
     tolerance, active = solver.mjw_model.opt.tolerance, solver.mjw_data.eq_active.numpy()
-    free = model.stat.meaninertia * model.nv  # of M's trace, by which the tolerance is multiplied
-    tolerance.assign(tolerance.numpy() * free / (free + inertia[0].sum()))
+    tolerance.assign(tolerance.numpy() * share)
     active[:, welds] = False
     solver.mjw_data.eq_active.assign(active)
     with wp.ScopedDevice(solver.model.device):
