@@ -89,8 +89,8 @@ def shaken(evidence: Evidence) -> Floats:
 def early(evidence: Evidence, angle: Floats) -> Floats:
     """What steps of the first order miss of what an arm passes on, a share, (T - 1, B).
 
-    Of wsim's own mechanisms in C, as long as a joint of theirs has dry friction, or is so near a stop of its that the
-    step has a row for it (docs/rigid.md). Of other engines `wsim.judge.books.steps` says it.
+    Of wsim's own mechanisms in C, as long as a joint of theirs is so near a stop of its that the step has a row for it
+    (docs/rigid.md). Of other engines `wsim.judge.books.steps` says it.
 
     Args:
         evidence: T frames of B bodies.
@@ -102,8 +102,8 @@ def early(evidence: Evidence, angle: Floats) -> Floats:
         return np.zeros(angle.shape)
     for joint in evidence.world.joints:
         track = evidence.joint(joint)
-        near = np.full(len(evidence.time), joint.friction > 0.0)
-        if track is not None and not near.all():
+        near = np.zeros(len(evidence.time), dtype=bool)
+        if track is not None:
             for stop, side in ((joint.low, 1.0), (joint.high, -1.0)):
                 near |= stop is not None and side * (track.position - (stop or 0.0)) < STOP
         rows = motion.unit == motion.unit[evidence.index(joint.child)]

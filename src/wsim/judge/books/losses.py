@@ -394,7 +394,7 @@ class Losses:
             done.add(cord)
             tension = np.maximum(self._ties.track.tension[1:, n].astype(np.float64), 0.0)
             rate = np.abs(self._ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
-            starts = tension[:1] * (rate[0] <= self._evidence.gravity * self._motion.h[0])  # or it comes taut at once
+            starts = tension[:1] * (rate[0] <= self._evidence.gravity * self._motion.dt)  # or it comes taut at once
             around = np.concatenate([starts, tension, tension[-1:]])
             excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)
             found += excess * (np.maximum(rate[1:], rate[:-1]) + self._evidence.gravity * self._motion.h)
