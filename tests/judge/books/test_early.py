@@ -80,12 +80,12 @@ def test_a_gravity_that_is_another_is_found_beside_a_stop(elbows, share):
     assert off(with_world(elbows[0], gravity=(0.0, 0.0, -share * 9.81)))
 
 
-@pytest.mark.parametrize("share", [0.67, 0.9])
+@pytest.mark.parametrize("share", [0.67, 0.9, 1.1, 1.33, 2.0])
 def test_a_friction_that_is_another_is_found_in_a_linkage(crank, share):
     joints = [joint.model_copy(update={"friction": share * joint.friction}) for joint in crank.world.joints]
     told = with_world(crank, joints=joints)
-    assert off(told, CheckForces)
     assert off(told, CheckRecordedTies)
+    assert bool(off(told, CheckForces)) == (share < 1.0)  # joints may rub less: what is recorded of them explains it
 
 
 def test_a_push_on_a_linkage_is_found(crank):

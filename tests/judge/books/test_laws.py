@@ -1,12 +1,14 @@
 """Springs, drives, dry friction and stops: simulated as one world has them, judged as another states them."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from tests.judge.test_turned import simulated
 from tests.judge.theory import ask, with_world
 from wsim.judge.checks.forces import CheckForces
+from wsim.judge.checks.recorded_ties import CheckRecordedTies
 from wsim.scene import Drive
 
 
@@ -62,10 +64,15 @@ def driven(recording, **fields):
     (door, lambda r: changed(r, "joints", "hinge", low=None, high=None)),
 ])  # fmt: skip
 def test_what_is_a_tenth_off_is_found(tmp_path, build, wrong):
-    """By a tenth of stiffness, friction, rest length, by three tenths of damping; a stop that nothing states."""
+    """By a tenth of stiffness, friction, rest length, by three tenths of damping; a stop that nothing states.
+
+    Where it is recorded what ties gave, that explains the motion, and is held against the laws by itself.
+    """
     recording = simulated(tmp_path, build, 1.0)
-    assert off(ask(CheckForces(), recording)) == []
-    assert off(ask(CheckForces(), wrong(recording))) != []
+    for check in (CheckForces(), CheckRecordedTies()):
+        assert off(ask(check, recording)) == []
+    assert off(ask(CheckForces(), replace(wrong(recording), ties=None))) != []
+    assert off(ask(CheckRecordedTies(), wrong(recording))) != []
 
 
 def test_a_stop_pushes_and_does_not_pull(tmp_path):

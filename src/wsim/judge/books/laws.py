@@ -188,6 +188,10 @@ class Laws:
         error = np.where(strained, 0.0, law.error)
         return replace(law, known=known, error=error, most=most if told else np.inf)
 
+    def slowing(self, joint: Joint) -> Floats:
+        """By how much dry friction slows a joint that is loose from all others, (T,) [m/s^2 or rad/s^2]."""
+        return joint.friction * self._along(joint).loose
+
     def _friction(self, friction: float, along: _Along, holds: Bools) -> Law:
         """It is known where the joint goes on all of an interval; at rest it may hold by anything up to as much."""
         law = self._law(*along.acting(-friction * np.sign(along.rate)), (0.0, 0.0), along.loose)

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 WORLD = -1
 OWN = ("revolute", "prismatic")  # kinds with one motion of their own
+EVEN = 0.05  # of its way, that something misses which goes on evenly
 
 
 @dataclass(frozen=True)
@@ -247,12 +248,19 @@ class RecordedTies:
         return jolts.struck(self._evidence, [*stops, *((pull.rows, pull.jerks) for pull in self.ropes.pulls)])
 
     def rubs(self, k: int) -> tuple[Floats, Bools, Floats]:
-        """Joint k's direction of motion, (T - 1,), where it has it at both ends of an interval, and the most of it
-        for which a blow may have turned it back, a share.
+        """Joint k's direction of motion, (T - 1,), where it has it all through an interval, and the most of it for
+        which a blow may have turned it back, a share.
+
+        It has it where friction could not stop what the joint holds in the interval, or not in a step where both rates
+        tell how far it went there and in the intervals beside: who turns back and again goes less far.
         """
         rate, joint, h = self.laws.rate(self.joints[k]), self.joints[k], self._evidence.motion.h
-        known = np.all([law.known for law in self.laws.joints[joint.prim]], axis=0)
-        lasts, at = known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0), self._evidence.joint(joint)
+        known, at = np.all([law.known for law in self.laws.joints[joint.prim]], axis=0), self._evidence.joint(joint)
+        if at is not None and joint.drive is None:
+            fast = np.abs(rate) > self.laws.slowing(joint) * self._evidence.motion.dt
+            evenly = _evenly(rate, np.diff(at.position), h) & fast[1:] & fast[:-1]
+            known |= evenly & ~broken(self._evidence, joint)[1:]
+        lasts = known & (rate[1:] * rate[:-1] > 0.0) & (h > 0.0)
         back = np.zeros(len(h)) if at is None else jolts.reversed_share(at.position, rate, h, self._evidence.motion.dt)
         return np.sign(rate[1:]), lasts, np.where(self.struck[:, self.pairs[k][1]], back, 0.0)
 
@@ -375,3 +383,11 @@ def _turn(vectors: Floats) -> Floats:
     step = np.linalg.norm(np.diff(vectors, axis=0), axis=1)
     found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
     return found
+
+
+def _evenly(rate: Floats, way: Floats, h: Floats) -> Bools:
+    """Where rates at frames (T,) tell how far something went, (T - 1,), there and in the intervals beside."""
+    told = np.abs(way - 0.5 * (rate[1:] + rate[:-1]) * h) < EVEN * np.abs(way)
+    told &= rate[1:] * rate[:-1] > 0.0
+    around = np.pad(told, 1)
+    return told & around[2:] & around[:-2]
