@@ -67,7 +67,7 @@ def turned(evidence: Evidence, size: Floats) -> Floats:
 def shaken(evidence: Evidence) -> Floats:
     """How far turns stray from the mean of the rates at both ends, (T - 1, B) [rad]: in each mechanism the most.
 
-    Of the interval and those beside it. Where a body turns by half a turn a frame or more nobody knows.
+    In the intervals beside it. Where a body turns by half a turn a frame or more nobody knows.
     """
     motion, q = evidence.motion, evidence.body_q[..., 3:]
     found = np.zeros((len(motion.h), len(motion.mass)))
@@ -79,7 +79,7 @@ def shaken(evidence: Evidence) -> Floats:
     angle = 2.0 * np.arctan2(size, turn[..., 3:]) * turn[..., :3] / np.maximum(size, 1e-12)
     off = np.linalg.norm(angle - 0.5 * (motion.w[1:] + motion.w[:-1]) * motion.h[:, None, None], axis=2)
     off = np.pad(off, ((1, 1), (0, 0)), mode="edge")
-    off = np.max([off[:-2], off[1:-1], off[2:]], axis=0)
+    off = np.maximum(off[:-2], off[2:])  # what strays in one interval alone does not swing
     for unit in np.unique(motion.unit[motion.jointed]):
         own = np.flatnonzero(motion.unit == unit)
         found[:, own] = np.minimum(off[:, own].max(axis=1, keepdims=True), 1.0)
