@@ -12,9 +12,7 @@ import warp as wp
 from wsim.kernels.kinematic import push
 
 Array = np.ndarray
-RATIO = (
-    1e6  # of a kinematic body's inertia to that of all that moves: what these move it by is lost in single precision
-)
+RATIO = 1e6  # of a kinematic body's inertia to that of all that moves, which move it by a millionth of their own way
 
 
 def locked(mujoco: Any, model: Any, bodies: Array) -> Array:
