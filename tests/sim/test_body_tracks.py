@@ -43,11 +43,15 @@ def told_by(simulation):
 
 @pytest.mark.parametrize("device", ["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
 def test_tracks_are_what_the_state_and_the_solver_say(tmp_path, device):
-    """On a GPU two runs add up in different orders: what rests creeps by 1e-7 m/s, in each by its own."""
+    """On a GPU two runs add up in different orders: what rests creeps by 1e-7 m/s, in each by its own.
+
+    Of 2 kg in a step of 1.25 ms that is 2e-4 N.
+    """
     stage = stage_of(tmp_path)
     kept = collect(Simulation(stage, device=device, world_count=WORLDS, seeds=range(WORLDS)))
     simulation = Simulation(stage, device=device, world_count=WORLDS, seeds=range(WORLDS))
     rows, same = simulation.built.bodies, np.array_equal if device == "cpu" else partial(np.allclose, atol=1e-5)
+    near = 1e-4 if device == "cpu" else 1e-3  # [N]
     for frame in range(len(kept.time)):
         if frame:
             simulation.advance_frame()
@@ -58,7 +62,7 @@ def test_tracks_are_what_the_state_and_the_solver_say(tmp_path, device):
         )
         assert same(kept.body_q[:, frame], q[:, rows])
         assert same(kept.body_qd[:, frame], qd[:, rows])
-        assert kept.contact_force[:, frame] == pytest.approx(force[:, rows], rel=1e-5, abs=1e-4)
+        assert kept.contact_force[:, frame] == pytest.approx(force[:, rows], rel=1e-5, abs=near)
         assert kept.penetration[:, frame] == pytest.approx(deepest, rel=1e-6, abs=1e-9)
 
 
