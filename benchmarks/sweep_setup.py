@@ -21,14 +21,13 @@ import json
 import os
 import platform
 import pstats
+import sys
 import tempfile
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
-
-from pxr import Work
 
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.decide import work_out
@@ -38,6 +37,7 @@ from wsim.judge.worlds import CHUNK, verdicts_of
 from wsim.plan.schema import Plan
 from wsim.plan.store import load
 from wsim.recording.trajectories import Trajectories
+from wsim.scene.usd_threads import ONE_THREAD
 from wsim.sim import Simulation
 from wsim.sim.collect import follow
 from wsim.sweep import Axis, Spec
@@ -197,6 +197,12 @@ def show(found: dict[str, Any]) -> None:
     print(f"trajectories {found['trajectories']}, verdicts {found['verdicts']}")
 
 
+def in_one_thread() -> None:
+    """Begin anew with USD in one thread, as a sweep's worker begins: it reads how many when it is loaded."""
+    if any(os.environ.get(name) != value for name, value in ONE_THREAD.items()):
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **ONE_THREAD})
+
+
 def main() -> None:
     """Measure, print the table, write it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -214,7 +220,7 @@ def main() -> None:
     parser.add_argument("--json", type=Path)
     args = parser.parse_args()
     args.vary = args.vary or list(AXES)
-    Work.SetConcurrencyLimit(1)  # as in a sweep's worker, which is forked
+    in_one_thread()
     with tempfile.TemporaryDirectory(prefix="wsim-sweep-setup-") as folder:
         found = measured(args, Path(folder))
     found |= {"count": args.count, "device": args.device, "cores": args.cores}
