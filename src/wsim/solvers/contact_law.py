@@ -31,7 +31,6 @@ the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -48,7 +47,7 @@ from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import seek_slip
-from wsim.solvers.smooth_steps import Owners, SmoothStepsC
+from wsim.solvers.smooth_steps import Note, Owners, SmoothStepsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.targets import settling, targets
@@ -121,7 +120,7 @@ class ContactLawC:
         self.owners = Owners(mujoco, model, moves_as_one)
         self.smooth_steps = SmoothStepsC(mujoco, model, self.owners, drives)
         self._stiff = drives is not None and bool(drives.stiff.any())
-        self.blows = BlowsC(mujoco, model, config, self._aim_others)
+        self.blows = BlowsC(mujoco, model, config, self._aim_others, self._ends_of_stops)
         self._divides = touching is None and not flight.stated[1:].any()
         tilt_cylinders(mujoco, model)
 
@@ -181,7 +180,8 @@ class ContactLawC:
         smooth &= ~(struck & self.owners.closed)
         rate = data.qacc - self.blows.jump / model.opt.timestep
         parts = max(self.smooth_steps.parts(data, smooth), self.smooth_steps.parts_of_reversal(data, rate, smooth))
-        alone = smooth & (pushed | struck | self.smooth_steps.rubbed(data) | (parts > 1))
+        held = self.smooth_steps.rubbed(data) | self.smooth_steps.stopped(data, force)
+        alone = smooth & (pushed | struck | held | (parts > 1))
         # Of these all of the step is recorded by itself.
         note = self._tell_ties(data, force, smooth, struck, alone)
         self.blows.take_from(data)
@@ -202,9 +202,7 @@ class ContactLawC:
         if model.nu:
             self._tell_efforts(data)
 
-    def _tell_ties(
-        self, data: Any, force: Array, smooth: Array, struck: Array, alone: Array
-    ) -> Callable[[Any, float], None] | None:
+    def _tell_ties(self, data: Any, force: Array, smooth: Array, struck: Array, alone: Array) -> Note | None:
         """Record what ties give, but for that which is left to whom it returns: what they give in the smooth steps of
         some mechanisms `alone`."""
         ties = self.ties
@@ -220,7 +218,7 @@ class ContactLawC:
             data.efc_force[:], data.qacc[:] = both, acceleration
         if not alone.any():
             return None
-        return lambda beside, span: ties.add(beside, span * alone)
+        return lambda beside, span, held: ties.add(beside, span * alone, held=held)
 
     def _is_whole(self, touching: bool) -> bool:
         """Whether all of the world goes by the fourth order, without a row of contacts, stops, friction or drives."""
@@ -310,10 +308,15 @@ class ContactLawC:
         rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
 
+    def _ends_of_stops(self, data: Any) -> Array:
+        """By how much joints of mechanisms approach their stops too fast to reach them by the step's end, (rows,)."""
+        rows = self.smooth_steps.stops(data)
+        return np.asarray(settling(data.efc_pos[rows], self.model.opt.timestep, self.config) - data.efc_vel[rows])
+
     def _contacts(self, data: Any) -> Contacts | None:
-        """The contacts that have rows, if there are any."""
+        """The contacts that have rows, if there are any, or none that something else is hit beside."""
         chosen = np.flatnonzero(data.contact.efc_address[: data.ncon] >= 0)
-        if not len(chosen):
+        if not len(chosen) and not self.blows.meets_stops(data):
             return None
         geoms = data.contact.geom[chosen]
         classes = self.classes[geoms]

@@ -30,7 +30,7 @@ def seek_slip(left: Callable[[Array], Array], slip: Array, bodies: Array, blows:
     nearest, best = math.inf, slip
     for k in range(config.most_solutions):
         found = left(slip)
-        change = float(np.abs(found - slip).max())
+        change = float(np.abs(found - slip).max(initial=0.0))
         if change < config.tolerance and (k or not blows):
             return
         if change < config.rough and k + 1 >= config.solutions:
