@@ -47,7 +47,7 @@ from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import seek_slip
-from wsim.solvers.smooth_steps import Note, Owners, SmoothStepsC
+from wsim.solvers.smooth_steps import REVERSAL_PARTS, Note, Owners, SmoothStepsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.targets import settling, targets
@@ -122,10 +122,13 @@ class ContactLawC:
         self._stiff = drives is not None and bool(drives.stiff.any())
         self.blows = BlowsC(mujoco, model, config, self._aim_others, self._ends_of_stops)
         self._divides = touching is None and not flight.stated[1:].any()
+        self._led = np.flatnonzero(flight.stated & (model.body_dofnum > 0))
+        self._turns = False  # whether friction on what is led round stops a slip in this step
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
-        """Advance `data` by the model's time step, in parts where a mechanism that is hit or pressed whirls."""
+        """Advance `data` by the model's time step, in parts where a mechanism that is hit or pressed whirls, or where a
+        slip on what is led to and fro turns round."""
         touching, model = self._begin(data), self.model
         parts, h = self._parts(data), model.opt.timestep
         if parts == 1:
@@ -160,8 +163,11 @@ class ContactLawC:
         """In how many parts a step is made, that of a mechanism which is hit, or which a contact presses.
 
         What whirls changes the force that it is pressed with within the step. What goes as stated, and meshes, are
-        found once a step.
+        found once a step. Likewise where a slip ends on what is led and gains speed meanwhile: friction that is not
+        enough to hold it would do so to the step's end.
         """
+        if self._turns:
+            return REVERSAL_PARTS
         if not self._divides or self.owners.count == 1:
             return 1
         force = self.blows.forces_after(data)
@@ -228,6 +234,7 @@ class ContactLawC:
         """The blows of the step, and accelerations after them; whether a contact, a stop or dry friction may be among
         their causes."""
         self.blows.begin()
+        self._turns = False
         self._position(data)
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
@@ -342,6 +349,10 @@ class ContactLawC:
         goal = targets(contacts.distance, speed, contacts.restitution, h, config)
         rows.aim(goal + contacts.bow, np.zeros(len(goal), dtype=bool))
         seek_slip(rows.left, rows.slip, contacts.bodies, False, config)
+        if len(self._led) and self.touching is None:
+            first = self.model.body_dofadr[self._led]
+            hurries = data.qfrc_applied[first[:, None] + np.arange(6)].any(axis=1)
+            self._turns = bool((rows.stops() & np.isin(contacts.bodies, self._led[hurries]).any(axis=1)).any())
 
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
         """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""
