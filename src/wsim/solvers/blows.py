@@ -96,7 +96,7 @@ class BlowsC:
             rows.aim(goal + contacts.bow, blow)
             hits = bounces or stopped(goal, speed, h, config).any()
             slip = rows.left_without_friction() if hits else rows.slip
-            seek_slip(rows.left, slip, contacts.bodies, bounces, config)
+            seek_slip(rows.left, slip, contacts.bodies, bounces, config, (config.tolerance, config.rough))
             self._advance(data)
             rounds, rows, ended = rounds + 1, self.rows(data, contacts), not bounces
         self.struck = rounds > 0

@@ -348,7 +348,7 @@ class ContactLawC:
         speed = data.efc_vel[rows.normal] + contacts.bow
         goal = targets(contacts.distance, speed, contacts.restitution, h, config)
         rows.aim(goal + contacts.bow, np.zeros(len(goal), dtype=bool))
-        seek_slip(rows.left, rows.slip, contacts.bodies, False, config)
+        seek_slip(rows.left, rows.slip, contacts.bodies, False, config, (config.lasting, config.lasting))
         if len(self._led) and self.touching is None:
             first = self.model.body_dofadr[self._led]
             hurries = data.qfrc_applied[first[:, None] + np.arange(6)].any(axis=1)
