@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.sim.test_bodies import Run
+from wsim.geometry.paths import Curve
 
 G = 9.81
 BOTH = pytest.mark.parametrize("worlds", [1, 2])  # MuJoCo in C, and in Warp
@@ -154,3 +155,39 @@ def test_what_a_kinematic_body_weighs_does_not_matter_to_what_it_meets(simulate,
     run = simulate(build, 0.2, worlds)
     assert run.v["ball"][-1, 0] == pytest.approx(2.5, rel=1e-3)
     assert run.q["load"][-1, 2] - run.q["lift"][-1, 2] == pytest.approx(0.25, abs=2e-4)
+
+
+def slid(path, friction, seconds, steps=200_000):
+    """Where a block is that Coulomb's friction takes along on a plate which goes along X, (steps + 1,) [m]."""
+    h = seconds / steps
+    times = np.arange(steps + 1) * h % path.times[-1]
+    piece = np.minimum(np.searchsorted(path.times, times, side="right") - 1, len(path.times) - 2)
+    since = times - path.times[piece]
+    plate = sum(path.place[piece, k, 0] * since**k for k in range(4))
+    v, x, most = 0.0, [0.0], friction * G * h
+    for speed in (np.diff(plate) / h).tolist():
+        v += min(max(speed - v, -most), most)
+        x.append(x[-1] + v * h)
+    return np.array(x)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "rate", "friction", "time_step"), [(0.05, 2.0, 0.3, 6.25e-4), (0.1, 1.5, 0.2, None)]
+)
+def test_a_block_slides_on_a_plate_that_is_shaken(tmp_path, amplitude, rate, friction, time_step):
+    """By up to 0.46 m in 2 s. Held to the end of each step in which its slip turns round it came 2.8 and 3.2 mm off."""
+    phase = np.linspace(0.0, 2.0 * np.pi, 9)
+    along = amplitude * (np.sin(phase) + 0.4 * np.sin(2.0 * phase + 0.7) - 0.4 * math.sin(0.7))
+    along[-1] = along[0] = 0.0
+    places, times = [(float(x), 0.0, 0.5) for x in along], tuple(phase / (2.0 * np.pi * rate))
+    path = Curve.through(times, places, [(0, 0, 0, 1)] * len(times), repeat=True)
+
+    def build(scene):
+        plate = scene.box("plate", size=(2, 1, 0.1), position=(0, 0, 0.5), kinematic=True, friction=friction)
+        scene.path(plate, times=times, positions=places, repeat=True)
+        scene.box("block", size=(0.2, 0.2, 0.1), mass=1.0, position=(0, 0, 0.6), friction=friction)
+
+    run = Run(tmp_path, "cpu", build, 2.0, time_step=time_step)
+    theory = slid(path, friction, 2.0)
+    at = np.minimum(np.arange(1, len(run.q["block"]) + 1) * run.dt / 2.0, 1.0) * (len(theory) - 1)
+    assert np.abs(run.q["block"][:, 0] - np.interp(at, np.arange(len(theory)), theory)).max() < 1e-3

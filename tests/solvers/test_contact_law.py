@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.slips import extrapolated, seek_slip
 
+NEAR = (ContactConfig().tolerance, ContactConfig().rough)  # [m/s]
 slopes = st.floats(-5.0, 0.94)
 slips = st.floats(0.1, 10.0)
 
@@ -65,7 +66,7 @@ def test_a_line_takes_three_solutions(slope, fixed, first):
         asked.append(float(guess[0]))
         return fixed + slope * (guess - fixed)
 
-    seek_slip(leave, np.full(2, first * fixed), np.tile([0, 1], (2, 1)), False, ContactConfig())
+    seek_slip(leave, np.full(2, first * fixed), np.tile([0, 1], (2, 1)), False, ContactConfig(), NEAR)
     assert asked[-1] == pytest.approx(fixed, abs=20 * ContactConfig().rough)
     assert len(asked) <= 3 and len(set(asked)) == len(asked)
 
@@ -78,7 +79,7 @@ def test_of_guesses_that_none_settles_the_nearest_counts():
         asked.append(guess)
         return np.where(guess < 1.0, 3.0, 0.0)
 
-    seek_slip(leave, np.array([0.0]), np.array([[0, 1]]), False, ContactConfig())
+    seek_slip(leave, np.array([0.0]), np.array([[0, 1]]), False, ContactConfig(), NEAR)
     assert len(asked) == ContactConfig().most_solutions + 1
     off = [float(abs(leave(guess) - guess)[0]) for guess in list(asked)]
     assert off[-1] == min(off) < 2.0

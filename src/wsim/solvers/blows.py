@@ -6,6 +6,9 @@ step, and none moves into its neighbour meanwhile. The last round ends all other
 on its way out, without a bounce: no contact is jolted in the step itself, so that all bodies may go by the mean of
 their first and last velocities, and what touches stays together. Forces that are finite, gravity, springs, drives and
 dry friction in joints, give nothing in no time. The step then goes on from the velocities after its last blow.
+
+A joint that comes to its stop within the step is hit as well, and goes on with the speed that takes it there by the
+step's end: what else the stop gives is finite, and may be held over a step of a higher order.
 """
 
 from __future__ import annotations
@@ -44,14 +47,23 @@ class BlowsC:
         model: MuJoCo's model.
         config: How the law is applied.
         aim_others: Asks what is no contact for the speeds that it should have.
+        ends_of_stops: By how much joints approach their stops too fast [m/s or rad/s], (rows,).
 
     Attributes:
         struck: Whether something was in this step.
         jump: Change of the velocities by its blows [m/s or rad/s], (nv,).
     """
 
-    def __init__(self, mujoco: Any, model: Any, config: ContactConfig, aim_others: Callable[[Any], None]) -> None:
+    def __init__(
+        self,
+        mujoco: Any,
+        model: Any,
+        config: ContactConfig,
+        aim_others: Callable[[Any], None],
+        ends_of_stops: Callable[[Any], Array],
+    ) -> None:
         self._mujoco, self._model, self._config, self._aim_others = mujoco, model, config, aim_others
+        self._ends_of_stops = ends_of_stops
         self.begin()
 
     def begin(self) -> None:
@@ -75,7 +87,8 @@ class BlowsC:
             speed = data.efc_vel[rows.normal] + contacts.bow
             goal, blow = after_blows(contacts.distance, speed, free, contacts.restitution, h, config, is_smooth)
             bounces = bool(blow.any())
-            if not bounces and (ended or (goal - speed).max() < config.steady * h):
+            jolts = (goal - speed).max(initial=0.0) >= config.steady * h or self.meets_stops(data)
+            if not bounces and (ended or not jolts):
                 break
             if rounds == 0:
                 self._without_finite_forces(data)
@@ -83,7 +96,7 @@ class BlowsC:
             rows.aim(goal + contacts.bow, blow)
             hits = bounces or stopped(goal, speed, h, config).any()
             slip = rows.left_without_friction() if hits else rows.slip
-            seek_slip(rows.left, slip, contacts.bodies, bounces, config)
+            seek_slip(rows.left, slip, contacts.bodies, bounces, config, (config.tolerance, config.rough))
             self._advance(data)
             rounds, rows, ended = rounds + 1, self.rows(data, contacts), not bounces
         self.struck = rounds > 0
@@ -91,6 +104,10 @@ class BlowsC:
             self.jump = data.qvel - start
             self._with_finite_forces(data)
         return self.struck
+
+    def meets_stops(self, data: Any) -> bool:
+        """Whether a joint comes to its stop in this step."""
+        return bool(self._ends_of_stops(data).max(initial=0.0) >= self._config.steady * self._model.opt.timestep)
 
     def undo(self, data: Any) -> None:
         """Go back to the velocities before the blows of this step."""

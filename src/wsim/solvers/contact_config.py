@@ -63,6 +63,10 @@ class ContactConfig:
     """Change of the slip, times friction, below which it stays [m/s]."""
     rough: float = 3e-3
     """The same after `solutions` [m/s]: what is hit would hop by 0.5 um."""
+    lasting: float = 1e-6
+    """The same of what lasts all the step, in C [m/s]. Where a crate slides on the floor and friction holds its side to
+    a ram, an error asks for a lift that the side's friction resists with all that it has, and rows as hard as these
+    turn 1e-6 m/s into a hundredth of the crate's weight: at 3e-4 a ram shoved it off at 1 m/s^2 instead of 2."""
     steady: float = 0.5
     """Change of a contact's speed over the step's time that is left to the step, and is no jolt at its start [m/s^2]:
     what it puts a gap off by, in steps of 1.25 ms, is 0.4 um."""

@@ -31,7 +31,6 @@ the surface in truth: here by the factor sqrt(1 - (F / mu N)^2).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -48,7 +47,7 @@ from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
 from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import seek_slip
-from wsim.solvers.smooth_steps import Owners, SmoothStepsC
+from wsim.solvers.smooth_steps import REVERSAL_PARTS, Note, Owners, SmoothStepsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.targets import settling, targets
@@ -121,12 +120,15 @@ class ContactLawC:
         self.owners = Owners(mujoco, model, moves_as_one)
         self.smooth_steps = SmoothStepsC(mujoco, model, self.owners, drives)
         self._stiff = drives is not None and bool(drives.stiff.any())
-        self.blows = BlowsC(mujoco, model, config, self._aim_others)
+        self.blows = BlowsC(mujoco, model, config, self._aim_others, self._ends_of_stops)
         self._divides = touching is None and not flight.stated[1:].any()
+        self._led = np.flatnonzero(flight.stated & (model.body_dofnum > 0))
+        self._turns = False  # whether friction on what is led round stops a slip in this step
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
-        """Advance `data` by the model's time step, in parts where a mechanism that is hit or pressed whirls."""
+        """Advance `data` by the model's time step, in parts where a mechanism that is hit or pressed whirls, or where a
+        slip on what is led to and fro turns round."""
         touching, model = self._begin(data), self.model
         parts, h = self._parts(data), model.opt.timestep
         if parts == 1:
@@ -161,8 +163,11 @@ class ContactLawC:
         """In how many parts a step is made, that of a mechanism which is hit, or which a contact presses.
 
         What whirls changes the force that it is pressed with within the step. What goes as stated, and meshes, are
-        found once a step.
+        found once a step. Likewise where a slip ends on what is led and gains speed meanwhile: friction that is not
+        enough to hold it would do so to the step's end.
         """
+        if self._turns:
+            return REVERSAL_PARTS
         if not self._divides or self.owners.count == 1:
             return 1
         force = self.blows.forces_after(data)
@@ -181,7 +186,8 @@ class ContactLawC:
         smooth &= ~(struck & self.owners.closed)
         rate = data.qacc - self.blows.jump / model.opt.timestep
         parts = max(self.smooth_steps.parts(data, smooth), self.smooth_steps.parts_of_reversal(data, rate, smooth))
-        alone = smooth & (pushed | struck | self.smooth_steps.rubbed(data) | (parts > 1))
+        held = self.smooth_steps.rubbed(data) | self.smooth_steps.stopped(data, force)
+        alone = smooth & (pushed | struck | held | (parts > 1))
         # Of these all of the step is recorded by itself.
         note = self._tell_ties(data, force, smooth, struck, alone)
         self.blows.take_from(data)
@@ -202,9 +208,7 @@ class ContactLawC:
         if model.nu:
             self._tell_efforts(data)
 
-    def _tell_ties(
-        self, data: Any, force: Array, smooth: Array, struck: Array, alone: Array
-    ) -> Callable[[Any, float], None] | None:
+    def _tell_ties(self, data: Any, force: Array, smooth: Array, struck: Array, alone: Array) -> Note | None:
         """Record what ties give, but for that which is left to whom it returns: what they give in the smooth steps of
         some mechanisms `alone`."""
         ties = self.ties
@@ -220,7 +224,7 @@ class ContactLawC:
             data.efc_force[:], data.qacc[:] = both, acceleration
         if not alone.any():
             return None
-        return lambda beside, span: ties.add(beside, span * alone)
+        return lambda beside, span, held: ties.add(beside, span * alone, held=held)
 
     def _is_whole(self, touching: bool) -> bool:
         """Whether all of the world goes by the fourth order, without a row of contacts, stops, friction or drives."""
@@ -230,6 +234,7 @@ class ContactLawC:
         """The blows of the step, and accelerations after them; whether a contact, a stop or dry friction may be among
         their causes."""
         self.blows.begin()
+        self._turns = False
         self._position(data)
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
@@ -310,10 +315,15 @@ class ContactLawC:
         rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
 
+    def _ends_of_stops(self, data: Any) -> Array:
+        """By how much joints of mechanisms approach their stops too fast to reach them by the step's end, (rows,)."""
+        rows = self.smooth_steps.stops(data)
+        return np.asarray(settling(data.efc_pos[rows], self.model.opt.timestep, self.config) - data.efc_vel[rows])
+
     def _contacts(self, data: Any) -> Contacts | None:
-        """The contacts that have rows, if there are any."""
+        """The contacts that have rows, if there are any, or none that something else is hit beside."""
         chosen = np.flatnonzero(data.contact.efc_address[: data.ncon] >= 0)
-        if not len(chosen):
+        if not len(chosen) and not self.blows.meets_stops(data):
             return None
         geoms = data.contact.geom[chosen]
         classes = self.classes[geoms]
@@ -338,7 +348,11 @@ class ContactLawC:
         speed = data.efc_vel[rows.normal] + contacts.bow
         goal = targets(contacts.distance, speed, contacts.restitution, h, config)
         rows.aim(goal + contacts.bow, np.zeros(len(goal), dtype=bool))
-        seek_slip(rows.left, rows.slip, contacts.bodies, False, config)
+        seek_slip(rows.left, rows.slip, contacts.bodies, False, config, (config.lasting, config.lasting))
+        if len(self._led) and self.touching is None:
+            first = self.model.body_dofadr[self._led]
+            hurries = data.qfrc_applied[first[:, None] + np.arange(6)].any(axis=1)
+            self._turns = bool((rows.stops() & np.isin(contacts.bodies, self._led[hurries]).any(axis=1)).any())
 
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
         """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""

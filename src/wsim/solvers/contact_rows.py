@@ -10,6 +10,8 @@ from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.targets import friction_pays
 
 Array = np.ndarray
+STILL = 1e-2  # acceleration that a slip is none of, if it is reached in a step [m/s^2]
+ENDED = 1e-2  # of a slip, left by a step that ends it
 
 
 class ContactRows:
@@ -80,6 +82,15 @@ class ContactRows:
             left += friction_pays(blow, self._goal, self.push, rub, self._velocity, end)
             self._given = np.where(blow, data.efc_R[self.normal] * self.push, 0.0)
         return np.asarray(left)
+
+    def stops(self) -> Array:
+        """Whether a slip ends in the step, or turns round, (contacts,), by the last solution."""
+        start = self._velocity[:, :2]
+        end = start + self._model.opt.timestep * self._image[self._rows[:, :2]]
+        slips = np.linalg.norm(self._weight[:, :2] * start, axis=1)
+        least = STILL * np.linalg.norm(self._weight[:, :2], axis=1) * self._model.opt.timestep
+        goes_on = np.einsum("nr,nr->n", start, end) > ENDED * np.einsum("nr,nr->n", start, start)
+        return np.asarray((self.push > 0.0) & (slips > least) & ~goes_on)
 
     def left_without_friction(self) -> Array:
         """Slips, times the friction that there is [m/s], (contacts,), of a solution in which nothing rubs."""

@@ -10,11 +10,18 @@ import numpy as np
 from wsim.solvers.contact_config import ContactConfig
 
 Array = np.ndarray
-SMALL_CHANGE = 1e-5  # [m/s]: less says nothing about how what is left goes with the guess
+SMALL_CHANGE = 1e-8  # [m/s]: less says nothing about how what is left goes with the guess
 MOST_SHARE = 19.0  # of the solution before: as where what is left is 0.95 of what was
 
 
-def seek_slip(left: Callable[[Array], Array], slip: Array, bodies: Array, blows: bool, config: ContactConfig) -> None:
+def seek_slip(
+    left: Callable[[Array], Array],
+    slip: Array,
+    bodies: Array,
+    blows: bool,
+    config: ContactConfig,
+    near: tuple[float, float],
+) -> None:
     """Solve until the slips that are left are those that were guessed.
 
     What wedges itself in has none, or none that is found: then the nearest of all counts, not the last.
@@ -24,16 +31,17 @@ def seek_slip(left: Callable[[Array], Array], slip: Array, bodies: Array, blows:
         slip: The first guess.
         bodies: Of each contact, (contacts, 2), 0 for the world.
         blows: Whether surfaces meet, whose first solution does not know yet what its regularisation gives way.
-        config: How near is near enough.
+        config: How often.
+        near: How near is near enough, at first and after some solutions [m/s].
     """
     before: tuple[Array, Array] | None = None
     nearest, best = math.inf, slip
     for k in range(config.most_solutions):
         found = left(slip)
-        change = float(np.abs(found - slip).max())
-        if change < config.tolerance and (k or not blows):
+        change = float(np.abs(found - slip).max(initial=0.0))
+        if change < near[0] and (k or not blows):
             return
-        if change < config.rough and k + 1 >= config.solutions:
+        if change < near[1] and k + 1 >= config.solutions:
             return
         if change < nearest:
             nearest, best = change, slip

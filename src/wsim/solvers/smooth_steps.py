@@ -1,13 +1,12 @@
 """Steps of Runge and Kutta's fourth order for mechanisms, each by itself, and for worlds that touch nothing.
 
-A mechanism keeps its energy and its momentum only with a higher order, and stops and taut ropes know none: each takes
-the one step or the other as it has one at the step's start. Beside a crate that rests a double pendulum gained 1.8 % of
+A mechanism keeps its energy and its momentum only with a higher order, and taut ropes know none: each takes the one
+step or the other as it has one at the step's start. Beside a crate that rests a double pendulum gained 1.8 % of
 its energy in 5 s by steps of the first order, and a hinged pair that tumbled blew up. What is hit flies on from the
 speeds after its blows: by the first order a chain that a ball hit gained up to two thirds of its energy.
 
-In C what a contact or a stiffly damped drive gives is that of the step's rows, implicit, and held over the step; dry
-friction and other drives are known to its stages. In Warp mechanisms with either, and what contacts push, go by the
-first order.
+In C what a contact, a stop or a stiffly damped drive gives is that of the step's rows, implicit, and held over the
+step; dry friction and other drives are known to its stages. In Warp mechanisms with any of these go by the first order.
 """
 
 from __future__ import annotations
@@ -29,6 +28,8 @@ Array = np.ndarray
 LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
 REVERSAL_PARTS = 16  # of a step in which dry friction ends a motion or turns
 STILL = 1e-3  # of the speed that dry friction takes away in a step
+Rows = tuple[Array, Array, Array, Array]  # of the constraints: kind, number, force, place
+Note = Callable[[Any, float, Rows], None]  # told of what acts, for how long [s], and of the rows held beside that
 
 
 class Owners:
@@ -74,10 +75,7 @@ class SmoothStepsC:
         self._mujoco, self._model, self._owners, self._drives = mujoco, model, owners, drives
         bits, rows = mujoco.mjtDisableBit, mujoco.mjtConstraint
         self._unilateral, self._dry = int(bits.mjDSBL_CONTACT | bits.mjDSBL_LIMIT), int(bits.mjDSBL_FRICTIONLOSS)
-        self._stops = (
-            (int(rows.mjCNSTR_LIMIT_JOINT), owners.of_joint),
-            (int(rows.mjCNSTR_LIMIT_TENDON), owners.of_tendon),
-        )
+        self._stop, self._ropes = int(rows.mjCNSTR_LIMIT_JOINT), ((int(rows.mjCNSTR_LIMIT_TENDON), owners.of_tendon),)
         self._rubs = (
             (int(rows.mjCNSTR_FRICTION_DOF), owners.of_dof),
             (int(rows.mjCNSTR_FRICTION_TENDON), owners.of_tendon),
@@ -93,18 +91,30 @@ class SmoothStepsC:
     def choose(self, data: Any, whole: bool, force: Array) -> tuple[Array, Array]:
         """Mechanisms that go by the fourth order, and those of them that contacts push, (mechanisms,) each.
 
-        That is all of a `whole` world, and else those without a stop or a taut rope now. What contacts push by their
-        rows' `force` does where they do not lead it, and nothing closes a loop in it.
+        That is all of a `whole` world, and else those without a taut rope now. What contacts push by their rows'
+        `force` does where they do not lead it, and like what is at a stop where nothing closes a loop in it.
         """
         smooth, pushed = np.full(self._owners.count, whole), np.zeros(self._owners.count, dtype=bool)
         if not whole and self._owners.count > 1:
             rows = self._pushing(data, force)
             smooth[1:], pushed = True, self._of_contacts(data, rows)
-            smooth &= ~self._with(data, self._stops)
-            smooth &= ~(pushed & (self._owners.closed | self._led.mechanisms(data, rows)))
+            smooth &= ~self._with(data, self._ropes)
+            held = pushed | self.stopped(data, force)
+            smooth &= ~(held & self._owners.closed | pushed & self._led.mechanisms(data, rows))
             smooth[0] = False
         self.since = np.where(smooth, 0, self.since + 1)
         return smooth, pushed & smooth
+
+    def stops(self, data: Any) -> Array:
+        """Rows of the stops of mechanisms that are near."""
+        rows = np.flatnonzero(data.efc_type == self._stop)
+        return np.asarray(rows[self._owners.of_joint[data.efc_id[rows]] > 0])
+
+    def stopped(self, data: Any, force: Array) -> Array:
+        """Mechanisms that a stop holds by its row's `force`, (mechanisms,)."""
+        found, rows = np.zeros(self._owners.count, dtype=bool), self.stops(data)
+        found[self._owners.of_joint[data.efc_id[rows[force[rows] > 0.0]]]] = True
+        return found
 
     def rubbed(self, data: Any) -> Array:
         """Mechanisms with dry friction, or drives that are rows of the constraints, (mechanisms,)."""
@@ -164,16 +174,14 @@ class SmoothStepsC:
         self._mujoco.mj_RungeKutta(self._model, data, 4)
         self._model.opt.disableflags = flags
 
-    def make(
-        self, data: Any, force: Array, pushed: Array, parts: int, note: Callable[[Any, float], None] | None = None
-    ) -> None:
+    def make(self, data: Any, force: Array, pushed: Array, parts: int, note: Note | None = None) -> None:
         """Make the step from the state of `data` beside it, and keep it.
 
         Its stages know dry friction and all drives but the stiff ones.
 
         Args:
             data: MuJoCo's.
-            force: Of its constraint rows, of which those of contacts and of stiff drives are held over the step.
+            force: Of its constraint rows, of which those of contacts, stops and stiff drives are held over the step.
             pushed: Mechanisms that they push, (mechanisms,).
             parts: By how many steps.
             note: Told of what acts at the ends of each of these, and for how long that counts [s].
@@ -186,9 +194,12 @@ class SmoothStepsC:
         outer, inner, rows = self._contacts(data, pushed)
         beside.xfrc_applied[:] += self._pushes(data, force, outer)
         own = self._pushes(data, force, inner), self._along_joints(data, force, rows)
-        beside.qfrc_applied[:] += own[1]
+        stops = self.stops(data)
+        stopped = self._along_joints(data, force, stops)
+        beside.qfrc_applied[:] += own[1] + stopped
+        told = data.efc_type[stops], data.efc_id[stops], force[stops], data.efc_pos[stops]
         with self._stages(parts):
-            self._advance(parts, note and partial(self._tell, note, own))
+            self._advance(parts, note and partial(self._tell, note, own, stopped, told))
 
     @contextmanager
     def _stages(self, parts: int) -> Iterator[None]:
@@ -218,23 +229,26 @@ class SmoothStepsC:
         if note is not None:
             note(beside, 0.5 * h)
 
-    def _tell(self, note: Callable[[Any, float], None], own: tuple[Array, Array], beside: Any, span: float) -> None:
-        """Tell of what parts of a mechanism push each other with as of what pushes bodies, as other contacts do.
+    def _tell(
+        self, note: Note, own: tuple[Array, Array], stopped: Array, stops: Rows, beside: Any, span: float
+    ) -> None:
+        """Tell of what parts of a mechanism push each other with as of what pushes bodies, as other contacts do, and of
+        stops as of the rows that they were.
 
         Args:
             note: Whom.
             own: What that is on the bodies at the step's start, and what of it is held along the coordinates.
+            stopped: What stops give, held along the coordinates.
+            stops: Their rows.
             beside: MuJoCo's data.
             span: For which it counts [s].
         """
         pushes, along = own
-        if not along.any():
-            note(beside, span)
-            return
         acts = beside.xfrc_applied.copy(), beside.qfrc_applied.copy()
-        beside.xfrc_applied[:] += pushes + self._about_joints(beside, along - self._given_along(beside, pushes))
-        beside.qfrc_applied[:] -= along
-        note(beside, span)
+        beside.qfrc_applied[:] -= along + stopped
+        if along.any():
+            beside.xfrc_applied[:] += pushes + self._about_joints(beside, along - self._given_along(beside, pushes))
+        note(beside, span, stops)
         beside.xfrc_applied[:], beside.qfrc_applied[:] = acts
 
     def _given_along(self, data: Any, pushes: Array) -> Array:

@@ -146,13 +146,14 @@ class TieImpulsesC:
         ]
 
     # ---- step by step
-    def add(self, data: Any, span: Array, smooth: Array | None = None) -> None:
+    def add(self, data: Any, span: Array, smooth: Array | None = None, held: Sequence[Array] = ()) -> None:
         """Keep what acts in a step, once it is solved and before it is made, or at an instant of it.
 
         Args:
             data: MuJoCo's.
             span: For which it counts, of each mechanism, (mechanisms,) [s]; less than none takes it back.
             smooth: At a step's start: those that go on from it by Runge and Kutta's, (mechanisms,).
+            held: Rows that act beside those of `data`: kind, number, force, place.
         """
         self._mujoco.mj_rnePostConstraint(self._model, data)
         views = [getattr(data, name).ravel() for name in self._parts]  # not copied
@@ -162,6 +163,8 @@ class TieImpulsesC:
         smooth = np.zeros(len(span), dtype=bool) if smooth is None else smooth
         if data.nefc:
             rows = tuple(array.copy() for array in (data.efc_type, data.efc_id, data.efc_force, data.efc_pos))
+        if len(held) and len(held[0]):
+            rows = tuple(np.concatenate(both) for both in zip(rows, held, strict=True)) if rows else tuple(held)
         self._kept.append(_Step(starts, smooth[own], span[own], np.concatenate(views), data.ctrl.copy(), rows))
 
     def take(self) -> TieSumsLater:

@@ -11,9 +11,6 @@ A light link shakes faster than frames tell. Of an arm that swings by A cos(p k 
 misses A (cos p/2 - sin(p/2) / (p/2)) of the mean over the interval, and its turn the mean of both rates by p times as
 much, a quarter of a swing on: a share of m / p of the arm, m being the most that turns stray about there. That is
 p^2 A / 12 below 1 rad, as above, and m at most beyond (`shaken`).
-
-A step of the first order gives its impulses with the arms of its start, and moves everything after: over the interval
-that is half a step's turn behind their mean, of F r as well (`early`).
 """
 
 from __future__ import annotations
@@ -24,7 +21,6 @@ import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.evidence.joints import AXES, anchors_of
-from wsim.judge.evidence.motion import OURS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,7 +33,6 @@ if TYPE_CHECKING:
     Rows = NDArray[np.intp]
 
 SHORT = 0.05  # of a body's size: an arm that is shorter counts as so long
-STOP = 0.1  # [rad or m]: a step of wsim's has a row for a stop that is nearer
 
 
 def turned(evidence: Evidence, size: Floats) -> Floats:
@@ -84,31 +79,6 @@ def shaken(evidence: Evidence) -> Floats:
         own = np.flatnonzero(motion.unit == unit)
         found[:, own] = np.minimum(off[:, own].max(axis=1, keepdims=True), 1.0)
     return found
-
-
-def early(evidence: Evidence, angle: Floats) -> Floats:
-    """What steps of the first order miss of what an arm passes on, a share, (T - 1, B).
-
-    Of wsim's own mechanisms in C, as long as a joint of theirs is so near a stop of its that the step has a row for it
-    (docs/rigid.md). Of other engines `wsim.judge.books.steps` says it.
-
-    Args:
-        evidence: T frames of B bodies.
-        angle: As `turned` has it, (T - 1, B) [rad].
-    """
-    motion = evidence.motion
-    first = np.zeros(angle.shape, dtype=bool)
-    if OURS not in evidence.recording.metadata:
-        return np.zeros(angle.shape)
-    for joint in evidence.world.joints:
-        track = evidence.joint(joint)
-        near = np.zeros(len(evidence.time), dtype=bool)
-        if track is not None:
-            for stop, side in ((joint.low, 1.0), (joint.high, -1.0)):
-                near |= stop is not None and side * (track.position - (stop or 0.0)) < STOP
-        rows = motion.unit == motion.unit[evidence.index(joint.child)]
-        first |= (near[1:] | near[:-1])[:, None] & rows
-    return np.where(first, 0.5 * angle * np.minimum(motion.dt / motion.h, 1.0)[:, None], 0.0)
 
 
 def changing(asked: Floats, angle: Floats, mass: Floats, hit: Bools, unit: Rows) -> Floats:

@@ -89,12 +89,8 @@ class Balance:
         self._pressed = np.concatenate([jolts.struck(evidence, ()) for evidence in copies]) & self._jointed  # (N, B)
         self._plain = np.concatenate([plain(evidence) for evidence in copies])  # (N, B)
         # The share that is wrong of what an arm taken halfway gives.
-        self._bent = np.concatenate(
-            [
-                angle**2 / 12.0 + arms.shaken(evidence) + arms.early(evidence, angle)
-                for evidence, angle in zip(copies, self._angles, strict=True)
-            ]
-        )
+        bent = zip(copies, self._angles, strict=True)
+        self._bent = np.concatenate([angle**2 / 12.0 + arms.shaken(evidence) for evidence, angle in bent])
         self._copy = np.repeat(np.arange(len(copies)), count)
 
     def books(self) -> Books:

@@ -1,4 +1,4 @@
-"""What steps of the first order leave of the books: impulses with the arms of a step's start, by half its turn."""
+"""What the steps of mechanisms leave of the books, at their stops and in closed loops."""
 
 import numpy as np
 import pytest
@@ -61,17 +61,16 @@ def off(recording, check=CheckForces):
     return [finding for finding in ask(check(), recording) if not finding.passed]
 
 
-def test_what_is_left_goes_with_the_step_and_is_bounded(elbows):
-    """Half the step leaves half: 0.018 and 0.009 N of 15, where half a step's turn is 0.33 % and 0.16 %."""
+def test_an_elbow_at_its_stop_leaves_nothing(elbows):
+    """By steps of the first order it left 0.018 and 0.009 N of 15, half a step's turn of that, now 2e-5 of it."""
     books = [Books.of(Evidence(each)) for each in elbows]
     calm = slice(60, 70)  # the elbow leaves its stop, by 0.01 rad
-    left = [np.linalg.norm(each.force[calm], axis=2).mean(axis=0) for each in books]
-    assert left[1] == pytest.approx(0.5 * left[0], rel=0.1)
     for each in books:
+        assert np.linalg.norm(each.force[calm], axis=2).max() < 5e-4
         assert np.all(np.linalg.norm(each.force[calm], axis=2) < each.turned[calm, :, 0])
 
 
-def test_mechanisms_that_go_by_steps_of_the_first_order_are_accepted(elbows, crank):
+def test_sound_mechanisms_are_accepted(elbows, crank):
     assert not any(off(each) for each in (*elbows, crank))
 
 
