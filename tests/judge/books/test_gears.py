@@ -16,7 +16,7 @@ from wsim.sim.collect import collect
 EFFORT = 0.3  # [N m]
 
 
-def pair(ratio, speed_up, effort=0.0, start=0.0):
+def pair(ratio, speed_up, effort=0.0, start=0.0, frictions=(0.0, 0.0)):
     """Two balls on axles, of which the first comes to turn by `speed_up` [rad/s^2] and the second goes with it."""
     t = times(1.0, 60.0)
     first = np.stack([start * t + speed_up * t**2 / 2, start + speed_up * t])
@@ -26,7 +26,7 @@ def pair(ratio, speed_up, effort=0.0, start=0.0):
     axles = [
         Joint(
             prim=f"/World/axle_{n}", kind="revolute", parent=None, child=f"/World/{name}", axis="Z",
-            parent_anchor=(n, 0, 1), child_anchor=(0, 0, 0), drive=None if n else motor,
+            parent_anchor=(n, 0, 1), child_anchor=(0, 0, 0), drive=None if n else motor, friction=frictions[n],
         )
         for n, name in enumerate(("small", "large"))
     ]  # fmt: skip
@@ -52,6 +52,18 @@ def test_a_pair_shares_its_inertia(ratio):
     assert accepted(pair(ratio, right, EFFORT))
     for share in (EFFORT / moments[0] / right, 0.5, 0.9, 1.1):
         assert not accepted(pair(ratio, share * right, EFFORT))
+
+
+@pytest.mark.parametrize("frictions", [(0.5, 0.5), (0.3, 1.0), (1.0, 0.3), (0.0, 1.0)])
+def test_a_pair_that_rubs_on_both_axles_starts_from_rest(frictions):
+    """In the first interval nobody knows how much each rubs: it was held against what is least in all, of which one
+    drives on, and left up to half of what it gives."""
+    ratio, moments = -0.5, [0.4 * mass * 0.1**2 for mass in (2.0, 8.0)]
+    effort = 10.0 * EFFORT
+    right = (effort - frictions[0] + ratio * frictions[1]) / (moments[0] + ratio**2 * moments[1])
+    assert accepted(pair(ratio, right, effort, frictions=frictions))
+    for share in (0.9, 1.1):
+        assert not accepted(pair(ratio, share * right, effort, frictions=frictions))
 
 
 def test_a_free_pair_goes_on():

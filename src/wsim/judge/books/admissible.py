@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import lsq_linear
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -31,6 +32,7 @@ ROUNDS = 12  # of alternating projections
 ALIKE = 16  # columns of problems that are solved at once differ by less
 LARGE = 24  # bodies: beyond, a problem is its own
 SMALL = 6  # bodies: up to so many, a dense matrix is the quickest
+NOTHING = 1e-6  # of what is wanted, left
 
 
 @dataclass(frozen=True)
@@ -138,13 +140,25 @@ def _solve(
 
 
 def least(matrix: Floats, wanted: Floats, both: Bools, most: Floats) -> Floats:
-    """Strengths (c,) that leave least of what is wanted (r,): not negative but of `both`, and no more than `most`."""
+    """Strengths (c,) that leave least of what is wanted (r,): not negative but of `both`, and no more than `most`.
+
+    Where what is at its most leaves anything to the others, it may have come there the wrong way: of two wheels in
+    mesh, each with dry friction, that which is least in all drives one on. Then they are sought all at once, within
+    their bounds (Stark and Parker 1995).
+    """
     strength, full = _unbounded(matrix, wanted, both), np.zeros(len(both), dtype=bool)
     while np.any(over := ~full & (np.abs(strength) > most)):  # what is at its most stays there, and others do the rest
         full |= over
         held = np.where(full, np.clip(strength, -most, most), 0.0)
         strength = held.copy()
         strength[~full] = _unbounded(matrix[:, ~full], wanted - matrix @ held, both[~full])
+    rest = float(np.linalg.norm(wanted - matrix @ strength))
+    if full.any() and rest > NOTHING * float(np.linalg.norm(wanted)):
+        length = np.maximum(np.linalg.norm(matrix, axis=0), 1e-300)
+        bounds = np.where(both, -most * length, 0.0), np.maximum(most * length, 1e-300)
+        found = lsq_linear(matrix / length, wanted, bounds, method="bvls").x / length
+        if np.linalg.norm(wanted - matrix @ found) < rest:
+            return np.asarray(found)
     return strength
 
 
