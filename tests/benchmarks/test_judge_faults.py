@@ -16,7 +16,7 @@ from benchmarks.judge_families.drawn import Draw, Sound
 from benchmarks.judge_families.family import movers
 from benchmarks.judge_families.pushed import Steady
 from benchmarks.judge_families.register import FAMILIES, MECHANISMS
-from benchmarks.judge_families.trial import Outcome, halves, trials
+from benchmarks.judge_families.trial import Outcome, halves, run, trials
 from wsim.importers.trajectory import velocities
 
 
@@ -130,3 +130,11 @@ def test_the_least_size_that_is_found_and_what_was_missed(tmp_path):
     assert draw(made, tmp_path / "curves.png").stat().st_size > 1000
     with pytest.raises(ValueError, match="curves:begin"):
         put("no marks", "new")
+
+
+def test_what_slides_on_without_a_push_is_no_blow():
+    """A driven block leaves the ground's push for a step, at no speed: there was a division by zero in the judge."""
+    (trial,) = trials("all", 3, 1, ["unplanned drive | 0.1 | 2"])
+    made = run(trial)
+    assert not made.error
+    assert made.status == "rejected"
