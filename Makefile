@@ -22,8 +22,9 @@ $(STAMP): requirements.lock pyproject.toml
 demo: install  ## A sentence becomes a judged world
 	$(BIN)/wsim generate "Three wooden blocks float on the water in a glass tank while a steel ball drops in and sinks." --yes
 
+# Tests start hundreds of Pythons: where none may keep what it compiled, each compiles wsim anew.
 test: install  ## Run the tests
-	$(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadgroup --no-loadscope-reorder $(PYTEST_ARGS)
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadgroup --no-loadscope-reorder $(PYTEST_ARGS)
 
 lint: install  ## Check format, lint, types and import directions
 	$(BIN)/ruff format --check .

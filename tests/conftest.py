@@ -5,6 +5,7 @@ from wsim.threads import one_thread
 
 one_thread()  # before anything loads NumPy: the tests have a process for each core
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -31,26 +32,28 @@ TOGETHER = (("cli/test_generate.py", "cli/test_verbs.py"), ("tools/test_query.py
 HERE = Path(__file__).parent
 
 
-def inside(item: pytest.Item) -> str:
+def inside(path: Path) -> str:
     """A test's file, from here on."""
-    return item.path.relative_to(HERE).as_posix() if item.path.is_relative_to(HERE) else item.path.as_posix()
+    return path.relative_to(HERE).as_posix() if path.is_relative_to(HERE) else path.as_posix()
 
 
-def place(item: pytest.Item) -> int:
-    """Where a test's file stands in `LONG`; behind them all if it does not."""
-    return next((k for k, long in enumerate(LONG) if inside(item).startswith(long)), len(LONG))
+@cache  # thousands of tests lie in some hundreds of files
+def place(path: Path) -> int:
+    """Where a file of tests stands in `LONG`; behind them all if it does not."""
+    return next((k for k, long in enumerate(LONG) if inside(path).startswith(long)), len(LONG))
 
 
-def group(item: pytest.Item) -> str:
-    """What a worker takes at a time: a test's file, or the first of those that it goes together with."""
-    return next((files[0] for files in TOGETHER if inside(item) in files), inside(item))
+@cache
+def group(path: Path) -> str:
+    """What a worker takes at a time: a file of tests, or the first of those that it goes together with."""
+    return next((files[0] for files in TOGETHER if inside(path) in files), inside(path))
 
 
 @pytest.hookimpl(tryfirst=True)  # xdist reads the marks as it is asked
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=place)
+    items.sort(key=lambda item: place(item.path))
     for item in items:
-        item.add_marker(pytest.mark.xdist_group(group(item)))
+        item.add_marker(pytest.mark.xdist_group(group(item.path)))
     marked = [item for item in items if item.get_closest_marker("cuda")]
     if not marked:
         return
