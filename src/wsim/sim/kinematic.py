@@ -12,6 +12,7 @@ from newton import JointType
 from wsim.kernels.kinematic import arrive, carry, lead
 from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import World
+from wsim.solvers.packed import Packed
 
 Array = np.ndarray
 
@@ -29,7 +30,7 @@ class Kinematic:
     """
 
     def __init__(self, model: Any, world: World, dt: float) -> None:
-        self.model, self.dt = model, dt
+        self.model, self.dt, self._packed = model, dt, Packed(model.device)
         kinematic = (model.body_flags.numpy() & int(newton.BodyFlags.KINEMATIC)) != 0
         kinds, child = model.joint_type.numpy(), model.joint_child.numpy()
         joints = [j for j in range(len(child)) if kinds[j] == int(JointType.FREE) and kinematic[child[j]]]
@@ -60,7 +61,7 @@ class Kinematic:
         """Set the bodies on paths where a step starts, with the velocity that they have in it."""
         if not len(self._led):
             return
-        wp.launch(
+        self._packed.launch(
             lead,
             dim=len(self._led),
             inputs=[
@@ -68,28 +69,27 @@ class Kinematic:
                 *self._curves,
             ],
             outputs=[state.body_q, state.body_qd, state.joint_q, state.joint_qd, self._target],
-            device=self.model.device,
+            changing=(state.body_q, state.body_qd, state.joint_q, state.joint_qd),
         )  # fmt: skip
 
     def after(self, state: Any) -> None:
         """Set all of them where a step ends."""
-        device = self.model.device
         bodies, coordinates = self._carried
         if len(bodies):
-            wp.launch(
+            self._packed.launch(
                 carry,
                 dim=len(bodies),
                 inputs=[bodies, coordinates, self.model.body_com, state.body_qd, self.dt],
                 outputs=[state.body_q, state.joint_q],
-                device=device,
+                changing=(state.body_qd, state.body_q, state.joint_q),
             )
         if len(self._led):
-            wp.launch(
+            self._packed.launch(
                 arrive,
                 dim=len(self._led),
                 inputs=[self._led, self._coordinate, self._target],
                 outputs=[state.body_q, state.joint_q, self._step],
-                device=device,
+                changing=(state.body_q, state.joint_q),
             )
         if (
             self._hanging is not None

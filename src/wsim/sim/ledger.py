@@ -9,6 +9,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.work import accumulate_control, accumulate_drive, accumulate_push
+from wsim.solvers.packed import Packed
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Ledger:
 
     def __init__(self, model: Any, observables: Any | None) -> None:
         self.worlds = max(1, model.world_count)
-        self.model, self.observables = model, observables
+        self.model, self.observables, self._packed = model, observables, Packed(model.device)
         self.control: Any | None = None
         self.bodies, self.dofs = model.body_count, model.joint_dof_count
         with wp.ScopedDevice(model.device):
@@ -64,31 +65,30 @@ class Ledger:
 
     def after(self, force: Any, state: Any, control: Any, dt: float) -> None:
         """Add a step of `dt` [s] that ended in `state`, under the bodies' `force`."""
-        device = self.model.device
-        wp.launch(
+        self._packed.launch(
             accumulate_push,
             dim=self.bodies,
             inputs=[force, self._twist, state.body_qd, dt],
             outputs=[self._impulse, self._work],
-            device=device,
+            changing=(force, state.body_qd, dt),
         )
         if self.control is not None:
-            wp.launch(
+            self._packed.launch(
                 accumulate_control,
                 dim=self.bodies,
                 inputs=[self.control, dt],
                 outputs=[self._controlled],
-                device=device,
+                changing=(self.control, dt),
             )
         if not self.dofs:
             return
         effort = self._none if self.observables is None else self.observables.qfrc_actuator
-        wp.launch(
+        self._packed.launch(
             accumulate_drive,
             dim=self.dofs,
             inputs=[effort, control.joint_f, self._rate, state.joint_qd, dt],
             outputs=[self._last, self._drives, self._unsure],
-            device=device,
+            changing=(effort, control.joint_f, state.joint_qd, dt),
         )
 
     def retarget(self, dofs: np.ndarray, moved: np.ndarray) -> None:

@@ -23,6 +23,7 @@ import warp as wp
 
 from wsim.kernels.blows import jump
 from wsim.kernels.flight import fly, keep, recall, say, tumble
+from wsim.solvers.packed import Packed
 
 Array = np.ndarray
 STATED, OTHER = -1, -2  # rows of bodies that are not loose: that go as is stated, or by joints
@@ -45,6 +46,7 @@ class Flight:
 
     def __init__(self, mujoco: Any, solver: Any, data: Any, hosts: Iterable[Any]) -> None:
         model = solver.model
+        self._packed = Packed(model.device)
         self.model, self._qpos, self._qvel = model, _rows(data.qpos), _rows(data.qvel)
         self._qacc, self._bias, self._held = _rows(data.qacc), _rows(data.qfrc_bias), _rows(data.qfrc_constraint)
         self._pushed = _rows(data.qfrc_smooth)
@@ -97,7 +99,7 @@ class Flight:
     def recall(self, state: Any) -> None:
         """Put what is true of `state` into MuJoCo's data, which has it in single precision."""
         model = self.model
-        wp.launch(
+        self._packed.launch(
             recall,
             dim=(self._qpos.shape[0], self.joints),
             inputs=[
@@ -105,14 +107,14 @@ class Flight:
                 *self._joints, self._loose, self._gain,
             ],
             outputs=[self._behind, self._shift, self.since, *self._true, self._qpos, self._qvel],
-            device=model.device,
+            changing=(state.joint_q, state.joint_qd),
         )  # fmt: skip
 
     def say(self, *, centred: bool) -> None:
         """Give MuJoCo the velocities that loose bodies have where they are, or those that their steps go on from."""
         if self._shared and not self._behind_c.any():
             return
-        wp.launch(
+        self._packed.launch(
             say,
             dim=self._change.shape,
             inputs=[
@@ -120,7 +122,7 @@ class Flight:
                 self._behind, int(centred),
             ],
             outputs=[self._qvel],
-            device=self.model.device,
+            changing=(centred,),
         )  # fmt: skip
 
     def take_lead(self) -> tuple[Array, Array]:
@@ -174,17 +176,17 @@ class Flight:
 
     def tumble(self, h: float) -> None:
         """Mend the bias of loose bodies, between what hangs on velocities and the accelerations."""
-        wp.launch(
+        self._packed.launch(
             tumble,
             dim=self._change.shape,
             inputs=[self._freedom, self._principal, self._moments, wp.float64(h), self._true[1]],
             outputs=[self._change, self._bias],
-            device=self.model.device,
+            changing=(h,),
         )
 
     def fly(self, h: float) -> None:
         """Advance the loose bodies by `h` [s] in place of MuJoCo, which has."""
-        wp.launch(
+        self._packed.launch(
             fly,
             dim=self._change.shape,
             inputs=[
@@ -196,7 +198,7 @@ class Flight:
                 self._known, self._gain, self._calm, self._behind, self._shift, self.since, *self._true, self._qpos,
                 self._qvel,
             ],
-            device=self.model.device,
+            changing=(h,),
         )  # fmt: skip
 
 
