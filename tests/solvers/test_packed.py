@@ -65,3 +65,25 @@ def test_arrays_that_come_and_go_are_told_apart(monkeypatch) -> None:
         add(launches, 1.0, given, found)
         assert len(launches._kept) <= 4
     assert found.numpy().tolist() == [190.0, 190.0]
+
+
+def test_a_graph_has_what_is_launched_while_it_is_recorded() -> None:
+    launches = Packed("cpu")
+    given, found = wp.ones(2, dtype=float, device="cpu"), wp.zeros(2, dtype=float, device="cpu")
+    add(launches, 1.0, given, found)
+    with wp.ScopedCapture(device="cpu") as capture:
+        add(launches, 1.0, given, found)
+    found.zero_()
+    for _ in range(3):
+        wp.capture_launch(capture.graph)
+    assert found.numpy().tolist() == [3.0, 3.0]
+
+
+def test_a_rehearsal_leaves_nothing_behind() -> None:
+    """In a rehearsal a launch is none: one that was kept as such would never be made."""
+    launches = Packed("cpu")
+    given, found = wp.ones(2, dtype=float, device="cpu"), wp.zeros(2, dtype=float, device="cpu")
+    assert rehearse(lambda: add(launches, 1.0, given, found))
+    assert found.numpy().tolist() == [0.0, 0.0]
+    add(launches, 1.0, given, found)
+    assert found.numpy().tolist() == [1.0, 1.0]

@@ -44,7 +44,7 @@ class Packed:
         command = self._kept.get(key)
         if command is None:
             command = wp.launch(kernel, dim=dim, inputs=inputs, outputs=outputs, device=self._device, record_cmd=True)
-            if command is None:  # of no threads, or in a rehearsal (`wsim.sim.compiling`)
+            if command is None:  # of no threads, or in a rehearsal (`wsim.sim.compiling`), of which nothing is kept
                 return
             if len(self._kept) >= MOST:
                 self._kept.clear()
