@@ -29,7 +29,7 @@ def cord_problems(prim: Usd.Prim) -> Iterator[str]:
     cord = read_rope(prim) if rope else read_spring(prim)
     bodies = [prim.GetStage().GetPrimAtPath(end.body) for end in (cord.path[0], cord.path[-1]) if end.body]
     loose = [body for body in bodies if yields(body)]
-    firm = led(prim.GetStage()) if loose else set()
+    firm = led(prim.GetStage()) if loose else {}
     if not loose:
         yield f"{path}: neither wsim:a nor wsim:b is a body that it could move: each is static or kinematic"
     elif all(body.GetPath() in firm for body in loose):

@@ -58,17 +58,17 @@ def parted(stage: Usd.Stage) -> Iterator[str]:
                 break
 
 
-def led(stage: Usd.Stage) -> set[Sdf.Path]:
-    """Bodies that fixed joints hold to the world or to kinematic bodies: they go as those go."""
+def led(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
+    """Of each body that fixed joints hold to the world or to a kinematic body what leads it: it goes as that goes."""
     top = tops(stage)
-    firm = {
-        top.get(end, end)
-        for joint in _welds(stage)
-        if any(is_lead(stage, lead) for lead in joint_ends(joint))
-        for end in joint_ends(joint)
-        if not is_lead(stage, end)
-    }
-    return {end for joint in _welds(stage) for end in joint_ends(joint) if top.get(end, end) in firm}
+    firm: dict[Sdf.Path, Sdf.Path] = {}
+    for joint in _welds(stage):
+        ends = joint_ends(joint)
+        for lead, end in (ends, ends[::-1]):
+            if is_lead(stage, lead) and not is_lead(stage, end):
+                firm.setdefault(top.get(end, end), lead)
+    welded = {end for joint in _welds(stage) for end in joint_ends(joint)}
+    return {end: firm[top.get(end, end)] for end in welded if top.get(end, end) in firm}
 
 
 def _welds(stage: Usd.Stage) -> list[UsdPhysics.Joint]:
@@ -93,22 +93,25 @@ def tops(stage: Usd.Stage) -> dict[Sdf.Path, Sdf.Path]:
 
 def pieces(stage: Usd.Stage) -> dict[Sdf.Path, list[Hold]]:
     """What leads each rigid piece, by the body that stands for it."""
-    top = tops(stage)
+    top, firm = tops(stage), led(stage)
     found: dict[Sdf.Path, list[Hold]] = {}
     for joint in joints_of(stage):
         ends = joint_ends(joint)
         leads = [is_lead(stage, end) for end in ends]
+        if not any(leads) and not joint.GetPrim().IsA(UsdPhysics.FixedJoint):
+            leads = [end in firm for end in ends]  # what is fixed to something that leads, leads as well
+            leads[1] &= not leads[0]
         if may_break(joint) or sum(leads) != 1:
             continue
         lead, body = ends if leads[0] else ends[::-1]
-        points = _points(joint, lead)
+        points = points_of(joint, lead)
         if len(points):
-            found.setdefault(top.get(body, body), []).append(Hold(joint, lead, points))
+            found.setdefault(top.get(body, body), []).append(Hold(joint, firm.get(lead, lead), points))
     return found
 
 
-def _points(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Array:
-    """The points that a joint holds to what leads; none of one that slides."""
+def points_of(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Array:
+    """The points that a joint holds to one of its ends [m], (points, 3); none of one that slides."""
     prim = joint.GetPrim()
     steps: list[tuple[float, float, float]]
     if prim.IsA(UsdPhysics.SphericalJoint):
@@ -122,11 +125,6 @@ def _points(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Array:
         return np.zeros((0, 3))
     frame = _frame(joint, lead)
     return np.array([frame.Transform(Gf.Vec3d(*step)) for step in steps])
-
-
-def place_of(joint: UsdPhysics.Joint, body: Sdf.Path) -> Array:
-    """Where a joint is, by one of its ends [m]."""
-    return np.array(_frame(joint, body).ExtractTranslation())
 
 
 def _frame(joint: UsdPhysics.Joint, lead: Sdf.Path) -> Gf.Matrix4d:
