@@ -30,7 +30,7 @@ from wsim.sim.pictures import Pictures
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
-from wsim.sim.starts import start_joints
+from wsim.sim.starts import start
 from wsim.solvers.solver_sph import SolverSPH
 
 
@@ -126,7 +126,7 @@ class Simulation:
         self.state, self.control = self.model.state(), self.model.control()
         perturb(self.built, self.state, seeds)
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
-        start_joints(self.model, self.built.worlds, self.built.bodies, self.state)
+        start(self.model, self.built.worlds, self.built.bodies, self.state)
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         if self.rigid and self.rigid.ledger and controller is not None:
             self.rigid.ledger.control = self.control_force

@@ -11,10 +11,20 @@ import numpy as np
 from wsim.errors import UserError
 from wsim.geometry.rotations import rotate
 from wsim.scene.world import Body, Joint, Vec3, World
+from wsim.sim.start_ropes import check_ropes
 
 Array = np.ndarray
 CLOSE = 1e-3  # share of a stated speed by which the joints may miss it
 ROUNDING = 1e-5  # share of the fastest speed of a world below which one is none: forward kinematics is single precision
+
+
+def start(model: Any, worlds: Sequence[World], bodies: Array, state: Any) -> None:
+    """Let bodies on joints start as the stage says, and nothing start as joints or ropes do not let it.
+
+    Takes and raises what `start_joints` does.
+    """
+    start_joints(model, worlds, bodies, state)
+    check_ropes(model, worlds, bodies, state)
 
 
 def start_joints(model: Any, worlds: Sequence[World], bodies: Array, state: Any) -> None:
