@@ -8,10 +8,10 @@ from wsim.scene import Scene
 from wsim.sim import Simulation
 
 
-def bob(tmp_path, velocity, *, length=None, spin=(0, 0, 0), worlds=1):
-    """On a rope of 1 m from above, held a quarter of a turn's third aside."""
+def bob(tmp_path, velocity, *, length=None, worlds=1):
+    """On a rope of 1 m from above, 0.6 m aside."""
     scene = Scene()
-    scene.sphere("bob", radius=0.05, mass=1.0, position=(0.6, 0, -0.8), velocity=velocity, angular_velocity_deg=spin)
+    scene.sphere("bob", radius=0.05, mass=1.0, position=(0.6, 0, -0.8), velocity=velocity)
     scene.rope("rope", None, "bob", anchor_a=(0, 0, 0), length=length)
     return Simulation(scene.save(tmp_path / "stage.usda"), "cpu", world_count=worlds)
 
@@ -62,3 +62,19 @@ def test_what_is_led_may_jerk_it(tmp_path):
     scene.box("load", size=(0.1,) * 3, position=(-1, 0, 1), mass=1.0)
     scene.rope("rope", "tug", "load")
     Simulation(scene.save(tmp_path / "stage.usda"), "cpu")
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_spin_about_its_line_leaves_a_rope_as_it_is(tmp_path, seed):
+    """What only spins goes nowhere: it is not refused for the rounding of a rate of 0, of which any is too much."""
+    rng = np.random.default_rng(seed)
+    way = rng.normal(size=3)
+    way /= np.linalg.norm(way)
+    tied = np.array([0.0, 0.0, 1.0]) + rng.uniform(-0.05, 0.05, 3)
+    spin = rng.uniform(5.0, 600.0) * way
+    scene = Scene()
+    scene.box("box", size=(0.1,) * 3, mass=1.0, position=(0, 0, 1), angular_velocity_deg=spin.tolist())
+    far = tied + rng.uniform(0.2, 1.5) * way
+    scene.rope("rope", None, "box", anchor_a=far.tolist(), anchor_b=tied.tolist())
+    found = Simulation(scene.save(tmp_path / "stage.usda"), "cpu").state.body_qd.numpy()[0]
+    assert found == pytest.approx([0, 0, 0, *np.radians(spin)], abs=1e-5)

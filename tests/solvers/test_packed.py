@@ -77,13 +77,3 @@ def test_a_graph_has_what_is_launched_while_it_is_recorded() -> None:
     for _ in range(3):
         wp.capture_launch(capture.graph)
     assert found.numpy().tolist() == [3.0, 3.0]
-
-
-def test_a_rehearsal_leaves_nothing_behind() -> None:
-    """In a rehearsal a launch is none: one that was kept as such would never be made."""
-    launches = Packed("cpu")
-    given, found = wp.ones(2, dtype=float, device="cpu"), wp.zeros(2, dtype=float, device="cpu")
-    assert rehearse(lambda: add(launches, 1.0, given, found))
-    assert found.numpy().tolist() == [0.0, 0.0]
-    add(launches, 1.0, given, found)
-    assert found.numpy().tolist() == [1.0, 1.0]

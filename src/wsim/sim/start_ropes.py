@@ -11,11 +11,11 @@ from wsim.errors import UserError
 from wsim.geometry.ropes import path_length
 from wsim.geometry.rotations import lengths, multiply, rotate
 from wsim.scene.cord_paths import moving_stops
-from wsim.scene.world import Body, Rope, World
+from wsim.scene.world import Body, Guide, Rope, World
 
 Array = np.ndarray
 TAUT = 1e-6  # of its length: a rope with less to spare is taut
-CLOSE = 1e-3  # of the fastest of its ends' speeds: a rope that comes to be longer by less is not stretched
+CLOSE = 1e-3  # of the fastest of its points' speeds: a rope that comes to be longer by less is not stretched
 APART = 1e-4  # [s] before and after the start, between which the rate of a length is taken
 
 
@@ -44,7 +44,7 @@ def check_ropes(model: Any, worlds: Sequence[World], bodies: Array, state: Any) 
 
 def _check(rope: Rope, tied: dict[str, tuple[Body, Array]]) -> None:
     length, rate = _length(rope, tied)
-    fastest = max((float(lengths(velocity[:3])) for _, velocity in tied.values()), default=0.0)
+    fastest = max((_speed(guide, *tied[guide.body]) for guide in rope.path if guide.body is not None), default=0.0)
     if rope.length - length > TAUT * rope.length or rate <= CLOSE * fastest:
         return
     name, (body, velocity) = max(tied.items(), key=lambda item: float(lengths(item[1][1][:3])))
@@ -55,6 +55,12 @@ def _check(rope: Rope, tied: dict[str, tuple[Body, Array]]) -> None:
         f"{rope.prim}: it is taut and would be stretched at {rate:.4g} m/s by how what it ties starts; give {name} the "
         f"velocity {told} m/s, the nearest that it allows, or the rope a length to spare"
     )
+
+
+def _speed(guide: Guide, body: Body, velocity: Array) -> float:
+    """How fast the points may be that a rope touches there [m/s]; those of what only spins are fast, too."""
+    arm = float(lengths(np.array(guide.position) - np.array(body.com))) + guide.radius
+    return float(lengths(velocity[:3]) + arm * lengths(velocity[3:]))
 
 
 def _length(rope: Rope, tied: dict[str, tuple[Body, Array]]) -> tuple[float, float]:

@@ -121,7 +121,7 @@ class RecordedBlows:
         slips = [b.at(point) - a.at(point) for a, b in poses]
         law = pair_law(self._evidence.world, *(contacts.shapes[shape] for shape in contacts.track.pair[row].tolist()))
         approach, parting = -float(slips[0] @ normal), float(slips[1] @ normal)
-        if approach <= 0.0:
+        if approach <= 0.0:  # they do not meet: nothing below holds of them
             return None
         pull = self._followed.pull(one, two, when, point, normal)
         deep = max(0.5 * approach * self._followed.dt, self._depth(row, poses[0], point))
