@@ -47,3 +47,15 @@ def test_equal_steps_are_one_speed():
     curve = Curve.through(keys, np.outer(keys, [2.0, 0, 0]), turns)
     assert velocity(curve, 2.5) == pytest.approx([2, 0, 0, 0, 0, 0.5], abs=1e-6)
     assert max(curve.speeds()[0][1:-1]) == pytest.approx(2.0) and max(curve.speeds()[1][1:-1]) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("repeat", [False, True])
+def test_its_velocity_is_the_rate_of_its_pose(repeat):
+    curve, h = Curve.through(TIMES, PLACES, TURNS, repeat), 1e-6
+    for time in (1e-3, 0.3, 0.8, 1.7, 2.9, *((3.4, 5.0) if repeat else ())):
+        (x0, q0), (x1, q1) = curve.pose(time - h), curve.pose(time + h)
+        v, w = curve.velocity(time)
+        assert v == pytest.approx((x1 - x0) / (2 * h), abs=1e-6)
+        assert w == pytest.approx(logarithm(multiply(q1, conjugate(q0))) / (2 * h), abs=1e-6)
+    before, after = curve.velocity(-0.1), curve.velocity(9.1)
+    assert not np.any(before) and (repeat or not np.any(after))

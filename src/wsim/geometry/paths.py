@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from wsim.geometry.rotations import conjugate, multiply
+from wsim.geometry.rotations import conjugate, multiply, rotate
 
 Floats = NDArray[np.float64]
 
@@ -67,6 +67,18 @@ class Curve:
         k = int(np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.base) - 1))
         powers = (t - self.times[k]) ** np.arange(4.0)
         return powers @ self.place[k], multiply(self.base[k], exponential(powers @ self.turn[k]))
+
+    def velocity(self, time: float) -> tuple[Floats, Floats]:
+        """Velocity (3,) [m/s] and angular velocity (3,) [rad/s] in the world's axes, from a time [s] on."""
+        if time < self.times[0] or (time >= self.times[-1] and not self.repeat):
+            return np.zeros(3), np.zeros(3)
+        t = self._within(time)
+        k = int(np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.base) - 1))
+        s = t - self.times[k]
+        slopes = np.array([0.0, 1.0, 2.0 * s, 3.0 * s**2])
+        vector = s ** np.arange(4.0) @ self.turn[k]
+        turned = multiply(self.base[k], exponential(vector))
+        return slopes @ self.place[k], rotate(turned, _right_jacobian(vector) @ (slopes @ self.turn[k]))
 
     def _within(self, time: float) -> float:
         first, last = float(self.times[0]), float(self.times[-1])

@@ -148,6 +148,30 @@ def lead(
 
 
 @wp.kernel(enable_backward=False)
+def begin(
+    # Data in:
+    body: wp.array(dtype=int),
+    path: wp.array(dtype=int),
+    freedom: wp.array(dtype=int),  # where the free joint of each stands in joint_qd
+    body_com: wp.array(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    speed: wp.array2d(dtype=wp.vec3),  # of each path at the start: of the body's origin, and its spin
+    # Data out:
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    joint_qd: wp.array(dtype=float),
+):
+    """Give each body the velocity that its path has at the start."""
+    k = wp.tid()
+    index = body[k]
+    w = speed[path[k], 1]
+    v = speed[path[k], 0] + wp.cross(w, wp.quat_rotate(wp.transform_get_rotation(body_q[index]), body_com[index]))
+    body_qd[index] = wp.spatial_vector(v, w)
+    for i in range(3):
+        joint_qd[freedom[k] + i] = v[i]
+        joint_qd[freedom[k] + 3 + i] = w[i]
+
+
+@wp.kernel(enable_backward=False)
 def arrive(
     # Data in:
     body: wp.array(dtype=int),

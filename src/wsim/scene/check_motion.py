@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, UsdPhysics
+from pxr import Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.paths import Curve
 from wsim.scene import schema
@@ -17,7 +17,6 @@ from wsim.scene.world import Path
 
 def motion_problems(stage: Usd.Stage) -> Iterator[str]:
     """Problems of the paths of a stage, and of kinematic bodies on joints."""
-    led: set[Sdf.Path] = set()
     for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
         rigid = prim.HasAPI(UsdPhysics.RigidBodyAPI)
         if schema.has(prim, schema.PATH) and not _kinematic(prim):
@@ -28,12 +27,9 @@ def motion_problems(stage: Usd.Stage) -> Iterator[str]:
                 "or give it physics:kinematicEnabled = 1"
             )
         elif _kinematic(prim):
-            found = list(_path(prim))
-            yield from found
-            if schema.has(prim, schema.PATH) or _sampled(prim):
-                led.add(prim.GetPath())
+            yield from _path(prim)
     for joint in joints_of(stage):
-        yield from _joint(stage, joint, led)
+        yield from _joint(stage, joint)
 
 
 def _kinematic(prim: Usd.Prim) -> bool:
@@ -44,19 +40,14 @@ def _sampled(prim: Usd.Prim) -> bool:
     return prim.IsA(UsdGeom.Xformable) and len(sample_times(prim)) > 1
 
 
-def _joint(stage: Usd.Stage, joint: UsdPhysics.Joint, led: set[Sdf.Path]) -> Iterator[str]:
+def _joint(stage: Usd.Stage, joint: UsdPhysics.Joint) -> Iterator[str]:
     if joint.GetExcludeFromArticulationAttr().Get():
         return  # a constraint holds on to any body
-    parent, child = joint_ends(joint)
+    _, child = joint_ends(joint)
     if child != WORLD_END and _kinematic(stage.GetPrimAtPath(child)):
         yield (
             f"{joint.GetPath()}.physics:body1: <{child}> is kinematic, and no joint can lead it; make it the joint's "
             "body0, or give the joint a drive and the body no physics:kinematicEnabled"
-        )
-    elif parent in led:
-        yield (
-            f"{joint.GetPath()}.physics:body0: <{parent}> goes along a path, whose accelerations a joint does not pass "
-            "on; lead it by a velocity, or by a joint with a drive"
         )
 
 

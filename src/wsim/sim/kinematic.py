@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 from newton import JointType
 
-from wsim.kernels.kinematic import arrive, carry, lead
+from wsim.kernels.kinematic import arrive, begin, carry, lead
 from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import World
 from wsim.solvers.packed import Packed
@@ -48,7 +48,9 @@ class Kinematic:
             self._path = wp.array([number[labels[child[j]]] for j in led], dtype=int)
             self._target = wp.zeros(len(led), dtype=wp.transform)
             self._step = wp.zeros(1, dtype=int)
-            self._curves = _arrays([curve_of(path) for path in paths.values()]) if led else []
+            curves = [curve_of(path) for path in paths.values()] if led else []
+            self._curves = _arrays(curves) if led else []
+            self._speeds = wp.array([curve.velocity(0.0) for curve in curves], dtype=wp.vec3)  # at the start
             hangs = _hang(model, kinematic)
             self._hanging = wp.array(hangs, dtype=bool) if hangs.any() else None
 
@@ -91,15 +93,26 @@ class Kinematic:
                 outputs=[state.body_q, state.joint_q, self._step],
                 changing=(state.body_q, state.joint_q),
             )
-        if (
-            self._hanging is not None
-        ):  # the solver leaves kinematic bodies where they were, and hung these on them there
-            newton.eval_fk(self.model, state.joint_q, state.joint_qd, state, joint_mask=self._hanging)
+        self._hang(state)  # the solver leaves kinematic bodies where they were, and hung these on them there
 
     def reset(self, state: Any) -> None:
-        """Start the paths anew; `state` is where the next step starts."""
+        """Start the paths anew, at the velocity that they have then; `state` is where the next step starts."""
         self._step.zero_()
         self.before(state)
+        if len(self._led):
+            wp.launch(
+                begin,
+                dim=len(self._led),
+                inputs=[self._led, self._path, self._freedom, self.model.body_com, state.body_q, self._speeds],
+                outputs=[state.body_qd, state.joint_qd],
+                device=self.model.device,
+            )
+            self._hang(state)
+
+    def _hang(self, state: Any) -> None:
+        """Have what hangs on kinematic bodies, by joints of the tree, be where they are and go with them."""
+        if self._hanging is not None:
+            newton.eval_fk(self.model, state.joint_q, state.joint_qd, state, joint_mask=self._hanging)
 
 
 def _hang(model: Any, kinematic: Array) -> Array:

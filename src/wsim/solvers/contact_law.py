@@ -187,12 +187,12 @@ class ContactLawC:
         rate = data.qacc - self.blows.jump / model.opt.timestep
         parts = max(self.smooth_steps.parts(data, smooth), self.smooth_steps.parts_of_reversal(data, rate, smooth))
         held = self.smooth_steps.rubbed(data) | self.smooth_steps.stopped(data, force)
-        alone = smooth & (pushed | struck | held | (parts > 1))
+        alone = smooth & (pushed | struck | held | (parts > 1) | (len(self._led) > 0))
         # Of these all of the step is recorded by itself.
         note = self._tell_ties(data, force, smooth, struck, alone)
         self.blows.take_from(data)
         if whole and parts == 1:
-            self.smooth_steps.step(data)
+            self.smooth_steps.step(data, note)
         else:
             if smooth.any():
                 self.smooth_steps.make(data, force, pushed, parts, note)

@@ -55,7 +55,7 @@ class LeadsC:
         self.forget()
 
     def forget(self) -> None:
-        """Have the next step start with its own velocity."""
+        """Have the next push take the velocity that it finds for the one to go on from."""
         self._before: Array = np.full(len(self._freedoms), np.nan)
 
     def push(self, data: Any, dt: float) -> None:
@@ -74,7 +74,7 @@ class LeadsWarp:
         self._before = wp.full((worlds, len(freedoms)), math.nan, dtype=float)
 
     def forget(self) -> None:
-        """Have the next step start with its own velocity."""
+        """Have the next push take the velocity that it finds for the one to go on from."""
         self._before.fill_(math.nan)
 
     def push(self, data: Any, dt: float) -> None:

@@ -29,7 +29,9 @@ LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
 REVERSAL_PARTS = 16  # of a step in which dry friction ends a motion or turns
 STILL = 1e-3  # of the speed that dry friction takes away in a step
 Rows = tuple[Array, Array, Array, Array]  # of the constraints: kind, number, force, place
-Note = Callable[[Any, float, Rows], None]  # told of what acts, for how long [s], and of the rows held beside that
+Note = Callable[
+    [Any, float, Sequence[Array]], None
+]  # told of what acts, for how long [s], and of the rows held beside that
 
 
 class Owners:
@@ -166,12 +168,24 @@ class SmoothStepsC:
         slips = np.abs(speed) > STILL * data.efc_frictionloss[rows] * self._model.dof_invweight0[dofs] * h
         return REVERSAL_PARTS if (slips & (speed * (speed + 2.0 * h * rate[dofs]) <= 0.0)).any() else 1
 
-    def step(self, data: Any) -> None:
-        """Advance all of `data`, whose forces are known."""
+    def step(self, data: Any, note: Note | None = None) -> None:
+        """Advance all of `data`, whose forces are known.
+
+        Args:
+            data: MuJoCo's.
+            note: Told of what acts at both ends of the step, for half of it each.
+        """
         # Its stages must not find a contact that the step did not start with: it would be as soft as MuJoCo's own.
-        flags = self._model.opt.disableflags
+        flags, half = self._model.opt.disableflags, 0.5 * self._model.opt.timestep
         self._model.opt.disableflags = flags | self._unilateral | self._dry
+        if note is not None:
+            note(data, half, ())
         self._mujoco.mj_RungeKutta(self._model, data, 4)
+        if note is not None:
+            warm = data.qacc_warmstart.copy()
+            self._mujoco.mj_forward(self._model, data)
+            note(data, half, ())
+            data.qacc_warmstart[:] = warm
         self._model.opt.disableflags = flags
 
     def make(self, data: Any, force: Array, pushed: Array, parts: int, note: Note | None = None) -> None:

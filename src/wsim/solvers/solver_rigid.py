@@ -337,8 +337,9 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         super().reset(state, *args, **options)
         if self._flight:
             self._flight.forget()
+        if self.use_mujoco_cpu or self._leads:  # the first step is led on from the velocities that they have here
+            self._update_mjc_data(self.mj_data if self.use_mujoco_cpu else self.mjw_data, self.model, state)
         if self.use_mujoco_cpu:
-            self._update_mjc_data(self.mj_data, self.model, state)
             self._place_bodies(state)
 
     def _update_mjc_data(self, mj_data: Any, model: Any, state: Any = None, *args: Any, **options: Any) -> None:

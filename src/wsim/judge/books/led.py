@@ -21,7 +21,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.judge.books.laws import Laws
+from wsim.judge.books.phases import COARSEST
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.evidence.carriers import carried_work, carriers, leads
 
@@ -224,6 +226,26 @@ def _at_most(evidence: Evidence) -> Led:
                 pulled[:, row] += 0.5 * (wrench[1:, :3] + wrench[:-1, :3]) * motion.h[:, None]
     work, unsure = np.cumsum(np.pad(_by_springs(evidence, laws, None), ((0, 0), (1, 0), (0, 0))), axis=1)
     return Led(work + carried_work(evidence, pulled), unsure, np.zeros_like(work))
+
+
+def late_fall(evidence: Evidence, rows: Rows) -> Floats:
+    """What gravity gives some bodies by their velocities beyond what it does by their places, (T,) [J].
+
+    Of what joints hang on led bodies: these are where they are now, and go and turn as half a step before, so that what
+    hangs there is shown with no velocity that it ever had, and its momentum is that. What of it is more than turning
+    and gaining speed explain counts for nothing.
+    """
+    motion, world, goes = evidence.motion, evidence.world, leads(evidence)
+    ends = [[evidence.index(end) for end in (joint.parent, joint.child) if end is not None] for joint in world.joints]
+    units = {int(motion.unit[i]) for pair in ends if goes[pair].any() for i in pair if not goes[i]}
+    hangs = rows[np.isin(motion.unit[rows], list(units))]
+    mass, v, h = motion.mass[hangs], motion.v[:, hangs], motion.h[:, None]
+    way = h * _mean(evidence, v @ motion.gravity)
+    found = mass * (way - np.diff(motion.com[:, hangs] @ motion.gravity, axis=0))
+    speed, rate = lengths(v), motion.rate[:, hangs]
+    turns = h * np.maximum(speed[1:] * rate[1:], speed[:-1] * rate[:-1])
+    most = 0.5 * min(motion.dt, COARSEST) * mass * evidence.gravity * (lengths(np.diff(v, axis=0)) + turns)
+    return np.concatenate([[0.0], np.cumsum(np.clip(found, -most, most).sum(axis=1))])
 
 
 def over(evidence: Evidence, power: Floats) -> tuple[Floats, Floats]:

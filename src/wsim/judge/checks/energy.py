@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.rotations import lengths
-from wsim.judge.books.led import Led, untold
+from wsim.judge.books.led import Led, late_fall, untold
 from wsim.judge.books.losses import Losses
 from wsim.judge.books.phases import falling, hidden, latest, least, sinking, turned_over
 from wsim.judge.books.recorded import met
@@ -86,15 +86,15 @@ class CheckEnergy(Check):
             limits = limit, max(scale, taken.held)
             known, phase = energy[:, rows].sum(axis=1) - taken.driven + taken.damped, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
-            ahead, stray = losses.ahead(rows)
+            (ahead, stray), fall = losses.ahead(rows), late_fall(evidence, rows)
             for verb, sign, most in (("gains", 1.0, -taken.least), ("loses", -1.0, taken.most)):
                 seen, hides = sign * known - taken.unsure - most, (gives, phase)
                 by_poses = seen + sign * ahead - stray
-                by_phase = self._by_phase(evidence, rows, seen, sign, hides, verb)
-                found.append(
-                    min((self._changed(evidence, rows, each, hides, limits, verb) for each in (by_poses, by_phase)),
-                        key=_ratio)
-                )  # fmt: skip
+                balances = [by_poses, self._by_phase(evidence, rows, seen, sign, hides, verb)]
+                if fall.any():
+                    balances.append(seen - sign * fall)
+                each = (self._changed(evidence, rows, balance, hides, limits, verb) for balance in balances)
+                found.append(min(each, key=_ratio))
         return [max(found, key=_ratio)[1]] if found else []
 
     @staticmethod
