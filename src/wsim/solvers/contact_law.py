@@ -38,6 +38,7 @@ import numpy as np
 
 from wsim.solvers.blows import BlowsC, Contacts
 from wsim.solvers.breaking import BreakingC
+from wsim.solvers.closing import ClosingC
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC
 from wsim.solvers.contact_rows import ContactRows
@@ -118,7 +119,8 @@ class ContactLawC:
         if smooth:
             moves_as_one = mechanisms(mujoco, model, self._groups, flight.stated, driven=True)
         self.owners = Owners(mujoco, model, moves_as_one)
-        self.smooth_steps = SmoothStepsC(mujoco, model, self.owners, drives)
+        self.closing = ClosingC(mujoco, model)
+        self.smooth_steps = SmoothStepsC(mujoco, model, self.owners, drives, self.closing)
         self._stiff = drives is not None and bool(drives.stiff.any())
         self.blows = BlowsC(mujoco, model, config, self._aim_others, self._ends_of_stops)
         self._divides = touching is None and not flight.stated[1:].any()
@@ -236,6 +238,7 @@ class ContactLawC:
         self.blows.begin()
         self._turns = False
         self._position(data)
+        self.closing.begin(data)
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
             self.drives.choose(data, are_rows=not self._is_whole(touching))
@@ -312,6 +315,7 @@ class ContactLawC:
                 rows = stops[taut]
                 goal[taut] += self.ropes.growth(data, data.efc_id[rows], data.efc_vel[rows], h) / h
             data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
+        self.closing.aim(data)
         rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
 

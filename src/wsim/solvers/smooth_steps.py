@@ -20,6 +20,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.smooth_steps import count_touching, find_touching, keep_where_touched
+from wsim.solvers.closing import ClosingC
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.groups import tendon_bodies
 from wsim.solvers.led import Led
@@ -71,10 +72,12 @@ class SmoothStepsC:
         model: MuJoCo's model.
         owners: Which mechanism is whose.
         drives: The drives that damp, if there are any.
+        closing: What constraints may ask for.
     """
 
-    def __init__(self, mujoco: Any, model: Any, owners: Owners, drives: DrivesC | None) -> None:
+    def __init__(self, mujoco: Any, model: Any, owners: Owners, drives: DrivesC | None, closing: ClosingC) -> None:
         self._mujoco, self._model, self._owners, self._drives = mujoco, model, owners, drives
+        self._closing = closing
         bits, rows = mujoco.mjtDisableBit, mujoco.mjtConstraint
         self._unilateral, self._dry = int(bits.mjDSBL_CONTACT | bits.mjDSBL_LIMIT), int(bits.mjDSBL_FRICTIONLOSS)
         self._stop, self._ropes = int(rows.mjCNSTR_LIMIT_JOINT), ((int(rows.mjCNSTR_LIMIT_TENDON), owners.of_tendon),)
@@ -180,12 +183,13 @@ class SmoothStepsC:
         self._model.opt.disableflags = flags | self._unilateral | self._dry
         if note is not None:
             note(data, half, ())
-        self._mujoco.mj_RungeKutta(self._model, data, 4)
-        if note is not None:
-            warm = data.qacc_warmstart.copy()
-            self._mujoco.mj_forward(self._model, data)
-            note(data, half, ())
-            data.qacc_warmstart[:] = warm
+        with self._closing.stages():
+            self._mujoco.mj_RungeKutta(self._model, data, 4)
+            if note is not None:
+                warm = data.qacc_warmstart.copy()
+                self._mujoco.mj_forward(self._model, data)
+                note(data, half, ())
+                data.qacc_warmstart[:] = warm
         self._model.opt.disableflags = flags
 
     def make(self, data: Any, force: Array, pushed: Array, parts: int, note: Note | None = None) -> None:
@@ -212,7 +216,7 @@ class SmoothStepsC:
         stopped = self._along_joints(data, force, stops)
         beside.qfrc_applied[:] += own[1] + stopped
         told = data.efc_type[stops], data.efc_id[stops], force[stops], data.efc_pos[stops]
-        with self._stages(parts):
+        with self._stages(parts), self._closing.stages():
             self._advance(parts, note and partial(self._tell, note, own, stopped, told))
 
     @contextmanager
