@@ -110,3 +110,10 @@ def test_a_stage_with_a_spring_that_cannot_be_is_refused(scene, tmp_path, attrib
     scene.spring("s", "a", "b", stiffness=30.0)
     scene.stage.GetPrimAtPath("/World/s").GetAttribute(attribute).Set(value)
     assert message in check_stage(scene.save(tmp_path / "stage.usda"), [tmp_path])[0]
+
+
+def test_a_cable_of_links_that_are_too_short_says_how_many_fit():
+    scene = Scene()
+    scene.sphere("ball", radius=0.1, position=(0, 0, 1))
+    with pytest.raises(SceneError, match=r"links = 10 of 0.1 m are too short for a radius of 0.05 m.*at most 5 links"):
+        scene.cable("cable", None, "ball", anchor_a=(0, 0, 2), anchor_b=(0, 0, 1), radius=0.05, links=10)

@@ -192,7 +192,7 @@ BREAKS = {"break_force": 5.0}
         (lambda s: s.gear("g", "hinge", "hinge", ratio=1.0), 'joint_a = joint_b = "hinge": a gear couples two joints'),
         (lambda s: s.gear("g", "hinge", "weld", ratio=1.0), 'joint_b = "weld" is no hinge and no slider'),
         (lambda s: s.gear("g", "hinge", "loose", ratio=1.0), 'joint_b = "loose" may break; a gear needs joints that'),
-        (lambda s: s.gear("g", "hinge", "slide", ratio=0.0), "ratio = 0 must not be 0"),
+        (lambda s: s.gear("g", "hinge", "slide", ratio=0.0), "ratio = 0 must be 1e-06 or more, or -1e-06 or less"),
         (lambda s: s.gear("g", "hinge", "b", ratio=1.0), 'joint_b = "b" is no hinge and no slider'),
     ],
 )

@@ -107,7 +107,12 @@ class Cables(Fluids, Cords):
         most = int(min(long / (_SLENDER * radius), _MOST_LINKS))
         if most < 2:
             call.fail(f"radius = {radius:g} m is too thick for a cable of {long:.4g} m: at most {long / 8.0:.3g} m")
-        count = min(_LINKS, most) if links is None else call.integer("links", links, 2, most)
+        count = min(_LINKS, most) if links is None else call.integer("links", links, 2, _MOST_LINKS)
+        if count > most:
+            call.fail(
+                f"links = {count} of {long / count:.3g} m are too short for a radius of {radius:g} m, each is "
+                f"{_SLENDER:g} radii long or more: at most {most} links, or a radius of {long / count / _SLENDER:.2g} m"
+            )
         if len(way) == 2:
             return hanging(way[0], way[1], long, count + 1)
         points = laid(way, count)

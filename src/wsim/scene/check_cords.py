@@ -36,7 +36,7 @@ def cord_problems(prim: Usd.Prim) -> Iterator[str]:
         named = " and ".join(f"<{body.GetPath()}>" for body in loose)
         yield (
             f"{path}: neither wsim:a nor wsim:b is a body that it could move: fixed joints hold {named} to what is "
-            "static or kinematic; leave out a joint, or give it a physics:breakForce"
+            "static or kinematic; leave out a joint, or give it a break_force (physics:breakForce)"
         )
     elif cord.path[0].body == cord.path[-1].body:
         yield f"{path}.wsim:b: <{cord.path[0].body}> is at its other end, too"
@@ -91,8 +91,11 @@ def _rope(rope: Rope, prim: Usd.Prim) -> Iterator[str]:
         for near in (k - 1, k + 1):
             apart = stops[near].position[0] - stop.position[0]
             if np.linalg.norm(np.cross(apart, stop.axis[0])) < ON_RIM * stop.radius:
-                where = _name(rope.path[near])
-                yield f"{rope.prim}: {where} lies inside the cylinder of <{guide.owner}> that it runs round"
+                where, out = _name(rope.path[near]), np.linalg.norm(np.cross(apart, stop.axis[0]))
+                yield (
+                    f"{rope.prim}: {where} lies inside the cylinder of <{guide.owner}> that it runs round, {out:.4g} m "
+                    f"from its axis and not more than its radius, {stop.radius:.4g} m; anchor it outside"
+                )
                 return
     for k, angle in strayed(stops):
         if angle[0]:

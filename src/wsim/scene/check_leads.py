@@ -53,7 +53,7 @@ def parted(stage: Usd.Stage) -> Iterator[str]:
                 fixed = all(each.joint.GetPrim().IsA(UsdPhysics.FixedJoint) for each in (one, other))
                 yield (
                     f"{other.joint.GetPath()}: {'fixed joints' if fixed else 'joints'} hold {names} together, of which "
-                    "neither gives way; leave this one out, or give it a physics:breakForce"
+                    "neither gives way; leave this one out, or give it a break_force (physics:breakForce)"
                 )
                 break
 

@@ -117,7 +117,7 @@ def _message(one: Hold, other: Hold, wrong: str) -> str:
     ]
     return (
         f"{other.joint.GetPath()}: what joints hold between {names[0]} and {names[1]} {wrong}, neither of which gives "
-        "way; lead them otherwise, leave this joint out, or give it a physics:breakForce"
+        "way; lead them otherwise, leave this joint out, or give it a break_force (physics:breakForce)"
     )
 
 

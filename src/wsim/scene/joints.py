@@ -253,7 +253,7 @@ class Joints(Author):
             call.fail(f"joint_a = joint_b = {shown(ends[0].GetName())}: a gear couples two joints")
         value = call.within("ratio", ratio, -1e6, 1e6)
         if abs(value) < 1e-6:
-            call.fail(f"ratio = {value:g} must not be 0")
+            call.fail(f"ratio = {value:g} must be 1e-06 or more, or -1e-06 or less: it couples nothing")
         one, other = (str(end.GetPath()) for end in ends)
         there = contradicts(meshes_of(self._stage), (one, other, value))
         if there is not None:

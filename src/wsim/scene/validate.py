@@ -119,7 +119,7 @@ class Call:
 
     def vector(self, field: str, value: object, limit: float, unit: str) -> Vec3:
         """Three numbers in -limit..limit."""
-        x, y, z = self._three(field, value, f"(x, y, z) in {unit}")
+        x, y, z = self._three(field, value, f"(x, y, z){_of(unit)}")
         return (
             self.within(f"{field}[0]", x, -limit, limit, unit),
             self.within(f"{field}[1]", y, -limit, limit, unit),
