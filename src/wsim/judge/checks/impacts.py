@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from wsim.judge.books.impacts import blows
+from wsim.judge.books.impacts import Blow, blows, tells
 from wsim.judge.books.recorded_blows import recorded_blows
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
-    from wsim.judge.books.impacts import Blow, Rub
+    from wsim.judge.books.impacts import Rub
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
@@ -104,18 +104,13 @@ class CheckBlowFriction(Check):
 
 
 def _told(evidence: Evidence) -> list[Blow]:
-    """The blows of a recording whose velocities and contacts' laws are known.
-
-    Other engines' contacts are soft and state no restitution.
-    """
-    if evidence.world.combine != "smaller" or evidence.recording.metadata.get("velocities") == "differences":
+    """The blows of a recording whose velocities and contacts' laws are known."""
+    if not tells(evidence):
         return []
-    if evidence.world.fluids or evidence.recording.metadata.get("controlled"):
-        return []
-    if CheckRestitution not in evidence.kept:
+    if Blow not in evidence.kept:
         recorded = evidence.recording.contacts is not None
-        evidence.kept[CheckRestitution] = recorded_blows(evidence) if recorded else blows(evidence)
-    return cast("list[Blow]", evidence.kept[CheckRestitution])
+        evidence.kept[Blow] = recorded_blows(evidence) if recorded else blows([evidence])[0]
+    return cast("list[Blow]", evidence.kept[Blow])
 
 
 CHECKS: Checks = (CheckRestitution, CheckBlowFriction)
