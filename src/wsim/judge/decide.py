@@ -81,10 +81,12 @@ def work_out(copies: Sequence[Evidence]) -> None:
         with _left_to_each(group, "motion"):
             whole = Evidence.join(group)
             joined += [(whole, group)] if whole is not None else []
-    for group in groups(copies, similar):
-        if len(group) > 1:
-            with _left_to_each(group, "books"):
-                books_of(group)
+    for group in (group for group in groups(copies, similar) if len(group) > 1):
+        with _left_to_each(group, "books"):
+            books_of(group)
+        for check in physics_checks():
+            with _left_to_each(group, check.name), contextlib.suppress(MissingError):
+                check.prepare_similar(group)
     for whole, group in joined:
         asked = group[0].plan.objectives if group[0].plan is not None else []
         for check in (*physics_checks(), *map(ObjectiveCheck, asked)):

@@ -4,8 +4,8 @@ import numpy as np
 
 from tests.judge.checks.test_impacts import meeting, stated
 from tests.judge.theory import bouncing
-from wsim.judge.books import copies
 from wsim.judge.books.impacts import Blow, blows
+from wsim.judge.checks.impacts import CheckRestitution
 from wsim.judge.evidence.evidence import Evidence
 
 
@@ -30,7 +30,7 @@ def test_points_of_either_body_are_its_own():
     assert np.allclose([[blow.approach, blow.parting] for (blow,) in found], [[2.0, 1.0]] * 3)
 
 
-def test_books_of_many_worlds_keep_their_blows():
+def test_the_check_has_them_before_it_asks_each_world():
     evidence = [Evidence(recording) for recording in worlds()]
-    copies.work_out(evidence)
+    CheckRestitution().prepare_similar(evidence)
     assert [each.kept[Blow] for each in evidence] == blows([Evidence(recording) for recording in worlds()])

@@ -8,7 +8,6 @@ import numpy as np
 
 from wsim.judge.books.balance import Balance, Books
 from wsim.judge.books.creep import Lacking, creeps
-from wsim.judge.books.impacts import Blow, blows, tells
 from wsim.judge.books.standing import standing
 from wsim.judge.books.touching import Touching
 from wsim.judge.evidence.alike import alike
@@ -59,9 +58,6 @@ def work_out(copies: Sequence[Evidence]) -> None:
         evidence.kept[Books] = books
     for evidence, *lacking in zip(copies, creeps(copies), standing(copies), strict=True):
         evidence.kept[Lacking] = lacking[0] + lacking[1]
-    told_of = [evidence for evidence in copies if tells(evidence) and evidence.recording.contacts is None]
-    for evidence, found in zip(told_of, blows(told_of) if told_of else [], strict=True):
-        evidence.kept[Blow] = found
 
 
 def lasting(evidence: Evidence) -> list[Lacking]:

@@ -37,6 +37,13 @@ class Check:
             copies: Each by itself.
         """
 
+    def prepare_similar(self, copies: Sequence[Evidence]) -> None:
+        """Work out at once what it asks of worlds that differ in sizes, places and coefficients, too, or nothing.
+
+        Args:
+            copies: Of similar worlds (`wsim.judge.books.copies`), over the same times; their books are worked out.
+        """
+
     @property
     def name(self) -> str:
         """The name that findings carry."""
