@@ -30,7 +30,7 @@ class Check:
         return None
 
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
-        """Work out at once what it asks of all copies of a world, and keep it with each; nothing if it need not.
+        """Work out at once what it asks of worlds of one geometry, and keep it with each; nothing if it need not.
 
         Args:
             joined: Evidence whose motion has an axis of copies (`Evidence.join`).

@@ -66,7 +66,7 @@ class ObjectiveCheck(Check):
         if any(formula != formulas[0] for formula in formulas):
             return
         if Signals not in joined.kept:
-            joined.kept[Signals] = Signals.of_copies(joined)
+            joined.kept[Signals] = Signals.of_copies(joined, [evidence.world for evidence in copies])
         signals = cast("Signals", joined.kept[Signals])
         outcomes = _outcomes(formulas[0], signals)
         for n, evidence in enumerate(copies):
