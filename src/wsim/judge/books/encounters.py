@@ -68,16 +68,21 @@ def near(copies: Sequence[Evidence], touching: Touching, changed: Bools) -> Rows
 
 def jumps(copies: Sequence[Evidence]) -> Bools:
     """Where a velocity changes otherwise than in the intervals around and in a fall, (W, T - 1, B), beyond a step."""
+    speed = np.stack([evidence.motion.surface_speed for evidence in copies])
+    step = np.array([step_of(evidence) for evidence in copies])[:, None, None]
+    fastest = np.maximum(speed[:, 1:], speed[:, :-1])
+    return np.asarray(sudden(copies) > 2.0 * copies[0].gravity * step + SLIGHT * fastest)
+
+
+def sudden(copies: Sequence[Evidence]) -> Floats:
+    """By how much a velocity, of the surface too, changes otherwise than around and in a fall, (W, T - 1, B) [m/s]."""
     motions, first = [evidence.motion for evidence in copies], copies[0].motion
-    v, w, speed = (np.stack([getattr(motion, name) for motion in motions]) for name in ("v", "w", "surface_speed"))
+    v, w = (np.stack([getattr(motion, name) for motion in motions]) for name in ("v", "w"))
     radius = np.stack([motion.radius for motion in motions])[:, None, :, None]
     gained = np.concatenate([np.diff(v, axis=1), np.diff(w, axis=1) * radius], axis=3)
     fall = np.zeros_like(gained) + first.h[:, None, None] * np.concatenate([first.gravity, np.zeros(3)])
     around = np.concatenate([fall[:, :1], gained, fall[:, :1]], axis=1)
-    jump = np.min([lengths(gained - other) for other in (around[:, :-2], around[:, 2:], fall)], axis=0)
-    step = np.array([step_of(evidence) for evidence in copies])[:, None, None]
-    fastest = np.maximum(speed[:, 1:], speed[:, :-1])
-    return np.asarray(jump > 2.0 * copies[0].gravity * step + SLIGHT * fastest)
+    return np.asarray(np.min([lengths(gained - other) for other in (around[:, :-2], around[:, 2:], fall)], axis=0))
 
 
 def meets(courses: Courses, touching: Touching, met: list[tuple[int, tuple[int, int], float]]) -> list[Met]:
