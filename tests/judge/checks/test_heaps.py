@@ -64,7 +64,7 @@ def test_half_of_its_friction_is_found(recording):
 
 
 def test_a_stack_that_sways_faster_than_frames_follow_is_accepted(tmp_path):
-    """Its lower boxes go 26 um and come to rest again between two frames; nothing slips that would tell its friction."""
+    """Its lower boxes go 26 um and come to rest again between frames; no slip lasts that would tell its friction."""
     recording = simulated("struck stack", 6, tmp_path)
     assert failed(recording) == []
     assert failed(replace(recording, contacts=None, ties=None)) == []
