@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from wsim.judge.books.copies import similar
 from wsim.judge.books.copies import work_out as books_of
 from wsim.judge.checks.registry import physics_checks, run_checks
-from wsim.judge.evidence.alike import alike, groups
+from wsim.judge.evidence.alike import groups, same_geometry
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.objective import ObjectiveCheck
@@ -58,8 +58,8 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
     """Judge several copies of one world, over the same times and by the same plan, each as by itself.
 
     They may differ in how they move, and in their descriptions. All that checks ask is worked out at once of those
-    that differ in masses and inertias alone (`wsim.judge.evidence.alike`), and the books of those that differ in sizes,
-    places and coefficients, too (`wsim.judge.books.copies`).
+    of one geometry (`wsim.judge.evidence.alike`), and the books of those that differ in sizes, too
+    (`wsim.judge.books.copies`).
     """
     if len(copies[0].time) == 0:
         return [_nothing() for _ in copies]
@@ -81,10 +81,12 @@ def work_out(copies: Sequence[Evidence]) -> None:
         with _left_to_each(group, "motion"):
             whole = Evidence.join(group)
             joined += [(whole, group)] if whole is not None else []
-    for group in groups(copies, similar):
-        if len(group) > 1:
-            with _left_to_each(group, "books"):
-                books_of(group)
+    for group in (group for group in groups(copies, similar) if len(group) > 1):
+        with _left_to_each(group, "books"):
+            books_of(group)
+        for check in physics_checks():
+            with _left_to_each(group, check.name), contextlib.suppress(MissingError):
+                check.prepare_similar(group)
     for whole, group in joined:
         asked = group[0].plan.objectives if group[0].plan is not None else []
         for check in (*physics_checks(), *map(ObjectiveCheck, asked)):
@@ -93,7 +95,7 @@ def work_out(copies: Sequence[Evidence]) -> None:
 
 
 def _like(one: Evidence, other: Evidence) -> bool:
-    return alike(one.world, other.world)
+    return same_geometry(one.world, other.world)
 
 
 @contextlib.contextmanager

@@ -18,7 +18,7 @@ def going_round(evidence_of):
                                spin=spin))  # fmt: skip
     changed = np.zeros((len(t) - 1, 1), dtype=bool)
     changed[5] = True
-    return Courses(evidence, changed)
+    return Courses([evidence], changed)
 
 
 @pytest.mark.parametrize(("side", "share"), [(0, 1.0), (0, 0.3), (1, 0.0), (1, 0.7)])

@@ -45,3 +45,29 @@ def test_a_box_that_nothing_hits_has_not():
 
 def test_it_goes_no_farther_than_its_speed_takes_it():
     assert not all(finding.passed for finding in ask(CheckContinuity(), struck(0.3)))
+
+
+def swaying(change, moved):
+    """A box on a box that changes its speed by such steps [m/s]; the lower one is `moved` [m] and told at rest."""
+    t = times(1.0)
+    above = np.cumsum(change(np.arange(len(t))))
+    way = np.cumsum(above) * (t[1] - t[0])
+    none = 0.0 * t
+    under = np.where(np.arange(len(t)) > AT, moved, 0.0)
+    place = np.stack([np.stack([under, none, none + EDGE / 2], 1), np.stack([way, none, none + 1.5 * EDGE], 1)], 1)
+    velocity = np.zeros((len(t), 2, 3))
+    velocity[:, 1, 0] = above
+    return Evidence(record([box("low"), box("high")], place, velocity, t, statics=[ground()]))
+
+
+def test_what_sways_under_a_box_may_have_had_what_that_lost():
+    """Its momentum went through the box below, once: no faster than 4 mm/s, of a box as heavy."""
+    speed = hidden(swaying(lambda k: np.where(k == 0, 4e-3, np.where(k == AT + 1, -4e-3, 0.0)), 3e-5))
+    assert speed[AT, 0] == pytest.approx(4e-3)
+    assert np.all(np.delete(speed[:, 0], AT) < 1e-6)
+
+
+def test_what_slows_evenly_above_it_hides_nothing():
+    """A friction that lasts is no jolt: nothing under it comes and goes."""
+    speed = hidden(swaying(lambda k: np.where(k == 0, 0.2, -4e-3), 3e-5))
+    assert np.all(speed[1:-1, 0] < 1e-6)

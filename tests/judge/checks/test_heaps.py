@@ -18,14 +18,16 @@ from wsim.sim import Simulation
 WORLDS = [
     ("struck row", 3), ("struck stack", 10), ("struck pile", 46), ("struck row", 41), ("struck row", 4),
     ("struck pile", 30), ("struck pile", 26129), ("struck pile", 26148),
-    ("struck pile", 26111), ("struck stack", 26150), ("struck row", 26115),
+    ("struck pile", 26111), ("struck stack", 26150), ("struck row", 26115), ("struck pile", 6),
 ]  # fmt: skip
 
 
 @pytest.fixture(scope="module", params=WORLDS, ids=[f"{name} {k}" for name, k in WORLDS])
 def recording(request, tmp_path_factory):
-    name, k = request.param
-    folder = tmp_path_factory.mktemp("heap")
+    return simulated(*request.param, tmp_path_factory.mktemp("heap"))
+
+
+def simulated(name, k, folder):
     Simulation(Sound(MECHANISMS[name], k).scene().save(folder / "stage.usda"), device="cpu").run(folder / "r.rrd")
     return read(folder / "r.rrd")
 
@@ -59,3 +61,10 @@ def test_half_of_its_friction_is_found(recording):
     ]
     told = recording.world.model_copy(update={"bodies": bodies})
     assert failed(replace(recording, world=told))
+
+
+def test_a_stack_that_sways_faster_than_frames_follow_is_accepted(tmp_path):
+    """Its lower boxes go 26 um and come to rest again between frames; no slip lasts that would tell its friction."""
+    recording = simulated("struck stack", 6, tmp_path)
+    assert failed(recording) == []
+    assert failed(replace(recording, contacts=None, ties=None)) == []

@@ -96,7 +96,7 @@ def changing(asked: Floats, angle: Floats, mass: Floats, hit: Bools, unit: Rows)
         unit: Which mechanism each body is of, (B,).
     """
     found = np.zeros(angle.shape)
-    for each in np.unique(unit):
+    for each in np.unique(unit[angle.any(axis=0)]):  # what no tie holds turns no arm
         own = np.flatnonzero(unit == each)
         calm = np.asarray(~hit[:, own].any(axis=1))
         change = np.linalg.norm(np.diff(asked[:, own], axis=0), axis=2) * (calm[1:] & calm[:-1])[:, None]

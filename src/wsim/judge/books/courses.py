@@ -16,6 +16,8 @@ from wsim.judge.books.forces import Poses
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -35,43 +37,58 @@ def step_of(evidence: Evidence) -> float:
 
 
 class Courses:
-    """How bodies go on from a frame, or came to it: with what sped them up in the interval before, or after."""
+    """How bodies go on from a frame, or came to it: with what sped them up in the interval before, or after.
 
-    def __init__(self, evidence: Evidence, changed: Bools) -> None:
-        self.evidence, self.changed, motion = evidence, changed, evidence.motion
+    Of several recordings over the same times, of worlds that are `similar`, intervals and frames stand one after
+    another: N = W (T - 1) intervals, of which `at` takes one, or as many as there are moments.
+    """
+
+    def __init__(self, copies: Sequence[Evidence], changed: Bools) -> None:
+        """Of W copies; `changed` says of each interval whether a body has a blow in it, (N, B)."""
+        self.copies, motions = copies, [evidence.motion for evidence in copies]
         self._met: dict[tuple[int, ...], float | None] = {}
-        self.dt = step_of(evidence)
-        falls = np.where(motion.kinematic[:, None], 0.0, motion.gravity[None])
-        # (T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
-        own = np.concatenate([np.diff(motion.v, axis=0), np.diff(motion.w, axis=0)], axis=2) / motion.h[:, None, None]
-        fall = np.concatenate([falls, np.zeros_like(falls)], axis=1)[None]
-        known = np.where(changed[..., None], fall, own)
+        self.count = len(motions[0].h)  # intervals of each copy
+        self.dt = np.array([step_of(evidence) for evidence in copies])  # (W,)
+        self._h = motions[0].h
+        self._q, self._com, self._v, self._w = (
+            np.stack([getattr(motion, name) for motion in motions]) for name in ("q", "com", "v", "w")
+        )  # (W, T, B, ...)
+        h, blow = self._h[:, None, None], changed.reshape(len(copies), self.count, -1)
+        falls = np.where(motions[0].kinematic[:, None], 0.0, motions[0].gravity[None])
+        # (W, T - 1, B, 6), in an interval without a blow; in one with it, and beyond the ends, gravity's.
+        own = np.concatenate([np.diff(self._v, axis=1), np.diff(self._w, axis=1)], axis=3) / h
+        fall = np.concatenate([falls, np.zeros_like(falls)], axis=1)
+        known = np.where(blow[..., None], fall, own)
         # How far its steps take a body from its course in the intervals around.
-        trapezoid = 0.5 * (motion.v[1:] + motion.v[:-1]) * motion.h[:, None, None]
-        own = np.where(changed, 0.0, np.linalg.norm(np.diff(motion.com, axis=0) - trapezoid, axis=2))
-        none = np.zeros((1, own.shape[1]))
-        self.strays = np.minimum(np.concatenate([none, own[:-1]]), np.concatenate([own[1:], none]))
-        self.before = np.concatenate([fall, known[:-1]])
-        self.after = np.concatenate([known[1:], fall])
-        # How what speeds bodies up changes from one interval to the next, where neither has a blow, (T - 2, B, 6).
-        self._changes = np.where((changed[1:] | changed[:-1])[..., None], 0.0, np.diff(known, axis=0))
+        trapezoid = 0.5 * (self._v[:, 1:] + self._v[:, :-1]) * h
+        strays = np.where(blow, 0.0, lengths(np.diff(self._com, axis=1) - trapezoid))
+        none = np.zeros_like(strays[:, :1])
+        self.strays = np.minimum(
+            np.concatenate([none, strays[:, :-1]], axis=1), np.concatenate([strays[:, 1:], none], axis=1)
+        )
+        beyond = np.broadcast_to(fall, known[:, :1].shape)
+        self.before = np.concatenate([beyond, known[:, :-1]], axis=1)
+        self.after = np.concatenate([known[:, 1:], beyond], axis=1)
+        # How what speeds bodies up changes from one interval to the next, where neither has a blow, (W, T - 2, B, 6).
+        self._changes = np.where((blow[:, 1:] | blow[:, :-1])[..., None], 0.0, np.diff(known, axis=1))
 
-    def at(self, k: int, side: int, when: float, rows: list[int] | None = None) -> Poses:
-        """Bodies `when` [s] after frame k, as they went before a blow in the interval (0), or after it (1).
+    def at(self, k: int | Rows, side: int, when: float | Floats, rows: list[int] | None = None) -> Poses:
+        """Bodies `when` [s] after the frame before interval k, as they went before a blow in it (0), or after it (1).
 
-        All of them, or those of some rows.
+        All of them, or those of some rows: (B, ...), or (K, B, ...) of K intervals and moments.
         """
-        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
-        some = slice(None) if rows is None else rows
+        copy, interval = np.divmod(k, self.count)
+        some, by = slice(None) if rows is None else rows, self._since(interval, side, when)
+        here = copy, interval + side
         v, com = self._going(k, side, when, some)
-        rate = motion.w[frame, some]
-        w = rate + (self.after if side else self.before)[k, some, 3:] * by
+        rate = self._w[here][..., some, :]
+        w = rate + (self.after if side else self.before)[copy, interval][..., some, 3:] * by
         angle = 0.5 * (rate + w) * by
-        size = lengths(angle)[:, None]
-        turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=1)
-        q = self.evidence.body_q[frame, some]
-        place = com + rotate(turn, q[:, :3] - motion.com[frame, some])
-        return Poses(np.concatenate([place, multiply(turn, q[:, 3:])], axis=1), com, v, w)
+        size = lengths(angle)[..., None]
+        turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=-1)
+        q = self._q[here][..., some, :]
+        place = com + rotate(turn, q[..., :3] - self._com[here][..., some, :])
+        return Poses(np.concatenate([place, multiply(turn, q[..., 3:])], axis=-1), com, v, w)
 
     def off(self, k: int, side: int, when: float) -> Floats:
         """By how much velocities and rates at `when` may be off, as what speeds bodies up changes, (B, 6) [m/s, rad/s].
@@ -79,32 +96,35 @@ class Courses:
         A course has what sped its body up in the interval next to it, on the whole as in the middle of that; what spins
         about another axis than its own, as a coin on its rim, has its torque and its rates go round meanwhile.
         """
-        at, by, h = (k + 1 if side else k - 2), abs(self._since(k, side, when)[1]), float(self.evidence.motion.h[k])
-        if not 0 <= at < len(self._changes):
-            return np.zeros((len(self.evidence.motion.mass), 6))
-        found: Floats = self._changes[at] / h * 0.5 * (h + by) * by
+        copy, interval = divmod(k, self.count)
+        at, by, h = interval + 1 if side else interval - 2, float(abs(self._since(interval, side, when))), self._h
+        if not 0 <= at < self._changes.shape[1]:
+            return np.zeros(self._changes.shape[2:])
+        found: Floats = self._changes[copy, at] / h[interval] * 0.5 * (h[interval] + by) * by
         return found
 
-    def _going(self, k: int, side: int, when: float, rows: list[int] | slice) -> tuple[Floats, Floats]:
+    def _going(self, k: int | Rows, side: int, when: float | Floats, rows: list[int] | slice) -> tuple[Floats, Floats]:
         """Velocities and centres of mass, as `at`."""
-        motion, frame, by = self.evidence.motion, *self._since(k, side, when)
-        before = motion.v[frame, rows]
-        v = before + (self.after if side else self.before)[k, rows, :3] * by
-        return v, motion.com[frame, rows] + 0.5 * (before + v) * by
+        copy, interval = np.divmod(k, self.count)
+        by, before = self._since(interval, side, when), self._v[copy, interval + side][..., rows, :]
+        v = before + (self.after if side else self.before)[copy, interval][..., rows, :3] * by
+        return v, self._com[copy, interval + side][..., rows, :] + 0.5 * (before + v) * by
 
-    def _since(self, k: int, side: int, when: float) -> tuple[int, float]:
-        """The frame that a course is told from, and how long after it that is [s]."""
-        return k + side, when - side * float(self.evidence.motion.h[k])
+    def _since(self, interval: int | Rows, side: int, when: float | Floats) -> Floats:
+        """How long after the frame that a course is told from [s]: of one moment, or (K, 1, 1)."""
+        by = np.asarray(when - side * self._h[interval])
+        return by if by.ndim == 0 else by[:, None, None]
 
     def meet(self, k: int, rows: list[int]) -> float | None:
-        """When [s] after frame k the courses of some bodies before and after one blow meet; None if they do not."""
+        """When [s] after its first frame some bodies' courses before and after one blow in interval k meet, or None."""
         key = k, *rows
         if key not in self._met:
             self._met[key] = self._meet(k, rows)
         return self._met[key]
 
     def _meet(self, k: int, rows: list[int]) -> float | None:
-        motion, h = self.evidence.motion, float(self.evidence.motion.h[k])
+        copy, interval = divmod(k, self.count)
+        h, dt = float(self._h[interval]), self.dt[copy]
         ends = [[self._going(k, side, when, rows)[1] for side in (0, 1)] for when in (0.0, h)]
         first, last = (before - after for before, after in ends)
         apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
@@ -113,12 +133,12 @@ class Courses:
         before, after = (self.at(k, side, when, rows) for side in (0, 1))
         far = lengths(before.com - after.com)
         jump = lengths(after.v - before.v)
-        rounding = 4.0 * FLOAT32 * lengths(motion.com[k, rows])
-        if np.any(far > WITHIN * jump * self.dt + 2.0 * self.strays[k, rows] + rounding):
+        rounding = 4.0 * FLOAT32 * lengths(self._com[copy, interval, rows])
+        if np.any(far > WITHIN * jump * dt + 2.0 * self.strays[copy, interval, rows] + rounding):
             return None
         turn = multiply(after.q[:, 3:], conjugate(before.q[:, 3:]))
         angle = 2.0 * lengths(turn[:, :3])
         rate, spun = np.maximum(lengths(before.w), lengths(after.w)), lengths(after.w - before.w)
-        if np.any(angle > spun * self.dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
+        if np.any(angle > spun * dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
             return None
         return when

@@ -8,6 +8,7 @@ is, what is led to and fro comes back to the same dV/dt, so that a gain that las
 
 from __future__ import annotations
 
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from wsim.judge.evidence.cords import spring_power
 from wsim.judge.evidence.motion import FLOAT32, OURS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -28,6 +29,58 @@ if TYPE_CHECKING:
 COARSEST = 0.005  # [s] that a step of the first order takes at most
 ROUNDS = 16  # of the search for t, each of which leaves 0.618 of where it may be
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+
+
+@dataclass(frozen=True)
+class Account:
+    """What n mechanisms have, less what they were given, (T, n) each."""
+
+    energy: Floats  # [J]
+    sinks: Floats  # how fast it gives away what gravity and springs hold [W]
+    phase: Floats  # what a frame's phase hides [J]
+    held: Floats  # what contacts may hold [J]
+    meets: NDArray[np.bool_] | None = None  # where it meets others, and what it gains is left out, (T - 1, n)
+    gave: Floats | None = None  # what contacts may give back after it met others, (T - 2, n) [J]
+
+    @staticmethod
+    def join(parts: Sequence[Account]) -> Account:
+        """The mechanisms of several, over the same times."""
+        names = [each.name for each in fields(Account) if getattr(parts[0], each.name) is not None]
+        return Account(**{name: np.concatenate([getattr(part, name) for part in parts], axis=1) for name in names})
+
+    def balance(self, late: Floats) -> Floats:
+        """What each has by the phase of its steps (n,) [s], (T, n) [J]."""
+        whole: Floats = self.energy + late * self.sinks
+        if self.meets is None or self.gave is None:
+            return whole
+        gained = np.where(self.meets, 0.0, np.diff(whole, axis=0))
+        gained[1:] -= self.gave
+        return np.concatenate([np.zeros((1, gained.shape[1])), np.cumsum(gained, axis=0)])
+
+    def gains(self, late: Floats) -> Floats:
+        """The most that it rises over its least, (n,) [J]."""
+        return np.asarray(np.max(risen(self.balance(late), self.phase, self.held), axis=0))
+
+
+def risen(balance: Floats, phase: Floats, held: Floats) -> Floats:
+    """How far a balance has risen over its least, less what a phase hides at both ends and contacts held before."""
+    found: Floats = balance - phase - np.minimum.accumulate(balance + phase + held, axis=0)
+    return found
+
+
+def least_of(accounts: Sequence[Account], latest: Sequence[float]) -> list[Floats]:
+    """The t of each mechanism of some accounts, over the same times, at which it gains least, at most its latest."""
+    found = [np.zeros(account.energy.shape[1]) for account in accounts]
+    for kind in (True, False):
+        some = [n for n, account in enumerate(accounts) if (account.meets is None) == kind]
+        if some:
+            whole = Account.join([accounts[n] for n in some])
+            counts = [len(found[n]) for n in some]
+            most = np.repeat([latest[n] for n in some], counts)
+            late, _ = least(whole.gains, len(most), most)
+            for n, each in zip(some, np.split(late, np.cumsum(counts)[:-1]), strict=True):
+                found[n] = each
+    return found
 
 
 def latest(evidence: Evidence) -> float:
@@ -58,7 +111,7 @@ def turned_over(evidence: Evidence, falls: Floats) -> Floats:
     return np.asarray(np.abs(falls).max(axis=0) * latest(evidence) * orders)
 
 
-def least(gain: Callable[[Floats], Floats], count: int, most: float) -> tuple[Floats, Floats]:
+def least(gain: Callable[[Floats], Floats], count: int, most: float | Floats) -> tuple[Floats, Floats]:
     """The t from 0 to `most` at which some mechanisms gain least, and that gain, (count,) each [s], [J].
 
     A gain between any two frames is linear in t, so that the greatest of them is convex: the search is by the golden
@@ -67,7 +120,7 @@ def least(gain: Callable[[Floats], Floats], count: int, most: float) -> tuple[Fl
     Args:
         gain: The greatest gain of each mechanism [J], by its t.
         count: How many mechanisms there are.
-        most: [s].
+        most: [s], of all or of each.
     """
     low, high = np.zeros(count), np.full(count, most)
     left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)

@@ -9,10 +9,11 @@ push; the square of what its rest is off is at most the gap that is left.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dpotrf, dpotrs
 from scipy.optimize import lsq_linear, nnls
 from scipy.sparse import csc_matrix, csr_matrix
 
@@ -52,7 +53,20 @@ def pushing(matrix: csr_matrix, wanted: Floats, enough: float, *, wholly: bool =
 
 def _most(rest: Floats) -> float:
     """The largest rest of a body, of all bodies' six rows each (6 b,)."""
-    return float(np.sqrt(np.einsum("bi,bi->b", rest.reshape(-1, 6), rest.reshape(-1, 6)).max(initial=0.0)))
+    each = rest.reshape(-1, 6)
+    return math.sqrt(np.einsum("bi,bi->b", each, each).max(initial=0.0))
+
+
+def _factor(gram: Floats) -> Floats:
+    """Cholesky's, of a lower triangle (r, r), by LAPACK itself: of small ones SciPy's door takes as long as its solver.
+
+    Raises:
+        LinAlgError: Where it is not positive definite.
+    """
+    factor, wrong = dpotrf(gram, lower=1, clean=0)
+    if wrong:
+        raise np.linalg.LinAlgError(f"the leading minor of order {wrong} is not positive definite")
+    return np.asarray(factor)
 
 
 def _projected(unit: csr_matrix, wanted: Floats, enough: float) -> Floats:
@@ -60,11 +74,11 @@ def _projected(unit: csr_matrix, wanted: Floats, enough: float) -> Floats:
     across = csr_matrix(unit.T)
     gram = (unit @ across).toarray()
     gram[np.diag_indices(len(gram))] += RIDGE * np.trace(gram) / len(gram)
-    factor = cho_factor(gram, lower=True, check_finite=False)
+    factor = _factor(gram)
     strength = ahead = np.zeros(unit.shape[1])
     made, there, pace = np.zeros(len(wanted)), np.zeros(len(wanted)), 1.0  # what strengths make, and those ahead
     for n in range(ROUNDS):
-        step = across @ cho_solve(factor, wanted - there, check_finite=False)
+        step = across @ dpotrs(factor, wanted - there, lower=1)[0]
         before, strength = strength, np.maximum(ahead + step, 0.0)
         last_made, made = made, unit @ strength
         most = _most(wanted - made)
@@ -99,12 +113,12 @@ def _interior(unit: csr_matrix, wanted: Floats, start: Floats, enough: float, wh
             break
         short, off = rest - r, -(gain + s)
         try:
-            factor = cho_factor(gram.weighed(np.minimum(x / s, STIFF)), lower=True, check_finite=False)
+            factor = _factor(gram.weighed(np.minimum(x / s, STIFF)))
         except np.linalg.LinAlgError:  # it is as near as rounding lets it come
             break
 
         def step(target: Floats) -> tuple[Floats, Floats, Floats]:
-            dr = cho_solve(factor, short - unit @ ((target - x * off) / s), check_finite=False)  # noqa: B023
+            dr = dpotrs(factor, short - unit @ ((target - x * off) / s), lower=1)[0]  # noqa: B023
             ds = off - across @ dr  # noqa: B023
             return (target - x * ds) / s, ds, dr  # noqa: B023
 

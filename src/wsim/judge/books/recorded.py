@@ -196,18 +196,20 @@ class RecordedContacts:
     def knocked(self, rows: Rows, normal: Floats, change: Floats) -> Floats:
         """How far blows may take the slips of some rows beyond those of both ends, and back, (rows,) [m/s].
 
-        What goes to and fro between others that it bounces off is struck several times between two frames. By what all
-        of that changes its slip, less what the ends differ by, it goes there and back.
+        What goes to and fro between others that it bounces off is struck several times between two frames; and what is
+        hit by something else may lose its slip to the blow's friction, and be given it again. By what all of that
+        changes its slip, less what the ends differ by, it goes there and back.
 
         Args:
             rows: Which.
             normal: Of every row, (n, 3).
             change: Of the slips of some rows, from end to end, (rows,) [m/s].
         """
-        found = np.zeros(len(rows))
-        for at, row in enumerate(rows if self._bounce.any() else ()):
+        found, frame, hits = np.zeros(len(rows)), self.track.frame, self._bounce | ~self.lasting
+        for at in np.flatnonzero(np.isin(frame[rows], frame[hits])):
+            row = rows[at]
             for body in self.body[row][self.body[row] >= 0]:
-                others = (self.track.frame == self.track.frame[row]) & (self.body == body).any(axis=1) & self._bounce
+                others = (frame == frame[row]) & (self.body == body).any(axis=1) & hits
                 others[row] = False
                 given = self.track.impulse[others].astype(np.float64)
                 across = given - (given @ normal[row])[:, None] * normal[row]

@@ -172,10 +172,10 @@ def _other(contacts: Contacts, row: int) -> tuple[int, float]:
 
 def _touches(evidence: Evidence, near: Near, row: int) -> Contacts | None:
     """The contacts of a body that rolls on one thing, along one line, without slipping; None where it does not."""
-    ours = (near.contacts.one == row) | (near.contacts.two == row)
-    contacts, over = near.contacts.only(ours), near.slip[ours]
-    if not len(contacts) or np.any(contacts.shapes != contacts.shapes[0]):
+    ours = np.flatnonzero((near.contacts.one == row) | (near.contacts.two == row))
+    if not len(ours) or np.any(near.contacts.shapes[ours] != near.contacts.shapes[ours[0]]):
         return None
+    contacts, over = near.contacts.only(ours), near.slip[ours]
     if np.any(contacts.normal @ contacts.normal[0] < 1.0 - FLAT):
         return None
     if np.linalg.norm(over, axis=1).max() > STILL:

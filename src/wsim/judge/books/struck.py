@@ -46,7 +46,7 @@ class Struck:
 
     @cached_property
     def _courses(self) -> Courses:
-        return Courses(self._evidence, self._hit)
+        return Courses([self._evidence], self._hit)
 
     def ends(self, k: int, course: int | None) -> Ends:
         """Those of frames k and k + 1, or of the blow by the course to it (0) or from it (1)."""

@@ -30,11 +30,18 @@ class Check:
         return None
 
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
-        """Work out at once what it asks of all copies of a world, and keep it with each; nothing if it need not.
+        """Work out at once what it asks of worlds of one geometry, and keep it with each; nothing if it need not.
 
         Args:
             joined: Evidence whose motion has an axis of copies (`Evidence.join`).
             copies: Each by itself.
+        """
+
+    def prepare_similar(self, copies: Sequence[Evidence]) -> None:
+        """Work out at once what it asks of worlds that differ in sizes, places and coefficients, too, or nothing.
+
+        Args:
+            copies: Of similar worlds (`wsim.judge.books.copies`), over the same times; their books are worked out.
         """
 
     @property

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.led import Led, late_fall, untold
 from wsim.judge.books.losses import Losses
-from wsim.judge.books.phases import falling, hidden, latest, least, sinking, turned_over
+from wsim.judge.books.phases import Account, falling, hidden, latest, least, least_of, risen, sinking, turned_over
 from wsim.judge.books.recorded import met
 from wsim.judge.books.touching import Touching
 from wsim.judge.checks.check import Check, Checks
@@ -20,12 +20,28 @@ from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
     Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a recording's energy."""
+
+    account: Account  # of each mechanism; of all as one where there is one, or where it is not known which was driven
+    stored: Floats  # what contacts and stops may hold, (T, B) [J]
+    phase: Floats  # what a frame's phase hides, (T, B) [J]
+    driven: bool
+    one: bool
+    of: NDArray[np.bool_] | None = None  # which bodies each mechanism has, (B, n)
+    together: Floats | None = None  # what all bodies have, less what they were given, (T,) [J]
+    late: Floats = field(default_factory=lambda: np.zeros(1))  # of each mechanism [s], (n,)
 
 
 @dataclass
@@ -45,38 +61,62 @@ class CheckEnergy(Check):
         motion = evidence.motion
         if len(motion.h) == 0 or self._unknown(evidence):
             return []
-        energy = motion.kinetic + motion.potential + motion.elastic
-        if motion.applied_work is not None:
-            energy = energy - motion.applied_work
-        led = Led.of(evidence)
-        late = np.maximum(np.diff(led.late, axis=0, prepend=led.late[:1]), 0.0)
-        energy = energy - led.work - led.unsure - np.cumsum(late, axis=0)
-        unknown = untold(evidence)
-        energy[:, motion.kinematic | unknown] = 0.0  # they go where they are told to
-        stored = self._stored(evidence)
-        none = np.zeros(len(evidence.time))
-        worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
-        # The work on joints, by drives or by a controller, is not known of each mechanism.
-        driven, one = any(joint.drive for joint in evidence.world.joints) or bool(np.any(worked)), self._one(evidence)
-        found = [] if driven or one else self._by_mechanism(evidence, energy, stored)
-        together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
+        if CheckEnergy not in evidence.kept:
+            self.prepare_similar([evidence])
+        asked, unknown = cast("Asked", evidence.kept[CheckEnergy]), untold(evidence)
+        found = [] if asked.of is None else self._by_mechanism(evidence, asked, asked.of)
         rows = np.flatnonzero(~motion.kinematic)
         if unknown.any() or any(not finding.passed for finding in found):
             return found  # what one gains all have together
         losses = Losses.of(evidence)
-        if len(rows) and (losses is None or not losses.whole or (one and not driven)):
-            gained = self._together(evidence, rows, together, stored)
+        if len(rows) and (losses is None or not losses.whole or (asked.one and not asked.driven)):
+            gained = self._together(evidence, rows, asked)
             if losses is None or not losses.whole or not gained.passed:
                 found.append(gained)
-        return found if losses is None else [*found, *self._accounted(evidence, losses, stored)]
+        return found if losses is None else [*found, *self._accounted(evidence, losses, asked)]
 
-    def _accounted(self, evidence: Evidence, losses: Losses, stored: Floats) -> list[Finding]:
+    def prepare_similar(self, copies: Sequence[Evidence]) -> None:
+        """The phase of each mechanism's steps at which it gains least, of all copies at once."""
+        some = [evidence for evidence in copies if len(evidence.motion.h) and not self._unknown(evidence)]
+        asked = [self._asked(evidence) for evidence in some]
+        phases = least_of([each.account for each in asked], [latest(evidence) for evidence in some])
+        for evidence, each, late in zip(some, asked, phases, strict=True):
+            evidence.kept[CheckEnergy] = replace(each, late=late)
+
+    def _asked(self, evidence: Evidence) -> Asked:
+        motion, led = evidence.motion, Led.of(evidence)
+        energy = motion.kinetic + motion.potential + motion.elastic
+        if motion.applied_work is not None:
+            energy = energy - motion.applied_work
+        late = np.maximum(np.diff(led.late, axis=0, prepend=led.late[:1]), 0.0)
+        energy = energy - led.work - led.unsure - np.cumsum(late, axis=0)
+        energy[:, motion.kinematic | untold(evidence)] = 0.0  # they go where they are told to
+        none = np.zeros(len(evidence.time))
+        worked, unsure = (evidence.recording.scalars.get(f"work/drives{end}", none) for end in ("", "_unsure"))
+        # The work on joints, by drives or by a controller, is not known of each mechanism.
+        driven, one = any(joint.drive for joint in evidence.world.joints) or bool(np.any(worked)), self._one(evidence)
+        together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
+        stored, phase, sinks = self._stored(evidence), hidden(evidence), sinking(evidence)
+        units, rows = np.unique(motion.unit[~motion.kinematic]), np.flatnonzero(~motion.kinematic)
+        if driven or one or not len(units):
+            whole = (each[:, rows].sum(axis=1)[:, None] for each in (sinks, phase, stored))
+            return Asked(Account(together[:, None], *whole), stored, phase, driven, one)
+        of = motion.unit[:, None] == units  # (B, mechanisms)
+        meets = ((motion.meets | met(evidence)) @ of.astype(np.float32)) > 0.0
+        held = _summed(stored, of)
+        # What a contact took up while it met another, it may give back after.
+        gave = np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
+        account = Account(energy @ of, sinks @ of, phase @ of, held, meets, gave)
+        return Asked(account, stored, phase, driven, one, of, together)
+
+    def _accounted(self, evidence: Evidence, losses: Losses, asked: Asked) -> list[Finding]:
         """Of bodies that hang together or touch: the gain or the loss that is largest by its limit."""
         motion = evidence.motion
         energy = motion.kinetic + motion.potential + motion.elastic
         if motion.applied_work is not None:
             energy = energy - motion.applied_work
-        unseen, held = hidden(evidence), np.where(np.isfinite(stored), stored, 0.0)
+        unseen, stored = asked.phase, asked.stored
+        held = np.where(np.isfinite(stored), stored, 0.0)
         found: list[tuple[float, Finding]] = []
         for rows in losses.groups:
             taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
@@ -197,48 +237,27 @@ class CheckEnergy(Check):
                 held[:, row] += heavy[row] * of_one(np.maximum(pair.depth, 0.0))
         return np.maximum(held, heavy * of_one(_deep_in_meshes(evidence)))
 
-    def _by_mechanism(self, evidence: Evidence, energy: Floats, stored: Floats) -> list[Finding]:
+    def _by_mechanism(self, evidence: Evidence, asked: Asked, of: NDArray[np.bool_]) -> list[Finding]:
         """The mechanism with the largest gain in its own scale; what it gets from others is left out."""
-        motion = evidence.motion
-        units = np.unique(motion.unit[~motion.kinematic])
-        if not len(units):
-            return []
-        of = motion.unit[:, None] == units  # (B, mechanisms)
-        meets = ((motion.meets | met(evidence)) @ of.astype(np.float32)) > 0.0
-        held, phase, sinks = _summed(stored, of), hidden(evidence) @ of, sinking(evidence) @ of
-        gave = np.where(meets[:-1] & ~meets[1:] & np.isfinite(held[1:-1]), held[1:-1], 0.0)
-
-        def balance(late: Floats) -> Floats:
-            gained = np.where(meets, 0.0, np.diff(energy @ of + late * sinks, axis=0))
-            gained[1:] -= gave  # what a contact took up while it met another, it may give back after
-            return np.concatenate([np.zeros((1, len(units))), np.cumsum(gained, axis=0)])
-
-        def gain(late: Floats) -> Floats:
-            return np.max(_risen(balance(late), phase, held), axis=0)
-
-        late, gains = least(gain, len(units), latest(evidence))
+        account, late = asked.account, asked.late
         limit, scale = self._limit(evidence, of)
         limit = limit + turned_over(evidence, falling(evidence) @ of)
+        gains = account.gains(late)
         worst = int(np.argmax(np.maximum(gains, 0.0) / np.where(limit > 0.0, limit, 1.0)))
         rows = np.flatnonzero(of[:, worst])
-        unseen = phase[:, worst], held[:, worst]
-        return [
-            self._finding(evidence, rows, balance(late)[:, worst], unseen, (float(limit[worst]), float(scale[worst])))
-        ]
+        unseen = account.phase[:, worst], account.held[:, worst]
+        limits = float(limit[worst]), float(scale[worst])
+        return [self._finding(evidence, rows, account.balance(late)[:, worst], unseen, limits)]
 
-    def _together(self, evidence: Evidence, rows: NDArray[np.intp], balance: Floats, stored: Floats) -> Finding:
+    def _together(self, evidence: Evidence, rows: NDArray[np.intp], asked: Asked) -> Finding:
         """What all bodies gain: where they are one mechanism, by the phase of its steps at which that is least."""
-        phase, held = hidden(evidence)[:, rows].sum(axis=1), stored[:, rows].sum(axis=1)
+        phase, held = (each[:, rows].sum(axis=1) for each in (asked.phase, asked.stored))
         limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(evidence.motion.mass))))
-        if self._one(evidence):
-            sinks = sinking(evidence)[:, rows].sum(axis=1)
-            late, _ = least(
-                lambda t: np.max(_risen(balance[:, None] + t * sinks[:, None], phase[:, None], held[:, None]), axis=0),
-                1, latest(evidence),
-            )  # fmt: skip
-            balance = balance + late * sinks
+        if asked.one:
+            balance = asked.account.balance(asked.late)[:, 0]
             limit += float(turned_over(evidence, falling(evidence)[:, rows].sum(axis=1)[:, None])[0])
         else:
+            balance = asked.account.energy[:, 0] if asked.together is None else asked.together
             limit += float(self._late(evidence)[rows].sum())
         return self._finding(evidence, rows, balance, (phase, held), (limit, scale))
 
@@ -247,7 +266,7 @@ class CheckEnergy(Check):
         limits: tuple[float, float],
     ) -> Finding:  # fmt: skip
         motion = evidence.motion
-        gain, had = np.maximum(_risen(balance, *unseen), 0.0), balance + unseen[0] + unseen[1]
+        gain, had = np.maximum(risen(balance, *unseen), 0.0), balance + unseen[0] + unseen[1]
         end = int(np.argmax(gain))
         start = int(np.argmin(had[: end + 1]))
         limit, scale = limits
@@ -337,12 +356,6 @@ def _deep_in_meshes(evidence: Evidence) -> Floats:
         for rows in (contacts.one, contacts.two):
             np.maximum.at(found.reshape(-1), rows[rows >= 0], -contacts.gap[rows >= 0])
     return np.maximum(found, 0.0)
-
-
-def _risen(balance: Floats, phase: Floats, held: Floats) -> Floats:
-    """How far a balance has risen over its least, less what a phase hides at both ends and contacts held before."""
-    risen: Floats = balance - phase - np.minimum.accumulate(balance + phase + held, axis=0)
-    return risen
 
 
 def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:

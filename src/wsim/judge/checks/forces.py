@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from wsim.judge.checks.check import Check, Checks, listed
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 # what sound runs of all mechanisms leave at most beyond the error of their arms, or more: 0.007, 0.0017, 0.0015, 0.0007
 # and 0.0005.
 SHARES = {1: 0.02, 4: 0.005, 8: 0.003, 16: 0.0015, 32: 0.001}
+ROOM = 500_000  # bodies times intervals of which means are taken at once
 
 
 @dataclass
@@ -43,12 +46,39 @@ class CheckForces(Check):
         books, unknown = Books.of(evidence), unseen(evidence)
         if not books.judged.any():
             return []
-        slack = np.where(books.hit, self.blow * books.blow / motion.h[:, None], 0.0) + rounding(evidence)
-        found = [self._missing(evidence, books, books.force, slack + books.turned[..., 0], motion.mass, "N")]
+        if CheckForces not in evidence.kept:
+            self.prepare_similar([evidence])
+        force, torque = cast("tuple[Worst, Worst]", evidence.kept[CheckForces])
+        found = [self._missing(evidence, force, motion.mass, "N")]
         if not unknown.all():
-            torque, slack = np.where(unknown[None, :, None], 0.0, books.torque), slack + books.turned[..., 1]
-            found.append(self._missing(evidence, books, torque, slack, motion.mass * books.size, "N m"))
+            found.append(self._missing(evidence, torque, motion.mass * books.size, "N m"))
         return found + self._over_many(evidence, books)
+
+    def prepare_similar(self, copies: Sequence[Evidence]) -> None:
+        """What is missing most of forces and of torques, of as many copies at once as take little room."""
+        if not told(copies[0]):
+            return
+        most = max(1, ROOM // max(Books.of(copies[0]).blow.size, 1))
+        for first in range(0, len(copies), most):
+            some = copies[first : first + most]
+            for evidence, *each in zip(some, *self._most(some), strict=True):
+                evidence.kept[CheckForces] = each
+
+    def _most(self, copies: Sequence[Evidence]) -> tuple[list[Worst], list[Worst]]:
+        """Of W copies."""
+        every, h = [Books.of(evidence) for evidence in copies], copies[0].motion.h[:, None]
+        slack = np.stack([
+            np.where(books.hit, self.blow * books.blow / h, 0.0) + rounding(evidence)
+            for evidence, books in zip(copies, every, strict=True)
+        ])  # fmt: skip
+        turned, judged = (np.stack([getattr(books, name) for books in every]) for name in ("turned", "judged"))
+        unknown = np.stack([unseen(evidence) for evidence in copies])[:, None, :, None]
+        force, torque = (np.stack([getattr(books, name) for books in every]) for name in ("force", "torque"))
+        least, pull = np.stack([_pushed(evidence) for evidence in copies]), max(copies[0].gravity, 1.0)
+        return (
+            _worst(np.where(judged[..., None], force, 0.0), slack + turned[..., 0], least, pull),
+            _worst(np.where(judged[..., None] & ~unknown, torque, 0.0), slack + turned[..., 1], least, pull),
+        )
 
     def _over_many(self, evidence: Evidence, books: Books) -> list[Finding]:
         """The body that lacks most to creep, or to stand, as it does; none where nothing lacks more than its limit."""
@@ -80,21 +110,9 @@ class CheckForces(Check):
             )
         ]  # fmt: skip
 
-    def _missing(
-        self, evidence: Evidence, books: Books, left: Floats, slack: Floats, weight: Floats, unit: str
-    ) -> Finding:
-        """Where it is most by its limit: over one interval, or if none fails in the mean of several."""
-        pull, least = max(evidence.gravity, 1.0), _pushed(evidence)
-        left = np.where(books.judged[..., None], left, 0.0)
-        worst: Worst = (-1.0, 1, 0, 0, np.zeros(3), 0.0)
-        for n, share in SHARES.items():
-            if n > len(left) or worst[0] > 1.0:
-                break
-            means, limits = _mean(left, n), pull * _mean(np.maximum(share, least), n) + _mean(slack, n)
-            ratio = lengths(means) / limits
-            ratio[np.isnan(ratio)] = np.inf  # what is no number is the worst
-            k, i = (int(at) for at in np.unravel_index(int(np.argmax(ratio)), ratio.shape))
-            worst = max(worst, (float(ratio[k, i]), n, k, i, means[k, i], float(limits[k, i])), key=_ratio)
+    def _missing(self, evidence: Evidence, worst: Worst, weight: Floats, unit: str) -> Finding:
+        """Where it is most by its limit."""
+        least = _pushed(evidence)
         _, n, k, i, mean, limit = worst
         share = max(SHARES[n], float(least[k, 0]))
         prim, start, end = evidence.world.bodies[i].prim, float(evidence.time[k]), float(evidence.time[k + n])
@@ -125,14 +143,36 @@ def _pushed(evidence: Evidence) -> Floats:
     return np.where(np.any(given[1:] != 0.0, axis=(1, 2)), SHARES[1], 0.0)[:, None]
 
 
-def _ratio(found: Worst) -> float:
-    return found[0]
+def _worst(left: Floats, slack: Floats, least: Floats, pull: float) -> list[Worst]:
+    """Where it is most by its limit: over one interval, or if none fails in the mean of several.
+
+    Args:
+        left: What nothing gives, (W, T - 1, B, 3) [m/s^2].
+        slack: What may be missing beside a share of gravity, (W, T - 1, B).
+        least: That share at least, (W, T - 1, 1).
+        pull: Gravity [m/s^2].
+    """
+    found: list[Worst] = [(-1.0, 1, 0, 0, np.zeros(3), 0.0) for _ in left]
+    for n, share in SHARES.items():
+        some = np.array([w for w, worst in enumerate(found) if worst[0] <= 1.0], dtype=np.intp)
+        if n > left.shape[1] or not len(some):
+            break
+        means = _mean(left[some], n)
+        limits = pull * _mean(np.maximum(share, least[some]), n) + _mean(slack[some], n)
+        ratio = lengths(means) / limits
+        ratio[np.isnan(ratio)] = np.inf  # what is no number is the worst
+        for of, (w, at) in enumerate(zip(some, np.argmax(ratio.reshape(len(some), -1), axis=1), strict=True)):
+            k, i = divmod(int(at), ratio.shape[2])
+            if ratio[of, k, i] > found[w][0]:
+                found[w] = float(ratio[of, k, i]), n, k, i, means[of, k, i], float(limits[of, k, i])
+    return found
 
 
 def _mean(values: Floats, n: int) -> Floats:
-    """Of each n rows that follow one another."""
-    sums = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
-    found: Floats = (sums[n:] - sums[:-n]) / n
+    """Of each n intervals that follow one another, of each copy."""
+    sums = np.cumsum(values, axis=1)
+    sums = np.concatenate([np.zeros_like(sums[:, :1]), sums], axis=1)
+    found: Floats = (sums[:, n:] - sums[:, :-n]) / n
     return found
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from wsim.judge.books.impacts import blows
+from wsim.judge.books.impacts import Blow, blows, tells
 from wsim.judge.books.recorded_blows import recorded_blows
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
-    from wsim.judge.books.impacts import Blow, Rub
+    from collections.abc import Sequence
+
+    from wsim.judge.books.impacts import Rub
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
 
@@ -47,6 +49,12 @@ class CheckRestitution(Check):
                 ),
             )
         ]  # fmt: skip
+
+    def prepare_similar(self, copies: Sequence[Evidence]) -> None:
+        """The blows of all copies at once, where no impulses tell them."""
+        some = [evidence for evidence in copies if tells(evidence) and evidence.recording.contacts is None]
+        for evidence, found in zip(some, blows(some) if some else [], strict=True):
+            evidence.kept[Blow] = found
 
     def _off(self, blow: Blow) -> float:
         full = blow.restitution * blow.approach
@@ -104,18 +112,13 @@ class CheckBlowFriction(Check):
 
 
 def _told(evidence: Evidence) -> list[Blow]:
-    """The blows of a recording whose velocities and contacts' laws are known.
-
-    Other engines' contacts are soft and state no restitution.
-    """
-    if evidence.world.combine != "smaller" or evidence.recording.metadata.get("velocities") == "differences":
+    """The blows of a recording whose velocities and contacts' laws are known."""
+    if not tells(evidence):
         return []
-    if evidence.world.fluids or evidence.recording.metadata.get("controlled"):
-        return []
-    if CheckRestitution not in evidence.kept:
+    if Blow not in evidence.kept:
         recorded = evidence.recording.contacts is not None
-        evidence.kept[CheckRestitution] = recorded_blows(evidence) if recorded else blows(evidence)
-    return cast("list[Blow]", evidence.kept[CheckRestitution])
+        evidence.kept[Blow] = recorded_blows(evidence) if recorded else blows([evidence])[0]
+    return cast("list[Blow]", evidence.kept[Blow])
 
 
 CHECKS: Checks = (CheckRestitution, CheckBlowFriction)

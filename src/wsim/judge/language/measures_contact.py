@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +28,6 @@ from wsim.plan.schema.formula_contact import (
     SupportedBy,
     Touches,
 )
-from wsim.scene.contact import largest_friction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -154,7 +152,7 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
     jump = np.linalg.norm(jolt, axis=-1)
     speed = np.linalg.norm(before, axis=-1)
     # What carries a body changes its speed against gravity's, and what rubs on it besides: neither is a collision.
-    carried = math.hypot(1.0, largest_friction(signals.world)) * signals.gravity * span
+    carried = np.hypot(1.0, signals.friction) * signals.gravity * span
     floor = CHANGE * signals.speed_scale(moving_size(signals, asked.object, asked.ref))
     scale = np.maximum(speed, floor)
     limit = CHANGE * scale + carried

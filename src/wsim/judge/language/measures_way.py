@@ -133,9 +133,9 @@ def _flies(asked: Flies, signals: Signals) -> list[Measure]:
 @measures(FallsFreely)
 def _falls_freely(asked: FallsFreely, signals: Signals) -> list[Measure]:
     flies, t = _flight(signals, asked.object), (signals.time - signals.time[0])[:, None]
-    path = np.array(signals.body(asked.object).velocity) * t + np.array(signals.world.gravity) * t**2 / 2
+    path = signals.start_velocity(asked.object)[:, None] * t + np.array(signals.world.gravity) * t**2 / 2
     value = np.where(flies, np.linalg.norm(_moved(signals, asked.object) - path, axis=-1), 0.0)
-    steps = np.linalg.norm(np.diff(path, axis=0), axis=1) * flies[:, 1:]
+    steps = np.linalg.norm(np.diff(path, axis=1), axis=2) * flies[:, 1:]
     way = steps.sum(axis=1, keepdims=True)
     limit = np.full_like(way, asked.within) if asked.within else np.maximum(SHARE * way, LITTLE)
     source = "the objective's" if asked.within else f"{SHARE:g} of the way flown, {float(way[0, 0]):.3g} m"

@@ -66,7 +66,7 @@ class ObjectiveCheck(Check):
         if any(formula != formulas[0] for formula in formulas):
             return
         if Signals not in joined.kept:
-            joined.kept[Signals] = Signals.of_copies(joined)
+            joined.kept[Signals] = Signals.of_copies(joined, [evidence.world for evidence in copies])
         signals = cast("Signals", joined.kept[Signals])
         outcomes = _outcomes(formulas[0], signals)
         for n, evidence in enumerate(copies):
@@ -148,8 +148,9 @@ class Asked:
 
     def _here(self, of: Any) -> NDArray[Any]:
         """Of this world, (T,)."""
-        every, shape = np.asarray(of), (self.signals.count, len(self.signals.time))
-        return np.asarray((every if every.shape == shape else np.broadcast_to(every, shape))[self.world])
+        every, frames = np.asarray(of), len(self.signals.time)
+        own = every if every.ndim < 2 else every[self.world if len(every) > 1 else 0]
+        return own if own.shape == (frames,) else np.full(frames, own)
 
     def _span(self, measure: Measure, frame: int) -> tuple[float, float]:
         """From when to when the measure that decides is on the side of its limit where it is at that moment [s].

@@ -13,8 +13,11 @@ from wsim.geometry.rotations import conjugate, rotate, upwards
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.posed import posed
 from wsim.judge.evidence.recorded import MissingError
+from wsim.scene.contact import largest_friction
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from wsim.geometry.shapes import Solid
@@ -37,6 +40,7 @@ class Signals:
         contact_force: (W, T, B, 3), net force of the contacts on a body [N]; NaN where it was not recorded.
         mass: (W, B) [kg]; the description's if left out.
         evidence: The recording they are from, for what has no world axis: the particles of a fluid.
+        worlds: W of them, where their surfaces and starts differ, too; none: all are `world`.
 
     Raises:
         ValueError: The shapes do not fit each other, or time does not increase.
@@ -49,6 +53,7 @@ class Signals:
     contact_force: NDArray[Any]
     mass: Floats | None = None
     evidence: Evidence | None = None
+    worlds: Sequence[World] = ()
     _frames: dict[tuple[str, ...], Evidence] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
@@ -74,11 +79,13 @@ class Signals:
         )  # fmt: skip
 
     @classmethod
-    def of_copies(cls, joined: Evidence) -> Signals:
-        """Many worlds, whose evidence was joined (`Evidence.join`)."""
+    def of_copies(cls, joined: Evidence, worlds: Sequence[World]) -> Signals:
+        """Many worlds of one geometry, whose evidence was joined (`Evidence.join`)."""
         motion = joined.motion
         turning = np.concatenate([motion.v, motion.w], axis=-1)
-        return cls(joined.world, joined.time, motion.q, turning, motion.contact_force, mass=motion.mass[:, 0])
+        return cls(
+            joined.world, joined.time, motion.q, turning, motion.contact_force, mass=motion.mass[:, 0], worlds=worlds
+        )
 
     @classmethod
     def of_recording(cls, recording: Recording, plan: Plan | None = None) -> Signals:
@@ -95,6 +102,16 @@ class Signals:
     def step(self) -> float:
         """The median time between two frames [s]; 0 where there is one frame alone."""
         return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
+
+    @cached_property
+    def friction(self) -> Floats:
+        """The largest of any surface or pair, which bounds what friction does, (W, 1)."""
+        return np.array([[largest_friction(world)] for world in self.worlds or [self.world] * self.count])
+
+    def start_velocity(self, name: str) -> Floats:
+        """As a body's world states it, (W, 3) [m/s]."""
+        row = self.row(name)
+        return np.array([world.bodies[row].velocity for world in self.worlds or [self.world] * self.count])
 
     @property
     def gravity(self) -> float:
