@@ -1,6 +1,6 @@
-"""Draw a picture of every asset into docs/images/assets.png, with wsim's own camera.
+"""Draw a picture of each family of assets into docs/images/assets_FAMILY.png, with wsim's own camera.
 
-python usd_assets/contact_sheet.py [--to FILE.png]
+python usd_assets/contact_sheet.py [FAMILY...] [--into FOLDER]
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from authoring import FAMILIES
 from PIL import Image, ImageDraw, ImageFont
-from pxr import UsdGeom
+from pxr import Sdf, Usd, UsdGeom, UsdShade
 
 from wsim.scene import Scene
 from wsim.scene.describe import describe
@@ -26,18 +27,32 @@ LABEL = 26  # height of the line below it [px]
 LETTERS = 16  # height of its letters [px]
 FILLED = 0.84  # share of a tile that its asset fills
 YAW = -28.0  # [deg]: the default camera looks from the front right; this turns an asset's front to it
+COLORS = 192  # of a sheet: so its file is a third as large
 STYLE = Style(zenith=(0.55, 0.62, 0.70), horizon=(0.74, 0.77, 0.80), checker_contrast=0.0)
 
 
 def picture(folder: Path, work: Path) -> np.ndarray:
     """One asset on the ground, (height, width, 3) uint8, sRGB."""
     data = json.loads((folder / "asset.json").read_text(encoding="utf-8"))
+    image, seen = drawn(folder / data["file"], work)
+    if "opacity" in (folder / data["file"]).read_text(encoding="utf-8"):
+        # Glass hides nothing: where it is seen is where it would be, if it did.
+        _, seen = drawn(folder / data["file"], work, glass=False)
+    return np.asarray(Image.fromarray(cut_out(image, seen)).resize(TILE, Image.Resampling.BOX))
+
+
+def drawn(file: Path, work: Path, *, glass: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    """An asset on the ground and which pixels are its own; without `glass` nothing is seen through."""
     scene = Scene()
     scene.ground(color=(0.42, 0.42, 0.40))
-    prim = UsdGeom.Xform.Define(scene.stage, f"/World/{data['id']}")
+    prim = UsdGeom.Xform.Define(scene.stage, "/World/asset")
     prim.AddRotateZOp().Set(YAW)
-    prim.GetPrim().GetReferences().AddReference(str((folder / data["file"]).resolve()))
-    stage = scene.save(work / f"{data['id']}.usda")
+    prim.GetPrim().GetReferences().AddReference(str(file.resolve()))
+    if not glass:
+        for part in Usd.PrimRange(prim.GetPrim()):
+            if part.IsA(UsdShade.Shader):
+                part.CreateAttribute("inputs:opacity", Sdf.ValueTypeNames.Float).Set(1.0)
+    stage = scene.save(work / "stage.usda")
     world = describe(stage)
     model = build_model(stage, world, "cpu").model
     # Drawn far larger, cut out and shrunk: fine parts stay whole.
@@ -45,7 +60,7 @@ def picture(folder: Path, work: Path) -> np.ndarray:
     (image,) = renderer.render(model.state()).values()
     is_ground = np.array([prim.startswith("/World/ground") for prim in renderer.shape_prims])
     seen = (image.shape_index >= 0) & ~is_ground[image.shape_index]
-    return np.asarray(Image.fromarray(cut_out(image.rgb, seen)).resize(TILE, Image.Resampling.BOX))
+    return image.rgb, seen
 
 
 def cut_out(image: np.ndarray, seen: np.ndarray) -> np.ndarray:
@@ -66,10 +81,10 @@ def labelled(image: np.ndarray, text: str) -> np.ndarray:
     return np.concatenate([image, np.asarray(strip)])
 
 
-def sheet(folders: list[Path]) -> np.ndarray:
-    """All assets in rows, in the order of their ids."""
+def sheet(ids: list[str]) -> np.ndarray:
+    """Assets in rows."""
     with tempfile.TemporaryDirectory() as work:
-        tiles = [labelled(picture(folder, Path(work)), folder.name) for folder in folders]
+        tiles = [labelled(picture(ASSETS / id, Path(work)), id.replace("_", " ")) for id in ids]
     while len(tiles) % COLUMNS:
         tiles.append(np.full_like(tiles[0], 255))
     rows = [np.concatenate(tiles[k : k + COLUMNS], axis=1) for k in range(0, len(tiles), COLUMNS)]
@@ -77,15 +92,18 @@ def sheet(folders: list[Path]) -> np.ndarray:
 
 
 def main() -> None:
-    """Write the sheet."""
-    parser = argparse.ArgumentParser(description="Draw every asset of the catalogue into one picture.")
-    parser.add_argument("--to", type=Path, default=ASSETS.parent / "docs" / "images" / "assets.png")
-    parser.add_argument("ids", nargs="*", metavar="ID", help="all by default")
+    """Write the sheets."""
+    parser = argparse.ArgumentParser(description="Draw the families of the catalogue, a picture each.")
+    parser.add_argument("families", nargs="*", metavar="FAMILY", help=f"of {', '.join(FAMILIES)}; all by default")
+    parser.add_argument("--into", type=Path, default=ASSETS.parent / "docs" / "images")
     given = parser.parse_args()
-    folders = sorted(path.parent for path in ASSETS.glob("*/asset.json"))
-    image = sheet([folder for folder in folders if not given.ids or folder.name in given.ids])
-    given.to.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(image).save(given.to, "PNG", compress_level=9)
+    unknown = [family for family in given.families if family not in FAMILIES]
+    if unknown:
+        parser.error(f"unknown: {', '.join(unknown)}; known: {', '.join(FAMILIES)}")
+    given.into.mkdir(parents=True, exist_ok=True)
+    for family in given.families or FAMILIES:
+        image = Image.fromarray(sheet([function.__name__ for function in FAMILIES[family]]))
+        image.quantize(COLORS, dither=Image.Dither.NONE).save(given.into / f"assets_{family}.png", optimize=True)
 
 
 if __name__ == "__main__":

@@ -20,10 +20,6 @@ from wsim.scene.world import Shape
 ASSETS = Path(__file__).parents[2] / "usd_assets"
 CATALOGUE = load_catalogue(ASSETS)
 HOLLOW = [asset for asset in CATALOGUE.values() if asset.hollow]
-TWENTY = (
-    "table desk chair shelf cabinet laptop monitor mug plant lamp "
-    "bowl bucket crate barrel plank ramp seesaw domino pallet bench"
-)
 
 
 def bounds(asset: Asset, purpose: str) -> tuple[np.ndarray, np.ndarray]:
@@ -45,7 +41,7 @@ def colliders(asset: Asset) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
 
 
 def test_all_are_there() -> None:
-    assert set(CATALOGUE) == set(TWENTY.split())
+    assert len(CATALOGUE) >= 60
     assert sorted(path.parent.name for path in ASSETS.glob("*/asset.usda")) == sorted(CATALOGUE)
 
 
@@ -60,7 +56,7 @@ def test_files_are_what_the_script_writes(tmp_path: Path) -> None:
 def test_files_are_small() -> None:
     sizes = [asset.path.stat().st_size for asset in CATALOGUE.values()]
     assert max(sizes) < 200_000
-    assert sum(sizes) < 1_500_000
+    assert sum(sizes) < 4_000_000
 
 
 @pytest.mark.parametrize("asset", CATALOGUE.values(), ids=CATALOGUE)
@@ -104,10 +100,12 @@ class TestAsset:
         world = describe(asset.path)
         builder = newton.ModelBuilder()
         builder.add_usd(str(asset.path))
-        assert builder.body_label == [body.prim for body in world.bodies]
+        order = {label: k for k, label in enumerate(builder.body_label)}  # Newton's own, along the joints
+        assert sorted(order) == sorted(body.prim for body in world.bodies)
         assert sum(body.mass for body in world.bodies) == pytest.approx(asset.mass, rel=1e-4)
         assert bool(world.joints) == asset.articulated == (len(world.bodies) > 1)
-        for k, body in enumerate(world.bodies):
+        for body in world.bodies:
+            k = order[body.prim]
             assert builder.body_mass[k] == pytest.approx(body.mass, rel=1e-4)
             np.testing.assert_allclose(np.array(builder.body_com[k]), body.com, atol=1e-6)
             inertia, taken = (np.array(tensor).reshape(3, 3) for tensor in (body.inertia, builder.body_inertia[k]))
@@ -122,6 +120,8 @@ class TestAsset:
 
     def test_it_stands_firm(self, asset: Asset) -> None:
         """Tipped by 5 degrees, its centre of mass is still above its foot."""
+        if asset.category == "sport/ball":
+            return  # it stands on a point
         world = describe(asset.path)
         mass = sum(body.mass for body in world.bodies)
         com = sum(
@@ -135,12 +135,16 @@ class TestAsset:
 
 
 def _lowest(shape: Shape, turn: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Points (n, 2) of an upright shape that touch the ground."""
+    """Points (n, 2) of a shape that touch the ground."""
     if shape.kind == "cylinder":
-        angle = np.linspace(0.0, 2.0 * math.pi, 32)
+        angle = np.linspace(0.0, 2.0 * math.pi, 33)
         ring = shape.size[0] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        low = place[2] - shape.size[1] / 2
-        points = np.c_[place[:2] + ring, np.full(len(ring), low)]
+        ends = [np.c_[ring, np.full(len(ring), side * shape.size[1] / 2)] for side in (-1, 1)]
+        points = place + np.concatenate(ends) @ turn.T
+    elif shape.kind in ("sphere", "capsule"):
+        half = shape.size[1] / 2 if shape.kind == "capsule" else 0.0
+        ends = np.array([(0.0, 0.0, -half), (0.0, 0.0, half)])
+        points = place + ends @ turn.T - (0.0, 0.0, shape.size[0])
     elif shape.kind == "box":
         corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * shape.size / 2
         points = place + corners @ turn.T

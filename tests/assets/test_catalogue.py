@@ -45,7 +45,7 @@ def test_get() -> None:
 
 
 @pytest.mark.parametrize(
-    ("id", "said"), [("tabel", "did you mean 'table'?"), ("bookcase", "'shelf'"), ("zzz", "known: barrel")]
+    ("id", "said"), [("tabel", "did you mean 'table'?"), ("bookcase", "'shelf'"), ("zzz", "known: anvil")]
 )
 def test_unknown_id(id: str, said: str) -> None:
     with pytest.raises(AssetError, match=f"no asset '{id}'") as error:
@@ -94,10 +94,21 @@ def test_not_json(mug: Path) -> None:
         load_catalogue(mug)
 
 
-def test_table_of_the_document_is_that_of_the_catalogue() -> None:
-    command = [sys.executable, str(ASSETS / "author.py"), "--table"]
-    table = subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8").stdout
-    assert table in (ASSETS.parent / "docs" / "assets.md").read_text(encoding="utf-8")
+def test_tables_of_the_document_are_those_of_the_catalogue() -> None:
+    page = ASSETS.parent / "docs" / "assets.md"
+    script = (
+        "import sys; from pathlib import Path; sys.stdin.reconfigure(encoding='utf-8'); "
+        "sys.stdout.reconfigure(encoding='utf-8'); "
+        f"sys.path.insert(0, {str(ASSETS)!r}); import author; "
+        f"sys.stdout.write(author.document(sys.stdin.read(), author.tables(Path({str(ASSETS)!r}))))"
+    )
+    text = page.read_text(encoding="utf-8")
+    command = [sys.executable, "-c", script]
+    made = subprocess.run(command, input=text, capture_output=True, text=True, check=True, encoding="utf-8").stdout
+    assert made == text
+    assert all(f"| `{id}`" in text for id in load_catalogue())
+    pictures = {line.split("](")[1].rstrip(")") for line in text.splitlines() if line.startswith("![")}
+    assert pictures and all((page.parent / picture).is_file() for picture in pictures)
 
 
 def test_import_is_light() -> None:

@@ -152,6 +152,7 @@ def test_what_stands_for_an_asset_is_as_large_and_heavy(noun):
     stands_on = asset.anchors["seat"][2] if noun.key == "bench" else asset.size[2]
     outer = {
         "box": lambda: noun.size,
+        "sphere": lambda: (2 * noun.size[0],) * 3,
         "cylinder": lambda: (2 * noun.size[0], 2 * noun.size[0], noun.size[1]),
         "tank": lambda: (noun.size[0] + 2 * WALL, noun.size[1] + 2 * WALL, noun.size[2] + WALL),
     }[noun.primitive]()

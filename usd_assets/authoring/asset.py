@@ -10,8 +10,9 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
@@ -39,9 +40,14 @@ class Body:
     anchors: dict[str, Point] = field(default_factory=dict)
     _lumps: list[tuple[Mesh, float]] = field(default_factory=list)
 
-    def add(self, mesh: Mesh, paint: Paint, density: float | None = None) -> None:
-        """Show a closed mesh, and count its mass: of its paint's substance, or of a density [kg/m^3]; 0 is no mass."""
+    def add(self, mesh: Mesh, paint: Paint, density: float | None = None, *, mass: float | None = None) -> None:
+        """Show a closed mesh, and count its mass: of its paint's substance, of a density [kg/m^3] or as given [kg].
+
+        0 is no mass.
+        """
         self.looks[paint] = self.looks[paint] + mesh if paint in self.looks else mesh
+        if mass is not None:
+            density = mass / mesh.volume()
         self.weigh(mesh, paint.substance.density if density is None else density)
 
     def weigh(self, mesh: Mesh, density: float) -> None:
@@ -53,6 +59,14 @@ class Body:
         """Let shapes collide with a paint's friction; several are numbered from 0."""
         for k, shape in enumerate(shapes):
             self.colliders.append((name if len(shapes) == 1 else f"{name}_{k}", shape, paint))
+
+    def shift(self, by: Point) -> None:
+        """Move the body with all that belongs to it [m]."""
+        self.origin = _point(np.add(self.origin, by))
+        self.looks = {paint: mesh.moved(*by) for paint, mesh in self.looks.items()}
+        self.colliders = [(name, shape.moved(*by), paint) for name, shape, paint in self.colliders]
+        self.anchors = {name: _point(np.add(at, by)) for name, at in self.anchors.items()}
+        self._lumps = [(mesh.moved(*by), density) for mesh, density in self._lumps]
 
     def mass_properties(self) -> tuple[float, Array, Array]:
         """Mass [kg], its centre [m] and its inertia about that [kg m^2], in the body's frame."""
@@ -75,15 +89,20 @@ def _spread(arm: Array) -> Array:
 
 
 @dataclass
-class Hinge:
-    """A revolute joint of the bodies `parent` and `child` about an axis through `at` [m], within `limits` [deg]."""
+class Joint:
+    """What ties the bodies `parent` and `child` at a point [m]: a hinge about an axis, a slider along it, or a ball.
+
+    `limits` are in degrees of a hinge and in metres of a slider; `friction` is dry, in N m or N.
+    """
 
     name: str
     parent: str
     child: str
     at: Point
-    axis: str
-    limits: tuple[float, float]
+    axis: str = "X"
+    limits: tuple[float, float] | None = None
+    friction: float = 0.0
+    kind: Literal["Revolute", "Prismatic", "Spherical"] = "Revolute"
 
 
 @dataclass
@@ -96,7 +115,7 @@ class Asset:
     description: str
     forward: str
     bodies: list[Body] = field(default_factory=list)
-    hinges: list[Hinge] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
     hollow: tuple[Point, Point] | None = None  # size and centre [m] of an upright box that is free
 
     def body(self, name: str = "", origin: Point = (0.0, 0.0, 0.0)) -> Body:
@@ -119,13 +138,17 @@ class Asset:
         middle = (_short((low[0] + high[0]) / 2), _short((low[1] + high[1]) / 2), _short(low[2]))
         if not any(middle):
             return
-        if self.hinges:
-            raise ValueError(f"{self.id}: draw an articulated asset about its origin; its middle is {middle}")
-        (body,) = self.bodies
-        body.origin = middle
-        body.anchors = {name: _point(np.subtract(at, middle)) for name, at in body.anchors.items()}
         if self.hollow:
             self.hollow = self.hollow[0], _point(np.subtract(self.hollow[1], middle))
+        if not self.joints:
+            (body,) = self.bodies
+            body.origin = middle
+            body.anchors = {name: _point(np.subtract(at, middle)) for name, at in body.anchors.items()}
+            return
+        back = _point(np.negative(middle))
+        for body in self.bodies:
+            body.shift(back)
+        self.joints = [replace(joint, at=_point(np.add(joint.at, back))) for joint in self.joints]
 
     def write(self, folder: Path) -> None:
         """Write asset.usda and asset.json, whole or not at all."""
@@ -157,7 +180,7 @@ def _metadata(asset: Asset) -> str:
         "origin": "centre of the bottom face",
         "anchors": anchors,
         "hollow": hollow,
-        "articulated": bool(asset.hinges),
+        "articulated": bool(asset.joints),
         "colors": paints,
         "units": {"length": "m", "mass": "kg"},
         "source": "made for wsim by usd_assets/author.py",
@@ -179,8 +202,10 @@ def _layer(asset: Asset) -> str:
     materials = {paint: _material(stage, f"/{asset.id}/Looks/{paint.name}", paint) for paint in paints}
     for body in asset.bodies:
         _body(stage, asset.path(body), body, materials)
-    for hinge in asset.hinges:
-        _hinge(stage, asset, hinge)
+    for joint in asset.joints:
+        _joint(stage, asset, joint)
+    if asset.joints:
+        UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(asset.path(asset.bodies[0])))
     return str(stage.GetRootLayer().ExportToString())
 
 
@@ -191,6 +216,8 @@ def _material(stage: Usd.Stage, path: str, paint: Paint) -> UsdShade.Material:
     shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(*paint.color))
     shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(paint.roughness)
     shader.CreateInput("metallic", Sdf.ValueTypeNames.Float).Set(paint.metallic)
+    if paint.opacity < 1.0:
+        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(paint.opacity)
     material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
     physics = UsdPhysics.MaterialAPI.Apply(material.GetPrim())
     physics.CreateStaticFrictionAttr(paint.substance.friction)
@@ -279,19 +306,21 @@ def _collider(stage: Usd.Stage, path: str, shape: Collider, origin: Point) -> Us
     return gprim
 
 
-def _hinge(stage: Usd.Stage, asset: Asset, hinge: Hinge) -> None:
-    ends = [next(body for body in asset.bodies if body.name == name) for name in (hinge.parent, hinge.child)]
-    joint = UsdPhysics.RevoluteJoint.Define(stage, f"/{asset.id}/{hinge.name}")
-    joint.CreateBody0Rel().SetTargets([asset.path(ends[0])])
-    joint.CreateBody1Rel().SetTargets([asset.path(ends[1])])
-    joint.CreateLocalPos0Attr(Gf.Vec3f(_vector(np.subtract(hinge.at, ends[0].origin))))
-    joint.CreateLocalPos1Attr(Gf.Vec3f(_vector(np.subtract(hinge.at, ends[1].origin))))
-    joint.CreateLocalRot0Attr(Gf.Quatf(1.0))
-    joint.CreateLocalRot1Attr(Gf.Quatf(1.0))
-    joint.CreateAxisAttr(hinge.axis)
-    joint.CreateLowerLimitAttr(hinge.limits[0])
-    joint.CreateUpperLimitAttr(hinge.limits[1])
-    UsdPhysics.ArticulationRootAPI.Apply(stage.GetPrimAtPath(asset.path(ends[0])))
+def _joint(stage: Usd.Stage, asset: Asset, joint: Joint) -> None:
+    ends = [next(body for body in asset.bodies if body.name == name) for name in (joint.parent, joint.child)]
+    prim = getattr(UsdPhysics, f"{joint.kind}Joint").Define(stage, f"/{asset.id}/{joint.name}")
+    prim.CreateBody0Rel().SetTargets([asset.path(ends[0])])
+    prim.CreateBody1Rel().SetTargets([asset.path(ends[1])])
+    prim.CreateLocalPos0Attr(Gf.Vec3f(_vector(np.subtract(joint.at, ends[0].origin))))
+    prim.CreateLocalPos1Attr(Gf.Vec3f(_vector(np.subtract(joint.at, ends[1].origin))))
+    prim.CreateLocalRot0Attr(Gf.Quatf(1.0))
+    prim.CreateLocalRot1Attr(Gf.Quatf(1.0))
+    prim.CreateAxisAttr(joint.axis)
+    if joint.limits is not None:
+        prim.CreateLowerLimitAttr(joint.limits[0])
+        prim.CreateUpperLimitAttr(joint.limits[1])
+    if joint.friction:
+        prim.GetPrim().CreateAttribute("newton:friction", Sdf.ValueTypeNames.Float, False).Set(joint.friction)
 
 
 def _rounded(points: Array) -> Array:

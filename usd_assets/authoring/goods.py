@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from .asset import Asset, Body, Hinge
+from .asset import Asset
 from .furniture import boards
-from .matter import ACRYLIC, PINE, PLYWOOD, RUBBER, STEEL, Paint
-from .parts import block, box, extrude, hull, join, lathe, rod, tube
+from .matter import ACRYLIC, PINE, PLYWOOD, RUBBER, Paint
+from .parts import block, box, extrude, hull, join, lathe
 
 
 def plank(length: float = 2.0, width: float = 0.2, thick: float = 0.04) -> Asset:
@@ -54,7 +54,7 @@ def ramp(length: float = 1.2, width: float = 0.6, height: float = 0.4) -> Asset:
     grip = Paint("grip_strips", RUBBER, (0.03, 0.03, 0.03), 0.9)
     asset = Asset(
         "ramp",
-        ["ramp", "inclined plane", "incline", "slope", "wedge", "slide"],
+        ["ramp", "inclined plane", "incline", "slope", "wedge"],
         "building/ramp",
         "A ramp of plywood with strips against slipping; it rises by 0.4 m over 1.2 m.",
         "downhill: the low edge is at +X",
@@ -75,61 +75,6 @@ def ramp(length: float = 1.2, width: float = 0.6, height: float = 0.4) -> Asset:
     body.collide("wedge", deck, hull(extrude([(high, 0.0), (low, 0.0), (high, height)], width)))
     body.anchors = {"top": (high, 0.0, height), "middle": (0.0, 0.0, height / 2), "foot": (low, 0.0, 0.0)}
     return asset
-
-
-def seesaw(length: float = 2.4, hinge: float = 0.45, limit: float = 18.0) -> Asset:
-    """A seesaw: a plank on a hinge that tilts by `limit` [deg] either way."""
-    asset = Asset(
-        "seesaw",
-        ["seesaw", "see-saw", "teeter", "teeter-totter", "teeterboard", "rocker", "lever"],
-        "playground/seesaw",
-        "A seesaw: a plank with two seats, balanced on a hinge, on a steel stand.",
-        "an end of the plank; it tilts about Y",
-    )
-    _stand(asset.body("stand"), hinge)
-    _seesaw_plank(asset.body("plank", (0.0, 0.0, hinge)), length, hinge)
-    asset.hinges = [Hinge("hinge", "stand", "plank", (0.0, 0.0, hinge), "Y", (-limit, limit))]
-    return asset
-
-
-_RED = Paint("stand", STEEL, (0.50, 0.05, 0.03), 0.4)
-_GRIPS = Paint("grips", STEEL, (0.35, 0.35, 0.37), 0.3, 0.8)
-
-
-def _stand(stand: Body, hinge: float) -> None:
-    foot, half, reach, pipe = (0.7, 0.06, 0.03), 0.2, 0.28, 0.022
-    for j, side in ((-1, "right"), (1, "left")):
-        y = j * half
-        boards(stand, _RED, {f"foot_{side}": (foot, (0.0, y, foot[2] / 2))})
-        for i, end in ((-1, "back"), (1, "front")):
-            leg = tube([(i * reach, y, foot[2]), (0.0, y, hinge)], pipe)
-            stand.add(leg, _RED, 0.3 * STEEL.density)  # a pipe
-            stand.collide(f"leg_{end}_{side}", _RED, rod((i * reach, y, foot[2] + 0.01), (0.0, y, hinge), pipe))
-        bearing = lathe([(0.0, -0.03), (0.04, -0.03), (0.04, 0.03), (0.0, 0.03)], 20).turned("X", 90.0)
-        stand.add(bearing.moved(0.0, y, hinge), _RED)
-    cross = (0.06, 2 * half - foot[1], foot[2])
-    for i, end in ((-1, "back"), (1, "front")):
-        boards(stand, _RED, {f"cross_{end}": (cross, (i * 0.3, 0.0, foot[2] / 2))})
-    stand.add(tube([(0.0, -half, hinge), (0.0, half, hinge)], 0.015), _GRIPS)
-
-
-def _seesaw_plank(plank: Body, length: float, hinge: float) -> None:
-    wood = Paint("plank", PINE, (0.62, 0.40, 0.16), 0.7)
-    blue = Paint("seats", PLYWOOD, (0.03, 0.14, 0.42), 0.5)
-    width, thick = 0.26, 0.04
-    # It hangs so far below the hinge that its centre of mass, with seats and grips, does too: it swings back to level.
-    middle = hinge - 0.035
-    top = middle + thick / 2
-    boards(plank, wood, {"board": ((length, width, thick), (0.0, 0.0, middle))})
-    for i, end in ((-1, "back"), (1, "front")):
-        x, at = i * (length / 2 - 0.18), i * (length / 2 - 0.5)
-        boards(plank, blue, {f"seat_{end}": ((0.3, width + 0.06, 0.024), (x, 0.0, top + 0.012))})
-        bar = [(at, -0.13, top + 0.16), (at, 0.13, top + 0.16)]
-        posts = [tube([(at, y, top), (at, y, top + 0.16)], 0.011) for y in (-0.09, 0.09)]
-        plank.add(join([*posts, tube(bar, 0.013)]), _GRIPS, 0.3 * STEEL.density)
-        plank.collide(f"grip_{end}", _GRIPS, rod(bar[0], bar[1], 0.013))
-        plank.anchors[f"{end}_seat"] = (x, 0.0, top + 0.024)
-        plank.anchors[f"{end}_end"] = (i * length / 2, 0.0, middle)
 
 
 def domino(height: float = 0.048, width: float = 0.024, thick: float = 0.0075) -> Asset:

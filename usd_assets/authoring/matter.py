@@ -35,15 +35,26 @@ ACRYLIC = Substance(1180.0, 0.4, 0.1)
 RUBBER = Substance(1200.0, 0.8, 0.1)
 SOIL = Substance(1300.0, 0.6, 0.0)
 LEAF = Substance(700.0, 0.5, 0.0)  # fresh, with the air in it
+FOAM = Substance(60.0, 0.6, 0.0)  # under cloth
+PAPER = Substance(800.0, 0.4, 0.0)
+CARDBOARD = Substance(150.0, 0.4, 0.1)  # corrugated
+CONCRETE = Substance(2400.0, 0.6, 0.1)
+STONE = Substance(2600.0, 0.6, 0.1)
+GLASS = Substance(2500.0, 0.35, 0.1)
+PORCELAIN = Substance(2400.0, 0.35, 0.1)
+BRASS = Substance(8500.0, 0.35, 0.1)
+GREENWOOD = Substance(800.0, 0.5, 0.1)  # as it grows
+SAND = Substance(1600.0, 0.6, 0.0)
 LINEN = Substance(300.0, 0.5, 0.0)  # cloth on a stiff lining
 
 
 @dataclass(frozen=True)
 class Paint:
-    """A substance with a look: `color` is linear RGB in 0..1."""
+    """A substance with a look: `color` is linear RGB, `opacity` what it hides; all in 0..1."""
 
     name: str
     substance: Substance
     color: tuple[float, float, float]
     roughness: float = 0.6
     metallic: float = 0.0
+    opacity: float = 1.0

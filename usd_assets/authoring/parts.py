@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -42,6 +42,11 @@ class Mesh:
     def turned(self, axis: str, degrees: float) -> Mesh:
         """The mesh, turned about an axis through the origin."""
         return Mesh(self.points @ rotation(axis, degrees).T, self.faces)
+
+    def volume(self) -> float:
+        """What a closed mesh fills [m^3]; parts that overlap count twice."""
+        a, b, c = self.points[self.triangles()].transpose(1, 0, 2)
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
     def triangles(self) -> NDArray[np.int64]:
         """Each face as a fan, (n, 3)."""
@@ -139,6 +144,20 @@ def tube(path: Sequence[Point], radius: float, sides: int = 10) -> Mesh:
     return Mesh(np.array(points), faces)
 
 
+def prism(rings: Sequence[Sequence[Point]]) -> Mesh:
+    """A solid through rings of equally many corners, each turning counterclockwise seen from the last ring's side."""
+    count = len(rings[0])
+    points = np.array([corner for ring in rings for corner in ring])
+    faces: Faces = []
+    for first in range(0, count * (len(rings) - 1), count):
+        faces += [
+            (first + k, first + (k + 1) % count, first + count + (k + 1) % count, first + count + k)
+            for k in range(count)
+        ]
+    last = count * (len(rings) - 1)
+    return Mesh(points, [*faces, tuple(reversed(range(count))), tuple(range(last, last + count))])
+
+
 def arc(center: Point, radius: float, start: float, end: float, count: int, plane: str = "YZ") -> list[Point]:
     """Points on a circle in a plane, from an angle to another [deg], counted from the plane's first axis."""
     i, j = ("XYZ".index(axis) for axis in plane)
@@ -174,6 +193,12 @@ class Collider:
     center: Point = (0.0, 0.0, 0.0)
     turn: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     mesh: Mesh | None = None
+
+    def moved(self, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Collider:
+        """The shape, shifted [m]."""
+        if self.mesh is not None:
+            return replace(self, mesh=self.mesh.moved(x, y, z))
+        return replace(self, center=(self.center[0] + x, self.center[1] + y, self.center[2] + z))
 
 
 def block(size: Point, center: Point = (0.0, 0.0, 0.0), axis: str = "Z", degrees: float = 0.0) -> Collider:

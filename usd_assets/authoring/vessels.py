@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 from .asset import Asset
+from .forms import inscribed
 from .matter import HDPE, OAK, PINE, STEEL, STONEWARE, Paint
 from .parts import Point, Profile, arc, block, box, drum, join, lathe, ring, rod, staves, tube
-
-
-def _inscribed(radius: float) -> float:
-    """Edge of the square in a circle, a hair smaller [m]."""
-    return math.floor(radius * math.sqrt(2.0) * 1e4) / 1e4
 
 
 def mug(height: float = 0.095, radius: float = 0.041) -> Asset:
@@ -21,7 +16,7 @@ def mug(height: float = 0.095, radius: float = 0.041) -> Asset:
     inner = Paint("inside", STONEWARE, (0.80, 0.76, 0.68), 0.25)
     asset = Asset(
         "mug",
-        ["mug", "cup", "coffee cup", "coffee mug", "tea cup", "teacup", "beaker"],
+        ["mug", "cup", "coffee cup", "coffee mug", "tea cup", "teacup"],
         "tableware/mug",
         "A coffee mug of stoneware with a handle, open at the top.",
         "the drinker's side; the handle is at +Y, to the drinker's right",
@@ -60,7 +55,7 @@ def mug(height: float = 0.095, radius: float = 0.041) -> Asset:
         "inside": (0.0, 0.0, floor),
         "handle": (0.0, out, z),
     }
-    edge = _inscribed(free)
+    edge = inscribed(free)
     asset.hollow = ((edge, edge, height - floor), (0.0, 0.0, (height + floor) / 2))
     return asset
 
@@ -88,7 +83,7 @@ def bowl(height: float = 0.07, radius: float = 0.085) -> Asset:
     for k, ((r0, z0), (r1, z1)) in enumerate(itertools.pairwise(inside)):
         body.collide(f"wall_{k}", glaze, *staves((r0, r1), wall, z0, z1, 12))
     body.anchors = {"top": (0.0, 0.0, height), "inside": (0.0, 0.0, floor)}
-    edge = _inscribed(inside[0][0])
+    edge = inscribed(inside[0][0])
     asset.hollow = ((edge, edge, height - floor), (0.0, 0.0, (height + floor) / 2))
     return asset
 
@@ -122,7 +117,7 @@ def bucket(height: float = 0.28, top: float = 0.148, bottom: float = 0.105) -> A
     body.collide("floor", plastic, drum(bottom, 0.0, floor))
     body.collide("wall", plastic, *staves((r0, r1), wall, floor, height, 20))
     body.anchors = {"top": (0.0, 0.0, height), "inside": (0.0, 0.0, floor), "handle": (reach, 0.0, hang)}
-    edge = _inscribed(r0)
+    edge = inscribed(r0)
     asset.hollow = ((edge, edge, height - floor), (0.0, 0.0, (height + floor) / 2))
     return asset
 
@@ -134,7 +129,7 @@ def barrel(height: float = 0.88, belly: float = 0.31, end: float = 0.255) -> Ass
     hoop = Paint("hoops", STEEL, (0.10, 0.10, 0.11), 0.4, 0.6)
     asset = Asset(
         "barrel",
-        ["barrel", "cask", "keg", "wine barrel", "wooden barrel", "drum"],
+        ["barrel", "cask", "keg", "wine barrel", "wooden barrel"],
         "container/barrel",
         "A closed, empty barrel of oak with steel hoops.",
         "any side; it is round",

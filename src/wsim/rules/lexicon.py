@@ -16,6 +16,7 @@ from wsim.plan.schema import Material
 
 Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw"]
 Words = tuple[str, ...]
+BALL = "sport/ball"  # the catalogue's category of what is round and rolls
 _KEYS = {
     "noun": ("words", "plurals", "filled", "class", "primitive", "asset", "size", "top", "afloat", "length", "material",
              "lies"),
@@ -253,8 +254,11 @@ def _built(asset: Asset, primitive: str, top: str | None) -> tuple[float, ...]:
     x, y, z = asset.size
     if top is not None:
         z = asset.anchors[top][2]
-    if primitive == "cylinder":
-        size: tuple[float, ...] = (min(x, y) / 2, z)
+    size: tuple[float, ...]
+    if primitive == "sphere":
+        size = (z / 2,)
+    elif primitive == "cylinder":
+        size = (min(x, y) / 2, z)
     elif primitive == "tank":  # the room inside its walls and above its floor
         size = (x - 2 * WALL, y - 2 * WALL, z - WALL)
     else:
@@ -287,11 +291,12 @@ def _plural(word: str) -> str:
 
 
 def _others(made: Lexicon) -> None:
-    """The catalogue's other things, as solid stand-ins of their boxes."""
+    """The catalogue's other things: balls as spheres, the rest as solid stand-ins of their boxes."""
     known = {noun.asset for noun in made.nouns.values()}
     taken = made.vocabulary
     for asset in load_catalogue().values():
         if asset.id not in known:
-            size = _built(asset, "box", None)
-            made.nouns[asset.id] = Noun(asset.id, "solid", "box", size, size, "z", "wood", asset.mass, asset.id)
+            shape, length = ("sphere", "diameter") if asset.category == BALL else ("box", "z")
+            size = _built(asset, shape, None)
+            made.nouns[asset.id] = Noun(asset.id, "solid", shape, size, size, length, "wood", asset.mass, asset.id)
             _name(made, asset.id, list(_names(asset, made, taken)), ())
