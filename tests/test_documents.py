@@ -115,7 +115,10 @@ def test_readme_has_the_planners_vocabulary() -> None:
     words = {
         word for kind in ("GROUP", "FLUID", "GROUND", "MATERIAL", "COLOR", "SCALE") for word in known.words_of(kind)
     }
-    assert (set(known.nouns) | words) - spelled <= said
+    ours = {key for key, noun in known.nouns.items() if noun.asset is None}
+    assert (ours | words) - spelled <= said
+    listed = set(re.findall(r"^\| `([a-z_]+)`", (ROOT / "docs" / "assets.md").read_text(), re.MULTILINE))
+    assert {noun.asset for noun in known.nouns.values() if noun.asset} <= listed
 
 
 def test_program_of_the_readme_builds_a_sound_stage(tmp_path: Path) -> None:

@@ -247,3 +247,12 @@ def test_a_belt_is_as_long_as_its_load_goes(load, speed):
 def test_no_speed_is_refused_with_what_would_do():
     with pytest.raises(UserError, match="0 m/s is not above 0 and up to 50 m/s"):
         plan("A ball rolls at 0 m/s")
+
+
+def test_of_two_that_meet_each_rolls_or_slides_by_its_own_shape():
+    for prompt in ("A red ball and a blue crate hit each other", "A blue crate and a red ball hit each other"):
+        met = plan(prompt)
+        ball, crate = (next(item for item in met.objects if name in item.name) for name in ("ball", "crate"))
+        assert ball.rolling
+        assert not crate.rolling
+        assert ball.velocity[0] == -crate.velocity[0] != 0.0

@@ -234,15 +234,16 @@ def meet(thing: Thing, cast: Cast, taken: set[str], part: Part) -> None:
     if thing.meets is not None:
         pair += bodies(thing.meets, cast, taken)
         part.names[id(thing.meets)] = [pair[1].name]
-    speed = thing.speed or (MEET_SPEED if thing.round else SLIDE_SPEED)
-    distance = MEET_DISTANCE if thing.round else SLIDE_DISTANCE
+    rolls = thing.round, (thing.meets or thing).round
+    speed = thing.speed or (MEET_SPEED if all(rolls) else SLIDE_SPEED)
+    distance = MEET_DISTANCE if all(rolls) else SLIDE_DISTANCE
     if thing.speed is None:
         cast.assume(thing.words, f"{speed:g} m/s towards each other", "the prompt gives no speed")
     cast.assume(thing.words, f"start {distance:g} m apart, along X", "the prompt gives no distance")
     ground = Relation(predicate="PLACE-ON-BASE")
     apart = Relation(predicate="FRONT-OF", ref=pair[0].name, gap=distance)
-    for item, sign, rows in ((pair[0], 1.0, [ground]), (pair[1], -1.0, [ground, apart])):
-        moving = started(item, (sign * speed, 0.0, 0.0), rolls=thing.round)
+    for item, sign, rows, round_ in zip(pair, (1.0, -1.0), ([ground], [ground, apart]), rolls, strict=True):
+        moving = started(item, (sign * speed, 0.0, 0.0), rolls=round_)
         part.objects.append(moving.related(rows + item.relations))
     part.duration = max(2.0, round(distance / speed + 1.0, 1)) if part.duration <= 3.0 else part.duration
     _collision(pair[0].name, pair[1].name, part)
