@@ -11,10 +11,12 @@ import newton
 import numpy as np
 import pytest
 
-from tests.sim.test_batch import Build, held, loose
+from tests.sim.test_batch import Build, carried, held, loose
 from wsim.scene import Scene
 from wsim.scene.describe import describe
+from wsim.scene.world import World
 from wsim.sim import model
+from wsim.sim.fluids import sph_config
 from wsim.sim.model import build_batch
 from wsim.sim.numbers import OtherThanNumbersError, differences, texts, with_numbers
 
@@ -29,11 +31,12 @@ def _stages(folder: Path, build: Build, count: int) -> list[Path]:
     return stages
 
 
-@pytest.mark.parametrize("build", [loose, held])
+@pytest.mark.parametrize("build", [loose, carried, held])
 def test_a_batch_of_sent_numbers_is_the_batch(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
     stages = _stages(tmp_path, build, 4)
     worlds = [describe(stage) for stage in stages]
-    made = build_batch(stages, worlds, "cpu")
+    made = _added(stages, worlds)
+    assert _arrays(build_batch(stages, worlds, "cpu").model) == _arrays(made)
     sent = []
 
     def as_sent(call: Callable[[int], Any], items: Sequence[int], processes: int) -> Iterator[Any]:
@@ -46,9 +49,17 @@ def test_a_batch_of_sent_numbers_is_the_batch(tmp_path: Path, build: Build, monk
     monkeypatch.setattr(model, "shared_out", as_sent)
     again = build_batch(stages, worlds, "cpu", processes=2)
     assert [pickle.loads(each) is not None for each in sent] == [True] * 3
-    assert _arrays(again.model) == _arrays(made.model)
-    assert again.worlds == made.worlds
-    assert again.breakable == made.breakable
+    assert _arrays(again.model) == _arrays(made)
+    assert again.worlds == tuple(worlds)
+    assert again.breakable == [model._import(*each, None).breakable for each in zip(stages, worlds, strict=True)]
+
+
+def _added(stages: Sequence[Path], worlds: Sequence[World]) -> newton.Model:
+    """Each world by Newton's own importer, and added by itself."""
+    builder = model._builder(worlds[0])
+    for one in [model._import(stage, world, sph_config(worlds)) for stage, world in zip(stages, worlds, strict=True)]:
+        builder.add_world(one.builder)
+    return builder.finalize(device="cpu")
 
 
 def test_what_is_no_number_is_refused() -> None:

@@ -55,9 +55,14 @@ def topology(world: World) -> str:
 
 def alike(worlds: Sequence[World]) -> list[list[int]]:
     """The indices of worlds by topology, in the order in which each comes first."""
+    return together([topology(world) for world in worlds])
+
+
+def together(topologies: Sequence[str]) -> list[list[int]]:
+    """The indices of worlds by what `topology` says of each, in the order in which each comes first."""
     groups: dict[str, list[int]] = {}
-    for k, world in enumerate(worlds):
-        groups.setdefault(topology(world), []).append(k)
+    for k, one in enumerate(topologies):
+        groups.setdefault(one, []).append(k)
     return list(groups.values())
 
 

@@ -12,10 +12,10 @@ import newton
 import numpy as np
 
 from wsim.errors import UserError
-from wsim.forks import shared_out
+from wsim.forks import shared_out, uncollected
 from wsim.scene.usd_threads import forks
 from wsim.scene.world import World
-from wsim.sim.alike import check_alike
+from wsim.sim.alike import check_alike, topology
 from wsim.sim.articulations import complete_articulations, importable
 from wsim.sim.constraints import add_constraints
 from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
@@ -24,7 +24,7 @@ from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
 from wsim.sim.fluids import Seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
 from wsim.sim.forward import forward_only
-from wsim.sim.numbers import differences, texts, with_numbers
+from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -71,7 +71,7 @@ class Built:
 
 @dataclass(frozen=True)
 class _One:
-    """A builder of one world, and what else there is of it."""
+    """A builder of one world, or its `differences` from that of the batch's first; and what else there is of it."""
 
     builder: Any
     world: World
@@ -128,17 +128,15 @@ def build_batch(
         UserError: If a stage holds what the solvers cannot simulate.
         ValueError: If worlds differ in more than numbers.
     """
-    check_alike(stages, worlds)
     config = sph_config(worlds)
-    # First: a builder that was added somewhere has notes of it.
-    ones = list(_imports(stages, worlds, config, processes))
-    builder = _builder(worlds[0])
-    for one in ones:
-        builder.add_world(one.builder)
-    if config:
-        for name, own in of_worlds(worlds).items():
-            builder.custom_attributes[f"sph:{name}"].values = dict(enumerate(own))
-    return _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
+    with uncollected():
+        ones = list(_imports(stages, worlds, config, processes))
+        builder = _builder(worlds[0])
+        add_worlds(builder, ones[0].builder, [one.builder for one in ones[1:]])
+        if config:
+            for name, own in of_worlds(worlds).items():
+                builder.custom_attributes[f"sph:{name}"].values = dict(enumerate(own))
+        return _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
 
 
 def _import(stage: Path, world: World, config: Any | None) -> _One:
@@ -166,29 +164,34 @@ def _imports(stages: Sequence[Path], worlds: Sequence[World], config: Any | None
     """Each world by itself; of all but the first, forks read the numbers (`wsim.sim.numbers`).
 
     Meshes are read here: Newton may work on them on a device, which a fork does not have.
+
+    Raises:
+        ValueError: If worlds differ in more than numbers.
     """
-    first = _import(stages[0], worlds[0], config)
-    yield first
+    same, rest = topology(worlds[0]), range(1, len(stages))
     solids = [*(body.shapes for body in worlds[0].bodies), *(static.shapes for static in worlds[0].statics)]
     meshes = any(shape.kind == "mesh" for shapes in solids for shape in shapes)
+    first = _import(stages[0], worlds[0], config)
+    yield first
+    known = {} if meshes else texts(first.builder)
 
-    def numbers(k: int) -> tuple[dict[str, Any], _One] | None:
+    def whole(k: int) -> _One:
+        if topology(worlds[k]) != same:
+            check_alike([stages[0], stages[k]], [worlds[0], worlds[k]])
+        return _import(stages[k], worlds[k], config)
+
+    def numbers(k: int) -> dict[str, Any] | None:
         with contextlib.suppress(Exception):  # what cannot be read there is read here, which says why
-            one = _import(stages[k], worlds[k], config)
-            return differences(one.builder, first.builder, known), replace(one, builder=None, surfaces=None)
+            one = whole(k)
+            told = differences(one.builder, first.builder, known)
+            return {"builder": told, "fluids": one.fluids, "breakable": one.breakable}
         return None
 
-    rest, count = range(1, len(stages)), 1 if meshes else forks(processes)
-    if count < 2:
-        yield from (_import(stages[k], worlds[k], config) for k in rest)
+    if meshes:
+        yield from map(whole, rest)
         return
-    known = texts(first.builder)
-    for k, found in zip(rest, shared_out(numbers, rest, count), strict=True):
-        if found is None:
-            yield _import(stages[k], worlds[k], config)
-        else:
-            told, one = found
-            yield replace(one, builder=with_numbers(first.builder, told), surfaces=first.surfaces)
+    for k, found in zip(rest, shared_out(numbers, rest, forks(processes)), strict=True):
+        yield replace(first, world=worlds[k], **found) if found else whole(k)
 
 
 def _time_step(worlds: Sequence[World], config: Any | None, given: float | None) -> TimeStep:

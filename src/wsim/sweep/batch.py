@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from wsim.forks import shared_out
+from wsim.forks import shared_out, uncollected
 from wsim.judge.worlds import verdicts_of
 from wsim.memory import free_memory
 from wsim.runs.simulation import is_controlled, open_controller
 from wsim.scene.describe import describe
 from wsim.scene.usd_threads import forks
 from wsim.sim import Simulation
-from wsim.sim.alike import alike
+from wsim.sim.alike import together, topology
 from wsim.sim.collect import follow
 from wsim.sweep.screen import rejected
 
@@ -39,6 +39,7 @@ class Member:
     candidate: Candidate
     iteration: Iteration
     world: World
+    topology: str = ""  # as `wsim.sim.alike` tells it
 
 
 def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: int = 1) -> list[list[Member]]:
@@ -53,16 +54,23 @@ def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: 
         most: Worlds of a batch.
         processes: That stages are read in, side by side.
     """
-    worlds = shared_out(describe, [iteration.stage for _, iteration in built], forks(processes))
-    members = [Member(*each, world) for each, world in zip(built, worlds, strict=True)]
+    stages = [iteration.stage for _, iteration in built]
+    with uncollected():
+        said = list(shared_out(_described, stages, forks(processes)))
+    members = [Member(*each, *of) for each, of in zip(built, said, strict=True)]
     moving = [member for member in members if member.world.fluids or member.world.bodies]
     found, room = [], free_memory() / 2
     for kind in _by_control(moving):
-        for group in alike([member.world for member in kind]):
+        for group in together([member.topology for member in kind]):
             own = [kind[k] for k in group]
             size = max(1, min(most, int(room / max(1, *(bytes_of_particles(member.world) for member in own)))))
             found += [own[first : first + size] for first in range(0, len(own), size)]
     return [batch for batch in found if len(batch) > 1]
+
+
+def _described(stage: Path) -> tuple[World, str]:
+    world = describe(stage)
+    return world, topology(world)
 
 
 def _by_control(members: Sequence[Member]) -> list[list[Member]]:
