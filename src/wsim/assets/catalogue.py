@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError,
 from wsim.assets.folders import AssetError, assets_folder, stamp, user_folder
 
 METADATA = "asset.json"
+THUMBNAIL = "thumbnail.png"  # beside it, of what came in
 _ROUNDING = 1e-3  # [m]: by which an anchor or a hollow may stand out of the asset's box
 
 Length = Annotated[float, Field(gt=0.0, le=1e3)]
