@@ -49,7 +49,7 @@ class Room(_Model):
 class Collision(_Model):
     """How well what collides stands for what is seen; measured, `null` where what is seen has no inside."""
 
-    method: Literal["box", "sphere", "cylinder", "hull", "coacd", "given"]
+    method: Literal["box", "sphere", "cylinder", "hull", "shapes", "coacd", "given"]
     parts: Annotated[int, Field(ge=1)]
     threshold: Annotated[float, Field(gt=0.0)] | None = None  # [m], CoACD's bound on a part's concavity
     volume_ratio: Annotated[float, Field(gt=0.0)] | None = None  # of what collides, to what is seen

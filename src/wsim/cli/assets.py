@@ -170,6 +170,7 @@ def _collision(asset: Asset) -> str:
     what = {
         "coacd": f"{made.parts} convex parts",
         "hull": "its convex hull",
+        "shapes": f"{made.parts} plain and convex shapes",
         "given": f"{made.parts} of its own shapes",
     }
     said = [what.get(made.method, f"a {made.method}")]

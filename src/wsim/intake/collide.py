@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +10,10 @@ import numpy as np
 from wsim.assets import Collision, Room
 from wsim.intake.fit import few_corners, fit
 from wsim.intake.measure import Fit, Seen
-from wsim.intake.model import Collider, IntakeError
-from wsim.intake.parts import MOST_PARTS, decompose
+from wsim.intake.model import Array, Collider, Faces, IntakeError, Mesh
+from wsim.intake.parts import MOST_PARTS, SECONDS, decompose, has_volume
 from wsim.intake.repair import Solid
+from wsim.intake.shells import is_closed, shells
 from wsim.progress import Progress, silent
 
 THRESHOLD = 0.01  # [m]
@@ -43,20 +45,20 @@ def collide(solid: Solid, threshold: float | None, notes: list[str], progress: P
         IntakeError: If no part could be made.
     """
     seen = Seen.of(solid)
-    shape = fit(solid.mesh()) if solid.closed else None
-    if shape is not None:
-        return _told(seen, [shape], "hull" if shape.kind == "hull" else shape.kind, None)
+    plain, rest = _apart(solid)
+    if not rest:
+        return _told(seen, plain, "shapes" if len(plain) > 1 else plain[0].kind, None)
     longest = float(np.ptp(solid.points, axis=0).max())
     first = threshold if threshold is not None else min(THRESHOLD, _OF_SIZE * longest)
     best: Collided | None = None
-    why = ""
+    why, ends = "", time.monotonic() + SECONDS
     for k in range(TRIES):
         progress("convex parts", k, TRIES)
-        found = _parts(solid, first / 2**k)
+        found = _parts(rest, first / 2**k, ends)
         if isinstance(found, str):
             why = found
             break
-        made = _told(seen, [Collider("hull", points=few_corners(points)) for points in found], "coacd", first / 2**k)
+        made = _told(seen, plain + found, "coacd", first / 2**k)
         if best is None or made.fit.open > best.fit.open:
             best = made
         if made.fit.open >= OPEN or len(found) >= MOST_PARTS:
@@ -68,13 +70,46 @@ def collide(solid: Solid, threshold: float | None, notes: list[str], progress: P
     return best
 
 
-def _parts(solid: Solid, threshold: float) -> list[np.ndarray] | str:
-    """Parts, if need be of a mesh that CoACD made a manifold of first."""
-    found = decompose(solid.mesh(), threshold)
-    if isinstance(found, str) and "took more" not in found:
-        again = decompose(solid.mesh(), threshold, preprocess="on")
-        return found if isinstance(again, str) else again
-    return found
+def _apart(solid: Solid) -> tuple[list[Collider], list[Mesh]]:
+    """The shells that are convex, each as one collider, and the meshes that must be taken apart."""
+    whole = solid.mesh()
+    if not solid.closed:
+        return [], [whole]
+    found = shells(solid.faces)
+    meshes = [Mesh("", *_used(solid.points, solid.faces[shell])) for shell in found]
+    # A shell that winds inwards is a room inside another, and a shell that is open goes with what it touches.
+    if len(found) > MOST_PARTS or not all(is_closed(mesh.faces) and mesh.volume > 0.0 for mesh in meshes):
+        return [], [whole]
+    plain, rest = [], []
+    for mesh in meshes:
+        shape = fit(mesh)
+        if shape is None:
+            rest.append(mesh)
+        else:
+            plain.append(shape)
+    return plain, rest
+
+
+def _used(points: Array, faces: Faces) -> tuple[Array, Faces]:
+    used, index = np.unique(faces, return_inverse=True)
+    return points[used], index.reshape(-1, 3)
+
+
+def _parts(meshes: list[Mesh], threshold: float, ends: float) -> list[Collider] | str:
+    """Parts of each mesh, if need be of one that CoACD made a manifold of first; or why there are none."""
+    colliders = []
+    for mesh in meshes:
+        found = decompose(mesh, threshold, seconds=max(1.0, ends - time.monotonic()))
+        if isinstance(found, str) and time.monotonic() < ends:
+            again = decompose(mesh, threshold, preprocess="on", seconds=max(1.0, ends - time.monotonic()))
+            found = found if isinstance(again, str) else again
+        if isinstance(found, str):
+            return found
+        # A mesh that CoACD made a manifold of is a little larger than the mesh.
+        low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+        parts = [np.clip(points, low, high) for points in found]
+        colliders += [Collider("hull", points=few_corners(part)) for part in parts if has_volume(part)]
+    return colliders
 
 
 def _hull_alone(seen: Seen, why: str, notes: list[str]) -> Collided:

@@ -101,7 +101,7 @@ def _id(wanted: Wanted) -> str:
     if not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", id):
         raise IntakeError(f"name = {wanted.name[:80]!r} must begin with a letter a to z and have at most 60 characters")
     if id in load_catalogue(assets_folder()):
-        raise IntakeError(f"name = {wanted.name!r} is that of a shipped asset; choose another, such as 'my {id}'")
+        raise IntakeError(f"name = {wanted.name!r} is that of a shipped asset; choose another, such as 'own {id}'")
     if (user_folder() / id).exists() and not wanted.replace:
         raise IntakeError(f"name = {wanted.name!r} is there already; --replace, or `wsim assets remove {id}`")
     return id

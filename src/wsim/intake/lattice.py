@@ -82,10 +82,11 @@ def _cross(
     u, v = b - a, c - a
     area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
     px, py = i - a[:, 0], j - a[:, 1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = (px * v[:, 1] - py * v[:, 0]) / area
-        t = (u[:, 0] * py - u[:, 1] * px) / area
-    hit = (area != 0.0) & (s >= 0.0) & (t >= 0.0) & (s + t <= 1.0)
+    upright = area == 0.0
+    area[upright] = np.inf  # which no column runs through
+    s = (px * v[:, 1] - py * v[:, 0]) / area
+    t = (u[:, 0] * py - u[:, 1] * px) / area
+    hit = ~upright & (s >= 0.0) & (t >= 0.0) & (s + t <= 1.0)
     height = (a[:, 2] + s * u[:, 2] + t * v[:, 2])[hit]
     k = np.clip(np.ceil(height), 0, nz).astype(int)
     np.add.at(crossed, ((i * ny + j)[hit], k), np.where(area[hit] < 0.0, 1, -1))

@@ -14,7 +14,8 @@ from wsim.intake.model import Array, Collider, Mesh
 from wsim.intake.repair import Solid
 
 LEAST_ROOM = 0.02  # of the hull's volume: smaller hollows are not told of
-_SAMPLES, _TARGETS, _NEAREST = 8_000, 60_000, 6
+_SAMPLES, _TARGETS, _NEAREST = 4_000, 60_000, 12
+_FEW, _PAIRS = 300, 400_000  # triangles that are all asked; points and triangles at a time
 
 
 @dataclass(frozen=True)
@@ -109,14 +110,21 @@ def _inside(points: Array, equations: Array, slack: float) -> Bools:
 
 
 def _distances(points: Array, mesh: trimesh.Trimesh) -> Array:
-    """Of points to a mesh [m]: to the triangles that the nearest samples lie on."""
-    samples, faces = trimesh.sample.sample_surface(mesh, _TARGETS, seed=1)
+    """Of points to a mesh [m]: to all its triangles if they are few, else to those that the nearest samples lie on."""
     every = np.arange(len(mesh.faces))
-    samples = np.concatenate([np.asarray(samples), np.asarray(mesh.triangles_center)])
-    faces = np.concatenate([np.asarray(faces), every])
-    _, near = cKDTree(samples).query(points, k=_NEAREST)
-    triangles = np.asarray(mesh.triangles)[faces[near]].reshape(-1, 3, 3)
-    asked = np.repeat(points, _NEAREST, axis=0)
-    closest = trimesh.triangles.closest_point(triangles, asked)
-    gaps: Array = np.linalg.norm(closest - asked, axis=1).reshape(-1, _NEAREST).min(axis=1)
+    if len(every) <= _FEW:
+        near = np.broadcast_to(every, (len(points), len(every)))
+    else:
+        samples, faces = trimesh.sample.sample_surface(mesh, _TARGETS, seed=1)
+        at = np.concatenate([np.asarray(samples), np.asarray(mesh.triangles_center)])
+        _, nearest = cKDTree(at).query(points, k=_NEAREST)
+        near = np.concatenate([np.asarray(faces), every])[nearest]
+    triangles, count = np.asarray(mesh.triangles), near.shape[1]
+    gaps = np.empty(len(points))
+    step = max(1, _PAIRS // count)
+    for k in range(0, len(points), step):
+        some = slice(k, k + step)
+        asked = np.repeat(points[some], count, axis=0)
+        closest = trimesh.triangles.closest_point(triangles[near[some]].reshape(-1, 3, 3), asked)
+        gaps[some] = np.linalg.norm(closest - asked, axis=1).reshape(-1, count).min(axis=1)
     return gaps

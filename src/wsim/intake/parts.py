@@ -17,7 +17,7 @@ from scipy.spatial import ConvexHull, QhullError
 from wsim.intake.fit import MOST_CORNERS
 from wsim.intake.model import Array, Mesh
 
-SECONDS = 180.0  # [s] that a try may take
+SECONDS = 180.0  # [s] that all tries may take
 MEMORY = 8 << 30  # [B] of address space, of which threads take much and use little
 MOST_PARTS = 160
 _VERSION = 1  # of what is kept
@@ -96,10 +96,11 @@ def _load(path: Path) -> list[Array] | None:
             parts = [np.asarray(arrays[name], dtype=np.float64) for name in sorted(arrays.files)]
     except (OSError, ValueError, EOFError, zipfile.BadZipFile):
         return None
-    return [part for part in parts if _has_volume(part)]
+    return [part for part in parts if has_volume(part)]
 
 
-def _has_volume(points: Array) -> bool:
+def has_volume(points: Array) -> bool:
+    """Whether the hull of points has a volume."""
     try:
         return len(points) > 3 and ConvexHull(points).volume > 1e-13
     except (QhullError, ValueError):

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from wsim.intake.model import Array, Color, Faces, IntakeError, Mesh
+from wsim.intake.shells import edges_of, is_closed, shells
 
 MERGED = 1e-6  # of its longest edge: points nearer than this are one
 _MOST_FILLED = 0.05  # of the area: a hole that takes more is an opening that was meant
@@ -52,16 +51,16 @@ def repair(meshes: list[Mesh], notes: list[str]) -> Solid:
     if not len(solid.faces):
         raise IntakeError("area = 0: every triangle is a line or a point; export the mesh again")
     _wound(solid, notes)
-    solid.closed = _is_closed(solid.faces)
+    solid.closed = is_closed(solid.faces)
     if not solid.closed and (filled := _filled(solid)):
         notes.append(f"mended: {filled} small holes filled")
         _wound(solid, notes)
-        solid.closed = _is_closed(solid.faces)
+        solid.closed = is_closed(solid.faces)
     if solid.closed:
         _outwards(solid, notes)
         solid.closed = solid.mesh().volume > 1e-9 * float(np.prod(np.ptp(solid.points, axis=0)))
     if not solid.closed:
-        count = int((_edges(solid.faces)[1] != 2).sum())
+        count = int((np.bincount(edges_of(solid.faces)[0]) != 2).sum())
         notes.append(
             f"not closed: {count} edges belong to one face, or to more than two; so it has no volume of its own, and "
             "what collides says its mass and inertia"
@@ -102,24 +101,9 @@ def _without_slivers(solid: Solid, notes: list[str]) -> None:
         _keep(solid, np.sort(first))
 
 
-def _edges(faces: Faces) -> tuple[Faces, Faces]:
-    """Each edge once, (E, 2), and how many faces it has."""
-    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    return np.unique(edges, axis=0, return_counts=True)
-
-
-def _is_closed(faces: Faces) -> bool:
-    """Whether each edge has a twin the other way: what encloses a volume, shells that touch along an edge too."""
-    edges = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    forth = edges[:, 0] < edges[:, 1]
-    unique, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
-    balance = np.bincount(index.reshape(-1), weights=np.where(forth, 1.0, -1.0), minlength=len(unique))
-    return bool(len(faces)) and not balance.any()
-
-
 def _wound(solid: Solid, notes: list[str]) -> None:
     """Let neighbours turn the same way, where they do not."""
-    if _is_closed(solid.faces):
+    if is_closed(solid.faces):
         return
     mesh = trimesh.Trimesh(solid.points, solid.faces.copy(), process=False)
     trimesh.repair.fix_winding(mesh)
@@ -165,20 +149,14 @@ def _filled(solid: Solid) -> int:
 
 def _outwards(solid: Solid, notes: list[str]) -> None:
     """Turn each shell outwards, but for one that lies in another: the wall of a room inside."""
-    corners = solid.faces.reshape(-1)
-    owner = np.repeat(np.arange(len(solid.faces)), 3)
-    graph = coo_matrix(
-        (np.ones(len(owner)), (owner, corners + len(solid.faces))), shape=(len(solid.faces) + len(solid.points),) * 2
-    )
-    label = connected_components(graph, directed=False)[1][: len(solid.faces)]
-    shells = [solid.faces[label == k] for k in np.unique(label)]
-    boxes = [(solid.points[s].min(axis=(0, 1)), solid.points[s].max(axis=(0, 1))) for s in shells]
+    found = shells(solid.faces)
+    corners = [solid.points[solid.faces[shell]].reshape(-1, 3) for shell in found]
+    boxes = [(points.min(axis=0), points.max(axis=0)) for points in corners]
     turned = 0
-    for k, shell in zip(np.unique(label), shells, strict=True):
-        low, high = boxes[list(np.unique(label)).index(k)]
+    for shell, (low, high) in zip(found, boxes, strict=True):
         inside = any((other[0] < low).all() and (high < other[1]).all() for other in boxes)
-        if not inside and Mesh("", solid.points, shell).volume < 0.0:
-            solid.faces[label == k] = shell[:, ::-1]
+        if not inside and Mesh("", solid.points, solid.faces[shell]).volume < 0.0:
+            solid.faces[shell] = solid.faces[shell][:, ::-1]
             turned += len(shell)
     if turned:
         notes.append(f"mended: {turned} triangles turned over, which faced inwards")

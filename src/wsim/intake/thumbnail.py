@@ -14,6 +14,7 @@ from wsim.progress import Progress, silent
 from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.sim.cameras import CameraRenderer, Style
+from wsim.sim.devices import start_warp
 from wsim.sim.model import build_model
 
 SIZE = (320, 270)  # width and height [px]
@@ -25,6 +26,7 @@ _STYLE = Style(zenith=(0.55, 0.62, 0.70), horizon=(0.74, 0.77, 0.80), checker_co
 
 def draw(usd: Path, picture: Path, progress: Progress = silent) -> None:
     """Draw the asset of a USD file into a PNG."""
+    start_warp()
     scene = Scene()
     scene.ground(color=(0.42, 0.42, 0.40))
     prim = UsdGeom.Xform.Define(scene.stage, "/World/asset")
