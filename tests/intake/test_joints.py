@@ -60,7 +60,7 @@ def test_a_urdf_keeps_its_hinge(own: Path, tmp_path: Path) -> None:
     assert {body.prim.rpartition("/")[2]: body.mass for body in world.bodies} == pytest.approx(
         {"frame": 10.0, "leaf": 4.0}
     )
-    joint, _ = joint_of(asset.path)
+    joint, _stage = joint_of(asset.path)
     hinge = UsdPhysics.RevoluteJoint(joint)
     assert hinge.GetLowerLimitAttr().Get() == pytest.approx(0.0, abs=1e-4)
     assert hinge.GetUpperLimitAttr().Get() == pytest.approx(math.degrees(1.5), rel=1e-5)
@@ -73,7 +73,8 @@ def test_an_mjcf_keeps_its_slide(own: Path, tmp_path: Path) -> None:
     asset = add(tmp_path / "chest.xml", Wanted("chest", picture=False))
     assert asset.articulated and asset.mass == pytest.approx(6.0)
     assert any("world geoms are not carried" in note for note in asset.notes)
-    slide = UsdPhysics.PrismaticJoint(joint_of(asset.path)[0])
+    joint, _stage = joint_of(asset.path)  # which keeps its prims
+    slide = UsdPhysics.PrismaticJoint(joint)
     assert (slide.GetLowerLimitAttr().Get(), slide.GetUpperLimitAttr().Get()) == pytest.approx((0.0, 0.15))
 
 

@@ -13,7 +13,8 @@ from wsim.intake.model import Array, Collider, Mesh
 
 SAME = 0.03  # of the volume; a cylinder of 16 sides lacks 2.6 % of the round one
 _STRAY = 0.01  # of the longest edge, by which a point may lie outside of the plain shape
-MOST_CORNERS = 64  # of a hull that collides
+MOST_CORNERS = 64  # of a hull that collides beside others
+_ALONE = 256  # of one that collides alone
 
 
 def fit(mesh: Mesh) -> Collider | None:
@@ -29,7 +30,7 @@ def fit(mesh: Mesh) -> Collider | None:
     for shape, volume in _candidates(corners, float(hull.volume)):
         if abs(volume - hull.volume) <= SAME * hull.volume and _outside(shape, corners) <= stray:
             return shape
-    return Collider("hull", points=few_corners(corners))
+    return Collider("hull", points=few_corners(corners, _ALONE))
 
 
 def _candidates(corners: Array, volume: float) -> Iterator[tuple[Collider, float]]:
@@ -64,12 +65,12 @@ def _outside(shape: Collider, points: Array) -> float:
     return float(max(np.linalg.norm(local[:, :2], axis=1).max() - shape.size[0], beyond))
 
 
-def few_corners(points: Array) -> Array:
+def few_corners(points: Array, most: int = MOST_CORNERS) -> Array:
     """At most so many corners of a hull that they bound nearly all of it: those farthest out in even directions."""
     hull = points[ConvexHull(points).vertices]
-    if len(hull) <= MOST_CORNERS:
+    if len(hull) <= most:
         return hull
-    index = np.arange(MOST_CORNERS - 6) + 0.5
+    index = np.arange(most - 6) + 0.5
     polar, turn = np.arccos(1.0 - 2.0 * index / len(index)), pi * (1.0 + 5.0**0.5) * index
     ways = np.stack([np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], axis=1)
     ways = np.concatenate([ways, np.eye(3), -np.eye(3)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -39,3 +40,28 @@ def shells(faces: Faces) -> list[Faces]:
     label = connected_components(graph, directed=False)[1]
     order = np.argsort(label, kind="stable")
     return list(np.split(order, np.flatnonzero(np.diff(label[order])) + 1))
+
+
+def turned_over(faces: Faces) -> NDArray[np.bool_]:
+    """Which faces, (F,), must turn over for all of a shell to turn the way of its first."""
+    number, way = edges_of(faces)
+    face = np.repeat(np.arange(len(faces)), 3)
+    plain = np.bincount(number)[number] == 2
+    order = np.argsort(number[plain], kind="stable")
+    pairs, ways = face[plain][order].reshape(-1, 2), way[plain][order].reshape(-1, 2)
+    near: dict[int, list[tuple[int, bool]]] = {}
+    for (a, b), (one, other) in zip(pairs.tolist(), ways.tolist(), strict=True):
+        near.setdefault(a, []).append((b, one == other))
+        near.setdefault(b, []).append((a, one == other))
+    over, seen = np.zeros(len(faces), dtype=bool), np.zeros(len(faces), dtype=bool)
+    for first in range(len(faces)):
+        waiting = [] if seen[first] else [first]
+        seen[first] = True
+        while waiting:
+            at = waiting.pop()
+            for neighbour, against in near.get(at, ()):
+                if not seen[neighbour]:
+                    seen[neighbour] = True
+                    over[neighbour] = over[at] ^ against
+                    waiting.append(neighbour)
+    return over
