@@ -5,6 +5,10 @@ from wsim.threads import one_thread
 
 one_thread()  # before anything loads NumPy: the tests have a process for each core
 
+import os
+
+os.environ["WSIM_ASSETS"] = "/nonexistent/wsim-assets"  # the assets of whoever runs the tests are none of theirs
+
 import gc
 from functools import cache
 from pathlib import Path

@@ -22,6 +22,12 @@ from wsim.skills import skills
 VERBS = {name: load(name) for name in NAMES}
 
 
+def options_of(verb: str) -> set[str]:
+    """The options of a verb, and of the commands of one that is a group."""
+    commands = [VERBS[verb], *getattr(VERBS[verb], "commands", {}).values()]
+    return {name for each in commands for option in each.params for name in option.opts + option.secondary_opts}
+
+
 def section(title: str, document: str = "README.md") -> str:
     text = (ROOT / document).read_text(encoding="utf-8")
     return re.split(r"^## ", text.split(f"\n## {title}\n")[1], flags=re.MULTILINE)[0]
@@ -50,17 +56,14 @@ def test_commands_exist(path: Path) -> None:
 def test_readme_has_every_verb_and_no_option_that_is_not_there() -> None:
     said = section("Command line")
     assert set(re.findall(r"^\| `wsim ([a-z]+)", said, re.MULTILINE)) == set(VERBS)
-    options = {
-        name for verb in VERBS.values() for option in verb.params for name in option.opts + option.secondary_opts
-    }
+    options = {name for verb in VERBS for name in options_of(verb)}
     assert set(re.findall(r"--[a-z][a-z-]+", said)) <= options | {"--help"}
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
 def test_commands_take_the_options_that_they_are_given(path: Path) -> None:
     for verb, rest in re.findall(r"^(?:\S*/)?wsim ([a-z]+)(.*)$", "\n".join(inline(path)), re.MULTILINE):
-        options = {name for option in VERBS[verb].params for name in option.opts + option.secondary_opts}
-        assert set(re.findall(r"(?<=\s)--[a-z][a-z-]+", rest)) <= options, f"wsim {verb}{rest}"
+        assert set(re.findall(r"(?<=\s)--[a-z][a-z-]+", rest)) <= options_of(verb), f"wsim {verb}{rest}"
 
 
 def test_every_package_has_its_row() -> None:

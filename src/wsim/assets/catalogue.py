@@ -5,18 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, model_validator
 
-from wsim.errors import UserError
+from wsim.assets.folders import AssetError, assets_folder, stamp, user_folder
 
 METADATA = "asset.json"
-_SHIPPED = Path(__file__).parents[1] / "_usd_assets"  # in a wheel
-_SOURCE = Path(__file__).parents[3] / "usd_assets"  # in the repository
+THUMBNAIL = "thumbnail.png"  # beside it, of what came in
 _ROUNDING = 1e-3  # [m]: by which an anchor or a hollow may stand out of the asset's box
 
 Length = Annotated[float, Field(gt=0.0, le=1e3)]
@@ -28,10 +27,6 @@ Identifier = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_lengt
 Point = tuple[Coordinate, Coordinate, Coordinate]
 
 
-class AssetError(UserError):
-    """There is no such asset, or its metadata is wrong: one line with the way out."""
-
-
 class _Model(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -41,6 +36,25 @@ class Hollow(_Model):
 
     size: tuple[Length, Length, Length]
     center: Point
+
+
+class Room(_Model):
+    """A hollow of what is seen, and the share of it that what collides leaves open."""
+
+    center: Point
+    volume: Annotated[float, Field(gt=0.0, description="a number > 0 in m^3")]
+    open: Share
+
+
+class Collision(_Model):
+    """How well what collides stands for what is seen; measured, `null` where what is seen has no inside."""
+
+    method: Literal["box", "sphere", "cylinder", "hull", "shapes", "coacd", "given"]
+    parts: Annotated[int, Field(ge=1)]
+    threshold: Annotated[float, Field(gt=0.0)] | None = None  # [m], CoACD's bound on a part's concavity
+    volume_ratio: Annotated[float, Field(gt=0.0)] | None = None  # of what collides, to what is seen
+    hausdorff: Annotated[float, Field(ge=0.0)] | None = None  # [m], the most by which either surface lies off the other
+    hollow_open: tuple[Room, ...] = ()
 
 
 class Units(_Model):
@@ -81,6 +95,8 @@ class Asset(_Model):
     units: Units = Field(description='{"length": "m", "mass": "kg"}')
     source: Text = Field(description="where it comes from")
     license: Text = Field(description="its licence as an SPDX identifier")
+    collision: Collision | None = Field(None, description="how well what collides stands for what is seen, or null")
+    notes: tuple[Text, ...] = Field((), description="sentences: what was taken, mended or left out when it came in")
     _folder: Path = PrivateAttr(default=Path())
 
     @property
@@ -111,28 +127,27 @@ class Asset(_Model):
         return across and -_ROUNDING <= point[2] <= z + _ROUNDING
 
 
-def assets_folder() -> Path:
-    """The folder of the shipped assets.
-
-    Raises:
-        AssetError: If it is nowhere.
-    """
-    for folder in (_SHIPPED, _SOURCE):
-        if folder.is_dir():
-            return folder
-    raise AssetError(f"the assets are in neither {_SHIPPED} nor {_SOURCE}; install wsim again")
-
-
 def load_catalogue(folder: Path | None = None) -> Mapping[str, Asset]:
-    """All assets by id, in the order of their ids; read once.
+    """All assets by id, in the order of their ids; read once, and again when the user's folder has changed.
+
+    An asset of the user's that cannot be read is left out, so that the others can be used; `get` says what is wrong
+    with it, and `unreadable` has them all.
 
     Args:
-        folder: Holds a folder for each asset; the shipped ones by default.
+        folder: Holds a folder for each asset; by default the shipped ones and the user's own, which come first where
+            both have an id.
 
     Raises:
         AssetError: If metadata is wrong: names the file, the field, the value and what it must be.
     """
-    return _load((folder or assets_folder()).resolve())
+    if folder is not None:
+        return _load(folder.resolve())
+    return _merged(assets_folder().resolve(), *stamp())[0]
+
+
+def unreadable() -> Mapping[str, str]:
+    """What is wrong with each of the user's assets that cannot be read, by its folder's name."""
+    return _merged(assets_folder().resolve(), *stamp())[1]
 
 
 def get(id: str) -> Asset:
@@ -144,15 +159,35 @@ def get(id: str) -> Asset:
     catalogue = load_catalogue()
     if id in catalogue:
         return catalogue[id]
+    if id in unreadable():
+        raise AssetError(unreadable()[id])
     called = {name: asset.id for asset in catalogue.values() for name in (asset.id, *asset.names)}
     near = dict.fromkeys(called[name] for name in get_close_matches(str(id).lower(), called, n=3, cutoff=0.7))
     hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(catalogue)}"
     raise AssetError(f"no asset {str(id)[:60]!r}; {hint}")
 
 
+def is_own(asset: Asset) -> bool:
+    """Whether an asset is one of the user's own."""
+    return asset.path.parents[1] == user_folder()
+
+
 @cache
 def _load(folder: Path) -> Mapping[str, Asset]:
     return MappingProxyType({path.parent.name: _read(path) for path in sorted(folder.glob(f"*/{METADATA}"))})
+
+
+@lru_cache(maxsize=4)
+def _merged(shipped: Path, own: str, _changed: int) -> tuple[Mapping[str, Asset], Mapping[str, str]]:
+    """The shipped assets and those of a user's folder, and what is wrong with which of the latter."""
+    found, wrong = dict(_load(shipped)), {}
+    for path in sorted(Path(own).glob(f"[!.]*/{METADATA}")):
+        try:
+            found[path.parent.name] = _read(path)
+        except (AssetError, OSError, UnicodeDecodeError) as error:
+            wrong[path.parent.name] = str(error)
+            found.pop(path.parent.name, None)
+    return MappingProxyType(dict(sorted(found.items()))), MappingProxyType(wrong)
 
 
 def _read(path: Path) -> Asset:

@@ -24,6 +24,7 @@ VERBS = {
     "sweep": "Run many candidates of a program, judge each, and rank them: by verdict, then by the room to the limit.",
     "judge": "Judge a recording: the checks that hold for any world, and the plan's objectives.",
     "tool": "Call one of the tools that agents work with, or list them; `wsim tool NAME` alone shows what one takes.",
+    "assets": "List, find and show the assets that worlds are furnished with; add your own models, and remove them.",
     "runs": "List runs and sweeps, the newest first, with their verdicts.",
     "view": "Open a recording in Rerun's viewer; with no display, print the command to use elsewhere.",
     "mcp": "Serve wsim's tools to a coding agent, which starts this command and speaks over its stdin and stdout.",
@@ -81,7 +82,10 @@ class Verbs(TyperGroup):
 
 
 def load(name: str) -> Any:
-    """The command of a verb's file."""
+    """The command of a verb's file, or its group of commands."""
+    verb = getattr(load_module(f"wsim.cli.{name}"), name)
+    if isinstance(verb, typer.Typer):
+        return typer.main.get_command(verb)
     only = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
-    only.command(name)(getattr(load_module(f"wsim.cli.{name}"), name))
+    only.command(name)(verb)
     return typer.main.get_command(only)

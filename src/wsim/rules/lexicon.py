@@ -5,11 +5,12 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cache
+from functools import lru_cache
 from importlib.resources import files
 from typing import Any, Literal
 
 from wsim.assets import Asset, load_catalogue
+from wsim.assets.folders import stamp
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Material
@@ -117,9 +118,13 @@ def _data(name: str) -> dict[str, Any]:
     return tomllib.loads((files("wsim.rules") / "language" / f"{name}.toml").read_text(encoding="utf-8"))
 
 
-@cache
 def lexicon() -> Lexicon:
-    """The lexicon, read once."""
+    """The lexicon, read once, and again when the user's assets have changed."""
+    return _lexicon(stamp())
+
+
+@lru_cache(maxsize=2)
+def _lexicon(_assets: tuple[str, int]) -> Lexicon:
     made = Lexicon()
     _relations(made, _data("relations"))
     _quantities(made, _data("quantities"))
@@ -252,7 +257,7 @@ def _noun(key: str, fields: dict[str, Any], asset: Asset | None) -> Noun:
 def _built(asset: Asset, primitive: str, top: str | None) -> tuple[float, ...]:
     """The primitive's size that fills an asset's box [m]; a cylinder leaves out what stands off, such as a handle."""
     x, y, z = asset.size
-    if top is not None:
+    if top in asset.anchors:  # a user's own that has a shipped one's id may lack it
         z = asset.anchors[top][2]
     size: tuple[float, ...]
     if primitive == "sphere":

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wsim import importers, recording, sim
-from wsim.assets import assets_folder
+from wsim.assets import asset_folders
 from wsim.judge import judge
 from wsim.judge.repair.aim import aim
 from wsim.judge.verdict import Finding, Verdict
@@ -118,7 +118,7 @@ class Iteration:
             self.settings.params,
             self.settings.limits(),
             isolation=self.settings.isolation,
-            readable=[assets_folder()],
+            readable=asset_folders(),
         )
         self.progress("building the stage", 1, 1)
         self._note({"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from wsim.assets import assets_folder
+from wsim.assets import asset_folders
 from wsim.errors import UserError
 from wsim.program import sandbox
 from wsim.runs.draws import apply
@@ -45,7 +45,7 @@ def built(programs: Sequence[Path], isolation: str) -> Iterator[dict[str, Path]]
 def _built(program: Path, isolation: str) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="wsim-parameters-") as scratch:
         stage = Path(scratch) / "stage.usda"
-        made = sandbox.build(program, stage, isolation=isolation, readable=[assets_folder()])
+        made = sandbox.build(program, stage, isolation=isolation, readable=asset_folders())
         if not made.ok:
             raise UserError(f"{program.name} makes no world as it stands: {made.message}")
         yield stage

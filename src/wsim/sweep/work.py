@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from wsim.assets import assets_folder
+from wsim.assets import asset_folders
 from wsim.errors import UserError
 from wsim.forks import shared_out
 from wsim.judge.verdict import Verdict, status_of, unjudged
@@ -131,7 +131,7 @@ def build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteratio
             [candidate.params for candidate in own],
             iterations[0].settings.limits(),
             shard.spec.isolation,
-            readable=[assets_folder()],
+            readable=asset_folders(),
             processes=shard.cores,
         )
         made |= {

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import wsim
-from wsim.assets import assets_folder
+from wsim.assets import asset_folders
 
 LIMIT = 2000  # characters of an answer: about 600 tokens
 DIGITS = 4  # significant, of a number
@@ -91,7 +91,8 @@ def capped(text: str, narrow: str) -> str:
 def relative(text: str, run: Path) -> str:
     """Text that is the same on any machine: paths begin at the run's folder, or at a package's; no addresses."""
     packages = Path(wsim.__file__).parents[1]
-    for folder, instead in ((run.resolve(), ""), (run, ""), (assets_folder().resolve(), "assets/"), (packages, "")):
+    assets = [(folder.resolve(), "assets/") for folder in asset_folders()]
+    for folder, instead in ((run.resolve(), ""), (run, ""), *assets, (packages, "")):
         if "/" in str(folder).strip("/"):  # a single word may be anything's name
             named = rf"(?<![\w./-]){re.escape(str(folder))}"
             text = re.sub(rf"{named}/", instead, text)

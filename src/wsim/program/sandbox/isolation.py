@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal
 
+from wsim.assets.folders import VARIABLE, user_folder
 from wsim.errors import UserError
 from wsim.program.inside import landlock, seccomp
 
@@ -167,6 +168,7 @@ def environment(scratch: str) -> dict[str, str]:
         "OMP_NUM_THREADS": "2",
     }
     known = [str(path) for path in runtime_paths()]
+    variables[VARIABLE] = str(user_folder())  # read if the caller lets it
     libraries = [
         folder
         for folder in os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
