@@ -23,7 +23,12 @@ class OtherThanNumbersError(ValueError):
 
 def texts(builder: Any) -> dict[str, str]:
     """All that a builder holds as text, which tells -0 from 0 and takes NaN for itself."""
-    return {name: repr(_plain(value)) for name, value in _values(builder).items()}
+    return {name: plain_text(value) for name, value in values_of(builder).items()}
+
+
+def plain_text(value: Any) -> str:
+    """What a builder holds under a name, as text."""
+    return repr(_plain(value))
 
 
 def differences(own: Any, first: Any, known: Mapping[str, str]) -> dict[str, Any]:
@@ -37,7 +42,7 @@ def differences(own: Any, first: Any, known: Mapping[str, str]) -> dict[str, Any
     Raises:
         OtherThanNumbersError: If it would not be the same to the last bit.
     """
-    theirs, mine = _values(first), _values(own)
+    theirs, mine = values_of(first), values_of(own)
     if theirs.keys() != mine.keys():
         raise OtherThanNumbersError(f"attributes {sorted(theirs.keys() ^ mine.keys())}")
     found = {}
@@ -56,7 +61,7 @@ def with_numbers(first: Any, found: Mapping[str, Any]) -> Any:
     made = copy.copy(first)
     customs = dict(getattr(first, CUSTOM))
     setattr(made, CUSTOM, customs)
-    values = _values(first)
+    values = values_of(first)
     for name, told in found.items():
         new, (space, _, custom) = _like(values[name], told, name), name.partition("/")
         if space == CUSTOM:
@@ -67,7 +72,7 @@ def with_numbers(first: Any, found: Mapping[str, Any]) -> Any:
     return made
 
 
-def _values(builder: Any) -> dict[str, Any]:
+def values_of(builder: Any) -> dict[str, Any]:
     """All that a builder holds, each custom attribute's values by its name."""
     found = {name: value for name, value in vars(builder).items() if name != CUSTOM}
     customs = getattr(builder, CUSTOM)
