@@ -18,7 +18,7 @@ from wsim.scene.world import World
 from wsim.sim.alike import check_alike
 from wsim.sim.articulations import complete_articulations, importable
 from wsim.sim.constraints import add_constraints
-from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
+from wsim.sim.contacts import harden_contacts, let_roll, rows_of_rolling, spare_kinematic, spare_tied
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
@@ -26,7 +26,7 @@ from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mes
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import differences, texts, with_numbers
 from wsim.sim.pieces import with_pieces
-from wsim.sim.stated import confirmed, differ_in_known, loose, numbers_of, replicate, state_bodies
+from wsim.sim.stated import confirmed, differ_in_known, loose, numbers_of, replicate, state_numbers
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -167,7 +167,9 @@ def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World]) -> li
     told = numbers_of(first.builder, worlds) if first.stated and first.surfaces is None else None
     if told is None:
         return None
-    known = texts(first.builder)
+    rows, known = rows_of_rolling(first.builder, worlds[0]), texts(first.builder)
+    if any(rows_of_rolling(first.builder, world) != rows for world in worlds[1:]):
+        return None
     for k in {len(worlds) // 2, len(worlds) - 1}:
         one = _import(stages[k], worlds[k], None)
         if not one.stated or one.cylinders != first.cylinders or not confirmed(one.builder, known, told, k):
@@ -184,7 +186,7 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
     single.add_usd(importable(stage, world), ignore_paths=ignore, apply_up_axis_from_stage=True)
     complete_articulations(single)
-    stated = state_bodies(single, world)
+    stated = state_numbers(single, world)
     breakable = add_constraints(single, world)
     fluids = _add_fluids(single, world, config) if config else {}
     harden_contacts(single, ContactConfig())

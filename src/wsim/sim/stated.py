@@ -23,8 +23,8 @@ Array = np.ndarray
 # What is not held against the first stage: a number of the description, or nothing to the importer. A plane's length
 # and width are neither.
 KNOWN = re.compile(
-    rb"^( *(?:uniform )?[a-z0-9]+(?:\[\])? (?:xformOp:[\w:]+|wsim:\w+|size|height|radius|extent|physics:(?:mass|density|"
-    rb"centerOfMass|diagonalInertia|principalAxes|velocity|angularVelocity|dynamicFriction|staticFriction|restitution|"
+    rb"^( *(?:uniform )?[a-z0-9]+(?:\[\])? (?:xformOp:[\w:]+|wsim:\w+|size|height|radius|extent|physics:(?:mass|"
+    rb"density|centerOfMass|diagonalInertia|principalAxes|velocity|angularVelocity|dynamicFriction|staticFriction|restitution|"
     rb"gravityDirection|gravityMagnitude)) = ).*$",
     re.MULTILINE,
 )
@@ -32,6 +32,8 @@ TEXT = b"#usda"
 REFERENCE = b"@"  # to a file, which may be another
 PLAIN = ("box", "sphere", "cylinder", "capsule", "plane")
 CLOSE = 1e-5  # relative: the importer adds up in single precision
+NEAR = 1e-6  # of a pose likewise [m], and of a quaternion
+MASSES = ("body_mass", "body_inv_mass", "body_com", "body_inertia", "body_inv_inertia")
 GRAVITY = "_gravity"
 NO_MOMENT = 1e-6  # of the trace: a product of inertia below is rounding
 
@@ -39,8 +41,11 @@ NO_MOMENT = 1e-6  # of the trace: a product of inertia below is rounding
 def loose(world: World) -> bool:
     """Whether a world has loose bodies of plain shapes alone, which go where contacts and velocities take them."""
     tied = (world.joints, world.gears, world.springs, world.ropes, world.foreign)
-    shapes = [shape for owner in (*world.bodies, *world.statics) for shape in owner.shapes]
-    return not any(tied) and all(s.kind in PLAIN for s in shapes) and not any(body.path for body in world.bodies)
+    return (
+        not any(tied)
+        and all(shape.kind in PLAIN for shape in _shapes(world))
+        and not any(body.path for body in world.bodies)
+    )
 
 
 def differ_in_known(stages: Sequence[Path]) -> bool:
@@ -54,10 +59,11 @@ def _unknown(stage: Path) -> bytes | None:
     return KNOWN.sub(rb"\1", text) if text.startswith(TEXT) and REFERENCE not in text else None
 
 
-def state_bodies(builder: Any, world: World) -> bool:
-    """Give a builder's bodies the masses and velocities of the description: the judge's, and those of any other world.
+def state_numbers(builder: Any, world: World) -> bool:
+    """Give a builder the masses, velocities and poses of the description: the judge's, and those of any other world.
 
-    The importer has the same but for the rounding of single precision; where it has not, all is left as it is.
+    The importer has the same but for rounding: masses are added up in single precision, poses are products of matrices
+    whose last bits depend on their order. Where it has not, all is left as it is.
 
     Returns:
         Whether it was so of all bodies.
@@ -68,15 +74,33 @@ def state_bodies(builder: Any, world: World) -> bool:
         if k is None or not _close(builder, k, body):
             close = False
             continue
-        for name, numbers in told.items():
-            if name != "body_q":
-                own = numbers[0, j]
-                getattr(builder, name)[k] = type(getattr(builder, name)[k])(*own.ravel().tolist())
+        for name in MASSES:
+            _put(getattr(builder, name), k, told[name][0, j])
         at = _free_joint(builder, k)
-        if at is not None:
-            start = builder.joint_qd_start[at]
-            builder.joint_qd[start : start + 6] = told["body_qd"][0, j].tolist()
+        if at is None:  # where it starts follows from its joint
+            continue
+        _put(builder.body_qd, k, told["body_qd"][0, j])
+        speeds, places = builder.joint_qd_start[at], builder.joint_q_start[at]
+        builder.joint_qd[speeds : speeds + 6] = told["body_qd"][0, j].tolist()
+        if _near(builder.body_q[k], told["body_q"][0, j]):
+            _put(builder.body_q, k, told["body_q"][0, j])
+            builder.joint_q[places : places + 7] = told["body_q"][0, j].tolist()
+    shapes = {shape.prim: shape for shape in _shapes(world) if shape.kind in PLAIN}
+    for k, label in enumerate(builder.shape_label):
+        if label in shapes:
+            pose = np.array([*shapes[label].position, *shapes[label].rotation], dtype=np.float32)
+            if _near(builder.shape_transform[k], pose):
+                _put(builder.shape_transform, k, pose)
     return close
+
+
+def _put(values: list[Any], k: int, numbers: Array) -> None:
+    values[k] = type(values[k])(*numbers.ravel().tolist())
+
+
+def _near(pose: Any, told: Array) -> bool:
+    held = np.array(pose, dtype=np.float64)
+    return bool((np.abs(held - told) <= NEAR * (1.0 + np.abs(held))).all())
 
 
 def _close(builder: Any, k: int, body: Body) -> bool:
@@ -131,8 +155,8 @@ def numbers_of(first: Any, worlds: Sequence[World]) -> dict[str, Array] | None:
     """
     shapes = {shape.prim: shape for shape in _shapes(worlds[0])}
     prims = [body.prim for body in worlds[0].bodies]
-    joints = [_free_joint(first, k) for k in range(first.body_count)]
-    if list(first.body_label) != prims or None in joints or first.joint_count != len(prims):
+    joints = [joint for k in range(first.body_count) if (joint := _free_joint(first, k)) is not None]
+    if list(first.body_label) != prims or len(joints) != len(prims) or first.joint_count != len(prims):
         return None
     if any(label not in shapes for label in first.shape_label):
         return None
@@ -176,7 +200,8 @@ def _scale(shape: Shape) -> tuple[float, float, float]:
 
 
 def _shapes(world: World) -> list[Shape]:
-    return [shape for owner in (*world.bodies, *world.statics) for shape in owner.shapes]
+    moving = [shape for body in world.bodies for shape in body.shapes]
+    return moving + [shape for static in world.statics for shape in static.shapes]
 
 
 def _held(builder: Any, name: str) -> Array:
