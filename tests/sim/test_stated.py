@@ -27,6 +27,12 @@ def tub(scene: Scene, draw: np.random.Generator) -> None:
               density=draw.uniform(200, 800), rotation_deg=(0, 0, draw.uniform(0, 90)))  # fmt: skip
 
 
+def dam(scene: Scene, draw: np.random.Generator) -> None:
+    """No body at all."""
+    scene.tank("tank", inner_size=(draw.uniform(0.4, 0.6), 0.2, 0.4))
+    scene.fluid("water", size=(0.2, 0.2, 0.2), position=(-0.1, 0, 0.1), spacing=0.04, density=draw.uniform(900, 1100))
+
+
 def turned(scene: Scene, draw: np.random.Generator) -> None:
     """Round bodies and a post, turned and thrown every way."""
     scene.ground()
@@ -51,7 +57,7 @@ def _both(folder: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> tuple[
     return made, imported, took[0] is not None
 
 
-@pytest.mark.parametrize("build", [loose, carried, turned, tub])
+@pytest.mark.parametrize("build", [loose, carried, turned, tub, dam])
 def test_it_is_the_imported_batch(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
     made, imported, quick = _both(tmp_path, build, monkeypatch)
     assert quick

@@ -120,11 +120,11 @@ def _of_bodies(worlds: Sequence[World]) -> dict[str, Array]:
     """What descriptions state of each world's bodies, (N, bodies, …), under the builder's names."""
     shape = (len(worlds), len(worlds[0].bodies))
 
-    def stack(*names: str) -> Array:
+    def stack(width: int, *names: str) -> Array:
         found = [[sum((getattr(body, name) for name in names), ()) for body in world.bodies] for world in worlds]
-        return np.array(found, dtype=np.float64).reshape(*shape, -1)
+        return np.array(found, dtype=np.float64).reshape(*shape, width)
 
-    inertia = stack("inertia").reshape(*shape, 3, 3)
+    inertia = stack(9, "inertia").reshape(*shape, 3, 3)
     trace = np.trace(inertia, axis1=-2, axis2=-1)[..., None, None]
     inertia = np.where((np.abs(inertia) < NO_MOMENT * trace) & ~np.eye(3, dtype=bool), 0.0, inertia)
     mass = np.array([[body.mass for body in world.bodies] for world in worlds]).reshape(shape)
@@ -132,11 +132,11 @@ def _of_bodies(worlds: Sequence[World]) -> dict[str, Array]:
     told = {
         "body_mass": mass,
         "body_inv_mass": 1.0 / mass,
-        "body_com": stack("com"),
+        "body_com": stack(3, "com"),
         "body_inertia": inertia,
         "body_inv_inertia": np.linalg.inv(solid),
-        "body_q": stack("position", "rotation"),
-        "body_qd": stack("velocity", "angular_velocity"),
+        "body_q": stack(7, "position", "rotation"),
+        "body_qd": stack(6, "velocity", "angular_velocity"),
     }
     return {name: numbers.astype(np.float32) for name, numbers in told.items()}
 
@@ -163,7 +163,8 @@ def numbers_of(first: Any, worlds: Sequence[World]) -> dict[str, Array] | None:
     bodies = _of_bodies(worlds)
     found = {name: _changed(_held(first, name), own) for name, own in bodies.items()}
     for name, width in (("joint_q", 7), ("joint_qd", 6)):
-        places, source = np.array(getattr(first, f"{name}_start"))[joints], bodies[f"body_{name[6:]}"]
+        starts, source = getattr(first, f"{name}_start"), bodies[f"body_{name[6:]}"]
+        places = np.array([starts[joint] for joint in joints], dtype=np.int64)
         found[name] = np.repeat(np.array(getattr(first, name), dtype=np.float32)[None], len(worlds), axis=0)
         columns = (places[:, None] + np.arange(width)).ravel()
         found[name][:, columns] = _changed(found[name][0][columns], source.reshape(len(worlds), -1))
