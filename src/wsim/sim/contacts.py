@@ -67,8 +67,15 @@ def _shapes_of(builder: Any, prim: str) -> list[int]:
 
 def let_roll(builder: Any, world: World) -> None:
     """Give contacts rows for spinning and rolling where a shape rolls against friction; others keep three rows."""
+    rows = rows_of_rolling(builder, world)
+    if rows:
+        builder.custom_attributes["mujoco:condim"].values = rows
+
+
+def rows_of_rolling(builder: Any, world: World) -> dict[int, int]:
+    """How many rows a contact of each shape has; nothing where nothing rolls against friction."""
     if not any(shape.rolling for shape in _shapes(world).values()) and not any(pair.rolling for pair in world.contacts):
-        return
+        return {}
     surfaces = _surfaces([str(label) for label in builder.shape_label], world)
     kinds = np.column_stack([surfaces.classes[0], surfaces.curvature[0] > 0.0, np.array(builder.shape_body) >= 0])
     needs = set()
@@ -79,7 +86,7 @@ def let_roll(builder: Any, world: World) -> None:
             if asks and surfaces.law[0, one[0], other[0], 2] > 0.0:
                 needs.add(one)
     rows = {k: 6 for k, kind in enumerate(kinds.tolist()) if tuple(kind) in needs}
-    builder.custom_attributes["mujoco:condim"].values = dict.fromkeys(range(builder.shape_count), 3) | rows
+    return dict.fromkeys(range(builder.shape_count), 3) | rows
 
 
 def surfaces_of(model: Any, worlds: Sequence[World]) -> Surfaces:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from newton import GeoType, ShapeFlags
+from newton import GeoType, ParticleFlags, ShapeFlags
 
 from wsim.errors import UserError
 from wsim.geometry.filled import box_lattice
@@ -169,6 +169,29 @@ def seed(fluid: Fluid, world: World, meshes: dict[str, list[Depth]]) -> Seeded:
         mass=fluid.density * cells.volume[free],
         pressure=fluid.density * abs(world.gravity[2]) * np.maximum(depth, 0.0),
     )
+
+
+def add_seeded(builder: Any, worlds: Sequence[World]) -> tuple[list[dict[str, slice]], Array]:
+    """Fill the worlds of a builder that has no particles with fluid, as arrays.
+
+    Returns:
+        The range of each fluid's particles in its own world, by prim; and the pressures of all particles [Pa], (n,).
+    """
+    parts, ranges = [], []
+    for world in worlds:
+        seeded = [seed(fluid, world, {}) for fluid in world.fluids]
+        ends = np.cumsum([0, *(len(each.mass) for each in seeded)]).tolist()
+        ranges.append({each.prim: slice(*ends[k : k + 2]) for k, each in enumerate(seeded)})
+        parts += seeded
+    counts = [sum(part.stop - part.start for part in own.values()) for own in ranges]
+    builder.particle_q = np.concatenate([part.position for part in parts]).astype(np.float32)
+    builder.particle_qd = np.zeros_like(builder.particle_q)
+    builder.particle_mass = np.concatenate([part.mass for part in parts]).astype(np.float32)
+    radii = [0.5 * fluid.spacing for world in worlds for fluid in world.fluids]
+    builder.particle_radius = np.repeat(np.array(radii, dtype=np.float32), [len(part.mass) for part in parts])
+    builder.particle_flags = np.full(sum(counts), int(ParticleFlags.ACTIVE), dtype=np.int32)
+    builder.particle_world = np.repeat(np.arange(len(worlds), dtype=np.int32), counts)
+    return ranges, np.concatenate([part.pressure for part in parts]).astype(np.float32)
 
 
 def _inside(shapes: list[Shape], points: Array, margin: float, meshes: list[Depth]) -> Array:

@@ -18,14 +18,15 @@ from wsim.scene.world import World
 from wsim.sim.alike import check_alike, topology
 from wsim.sim.articulations import complete_articulations, importable
 from wsim.sim.constraints import add_constraints
-from wsim.sim.contacts import harden_contacts, let_roll, spare_kinematic, spare_tied
+from wsim.sim.contacts import harden_contacts, let_roll, rows_of_rolling, spare_kinematic, spare_tied
 from wsim.sim.cord_shapes import add_cord_shapes
 from wsim.sim.cords import add_cords
 from wsim.sim.drives import add_drives
-from wsim.sim.fluids import Seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
+from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mesh_depths, of_worlds, seed, sph_config
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
+from wsim.sim.stated import confirmed, differ_in_known, loose, numbers_of, replicate, state_numbers
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -79,6 +80,7 @@ class _One:
     breakable: list[Breakable]
     surfaces: SurfaceParts | None
     cylinders: tuple[tuple[int, int], ...]
+    stated: bool  # its bodies' masses and velocities are the description's
 
 
 def build_model(stage: Path, world: World, device: Any, world_count: int = 1, time_step: float | None = None) -> Built:
@@ -129,14 +131,49 @@ def build_batch(
         ValueError: If worlds differ in more than numbers.
     """
     config = sph_config(worlds)
+    builder, pressures = _builder(worlds[0]), None
     with uncollected():
-        ones = list(_imports(stages, worlds, config, processes))
-        builder = _builder(worlds[0])
-        add_worlds(builder, ones[0].builder, [one.builder for one in ones[1:]])
+        ones = _stated(builder, stages, worlds)
+        if ones is None:
+            ones = list(_imports(stages, worlds, config, processes))
+            add_worlds(builder, ones[0].builder, [one.builder for one in ones[1:]])
+        elif config:
+            ranges, pressures = add_seeded(builder, worlds)
+            ones = [replace(one, fluids=own) for one, own in zip(ones, ranges, strict=True)]
         if config:
             for name, own in of_worlds(worlds).items():
                 builder.custom_attributes[f"sph:{name}"].values = dict(enumerate(own))
-        return _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
+        built = _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
+    if pressures is not None:
+        built.model.sph.pressure.assign(pressures)
+    return built
+
+
+def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World]) -> list[_One] | None:
+    """Fill a builder with worlds, but for their fluids, by what their descriptions state (`wsim.sim.stated`).
+
+    The first is imported; one in the middle and the last are, too, and are held against what was stated.
+
+    Returns:
+        None, with nothing done, where that is not all that there is to know.
+    """
+    if not loose(worlds[0]) or not differ_in_known(stages):
+        return None
+    for world in worlds:
+        _weigh_spins(world)
+    first = _import(stages[0], worlds[0], None)
+    told = numbers_of(first.builder, worlds) if first.stated and first.surfaces is None else None
+    if told is None:
+        return None
+    rows, known = rows_of_rolling(first.builder, worlds[0]), texts(first.builder)
+    if any(rows_of_rolling(first.builder, world) != rows for world in worlds[1:]):
+        return None
+    for k in {len(worlds) // 2, len(worlds) - 1}:
+        one = _import(stages[k], worlds[k], None)
+        if not one.stated or one.cylinders != first.cylinders or not confirmed(one.builder, known, told, k):
+            return None
+    replicate(builder, first.builder, told)
+    return [replace(first, builder=None, world=world) for world in worlds]
 
 
 def _import(stage: Path, world: World, config: Any | None) -> _One:
@@ -147,6 +184,7 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     ignore = [f"{fluid.prim}/volume" for fluid in world.fluids]
     single.add_usd(importable(stage, world), ignore_paths=ignore, apply_up_axis_from_stage=True)
     complete_articulations(single)
+    stated = state_numbers(single, world)
     breakable = add_constraints(single, world)
     fluids = _add_fluids(single, world, config) if config else {}
     harden_contacts(single, ContactConfig())
@@ -157,7 +195,7 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     world = with_pieces(single, world)
     add_cords(single, world, ContactConfig())
     add_drives(single, world)
-    return _One(single, world, fluids, breakable, surfaces, take_cylinders(single))
+    return _One(single, world, fluids, breakable, surfaces, take_cylinders(single), stated)
 
 
 def _imports(stages: Sequence[Path], worlds: Sequence[World], config: Any | None, processes: int) -> Iterator[_One]:

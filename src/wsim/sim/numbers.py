@@ -24,7 +24,12 @@ class OtherThanNumbersError(ValueError):
 
 def texts(builder: Any) -> dict[str, str]:
     """All that a builder holds as text, which tells -0 from 0 and takes NaN for itself."""
-    return {name: repr(_plain(value)) for name, value in _values(builder).items()}
+    return {name: plain_text(value) for name, value in values_of(builder).items()}
+
+
+def plain_text(value: Any) -> str:
+    """What a builder holds under a name, as text."""
+    return repr(_plain(value))
 
 
 def differences(own: Any, first: Any, known: Mapping[str, str]) -> dict[str, Any]:
@@ -38,7 +43,7 @@ def differences(own: Any, first: Any, known: Mapping[str, str]) -> dict[str, Any
     Raises:
         OtherThanNumbersError: If it would not be the same to the last bit.
     """
-    theirs, mine = _values(first), _values(own)
+    theirs, mine = values_of(first), values_of(own)
     if theirs.keys() != mine.keys():
         raise OtherThanNumbersError(f"attributes {sorted(theirs.keys() ^ mine.keys())}")
     found = {}
@@ -57,7 +62,7 @@ def with_numbers(first: Any, found: Mapping[str, Any]) -> Any:
     made = copy.copy(first)
     customs = dict(getattr(first, CUSTOM))
     setattr(made, CUSTOM, customs)
-    values = _values(first)
+    values = values_of(first)
     for name, told in found.items():
         new, (space, _, custom) = _like(values[name], told, name), name.partition("/")
         if space == CUSTOM:
@@ -80,7 +85,7 @@ def add_worlds(builder: Any, first: Any, others: Sequence[Any]) -> None:
         others: Of each other one its builder, or its `differences` from the first.
     """
     names = {name for each in others if isinstance(each, Mapping) for name in each} - {GRAVITY}
-    values = _values(first)
+    values = values_of(first)
     if not all(isinstance(each, Mapping) for each in others) or not all(_is_rows(name, values[name]) for name in names):
         # First all, then all added: a builder that was added somewhere has notes of it.
         for each in [first, *(with_numbers(first, each) if isinstance(each, Mapping) else each for each in others)]:
@@ -125,7 +130,7 @@ def _set_rows(builder: Any, name: str, first: Any, told: Sequence[Any]) -> None:
         kept[k * things : k * things + len(each)] = each
 
 
-def _values(builder: Any) -> dict[str, Any]:
+def values_of(builder: Any) -> dict[str, Any]:
     """All that a builder holds, each custom attribute's values by its name."""
     found = {name: value for name, value in vars(builder).items() if name != CUSTOM}
     customs = getattr(builder, CUSTOM)
