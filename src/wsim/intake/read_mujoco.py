@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -18,7 +18,7 @@ _JOINTS: dict[int, JointKind] = {
     int(mujoco.mjtJoint.mjJNT_HINGE): "revolute",
 }
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
-_SHAPES = {
+_SHAPES: dict[int, Literal["sphere", "capsule", "cylinder", "box"]] = {
     int(mujoco.mjtGeom.mjGEOM_SPHERE): "sphere",
     int(mujoco.mjtGeom.mjGEOM_CAPSULE): "capsule",
     int(mujoco.mjtGeom.mjGEOM_CYLINDER): "cylinder",
@@ -152,8 +152,8 @@ def _mesh(model: Any, data: Any, geom: int, notes: list[str]) -> Mesh | None:
 def _collider(model: Any, data: Any, geom: int) -> Collider | None:
     """As MuJoCo has it: of a mesh its hull."""
     turn, at = data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
-    kind = _SHAPES.get(int(model.geom_type[geom]), "")
-    if kind == "box" or kind == "sphere" or kind == "cylinder":
+    kind = _SHAPES.get(int(model.geom_type[geom]))
+    if kind is not None and kind != "capsule":
         return Collider(kind, _size(model, geom)).moved(turn, at)
     found = _triangles(model, geom)
     return None if found is None else Collider("hull", points=found[0]).moved(turn, at)
