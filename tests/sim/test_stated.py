@@ -84,7 +84,10 @@ def test_numbers_that_no_description_states_are_seen(tmp_path: Path) -> None:
     assert differ_in_known(stages)
     stages[1].write_text(stages[1].read_text().replace("float inputs:ior = 1.5", "float inputs:ior = 1.4"))
     assert not differ_in_known(stages)
-    stages[1].write_text(stages[0].read_text() + "# @other.usda@\n")
+    text = stages[0].read_text()
+    stages[1].write_text(text.replace("float physics:mass = ", "float physics:mass = 1; float newton:gap = ", 1))
+    assert not differ_in_known(stages)
+    stages[1].write_text(text + "# @other.usda@\n")
     assert not differ_in_known([stages[1], stages[1]])
 
 

@@ -20,12 +20,12 @@ from wsim.solvers.contact_config import ContactConfig
 
 Array = np.ndarray
 
-# What is not held against the first stage: a number of the description, or nothing to the importer. A plane's length
-# and width are neither.
+# What is not held against the first stage: numbers of the description, or nothing to the importer. A plane's length
+# and width are neither; a line that goes on to say something else is held against it.
 KNOWN = re.compile(
     rb"^( *(?:uniform )?[a-z0-9]+(?:\[\])? (?:xformOp:[\w:]+|wsim:\w+|size|height|radius|extent|physics:(?:mass|"
     rb"density|centerOfMass|diagonalInertia|principalAxes|velocity|angularVelocity|dynamicFriction|staticFriction|restitution|"
-    rb"gravityDirection|gravityMagnitude)) = ).*$",
+    rb"gravityDirection|gravityMagnitude)) = )[-+\w.,() \[\]]*$",
     re.MULTILINE,
 )
 TEXT = b"#usda"
