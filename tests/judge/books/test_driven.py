@@ -1,0 +1,39 @@
+"""Drives that are so stiff that they get where they are set within a frame."""
+
+import math
+
+import numpy as np
+import pytest
+
+from tests.judge.test_turned import simulated
+from tests.judge.theory import ask, edited, only
+from wsim.judge.books.driven import given_within, held
+from wsim.judge.checks.physics import CheckExplosion
+from wsim.judge.evidence.evidence import Evidence
+from wsim.scene import Drive
+from wsim.scene.world import Motor
+
+
+def served(scene):
+    """An arm that goes at up to 41 rad/s within 33 ms: w = 100 rad/s, at 0.7 of critical damping."""
+    scene.simulation(gravity=(0, 0, 0), frame_rate=30)
+    scene.box("arm", size=(0.3, 0.03, 0.03), position=(0.15, 0, 1), density=2700)
+    scene.joint_revolute(
+        "hinge", None, "arm", anchor=(0, 0, 1), axis="Z", drive=Drive(position=45, stiffness=200, damping=2.9)
+    )
+
+
+def test_what_a_drive_gives_within_a_frame_is_no_explosion(tmp_path):
+    recording = simulated(tmp_path, served, 0.5)
+    assert only(ask(CheckExplosion(), recording)).passed
+    assert given_within(Evidence(recording))[0] == pytest.approx(0.5 * 200 * (math.pi / 4) ** 2, rel=1e-6)
+    for frame in (0, 8):  # before it gave anything, and once it holds nothing any more
+        late = edited(recording, "body_qd", (frame, 0, 1), 12.0)
+        assert not only(ask(CheckExplosion(), late)).passed
+
+
+def test_a_drive_at_its_greatest_effort_holds_what_that_works_over_the_way():
+    at = np.array([0.0, 0.9, 1.0])
+    assert held(Motor(stiffness=100.0, position=1.0), at) == pytest.approx([50.0, 0.5, 0.0])
+    assert held(Motor(stiffness=100.0, position=1.0, max_effort=20.0), at) == pytest.approx([18.0, 0.5, 0.0])
+    assert held(Motor(damping=3.0, velocity=2.0, max_effort=20.0), at) == pytest.approx([0.0, 0.0, 0.0])
