@@ -1,17 +1,28 @@
 """Drives that are so stiff that they get where they are set within a frame."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tests.judge.test_turned import simulated
 from tests.judge.theory import ask, edited, only
 from wsim.judge.books.driven import given_within, held
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.physics import CheckExplosion
 from wsim.judge.evidence.evidence import Evidence
-from wsim.scene import Drive
+from wsim.recording import read
+from wsim.scene import Drive, Scene
 from wsim.scene.world import Motor
+from wsim.sim import Simulation
+
+
+def simulated(folder, build, seconds):
+    scene = Scene()
+    scene.simulation(duration=seconds)
+    build(scene)
+    Simulation(scene.save(folder / "stage.usda"), "cpu").run(folder / "run.rrd")
+    return read(folder / "run.rrd")
 
 
 def served(scene):
@@ -56,3 +67,22 @@ def test_what_a_joint_gives_in_the_first_step_is_recorded(tmp_path):
     first = body.mass * 0.15 * 1000 * (math.pi / 4) / about * dt
     off = recording.ties.impulse[1, 0, 1] - body.mass * recording.body_qd[1, 0, 1]
     assert abs(off) < 6.5 * dt / about / 12 * first
+
+
+def thrown_up(scene):
+    """A heavy arm about a level axis, whose drive swings it to and fro within a frame."""
+    scene.simulation(frame_rate=24)
+    scene.box("arm", size=(0.3, 0.03, 0.03), position=(0.15, 0, 1), density=2700)
+    scene.joint_revolute(
+        "hinge", None, "arm", anchor=(0, 0, 1), axis="Y", drive=Drive(position=-45, stiffness=200, damping=1)
+    )
+
+
+def test_a_drive_that_is_faster_than_frames_does_the_work_that_is_recorded(tmp_path):
+    recording = simulated(tmp_path, thrown_up, 0.5)
+    assert [finding.message for finding in ask(CheckEnergy(), recording) if not finding.passed] == []
+    for change in (3.0, -3.0):  # of some 60 J
+        work = recording.scalars["work/drives"].copy()
+        work[4] += change
+        told = replace(recording, scalars=recording.scalars | {"work/drives": work})
+        assert not all(finding.passed for finding in ask(CheckEnergy(), told))

@@ -42,3 +42,16 @@ def given_within(evidence: Evidence) -> Floats:
         if drive is not None and track is not None:
             found += held(drive, track.position)[:-1] + 0.25 * drive.damping * drive.velocity**2 * evidence.motion.h
     return found
+
+
+def alone(evidence: Evidence) -> tuple[Floats, Floats] | None:
+    """What the only drive of a world did by its steps, and how unsure that is, (T - 1,) each [J]; None of several.
+
+    Of a stiff one frames do not tell it: its speed comes and goes between two of them.
+    """
+    recording = evidence.recording
+    worked, unsure = (recording.scalars.get(f"work/drives{end}") for end in ("", "_unsure"))
+    drives = sum(joint.drive is not None for joint in evidence.world.joints)
+    if drives != 1 or worked is None or unsure is None or not np.isfinite([worked[1:], unsure[1:]]).all():
+        return None
+    return np.asarray(worked[1:], dtype=np.float64), np.asarray(unsure[1:], dtype=np.float64)

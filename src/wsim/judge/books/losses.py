@@ -20,6 +20,7 @@ from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import relaxing
+from wsim.judge.books.driven import alone
 from wsim.judge.books.led import STEADY, Led, late, over, told
 from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
@@ -318,6 +319,8 @@ class Losses:
             stretch = joint.drive.position - held.position
             rubs, doubt = joint.drive.damping * np.array(over(self._evidence, rate * (rate - joint.drive.velocity)))
             return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
+        if stated is not None and (recorded := alone(self._evidence)) is not None:
+            return recorded
         drive = np.asarray(self.ties.track.drive[1:, k], dtype=np.float64)
         mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
         force = np.gradient(drive / h) if len(drive) > 1 else np.zeros(len(drive))
