@@ -189,9 +189,10 @@ class ContactLawC:
         rate = data.qacc - self.blows.jump / model.opt.timestep
         parts = max(self.smooth_steps.parts(data, smooth), self.smooth_steps.parts_of_reversal(data, rate, smooth))
         held = self.smooth_steps.rubbed(data) | self.smooth_steps.stopped(data, force)
-        alone = smooth & (pushed | struck | held | (parts > 1) | (len(self._led) > 0))
+        uneven = pushed | struck | held | (len(self._led) > 0)
+        alone = smooth & (uneven | (parts > 1))
         # Of these all of the step is recorded by itself.
-        note = self._tell_ties(data, force, smooth, struck, alone)
+        note = self._tell_ties(data, force, smooth & ~uneven, struck, alone)
         self.blows.take_from(data)
         if whole and parts == 1:
             self.smooth_steps.step(data, note)
@@ -210,14 +211,14 @@ class ContactLawC:
         if model.nu:
             self._tell_efforts(data)
 
-    def _tell_ties(self, data: Any, force: Array, smooth: Array, struck: Array, alone: Array) -> Note | None:
+    def _tell_ties(self, data: Any, force: Array, evenly: Array, struck: Array, alone: Array) -> Note | None:
         """Record what ties give, but for that which is left to whom it returns: what they give in the smooth steps of
-        some mechanisms `alone`."""
+        some mechanisms `alone`; of those that go on `evenly` the forces at the step's start are the last one's end."""
         ties = self.ties
         if ties is None:
             return None
         h = self.model.opt.timestep
-        ties.add(data, h * (~alone | struck), smooth & ~alone)
+        ties.add(data, h * (~alone | struck), evenly)
         if (alone & struck).any():  # of what they gave the blow alone
             both, acceleration = data.efc_force.copy(), data.qacc.copy()
             data.efc_force[:] = force

@@ -152,7 +152,7 @@ class TieImpulsesC:
         Args:
             data: MuJoCo's.
             span: For which it counts, of each mechanism, (mechanisms,) [s]; less than none takes it back.
-            smooth: At a step's start: those that go on from it by Runge and Kutta's, (mechanisms,).
+            smooth: At a step's start: those that go on from it by Runge and Kutta's, with its forces, (mechanisms,).
             held: Rows that act beside those of `data`: kind, number, force, place.
         """
         self._mujoco.mj_rnePostConstraint(self._model, data)

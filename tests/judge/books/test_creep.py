@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.judge.test_turned import simulated
 from tests.judge.theory import EDGE, G, ask, box, record, slab, times
 from wsim.judge.checks.forces import CheckForces
 
@@ -59,3 +60,16 @@ def test_a_slip_that_comes_and_goes_may_stick_meanwhile():
     steps = np.repeat(np.arange(16), 4)[: len(recording.time)]
     recording.body_q[:, 0, 0] += 1e-4 * steps
     assert not any("creeps" in finding.message for finding in ask(CheckForces(), recording))
+
+
+def wheel(scene):
+    """A ball of 1 m that starts to roll down 15 degrees against a resistance of 2 %: by 0.02 rad in 16 frames."""
+    lean = math.radians(15.0)
+    scene.simulation(gravity=(1.6 * math.sin(lean), 0, -1.6 * math.cos(lean)))
+    scene.ground(friction=0.5, rolling_friction=0.02)
+    scene.sphere("ball", radius=1.0, density=1500, position=(0, 0, 1), friction=0.5, rolling_friction=0.02)
+
+
+def test_what_rolls_against_resistance_slips_inside_the_cone(tmp_path):
+    """By C / mu x / sqrt(1 - x^2) of its rolling (`wsim.judge.books.sharing`), which is no creep against friction."""
+    assert off(simulated(tmp_path, wheel, 0.6)) == []

@@ -124,3 +124,13 @@ def test_of_what_is_in_a_mesh_only_less_is_asked_for(tmp_path):
     sunk = np.array(recording.body_q)
     sunk[:, 1, 2] -= 0.05
     assert not passes(CheckRecordedDepth, replace(recording, body_q=sunk))
+
+
+def test_what_is_led_through_what_stands_is_not_deep_in_it(tmp_path):
+    """A deck on a path dips into the ground: neither gives way, and the simulator has them pass."""
+    scene = Scene()
+    scene.simulation(duration=0.5, frame_rate=30.0)
+    scene.ground()
+    scene.box("deck", size=(1, 1, 0.1), position=(0, 0, 0.06), velocity=(0, 0, -0.2), kinematic=True)
+    scene.sphere("ball", radius=0.1, position=(2, 0, 0.1), density=500.0)
+    assert passes(CheckRecordedDepth, run(tmp_path, scene))

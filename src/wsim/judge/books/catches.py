@@ -89,7 +89,7 @@ def _slack(evidence: Evidence, ways: Ropes, rope: Rope) -> tuple[Floats, Floats]
 
 
 def _held(prim: str, h: Floats, room: Floats, rate: Floats, alone: Bools, unit: str) -> list[Catch]:
-    """The intervals in which something comes to its end and turns back."""
+    """The intervals in which something comes to its end, by more than places are rounded to, and turns back."""
     if len(h) < 4:
         return []
     rounding = 8.0 * FLOAT32 * float(np.abs(room).max())
@@ -100,5 +100,5 @@ def _held(prim: str, h: Floats, room: Floats, rate: Floats, alone: Bools, unit: 
     quiet = alone[1:-1] & (others < SHOWS * before)
     return [
         Catch(prim, int(k) + 1, float(before[k]), float(after[k]), 2.0 * float(others[k]), unit)
-        for k in np.flatnonzero((before > 0.0) & (after > 0.0) & reached & quiet)
+        for k in np.flatnonzero((before * h[1:-1] > rounding) & (after > 0.0) & reached & quiet)
     ]

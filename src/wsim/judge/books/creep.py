@@ -33,6 +33,7 @@ INTERVALS = 16  # that a slip lasts for
 EACH = 0.3  # of the mean: each frame adds as much to a slip that lasts
 TURN = 0.02  # [rad]: what turns by more against what it touches rolls
 ROUND = 0.1  # [rad]: what turns both by more, as a turntable does, turns the friction's way with it
+SHARED = 0.2  # what resists rolling over friction, by the ways of both: the slip has all but 2 % of the cone's edge
 CREEP = 2e-5  # [m/s]: what wsim leaves of what friction holds is below 1e-6
 ENOUGH = 1e-3  # of gravity: a rest that is as good as none
 
@@ -130,6 +131,10 @@ def _drifts(evidence: Evidence, touching: Touching, contacts: Contacts, first: i
     steady &= length > INTERVALS * rounding
     relative, absolute = _turned(evidence, contacts, first, last)
     steady &= (relative < TURN) & (absolute < ROUND)
+    # Resisted rolling shares the cone with the slip, and goes with one: friction is then inside it.
+    friction, rolling = touching.laws(contacts.shapes)
+    arm = Books.of(evidence).size[np.where(contacts.two >= 0, contacts.two, contacts.one)]
+    steady &= np.maximum(rolling, np.pi * friction * rolling) * arm * relative <= SHARED * friction * length
     return np.where(steady[:, None], drift, 0.0)
 
 

@@ -20,6 +20,7 @@ from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import relaxing
+from wsim.judge.books.driven import alone
 from wsim.judge.books.led import STEADY, Led, late, over, told
 from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
@@ -59,7 +60,7 @@ class Losses:
 
     def __init__(self, evidence: Evidence, contacts: RecordedContacts) -> None:
         self._evidence, self._contacts = evidence, contacts
-        self._motion, self._ties = evidence.motion, contacts.ties
+        self._motion, self.ties = evidence.motion, contacts.ties
 
     @staticmethod
     def of(evidence: Evidence) -> Losses | None:
@@ -109,9 +110,9 @@ class Losses:
         most += np.bincount(frame, lost[inside], intervals)
         least += np.bincount(frame, rubbed[inside], intervals)
         damped, off = self._damped(ours)
-        if self._ties is not None:
-            for k, pair in enumerate(self._ties.pairs):
-                if ours & set(pair) and self._ties.joints[k].kind in OWN:
+        if self.ties is not None:
+            for k, pair in enumerate(self.ties.pairs):
+                if ours & set(pair) and self.ties.joints[k].kind in OWN:
                     work, doubt, lost = self._of_joint(k)
                     driven, unsure, most = driven + work, unsure + doubt, most + lost
             most += self._jerked(ours)
@@ -300,9 +301,9 @@ class Losses:
     # ---- ties
     def _of_joint(self, k: int) -> tuple[Floats, Floats, Floats]:
         """A joint's drive's work, how unsure it is, and what its friction and stops may take, (T - 1,) each [J]."""
-        assert self._ties is not None
-        joint, track = self._ties.joints[k], self._ties.track
-        rate = self._ties.laws.rate(joint)
+        assert self.ties is not None
+        joint, track = self.ties.joints[k], self.ties.track
+        rate = self.ties.laws.rate(joint)
         friction, stop = (np.asarray(each[1:, k], dtype=np.float64) for each in (track.friction, track.stop))
         change, fastest = np.abs(np.diff(rate)), np.maximum(np.abs(rate[1:]), np.abs(rate[:-1]))
         work, doubt = self._driven(k, rate)
@@ -310,15 +311,17 @@ class Losses:
 
     def _driven(self, k: int, rate: Floats) -> tuple[Floats, Floats]:
         """The work of a joint's drive, and how unsure it is, (T - 1,) each [J]: by its law, or by what is recorded."""
-        assert self._ties is not None
-        joint, h = self._ties.joints[k], self._motion.h
-        stated, held = self._ties.drive(k), self._evidence.joint(joint)
+        assert self.ties is not None
+        joint, h = self.ties.joints[k], self._motion.h
+        stated, held = self.ties.drive(k), self._evidence.joint(joint)
         at_most = joint.drive is not None and joint.drive.max_effort is not None
         if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
             stretch = joint.drive.position - held.position
             rubs, doubt = joint.drive.damping * np.array(over(self._evidence, rate * (rate - joint.drive.velocity)))
             return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
-        drive = np.asarray(self._ties.track.drive[1:, k], dtype=np.float64)
+        if stated is not None and (recorded := alone(self._evidence)) is not None:
+            return recorded
+        drive = np.asarray(self.ties.track.drive[1:, k], dtype=np.float64)
         mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
         force = np.gradient(drive / h) if len(drive) > 1 else np.zeros(len(drive))
         bend = h * force * change / 12.0  # where both change evenly
@@ -350,17 +353,6 @@ class Losses:
         correction, unsure = (np.concatenate([[0.0], np.cumsum(each)]) for each in (share * gained, doubt))
         return correction, unsure
 
-    def give(self, rows: Rows) -> float:
-        """What joints hold by giving way less than poses can tell, under what they bear at most [J]."""
-        found, far = 0.0, float(np.abs(self._motion.com).max(initial=0.0))
-        for k, pair in enumerate(self._ties.pairs if self._ties is not None else []):
-            if not set(pair) & set(rows.tolist()):
-                continue
-            track = self._ties.track.joints[1:, k].astype(np.float64)  # type: ignore[union-attr]
-            force, torque = (np.linalg.norm(part, axis=1) / self._motion.h for part in (track[:, :3], track[:, 9:12]))
-            found += 8.0 * FLOAT32 * float(np.median(force) * far + np.median(torque))
-        return found
-
     def _held(self, ours: set[int]) -> float:
         """What drives hold as springs, from its least to its most [J]."""
         found = 0.0
@@ -385,15 +377,15 @@ class Losses:
 
     def _jerked(self, ours: set[int]) -> Floats:
         """What ropes that come taut may take, (T - 1,) [J]."""
-        assert self._ties is not None
+        assert self.ties is not None
         springs, found = len(self._evidence.world.springs), np.zeros(len(self._motion.h))
         done: set[int] = set()
-        for n, (cord, row) in enumerate(self._ties.ends):
+        for n, (cord, row) in enumerate(self.ties.ends):
             if cord < springs or row not in ours or cord in done:
                 continue
             done.add(cord)
-            tension = np.maximum(self._ties.track.tension[1:, n].astype(np.float64), 0.0)
-            rate = np.abs(self._ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
+            tension = np.maximum(self.ties.track.tension[1:, n].astype(np.float64), 0.0)
+            rate = np.abs(self.ties.ropes.rate(self._evidence.world.ropes[cord - springs]))
             starts = tension[:1] * (rate[0] <= self._evidence.gravity * self._motion.dt)  # or it comes taut at once
             around = np.concatenate([starts, tension, tension[-1:]])
             excess = np.maximum(tension - STEADY * np.minimum(around[2:], around[:-2]), 0.0)

@@ -275,11 +275,16 @@ class Touching:
 
     @cached_property
     def _meet(self) -> NDArray[np.bool_]:
-        """Whether two shapes may touch at all: not where a joint ties their objects, or they are made to pass."""
+        """Whether two shapes may touch at all: not where a joint ties their objects, or they are made to pass.
+
+        Nor where neither gives way: what is kinematic goes as it is told, through all that is so too or stands still.
+        """
         tied, passes = _tied(self.world), passing(self.world)
         named = [(owner, shape.prim) for _, owner, shape in self.shapes]
         meet = [[frozenset((a[0], b[0])) not in tied and not passes(a, b) for b in named] for a in named]
-        return np.array(meet, dtype=bool).reshape(len(named), len(named))
+        yields = np.array([row >= 0 and not self.world.bodies[row].kinematic for row, _, _ in self.shapes], dtype=bool)
+        both = np.array(meet, dtype=bool).reshape(len(named), len(named))
+        return both & (yields[:, None] | yields[None, :])
 
     @cached_property
     def _flat(self) -> bool:

@@ -13,6 +13,7 @@ from wsim.judge.books.hidden import hidden
 from wsim.judge.books.laws import Laws
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.strangest import strangest
+from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class CheckContinuity(Check):
 
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
         """What is asked of all copies at once."""
-        if len(joined.motion.h) and joined.world.bodies and not joined.world.joints:
+        if len(joined.motion.h) and joined.world.bodies and not joined.world.joints and not joined.world.springs:
             asked = self._asked(joined)
             for n, evidence in enumerate(copies):
                 evidence.kept[CheckContinuity] = tuple((value[n], limit[n]) for value, limit in asked)
@@ -92,7 +93,7 @@ class CheckContinuity(Check):
         motion, h = evidence.motion, evidence.motion.h[:, None]
         # Within a frame the velocity may be anything between its ends, a body may fall and be caught, one that is hit
         # may hand it on, and a drive that is faster than the frames may have come and gone.
-        pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + handed + driven)
+        pulled = np.where(motion.kinematic, 0.0, evidence.gravity * h + _pulled(evidence) + handed + driven)
         places = self._rounding(evidence)
         rounding = np.maximum(places[..., 1:, :], places[..., :-1, :])
         rounding = rounding + h * FLOAT32 * np.maximum(motion.speed[..., 1:, :], motion.speed[..., :-1, :])
@@ -193,6 +194,17 @@ class CheckContinuity(Check):
             story=f"{{prim}} {verb} {{value:.3g}} {unit} more than its velocity gives, at {{time:.3f}} s",
             fine=f"Every body {fine}{' by' if unit == 'rad' else ''} its own velocity", why="its pose is set by hand",
         )  # fmt: skip
+
+
+def _pulled(evidence: Evidence) -> Floats:
+    """By how much springs speed their bodies up at most in an interval, (..., T - 1, B) [m/s]."""
+    motion, world = evidence.motion, evidence.world
+    found = np.zeros(motion.reach.shape)
+    for spring in world.springs:
+        pull = np.abs(track_of_spring(evidence, spring).pull)
+        for row in {evidence.index(guide.body) for guide in spring.path if guide.body is not None}:
+            found[:, row] += motion.h * np.maximum(pull[1:], pull[:-1]) / motion.mass[row]
+    return found
 
 
 def _added(rate: Floats) -> Floats:

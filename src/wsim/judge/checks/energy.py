@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from wsim.geometry.rotations import lengths
+from wsim.judge.books.giving import held_by_joints
 from wsim.judge.books.led import Led, late_fall, untold
 from wsim.judge.books.losses import Losses
 from wsim.judge.books.phases import Account, falling, hidden, latest, least, least_of, risen, sinking, turned_over
@@ -122,7 +123,7 @@ class CheckEnergy(Check):
             taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
             limit, scale = (float(each[0]) for each in self._limit(evidence, of))
             limit += self.share * (max(scale, taken.held) - scale)
-            limit += losses.give(rows)
+            limit += held_by_joints(evidence, losses.ties, rows)
             limits = limit, max(scale, taken.held)
             known, phase = energy[:, rows].sum(axis=1) - taken.driven + taken.damped, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)

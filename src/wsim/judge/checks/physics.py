@@ -10,6 +10,7 @@ import numpy as np
 
 from wsim.geometry.rotations import UP, rotate
 from wsim.geometry.shapes import reach
+from wsim.judge.books.driven import given_within
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.evidence.carriers import surface_speed
 from wsim.judge.evidence.contact import given_way, overlaps
@@ -89,7 +90,7 @@ class CheckExplosion(Check):
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
             value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
             limit_from=f"{factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
-            "by a far heavier body, and the work of drives, control and springs",
+            "by a far heavier body, and the work of drives, with what they held a frame before, control and springs",
         )  # fmt: skip
 
     def _handed_on(self, evidence: Evidence) -> float:
@@ -113,8 +114,11 @@ class CheckExplosion(Check):
             work[:, motion.jointed] = np.inf  # what they gave is not known
         # What springs hold at the start may end in any of the bodies that they move.
         work[:, motion.jointed] += motion.elastic[0].sum()
-        most: Floats = 2.0 * np.maximum(np.maximum.accumulate(work, axis=0), 0.0) / motion.mass
-        return most
+        most = np.maximum.accumulate(work, axis=0)
+        # A stiff one gives all that it holds within a frame, and has damped it at the end.
+        within = most[:-1] + np.where(motion.jointed, given_within(evidence)[:, None], 0.0)
+        most[1:] = np.maximum(most[1:], within)
+        return np.asarray(2.0 * np.maximum(most, 0.0) / motion.mass)
 
     def _fluid(self, evidence: Evidence, fluid: Fluid, free: float) -> Finding:
         track = evidence.track(fluid)

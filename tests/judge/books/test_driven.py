@@ -1,0 +1,88 @@
+"""Drives that are so stiff that they get where they are set within a frame."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask, edited, only
+from wsim.judge.books.driven import given_within, held
+from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.physics import CheckExplosion
+from wsim.judge.evidence.evidence import Evidence
+from wsim.recording import read
+from wsim.scene import Drive, Scene
+from wsim.scene.world import Motor
+from wsim.sim import Simulation
+
+
+def simulated(folder, build, seconds):
+    scene = Scene()
+    scene.simulation(duration=seconds)
+    build(scene)
+    Simulation(scene.save(folder / "stage.usda"), "cpu").run(folder / "run.rrd")
+    return read(folder / "run.rrd")
+
+
+def served(scene):
+    """An arm that goes at up to 41 rad/s within 33 ms: w = 100 rad/s, at 0.7 of critical damping."""
+    scene.simulation(gravity=(0, 0, 0), frame_rate=30)
+    scene.box("arm", size=(0.3, 0.03, 0.03), position=(0.15, 0, 1), density=2700)
+    scene.joint_revolute(
+        "hinge", None, "arm", anchor=(0, 0, 1), axis="Z", drive=Drive(position=45, stiffness=200, damping=2.9)
+    )
+
+
+def test_what_a_drive_gives_within_a_frame_is_no_explosion(tmp_path):
+    recording = simulated(tmp_path, served, 0.5)
+    assert only(ask(CheckExplosion(), recording)).passed
+    assert given_within(Evidence(recording))[0] == pytest.approx(0.5 * 200 * (math.pi / 4) ** 2, rel=1e-6)
+    for frame in (0, 8):  # before it gave anything, and once it holds nothing any more
+        late = edited(recording, "body_qd", (frame, 0, 1), 12.0)
+        assert not only(ask(CheckExplosion(), late)).passed
+
+
+def test_a_drive_at_its_greatest_effort_holds_what_that_works_over_the_way():
+    at = np.array([0.0, 0.9, 1.0])
+    assert held(Motor(stiffness=100.0, position=1.0), at) == pytest.approx([50.0, 0.5, 0.0])
+    assert held(Motor(stiffness=100.0, position=1.0, max_effort=20.0), at) == pytest.approx([18.0, 0.5, 0.0])
+    assert held(Motor(damping=3.0, velocity=2.0, max_effort=20.0), at) == pytest.approx([0.0, 0.0, 0.0])
+
+
+def hurled(scene):
+    """As `served` is, at 0.66 of critical damping and 214 rad/s, of which a step takes a quarter."""
+    scene.simulation(gravity=(0, 0, 0), frame_rate=60, time_step=1 / 900)
+    scene.box("arm", size=(0.3, 0.03, 0.03), position=(0.15, 0, 1), density=2700)
+    scene.joint_revolute(
+        "hinge", None, "arm", anchor=(0, 0, 1), axis="Z", drive=Drive(position=45, stiffness=1000, damping=6.5)
+    )
+
+
+def test_what_a_joint_gives_in_the_first_step_is_recorded(tmp_path):
+    """It was taken for what it began with: m l k q / I dt = 4.36 N s. The trapezoid misses c dt / 12 I of that."""
+    recording, dt = simulated(tmp_path, hurled, 0.1), 1 / 900
+    body = recording.world.bodies[0]
+    about = body.mass * (0.15**2 + (0.3**2 + 0.03**2) / 12)
+    first = body.mass * 0.15 * 1000 * (math.pi / 4) / about * dt
+    off = recording.ties.impulse[1, 0, 1] - body.mass * recording.body_qd[1, 0, 1]
+    assert abs(off) < 6.5 * dt / about / 12 * first
+
+
+def thrown_up(scene):
+    """A heavy arm about a level axis, whose drive swings it to and fro within a frame."""
+    scene.simulation(frame_rate=24)
+    scene.box("arm", size=(0.3, 0.03, 0.03), position=(0.15, 0, 1), density=2700)
+    scene.joint_revolute(
+        "hinge", None, "arm", anchor=(0, 0, 1), axis="Y", drive=Drive(position=-45, stiffness=200, damping=1)
+    )
+
+
+def test_a_drive_that_is_faster_than_frames_does_the_work_that_is_recorded(tmp_path):
+    recording = simulated(tmp_path, thrown_up, 0.5)
+    assert [finding.message for finding in ask(CheckEnergy(), recording) if not finding.passed] == []
+    for change in (3.0, -3.0):  # of some 60 J
+        work = recording.scalars["work/drives"].copy()
+        work[4] += change
+        told = replace(recording, scalars=recording.scalars | {"work/drives": work})
+        assert not all(finding.passed for finding in ask(CheckEnergy(), told))
