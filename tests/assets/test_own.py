@@ -18,16 +18,16 @@ from wsim.scene.describe import describe
 PROGRAM = """\
 def build(scene):
     scene.ground()
-    scene.asset("one", "blue_parcel", position=(0.0, 0.0, 0.1))
+    scene.asset("one", "blue_keepsake", position=(0.0, 0.0, 0.1))
 """
 
 
 @pytest.fixture
-def parcel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def keepsake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv(VARIABLE, str(tmp_path / "own"))
-    path = models.write(models.box(), tmp_path / "parcel.stl")
-    assert "parcel" not in lexicon().vocabulary
-    add(path, Wanted("blue parcel", synonyms=["parcel"], density=500.0, picture=False))
+    path = models.write(models.box(), tmp_path / "keepsake.stl")
+    assert "keepsake" not in lexicon().vocabulary
+    add(path, Wanted("blue keepsake", synonyms=["keepsake"], density=500.0, picture=False))
     return path
 
 
@@ -40,24 +40,24 @@ def test_folder_is_where_it_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert asset_folders()[1] == user_folder()
 
 
-def test_the_catalogue_is_read_again_only_when_it_changed(parcel: Path) -> None:
+def test_the_catalogue_is_read_again_only_when_it_changed(keepsake: Path) -> None:
     assert load_catalogue() is load_catalogue()
     known = load_catalogue()
-    remove("blue_parcel")
-    assert "blue_parcel" in known and "blue_parcel" not in load_catalogue()
+    remove("blue_keepsake")
+    assert "blue_keepsake" in known and "blue_keepsake" not in load_catalogue()
 
 
-def test_the_builtin_planner_knows_its_names(parcel: Path) -> None:
-    (thing,) = [item for item in plan("A parcel falls on the ground.").objects if "parcel" in item.name]
-    assert thing.construction.candidate == "blue_parcel"
+def test_the_builtin_planner_knows_its_names(keepsake: Path) -> None:
+    (thing,) = [item for item in plan("A keepsake falls on the ground.").objects if "keepsake" in item.name]
+    assert thing.construction.candidate == "blue_keepsake"
     assert thing.size == pytest.approx(models.BOX, abs=1e-4)
-    remove("blue_parcel")
-    assert "parcel" not in lexicon().vocabulary
+    remove("blue_keepsake")
+    assert "keepsake" not in lexicon().vocabulary
 
 
-def test_a_program_in_the_sandbox_places_it(parcel: Path, tmp_path: Path) -> None:
+def test_a_program_in_the_sandbox_places_it(keepsake: Path, tmp_path: Path) -> None:
     (tmp_path / "program.py").write_text(PROGRAM)
     built = sandbox.build(tmp_path / "program.py", tmp_path / "stage.usda", readable=asset_folders())
     assert built.ok, built.message
     (body,) = describe(tmp_path / "stage.usda").bodies
-    assert body.mass == pytest.approx(get("blue_parcel").mass)
+    assert body.mass == pytest.approx(get("blue_keepsake").mass)

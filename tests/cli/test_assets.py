@@ -13,64 +13,64 @@ from wsim.intake import Wanted, add
 
 
 @pytest.fixture
-def parcel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def keepsake(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A user's folder with one asset."""
     monkeypatch.setenv(VARIABLE, str(tmp_path / "own"))
-    add(models.write(models.box(), tmp_path / "parcel.stl"), Wanted("blue parcel", density=500.0, picture=False))
-    return tmp_path / "own" / "blue_parcel"
+    add(models.write(models.box(), tmp_path / "keepsake.stl"), Wanted("blue keepsake", density=500.0, picture=False))
+    return tmp_path / "own" / "blue_keepsake"
 
 
-def test_own_ones_are_listed_beside_the_shipped(told, parcel: Path) -> None:
+def test_own_ones_are_listed_beside_the_shipped(told, keepsake: Path) -> None:
     ended = told("assets", "list", "--json")
     rows = {row["id"]: row["own"] for row in json.loads(ended.out)}
-    assert (ended.code, rows["blue_parcel"], rows["mug"]) == (0, True, False)
+    assert (ended.code, rows["blue_keepsake"], rows["mug"]) == (0, True, False)
     listed = told("assets", "list", "--own")
-    assert "blue_parcel" in listed.out and "mug" not in listed.out
+    assert "blue_keepsake" in listed.out and "mug" not in listed.out
 
 
-def test_one_is_shown_with_what_collides(told, parcel: Path) -> None:
-    ended = told("assets", "show", "blue_parcel")
+def test_one_is_shown_with_what_collides(told, keepsake: Path) -> None:
+    ended = told("assets", "show", "blue_keepsake")
     assert ended.code == 0
     assert "collides as a box, 1 of its volume" in ended.out
     assert "taken: the file says no unit; m" in ended.out
     assert json.loads(told("assets", "show", "mug", "--json").out)["own"] is False
 
 
-def test_one_is_found_by_its_name(told, parcel: Path) -> None:
-    assert told("assets", "search", "a", "blue", "parcel").out.startswith("0.90  blue_parcel")
+def test_one_is_found_by_its_name(told, keepsake: Path) -> None:
+    assert told("assets", "search", "a", "blue", "keepsake").out.startswith("1.00  blue_keepsake")
     nothing = told("assets", "search", "xylophone")
     assert (nothing.code, "nothing in the catalogue" in nothing.out) == (1, True)
 
 
-def test_own_ones_are_removed_and_shipped_ones_stay(told, parcel: Path) -> None:
+def test_own_ones_are_removed_and_shipped_ones_stay(told, keepsake: Path) -> None:
     assert told("assets", "remove", "mug").err == (
         "wsim: 'mug' is shipped with wsim and stays; `wsim assets list` marks your own\n"
     )
-    assert told("assets", "remove", "blue_parcel").code == 0
-    assert not parcel.exists()
-    again = told("assets", "remove", "blue_parcel")
+    assert told("assets", "remove", "blue_keepsake").code == 0
+    assert not keepsake.exists()
+    again = told("assets", "remove", "blue_keepsake")
     assert (again.code, again.err.count("\n")) == (2, 1)
-    assert "no asset 'blue_parcel'" in again.err
+    assert "no asset 'blue_keepsake'" in again.err
 
 
 @pytest.mark.parametrize("id", ["..", ".", "", "../own"])
-def test_nothing_else_is_removed(told, parcel: Path, id: str) -> None:
+def test_nothing_else_is_removed(told, keepsake: Path, id: str) -> None:
     assert told("assets", "remove", id).code == 2
-    assert parcel.is_dir()
+    assert keepsake.is_dir()
 
 
-def test_one_that_cannot_be_read_takes_nothing_with_it(told, parcel: Path) -> None:
-    metadata = parcel / "asset.json"
-    metadata.write_text(metadata.read_text().replace('"mass": ', '"mass": -'))
-    parcel.parent.touch()
-    assert "blue_parcel/asset.json: mass = -12" in " ".join(told("assets", "list").out.split())
+def test_one_that_cannot_be_read_takes_nothing_with_it(told, keepsake: Path) -> None:
+    metadata = keepsake / "asset.json"
+    metadata.write_text(metadata.read_text().replace('"mass": ', '"mass": -', 1))
+    keepsake.parent.touch()
+    assert "blue_keepsake/asset.json: mass = -12" in " ".join(told("assets", "list").out.split())
     assert told("assets", "show", "mug").code == 0
-    assert "mass = -12" in told("assets", "show", "blue_parcel").err
+    assert "mass = -12" in told("assets", "show", "blue_keepsake").err
 
 
-def test_adding_tells_what_was_taken(told, parcel: Path, tmp_path: Path) -> None:
-    ended = told("assets", "add", tmp_path / "parcel.stl", "--name", "red parcel", "--mass", 2, "--json")
+def test_adding_tells_what_was_taken(told, keepsake: Path, tmp_path: Path) -> None:
+    ended = told("assets", "add", tmp_path / "keepsake.stl", "--name", "red keepsake", "--mass", 2, "--json")
     row = json.loads(ended.out)
-    assert (ended.code, row["id"], row["mass"], row["own"]) == (0, "red_parcel", 2.0, True)
-    wrong = told("assets", "add", tmp_path / "parcel.stl", "--name", "mug")
+    assert (ended.code, row["id"], row["mass"], row["own"]) == (0, "red_keepsake", 2.0, True)
+    wrong = told("assets", "add", tmp_path / "keepsake.stl", "--name", "mug")
     assert (wrong.code, wrong.err.count("\n")) == (2, 1)

@@ -87,21 +87,23 @@ def hausdorff(mesh: Mesh, colliders: list[Collider]) -> float:
     seen = trimesh.Trimesh(mesh.points, mesh.faces, process=False)
     hulls = [hull_of(collider) for collider in colliders]
     touched = trimesh.util.concatenate([trimesh.Trimesh(h.points, h.faces, process=False) for h in hulls])
-    ours, theirs = _samples(seen), _samples(touched)
+    (ours, _), (theirs, normals) = _samples(seen), _samples(touched)
     planes = [ConvexHull(h.points).equations for h in hulls]
-    slack = 1e-4 * float(np.ptp(mesh.points, axis=0).max())
+    # Just before its surface a part that lies in another, or against it, has that one.
+    before = theirs + 1e-4 * float(np.ptp(mesh.points, axis=0).max()) * normals
     outer = np.ones(len(theirs), dtype=bool)
     for equations in planes:
-        outer &= ~_inside(theirs, equations, -slack)
+        outer &= ~_inside(before, equations, 0.0)
     far = [_distances(ours, touched).max()]
     if outer.any():
         far.append(_distances(theirs[outer], seen).max())
     return float(max(far))
 
 
-def _samples(mesh: trimesh.Trimesh) -> Array:
-    points, _ = trimesh.sample.sample_surface(mesh, _SAMPLES, seed=0)
-    return np.asarray(points, dtype=np.float64)
+def _samples(mesh: trimesh.Trimesh) -> tuple[Array, Array]:
+    """Points on a surface, and its normals there, (n, 3) each."""
+    points, faces = trimesh.sample.sample_surface(mesh, _SAMPLES, seed=0)
+    return np.asarray(points, dtype=np.float64), np.asarray(mesh.face_normals[faces], dtype=np.float64)
 
 
 def _inside(points: Array, equations: Array, slack: float) -> Bools:
