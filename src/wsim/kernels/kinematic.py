@@ -3,6 +3,21 @@
 import warp as wp
 
 
+@wp.func
+def double(v: wp.vec3) -> wp.vec3d:
+    """In double precision."""
+    return wp.vec3d(wp.float64(v[0]), wp.float64(v[1]), wp.float64(v[2]))
+
+
+@wp.func
+def single(pose: wp.transformd) -> wp.transform:
+    """In single precision."""
+    p, q = wp.transform_get_translation(pose), wp.transform_get_rotation(pose)
+    return wp.transform(
+        wp.vec3(float(p[0]), float(p[1]), float(p[2])), wp.quat(float(q[0]), float(q[1]), float(q[2]), float(q[3]))
+    )
+
+
 @wp.kernel(enable_backward=False)
 def carry(
     # Data in:
@@ -10,28 +25,35 @@ def carry(
     coordinate: wp.array(dtype=int),  # where the free joint of each stands in joint_q
     body_com: wp.array(dtype=wp.vec3),
     body_qd: wp.array(dtype=wp.spatial_vector),  # velocity of the centre of mass, and spin, in the world
-    dt: float,
+    dt: wp.float64,
     # Data out:
+    lost: wp.array(dtype=wp.transformd),  # what the state's single precision lacks of each pose, in its numbers
     body_q: wp.array(dtype=wp.transform),
     joint_q: wp.array(dtype=float),
 ):
-    """Move each body by its velocity over `dt` [s]; the centre of mass goes straight, the body turns about it."""
+    """Move each body by its velocity over `dt` [s]; the centre of mass goes straight, the body turns about it.
+
+    Summed in single precision a place would be 2e-5 m off after 2 s, under what stands on it.
+    """
     k = wp.tid()
     index = body[k]
-    pose, twist = body_q[index], body_qd[index]
-    spin = wp.spatial_bottom(twist)
-    center = wp.transform_point(pose, body_com[index]) + wp.spatial_top(twist) * dt
-    turn = wp.transform_get_rotation(pose)
-    speed = wp.length(spin)
-    if speed > 0.0:
-        turn = wp.normalize(wp.quat_from_axis_angle(spin / speed, speed * dt) * turn)
-    place = center - wp.quat_rotate(turn, body_com[index])
-    body_q[index] = wp.transform(place, turn)
     first = coordinate[k]
-    for i in range(3):
-        joint_q[first + i] = place[i]
-    for i in range(4):
-        joint_q[first + 3 + i] = turn[i]
+    pose, com, w = wp.transformd(), double(body_com[index]), double(wp.spatial_bottom(body_qd[index]))
+    for i in range(7):
+        pose[i] = wp.float64(joint_q[first + i]) + lost[k][i]
+    turn = wp.normalize(wp.transform_get_rotation(pose))
+    center = wp.transform_get_translation(pose) + wp.quat_rotate(turn, com)
+    center += double(wp.spatial_top(body_qd[index])) * dt
+    speed = wp.length(w)
+    if speed > wp.float64(0.0):
+        turn = wp.normalize(wp.quat_from_axis_angle(w / speed, speed * dt) * turn)
+    true = wp.transformd(center - wp.quat_rotate(turn, com), turn)
+    told = single(true)
+    body_q[index] = told
+    for i in range(7):
+        joint_q[first + i] = told[i]
+        pose[i] = true[i] - wp.float64(told[i])
+    lost[k] = pose
 
 
 @wp.func
@@ -84,15 +106,6 @@ def place_at(
     return wp.transformd(power_sum(place, k, s), rotation)
 
 
-@wp.func
-def single(pose: wp.transformd) -> wp.transform:
-    """In single precision."""
-    p, q = wp.transform_get_translation(pose), wp.transform_get_rotation(pose)
-    return wp.transform(
-        wp.vec3(float(p[0]), float(p[1]), float(p[2])), wp.quat(float(q[0]), float(q[1]), float(q[2]), float(q[3]))
-    )
-
-
 @wp.kernel(enable_backward=False)
 def lead(
     # Data in:
@@ -123,7 +136,7 @@ def lead(
     here = place_at(path[k], now, start, repeats, times, place, base, turn)
     there = place_at(path[k], now + dt, start, repeats, times, place, base, turn)
     q0, q1 = wp.transform_get_rotation(here), wp.transform_get_rotation(there)
-    com = wp.vec3d(wp.float64(body_com[index][0]), wp.float64(body_com[index][1]), wp.float64(body_com[index][2]))
+    com = double(body_com[index])
     way = (wp.transform_point(there, com) - wp.transform_point(here, com)) / dt
     between = q1 * wp.quat_inverse(q0)
     if between[3] < wp.float64(0.0):

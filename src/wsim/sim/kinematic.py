@@ -42,6 +42,7 @@ class Kinematic:
         coordinates, freedoms = model.joint_q_start.numpy(), model.joint_qd_start.numpy()
         with wp.ScopedDevice(model.device):
             self._carried = wp.array(child[free], dtype=int), wp.array(coordinates[free], dtype=int)
+            self._lost = wp.zeros(len(free), dtype=wp.transformd)
             self._led = wp.array(child[led], dtype=int)
             self._coordinate = wp.array(coordinates[led], dtype=int)
             self._freedom = wp.array(freedoms[led], dtype=int)
@@ -81,8 +82,8 @@ class Kinematic:
             self._packed.launch(
                 carry,
                 dim=len(bodies),
-                inputs=[bodies, coordinates, self.model.body_com, state.body_qd, self.dt],
-                outputs=[state.body_q, state.joint_q],
+                inputs=[bodies, coordinates, self.model.body_com, state.body_qd, wp.float64(self.dt)],
+                outputs=[self._lost, state.body_q, state.joint_q],
                 changing=(state.body_qd, state.body_q, state.joint_q),
             )
         if len(self._led):
@@ -98,6 +99,7 @@ class Kinematic:
     def reset(self, state: Any) -> None:
         """Start the paths anew, at the velocity that they have then; `state` is where the next step starts."""
         self._step.zero_()
+        self._lost.zero_()
         self.before(state)
         if len(self._led):
             wp.launch(
