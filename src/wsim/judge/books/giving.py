@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
 
 
+MOST = 1e-4  # of a body's radius, and [rad]: what is farther off than sags was not held there
+
+
 def held_by_joints(evidence: Evidence, ties: RecordedTies | None, rows: NDArray[np.intp]) -> float:
     """What joints hold by giving way, as poses show and less than they can tell, under what they bear [J].
 
@@ -30,6 +33,11 @@ def held_by_joints(evidence: Evidence, ties: RecordedTies | None, rows: NDArray[
         found += 8.0 * FLOAT32 * float(np.median(force) * far + np.median(torque))
         sags = evidence.joint(ties.joints[k])
         if sags is not None:
-            apart, turned = (np.maximum(each[1:], each[:-1]) for each in (sags.apart, sags.turned))
+            size = max(float(evidence.motion.radius[i]) for i in pair if i >= 0)
+            most = np.array([MOST * size, MOST])
+            apart, turned = (
+                np.minimum(np.maximum(each[1:], each[:-1]), limit)
+                for each, limit in zip((sags.apart, sags.turned), most, strict=True)
+            )
             found += float((force * apart + torque * turned).max(initial=0.0))
     return found
