@@ -11,7 +11,7 @@ Cases = dict[str, str]  # words: right answers, apart by spaces
 ASSETS: Cases = {
     "writing table": "desk",
     "bureau": "desk",
-    "armchair": "chair",
+    "armchair": "armchair",
     "dining chairs": "chair",
     "kitchen chair": "chair",
     "garden bench": "bench",
