@@ -79,3 +79,21 @@ def test_a_parallelogram_passes_its_dead_point_without_a_loss(tmp_path, step):
     run = recorded(tmp_path, parallelogram, 0.25, step, gravity=(0, 0, 0))
     spin = np.array([run.body_qd[:, k, 3:] for k, body in enumerate(run.world.bodies) if "rod" not in body.prim])
     assert np.abs(np.linalg.norm(spin[:, -1], axis=1) / 3.0 - 1.0).max() < 1e-5
+
+
+def test_a_run_again_from_the_start_is_the_same(tmp_path):
+    """What a loop's last step was like is forgotten with it."""
+    scene = Scene()
+    scene.simulation(duration=0.2, frame_rate=60.0, gravity=(0, 0, 0))
+    parallelogram(scene)
+    simulation = Simulation(scene.save(tmp_path / "stage.usda"), device="cpu")
+    start = simulation.model.state()
+    start.assign(simulation.state)
+    ends = []
+    for _ in range(2):
+        simulation.state.assign(start)
+        simulation._forget()
+        for _ in range(12):
+            simulation.advance_frame()
+        ends.append(simulation.state.joint_q.numpy().copy())
+    assert np.array_equal(*ends)

@@ -94,7 +94,7 @@ class Kinematic:
                 outputs=[state.body_q, state.joint_q, self._step],
                 changing=(state.body_q, state.joint_q),
             )
-        self._hang(state)  # the solver leaves kinematic bodies where they were, and hung these on them there
+        self._take_along(state)  # the solver leaves kinematic bodies where they were, and hung these on them there
 
     def reset(self, state: Any) -> None:
         """Start the paths anew, at the velocity that they have then; `state` is where the next step starts."""
@@ -109,9 +109,9 @@ class Kinematic:
                 outputs=[state.body_qd, state.joint_qd],
                 device=self.model.device,
             )
-            self._hang(state)
+            self._take_along(state)
 
-    def _hang(self, state: Any) -> None:
+    def _take_along(self, state: Any) -> None:
         """Have what hangs on kinematic bodies, by joints of the tree, be where they are and go with them."""
         if self._hanging is not None:
             newton.eval_fk(self.model, state.joint_q, state.joint_qd, state, joint_mask=self._hanging)

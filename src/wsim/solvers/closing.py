@@ -36,6 +36,10 @@ class ClosingC:
         held = (model.eq_type != int(mujoco.mjtEq.mjEQ_JOINT)) & (model.eq_active0 != 0)
         self.idle = not held.any()
         self._ease = np.sqrt(model.dof_invweight0)
+        self.forget()
+
+    def forget(self) -> None:
+        """Know of no step before the next one."""
         self._now, self._change = self._none(), np.zeros(0)
 
     @staticmethod
@@ -61,7 +65,7 @@ class ClosingC:
             self._aim(data, *ways)
 
     def _ways(self, data: Any) -> tuple[Array, Array]:
-        """In which constraints can move, (ne, ways), and by how much, (ways,)."""
+        """In which constraints can move, (ne, ways), and by how much, (ways,); none of what has no numbers any more."""
         if not data.ne:
             return self._none()
         rows = np.zeros((data.nefc, self._model.nv))
@@ -69,6 +73,8 @@ class ClosingC:
             self._mujoco.mju_sparse2dense(rows, data.efc_J, data.efc_J_rownnz, data.efc_J_rowadr, data.efc_J_colind)
         else:
             rows[:] = data.efc_J.reshape(rows.shape)
+        if not np.isfinite(rows).all():
+            return self._none()
         ways, sizes, _ = np.linalg.svd(rows[: data.ne] * self._ease, full_matrices=False)
         return ways, sizes
 

@@ -30,9 +30,8 @@ LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
 REVERSAL_PARTS = 16  # of a step in which dry friction ends a motion or turns
 STILL = 1e-3  # of the speed that dry friction takes away in a step
 Rows = tuple[Array, Array, Array, Array]  # of the constraints: kind, number, force, place
-Note = Callable[
-    [Any, float, Sequence[Array]], None
-]  # told of what acts, for how long [s], and of the rows held beside that
+# Told of what acts, for how long [s], and of the rows held beside that.
+Note = Callable[[Any, float, Sequence[Array]], None]
 
 
 class Owners:

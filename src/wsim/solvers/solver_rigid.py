@@ -340,6 +340,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if self.use_mujoco_cpu or self._leads:  # the first step is led on from the velocities that they have here
             self._update_mjc_data(self.mj_data if self.use_mujoco_cpu else self.mjw_data, self.model, state)
         if self.use_mujoco_cpu:
+            self._law_c.closing.forget()
             self._place_bodies(state)
 
     def _update_mjc_data(self, mj_data: Any, model: Any, state: Any = None, *args: Any, **options: Any) -> None:

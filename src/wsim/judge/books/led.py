@@ -239,6 +239,8 @@ def late_fall(evidence: Evidence, rows: Rows) -> Floats:
     ends = [[evidence.index(end) for end in (joint.parent, joint.child) if end is not None] for joint in world.joints]
     units = {int(motion.unit[i]) for pair in ends if goes[pair].any() for i in pair if not goes[i]}
     hangs = rows[np.isin(motion.unit[rows], list(units))]
+    if not len(hangs):
+        return np.zeros(len(evidence.time))
     mass, v, h = motion.mass[hangs], motion.v[:, hangs], motion.h[:, None]
     way = h * _mean(evidence, v @ motion.gravity)
     found = mass * (way - np.diff(motion.com[:, hangs] @ motion.gravity, axis=0))
