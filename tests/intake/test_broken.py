@@ -162,11 +162,14 @@ def test_any_numbers_are_an_asset_or_one_line(tmp_path_factory: pytest.TempPathF
     assert np.ptp(solid.points, axis=0).max() <= 100.0
 
 
-def test_an_open_shell_is_an_asset_and_says_what_it_lacks(own: Path, tmp_path: Path) -> None:
-    faces = np.asarray(BALL.faces)[np.asarray(BALL.triangles_center)[:, 2] < 0.2]
-    half = trimesh.Trimesh(BALL.vertices, faces)
+def test_an_open_shell_stays_hollow_and_says_what_it_lacks(own: Path, tmp_path: Path) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    half = trimesh.Trimesh(ball.vertices, np.asarray(ball.faces)[np.asarray(ball.triangles_center)[:, 2] < 0.2])
     half.apply_scale(0.2)
-    asset = add(models.write(half, tmp_path / "shell.stl"), Wanted("shell", mass=0.4, picture=False))
+    wanted = Wanted("shell", mass=0.4, threshold=0.03, picture=False)
+    asset = add(models.write(half, tmp_path / "shell.stl"), wanted)
     assert any(note.startswith("not closed: ") for note in asset.notes)
-    assert asset.collision.volume_ratio is None and asset.collision.hausdorff > 0.0
+    assert any(note.startswith("what collides is a sheet of 8 mm") for note in asset.notes)
+    assert asset.collision.volume_ratio is None
+    assert 0.0 < asset.collision.hausdorff < 0.03  # its hull is 170 mm off, in the middle of its mouth
     assert asset.mass == pytest.approx(0.4)

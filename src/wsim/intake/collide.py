@@ -13,6 +13,7 @@ from wsim.intake.measure import Fit, Seen
 from wsim.intake.model import Array, Collider, Faces, IntakeError, Mesh
 from wsim.intake.parts import MOST_PARTS, SECONDS, decompose, has_volume
 from wsim.intake.repair import Solid
+from wsim.intake.sheet import THICKNESS, thickened
 from wsim.intake.shells import is_closed, shells
 from wsim.progress import Progress, silent
 
@@ -71,10 +72,13 @@ def collide(solid: Solid, threshold: float | None, notes: list[str], progress: P
 
 
 def _apart(solid: Solid) -> tuple[list[Collider], list[Mesh]]:
-    """The shells that are convex, each as one collider, and the meshes that must be taken apart."""
+    """The shells that are convex, each as one collider, and the meshes that must be taken apart.
+
+    What is open goes as a sheet: CoACD alone looks for an inside that it does not have until its time is over.
+    """
     whole = solid.mesh()
     if not solid.closed:
-        return [], [whole]
+        return [], [thickened(whole, THICKNESS * float(np.ptp(solid.points, axis=0).max()))]
     found = shells(solid.faces)
     meshes = [Mesh("", *_used(solid.points, solid.faces[shell])) for shell in found]
     # A shell that winds inwards is a room inside another, and a shell that is open goes with what it touches.
@@ -156,4 +160,8 @@ def _tell(made: Collided, first: float, why: str, notes: list[str]) -> None:
             + (f"finer ones: {why}" if why else "a smaller --threshold opens more")
         )
     if not made.seen.solid.closed:
-        notes.append("what collides could not be measured against its inside: it has none")
+        thickness = THICKNESS * float(np.ptp(made.seen.solid.points, axis=0).max())
+        notes.append(
+            f"what collides is a sheet of {1e3 * thickness:.3g} mm, and could not be measured against its inside: "
+            "it has none"
+        )
