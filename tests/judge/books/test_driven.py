@@ -8,8 +8,11 @@ import pytest
 
 from tests.judge.theory import ask, edited, only
 from wsim.judge.books.driven import given_within, held
+from wsim.judge.books.laws import Laws
 from wsim.judge.checks.energy import CheckEnergy
+from wsim.judge.checks.forces import CheckForces
 from wsim.judge.checks.physics import CheckExplosion
+from wsim.judge.checks.recorded_ties import CheckRecordedTies
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
 from wsim.scene import Drive, Scene
@@ -86,3 +89,42 @@ def test_a_drive_that_is_faster_than_frames_does_the_work_that_is_recorded(tmp_p
         work[4] += change
         told = replace(recording, scalars=recording.scalars | {"work/drives": work})
         assert not all(finding.passed for finding in ask(CheckEnergy(), told))
+
+
+def closed(scene):
+    """A door, whose drive closes it and damps it, that a ball hits."""
+    scene.simulation(frame_rate=30)
+    scene.box("door", size=(0.8, 0.04, 1.8), position=(0.4, 0, 1), mass=12)
+    closer = Drive(position=0, stiffness=5, damping=4)
+    scene.joint_revolute("hinge", None, "door", anchor=(0, 0, 1), axis="Z", drive=closer)
+    scene.sphere("ball", radius=0.1, position=(0.5, -0.6, 1), velocity=(0, 3, 1.5), mass=3, restitution=0.2)
+
+
+def carried(scene):
+    """A plate on a driven slider, on which a ball falls."""
+    scene.simulation(frame_rate=60, time_step=2.5e-4)
+    scene.box("plate", size=(0.8, 0.8, 0.04), position=(0, 0, 0.6), mass=5)
+    scene.joint_prismatic("rail", None, "plate", axis="Z", drive=Drive(stiffness=2000, damping=20))
+    scene.sphere("ball", radius=0.1, position=(0, 0, 1.5), mass=3, restitution=0.3)
+
+
+@pytest.mark.parametrize(("build", "seconds"), [(closed, 0.6), (carried, 0.6)])
+def test_a_drive_that_is_struck_damps_by_how_far_it_went(tmp_path, build, seconds):
+    """By c dq / h: the mean of the rates at both ends of the blow's interval says several times as much."""
+    recording = simulated(tmp_path, build, seconds)
+    checks = (CheckRecordedTies(), CheckForces())
+    assert [f.message for check in checks for f in ask(check, recording) if not f.passed] == []
+    q, drive = Evidence(recording).joint(recording.world.joints[0]), recording.world.joints[0].drive
+    h, rate = np.diff(recording.time), Laws(Evidence(recording)).rate(recording.world.joints[0])
+    blow = int(np.argmax(np.abs(np.diff(rate))))
+    by_rates = 0.5 * drive.damping * (rate[blow] + rate[blow + 1])
+    damped = drive.damping * np.diff(q.position)[blow] / h[blow]
+    assert abs(by_rates - damped) > 1.9
+    spring = drive.stiffness * (0.5 * (q.position[blow] + q.position[blow + 1]) - drive.position)
+    late = drive.stiffness * h[blow] * abs(rate[blow + 1] - rate[blow]) / 8.0  # a jump halfway leaves that of the mean
+    assert recording.ties.drive[blow + 1, 0] / h[blow] == pytest.approx(-damped - spring, abs=late + 0.01)
+    if build is closed:  # where the ball strikes is not told as well of a spring of 2 kN/m
+        joints = recording.ties.joints.copy()
+        joints[blow + 1, 0, 13] -= 0.3 * (by_rates - damped) * h[blow]
+        told = replace(recording, ties=replace(recording.ties, joints=joints))
+        assert any("otherwise than by its drive's law" in f.message for f in ask(CheckRecordedTies(), told))

@@ -88,7 +88,49 @@ class Laws:
                 wrong[:, row] += np.where(law.known[:, None], off, 0.0)
         for spring, law in zip(self._evidence.world.springs, self.springs, strict=True):
             self._refine(spring, law, total, wrong)
+        for joint in self._evidence.world.joints:
+            if joint.drive is not None and self.joints[joint.prim]:
+                self._refine_drive(joint, self.joints[joint.prim][0], total, wrong)
         return total, wrong
+
+    def _refine_drive(self, joint: Joint, law: Law, total: Floats, wrong: Floats) -> None:
+        """What the mean of both ends leaves of a drive's effort where a blow may come."""
+        found = self.struck_drive(joint)
+        hit = law.known & self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
+        if found is None or not hit.any():
+            return
+        mean, may, fits = found
+        effort = self.effort(joint)
+        hit &= fits
+        more, unsure = (np.where(hit, of, 0.0) for of in (mean - 0.5 * (effort[1:] + effort[:-1]), may))
+        along = self._along(joint)
+        unit = self._law(*along.acting(np.ones(len(effort))), (0.0, 0.0), along.loose)
+        for row, way in ((law.one, unit.back), (law.two, unit.wrench)):
+            if row >= 0:
+                middle = 0.5 * (way[1:] + way[:-1])
+                total[:, row] += more[:, None] * middle
+                wrong[:, row] += unsure[:, None] * np.linalg.norm(middle.reshape(-1, 2, 3), axis=2)
+
+    def effort(self, joint: Joint) -> Floats:
+        """What the law of a joint's drive gives at each frame, as much as it can, (T,) [N or N m]."""
+        drive, track = joint.drive, self._evidence.joint(joint)
+        assert drive is not None and track is not None
+        return _effort(drive, track.position, self.rate(joint))
+
+    def struck_drive(self, joint: Joint) -> tuple[Floats, Floats, Bools] | None:
+        """What a drive gives in the mean of each interval in which a blow may come, by how much that may be off, and
+        where it is sure to have been below its full strength, (T - 1,) each [N or N m]; None of what moves unseen.
+        """
+        drive, track = joint.drive, self._evidence.joint(joint)
+        if drive is None or track is None:
+            return None
+        h, left, rate = self._motion.h, track.position - drive.position, self.rate(joint) - drive.velocity
+        mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, self._motion.step)
+        most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate)
+        below = (
+            np.full(len(h), True) if drive.max_effort is None else np.maximum(most[1:], most[:-1]) < drive.max_effort
+        )
+        return -mean, may, below
 
     def _refine(self, spring: Spring, law: Law, total: Floats, wrong: Floats) -> None:
         """What the mean of both ends leaves of a spring's force: of its size at a blow, and as its way turns.
@@ -175,12 +217,9 @@ class Laws:
         return [replace(law, most=np.inf) for law in laws] if joint.armature else laws  # what a rotor takes is not told
 
     def _drive(self, drive: Motor, along: _Along, position: Floats, holds: Bools) -> Law:
-        effort = drive.stiffness * (drive.position - position) + drive.damping * (drive.velocity - along.rate)
-        most, full = np.inf, np.zeros(len(effort))
-        if drive.max_effort is not None:
-            most = drive.max_effort
-            full = np.where(np.abs(effort) >= most, np.sign(effort), 0.0)
-            effort = np.clip(effort, -most, most)
+        effort = _effort(drive, position, along.rate)
+        most = np.inf if drive.max_effort is None else drive.max_effort
+        full = np.where(np.abs(effort) >= most, np.sign(effort), 0.0)
         law = self._law(*along.acting(effort), (drive.stiffness, drive.damping), along.loose)
         # All of an interval at its full strength it is known; where it comes to that, or leaves it, it is not.
         strained, told = full[1:] * full[:-1] > 0.0, drive.told and not self._set
@@ -253,3 +292,10 @@ class Laws:
         two = np.concatenate([force, np.cross(arms[1], force) + torque], axis=1)
         one = -np.concatenate([force, np.cross(arms[0], force) + torque], axis=1)
         return Law(two, one, rows[0], rows[1], swing / 12.0, swing < RESOLVED**2)
+
+
+def _effort(drive: Motor, position: Floats, rate: Floats) -> Floats:
+    """What a drive's law gives at joint positions and rates (T,), as much as it can [N or N m]."""
+    most = np.inf if drive.max_effort is None else drive.max_effort
+    asked = drive.stiffness * (drive.position - position) + drive.damping * (drive.velocity - rate)
+    return np.asarray(np.clip(asked, -most, most))

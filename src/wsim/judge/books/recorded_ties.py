@@ -214,15 +214,17 @@ class RecordedTies:
         rate = self.laws.rate(joint)
         if at is None or not drive.told or self._evidence.recording.metadata.get("controlled"):
             return None
-        pull = drive.stiffness * (drive.position - at.position) + drive.damping * (drive.velocity - rate)
-        full = np.zeros(len(pull))
-        if drive.max_effort is not None:
-            full = np.where(np.abs(pull) >= drive.max_effort, np.sign(pull), 0.0)
-            pull = np.clip(pull, -drive.max_effort, drive.max_effort)
+        pull, most = self.laws.effort(joint), np.inf if drive.max_effort is None else drive.max_effort
+        full = np.where(np.abs(pull) >= most, np.sign(pull), 0.0)
         rounding = 8.0 * FLOAT32 * (drive.stiffness * self._extent(k) + drive.damping * np.abs(rate).max())
         known = (law.error < RESOLVED**2 / 12.0) & (full[1:] == full[:-1]) | (full[1:] * full[:-1] > 0.0)
         known &= ~broken(self._evidence, joint)[1:]
-        return Stated(0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull) + rounding, known)
+        mean, unsure, found = 0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull), self.laws.struck_drive(joint)
+        if found is not None:
+            hit = self.struck[:, self.pairs[k][1]]
+            mean, unsure = (np.where(hit, *pair) for pair in ((found[0], mean), (found[1], unsure)))
+            known &= found[2] | ~hit
+        return Stated(mean, unsure + rounding, known)
 
     def _extent(self, k: int) -> float:
         """About how large the numbers are of which joint k's position is made [rad or m]."""
