@@ -10,7 +10,7 @@ from wsim.intake.lattice import hull_of
 from wsim.intake.model import Array, Body, Collider, IntakeError, Mesh
 from wsim.intake.repair import Solid
 from wsim.scene.limits import MAX_DENSITY, MIN_DENSITY
-from wsim.scene.usd_shapes import solid as integrals
+from wsim.scene.solids import solid as integrals
 from wsim.scene.world import Shape
 
 DENSITY = 700.0  # [kg/m^3], of dry oak and beech

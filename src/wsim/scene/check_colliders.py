@@ -8,7 +8,8 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene.articulation import body_above
-from wsim.scene.usd_shapes import Array, collides, read_shape, solid
+from wsim.scene.solids import solid
+from wsim.scene.usd_shapes import Array, collides, read_shape
 
 _FLAT = 1e-5  # of a mesh's extent: MuJoCo's own bound is 1e-6, in single precision
 _MOST_TRIANGLES = 1_000_000  # of a mesh that collides

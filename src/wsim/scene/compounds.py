@@ -100,7 +100,8 @@ class Compounds(Tracks):
         )
         whole = None if mass is None else call.mass(mass)
         # It brings pydantic, and a program without compounds does not wait for it.
-        from wsim.scene.usd_shapes import read_shape, solid
+        from wsim.scene.solids import solid
+        from wsim.scene.usd_shapes import read_shape
 
         path, start = self._path(call), self._start(call, options)
         surfaces = [
@@ -180,9 +181,7 @@ def _together(weights: Floats, solids: list[tuple[Floats, Floats]], mass: float 
         factor = mass / float(weights.sum())
         weights = weights * factor
         solids = [(place, inertia * factor) for place, inertia in solids]
-    com = sum(w * place for w, (place, _) in zip(weights, solids, strict=True)) / weights.sum()
-    inertia = np.zeros((3, 3))
-    for weight, (place, own) in zip(weights, solids, strict=True):
-        arm = place - com
-        inertia += own + weight * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    from wsim.scene.solids import about_all
+
+    com, inertia = about_all(weights, *zip(*solids, strict=True))
     return MassProperties.of(float(weights.sum()), com, inertia)

@@ -9,8 +9,9 @@ import numpy as np
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.rotations import matrices
+from wsim.scene.solids import Solid, solid
 from wsim.scene.usd_prims import rigid_frame
-from wsim.scene.usd_shapes import CONE_SIDES, Array, Solid, read_shape, solid, to_quat
+from wsim.scene.usd_shapes import CONE_SIDES, Array, read_shape, to_quat
 from wsim.scene.world import Shape
 
 _SMALL_SPHERE = 0.1  # [m]: radius of the ball that USD takes a body without colliders for

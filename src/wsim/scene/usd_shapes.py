@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +16,6 @@ Array = NDArray[np.float64]
 CONE_SIDES = 32
 _TO_X = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))  # turns Z to X
 _TO_Y = (-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))  # turns Z to Y
-
-
-@dataclass(frozen=True)
-class Solid:
-    """What a shape is at density 1: volume [m^3], its centre [m] and inertia [m^5], in the shape's own frame."""
-
-    volume: float
-    com: Array  # (3,)
-    inertia: Array  # (3, 3), about com
 
 
 def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
@@ -92,56 +82,6 @@ def collides_as_hull(prim: Usd.Prim, *, moves: bool) -> bool:
         return False
     said = UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get()
     return said == UsdPhysics.Tokens.convexHull or (moves and said != UsdPhysics.Tokens.convexDecomposition)
-
-
-def solid(shape: Shape) -> Solid:
-    """Volume, centre and inertia of a shape at density 1, in its own frame; zero for a plane."""
-    size = shape.size
-    if shape.kind == "box":
-        x, y, z = size
-        return _centred(x * y * z, np.array([y * y + z * z, x * x + z * z, x * x + y * y]) / 12.0)
-    if shape.kind == "sphere":
-        (r,) = size
-        return _centred(4.0 / 3.0 * math.pi * r**3, np.full(3, 0.4 * r * r))
-    if shape.kind == "cylinder":
-        r, h = size
-        side = r * r / 4.0 + h * h / 12.0
-        return _centred(math.pi * r * r * h, np.array([side, side, r * r / 2.0]))
-    if shape.kind == "capsule":
-        return _capsule(*size)
-    if shape.kind == "mesh":
-        return _polyhedron(np.array(shape.vertices), np.array(shape.triangles, dtype=np.int64))
-    return _centred(0.0, np.zeros(3))
-
-
-def _centred(volume: float, per_mass: Array) -> Solid:
-    return Solid(volume, np.zeros(3), np.diag(volume * per_mass))
-
-
-def _capsule(r: float, h: float) -> Solid:
-    tube, ball = math.pi * r * r * h, 4.0 / 3.0 * math.pi * r**3
-    axial = tube * r * r / 2.0 + ball * 0.4 * r * r
-    # Each half ball about its own base, moved out by h/2: its centre lies 3r/8 beyond the base.
-    lateral = tube * (r * r / 4.0 + h * h / 12.0) + ball * (0.4 * r * r + h * h / 4.0 + 3.0 / 8.0 * h * r)
-    return Solid(tube + ball, np.zeros(3), np.diag([lateral, lateral, axial]))
-
-
-def _polyhedron(vertices: Array, triangles: NDArray[np.int64]) -> Solid:
-    """Integrals over the tetrahedra from the origin to each triangle (Mirtich 1996; Tonon 2004)."""
-    a, b, c = (vertices[triangles[:, i]] for i in range(3))
-    volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
-    total = float(volumes.sum())
-    if abs(total) < 1e-18:
-        return _centred(0.0, np.zeros(3))
-    corners = a + b + c
-    com = (volumes[:, None] * corners).sum(axis=0) / (4.0 * total)
-    square = (
-        sum(np.einsum("i,ij,ik->jk", volumes, p, q) for p, q in ((a, a), (b, b), (c, c), (corners, corners))) / 20.0
-    )
-    about_origin = np.trace(square) * np.eye(3) - square
-    about_com = about_origin - total * (com @ com * np.eye(3) - np.outer(com, com))
-    sign = math.copysign(1.0, total)
-    return Solid(abs(total), com, sign * about_com)
 
 
 def _measure(prim: Usd.Prim, scale: tuple[float, ...]) -> tuple[ShapeKind, tuple[float, ...], Quat] | None:

@@ -115,6 +115,18 @@ def test_a_parameter_that_was_changed_may_change_a_mass_by_half_and_no_more():
     assert wrong(with_world(thrice, parameters=changed))
 
 
+@pytest.mark.parametrize(("by", "fits"), [(0.8, False), (0.98, True), (1.02, True), (1.2, False)])
+def test_a_planned_solid_turns_as_one_of_its_material(by, fits):
+    inertia = tuple(by * x for x in box(size=SIZE, mass=BOX_KG).inertia)
+    assert (wrong(a_world(box__inertia=inertia)) == []) == fits
+
+
+@pytest.mark.parametrize(("share", "fits"), [(0.005, True), (0.05, False)])
+def test_a_planned_solid_has_its_centre_where_its_shape_has_it(share, fits):
+    low = (0.0, 0.0, -share * SIZE[2])
+    assert (wrong(a_world(box__com=low)) == []) == fits
+
+
 @pytest.mark.parametrize(("density", "passes"), [(0.5, False), (1.5, True), (22_000.0, True), (23_000.0, False)])
 def test_without_a_plan_it_is_some_matter(density, passes):
     body = box(mass=density * 0.008)
@@ -168,7 +180,9 @@ def test_a_turned_box_is_found_unless_it_looks_the_same():
         found = ask(CheckPlanPlaces(), a_world(rotation=turn(degrees)), a_plan())
         assert all(f.passed for f in found) == passes, degrees
     # Its edges exchanged and turned by a quarter, it is the same box.
-    assert wrong(a_world(rotation=QUARTER, box__shape__size=(0.2, 0.4, 0.1))) == []
+    exchanged = (0.2, 0.4, 0.1)
+    inertia = box(size=exchanged, mass=BOX_KG).inertia
+    assert wrong(a_world(rotation=QUARTER, box__shape__size=exchanged, box__inertia=inertia)) == []
 
 
 @pytest.mark.parametrize(("speed", "passes"), [(2.0, True), (2.06, True), (1.0, False), (-2.0, False)])

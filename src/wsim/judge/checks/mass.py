@@ -9,12 +9,14 @@ import numpy as np
 
 from wsim.judge.checks.check import Check, Checks, share_about
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.solids import together
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
     from wsim.scene.world import Body
 
+SOLIDS = ("box", "sphere", "cylinder", "capsule")  # of one material each, where a plan has them
 LIGHTEST, DENSEST = 1.0, 22_600.0  # [kg/m^3]: an aerogel, osmium
 
 
@@ -27,6 +29,8 @@ class CheckMass(Check):
     share: float = 0.05  # of the plan's mass: a mesh is not quite the shape it stands for
     varied: float = 0.55  # of it, where a parameter of the program was set to another value than its own
     thin: float = 0.02  # of m R^2: below, its mass would have to lie on a line
+    off: float = 0.02  # of its radius: from the centre of its shapes to that of its mass
+    other: float = 0.05  # of a moment of inertia that its shapes give
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each body whose mass or inertia is out of bounds, or one for none."""
@@ -34,6 +38,7 @@ class CheckMass(Check):
         for i, body in enumerate(evidence.world.bodies):
             if not body.kinematic:
                 found += self._mass(evidence, body) + self._inertia(evidence, i, body, _stated_elsewhere(evidence))
+                found += self._as_its_shapes(evidence, i, body)
         wrong = [finding for finding in found if not finding.passed]
         return wrong or ([self.passed("Bodies weigh what their sizes and materials give")] if found else [])
 
@@ -94,6 +99,31 @@ class CheckMass(Check):
                     direction="lower" if above else "raise",
                 ),
             )
+        ]  # fmt: skip
+
+    def _as_its_shapes(self, evidence: Evidence, i: int, body: Body) -> list[Finding]:
+        """Whether what the plan has as a solid of one material has the centre and the moments of one."""
+        item = evidence.planned(body.prim)
+        shapes = [shape for shape in body.shapes if shape.collides]
+        if item is None or item.primitive not in SOLIDS or len(shapes) != 1:
+            return []
+        even, radius = together(shapes), max(float(evidence.motion.radius[i]), 1e-9)
+        aside = float(np.linalg.norm(np.array(body.com) - even.com))
+        inertia, expected = np.reshape(body.inertia, (3, 3)), even.inertia * body.mass / even.volume
+        moment = float(np.linalg.norm(inertia - expected, 2) / np.linalg.norm(expected, 2))
+        target = RepairTarget(kind="physical parameter", prim=body.prim, parameter="density", direction="change",
+                              why="leave its centre of mass and its inertia to its shape and its density")  # fmt: skip
+        return [
+            self.measured(
+                f"{body.prim} has its centre of mass {1e3 * aside:.3g} mm from that of its shape",
+                aside, self.off * radius, "m", prim=body.prim, time=0.0, target=target,
+                limit_from=f"{self.off:g} of its radius: the plan's is of one material",
+            ),
+            self.measured(
+                f"{body.prim} has moments of inertia {100 * moment:.3g} % off those of its shape",
+                moment, self.other, "", prim=body.prim, time=0.0, target=target,
+                limit_from="the plan's solid is of one material",
+            ),
         ]  # fmt: skip
 
 
