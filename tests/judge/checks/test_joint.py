@@ -172,10 +172,13 @@ def test_a_joint_breaks_at_its_strength(borne, at, passed, says):
 
 
 # ---- gears
-@pytest.mark.parametrize(("ratio", "passed"), [(-0.5, True), (-0.52, False)])
-def test_a_gear_keeps_its_ratio(ratio, passed):
+@pytest.mark.parametrize(
+    ("ratio", "turned", "passed"),
+    [(-0.5, 2.0, True), (-0.52, 2.0, False), (-0.5, 0.1, True), (-0.505, 0.1, True), (-0.55, 0.1, False)],
+)
+def test_a_gear_keeps_its_ratio_however_little_it_turns(ratio, turned, passed):
     t = times(1.0)
-    turns = [about(1, lambda t, share=share: share * 2.0 * t)(t) for share in (1.0, -0.5)]
+    turns = [about(1, lambda t, share=share: share * turned * t)(t) for share in (1.0, -0.5)]
     joints = [
         Joint(
             prim=f"/World/j{k}", kind="revolute", axis="Y", parent=None, child=f"/World/{name}",
@@ -189,4 +192,4 @@ def test_a_gear_keeps_its_ratio(ratio, passed):
     made = record(bodies, place, still, t, rotation=np.stack(turns, axis=1), joints=joints)
     finding = only(ask(CheckGears(), with_world(made, gears=gears)))
     assert finding.passed == passed
-    assert finding.value == pytest.approx(abs(ratio + 0.5) * 2.0, abs=1e-6)
+    assert finding.value == pytest.approx(abs(ratio + 0.5) * turned, abs=1e-6)

@@ -181,6 +181,7 @@ class CheckGears(Check):
 
     share: float = 0.02  # of the smallest extent of what a slider moves
     lean: float = 0.02  # [rad]
+    ratio: float = 0.02  # of how far the second joint should go, and a twentieth of the above: less of what goes less
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each gear whose joints can be followed from frame to frame."""
@@ -195,7 +196,8 @@ class CheckGears(Check):
             error = np.abs(second - gear.offset - gear.ratio * first)
             turns = ends[1] is not None and ends[1].kind == "revolute"
             child = "" if ends[1] is None else ends[1].child
-            limit = self.lean if turns else self.share * evidence.solid(evidence.index(child)).smallest
+            most = self.lean if turns else self.share * evidence.solid(evidence.index(child)).smallest
+            limit = min(most, self.ratio * float(np.ptp(gear.ratio * first)) + most / 20.0)
             at = int(np.argmax(error))
             unit = "rad" if turns else "m"
             found.append(
@@ -203,7 +205,8 @@ class CheckGears(Check):
                     f"{gear.prim}: its joints are {float(error[at]):.3g} {unit} out of mesh",
                     float(error[at]), limit, unit, fine=f"{gear.prim} meshes", prim=gear.prim, expected=0.0,
                     time=float(evidence.time[at]),
-                    limit_from=f"{self.lean:g} rad" if turns else f"{self.share:g} of {child}'s smallest extent",
+                    limit_from=(f"{self.lean:g} rad" if turns else f"{self.share:g} of {child}'s smallest extent")
+                    + f", or {self.ratio:g} of how far it goes",
                     target=RepairTarget(kind="joint", prim=gear.prim, parameter="ratio", direction="change"),
                 )
             )  # fmt: skip
