@@ -203,13 +203,14 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     ),
     "joint_revolute": (
         {"name": "new", "parent": None, "child": "ball"},
-        {**TIED, **STRENGTH, "axis": "axis", "limits_deg": "range", "drive": "drive", "friction": "number >= 0"},
+        {**TIED, **STRENGTH, "axis": "axis", "limits_deg": "range", "limits": "never", "drive": "drive",
+         "friction": "number >= 0"},
     ),
     "joint_prismatic": (
         {"name": "new", "parent": None, "child": "ball"},
         {
-            **TIED, "axis": "axis", "limits": "range", "drive": "drive", "friction": "number >= 0",
-            "break_force": "never", "break_torque": "never",
+            **TIED, "axis": "axis", "limits": "range", "limits_deg": "never", "drive": "drive",
+            "friction": "number >= 0", "break_force": "never", "break_torque": "never",
         },
     ),
     "gear": (

@@ -100,6 +100,14 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.joint_revolute("j", None, "block", axis=(0, 0, 0)), "has no length"),
     (lambda s: s.joint_revolute("j", None, "block", limits_deg=(30, -30)), "low limit must not lie above"),
     (lambda s: s.joint_revolute("j", None, "block", limits_deg=(10, 30)), "must hold 0"),
+    (
+        lambda s: s.joint_revolute("j", None, "block", limits=(-1, 1)),  # type: ignore[arg-type]
+        "limits = (-1, 1) are a slider's, in m; a hinge takes limits_deg = (low, high) in deg",
+    ),
+    (
+        lambda s: s.joint_prismatic("j", None, "block", limits_deg=(-90, 0)),  # type: ignore[arg-type]
+        "limits_deg = (-90, 0) are a hinge's, in deg; a slider takes limits = (low, high) in m",
+    ),
     (lambda s: s.joint_revolute("j", None, "block", drive=Drive()), "would do nothing"),
     (lambda s: s.joint_revolute("j", None, "block", drive=Drive(stiffness=NAN)), "drive.stiffness = nan"),
     (lambda s: s.joint_prismatic("j", None, "block", drive=Drive(velocity=1, stiffness=1)), "needs drive.damping > 0"),

@@ -76,6 +76,7 @@ class Joints(Author):
         anchor: Sequence[float] | None = None,
         axis: str | Sequence[float] = "Z",
         limits_deg: Sequence[float] | None = None,
+        limits: None = None,
         drive: Drive | None = None,
         friction: float = 0.0,
         break_force: float | None = None,
@@ -86,6 +87,8 @@ class Joints(Author):
         For the rest see `Joints`. A hinge that may break has neither limits nor drive nor friction.
         """
         call = Call("joint_revolute", name)
+        if limits is not None:
+            call.fail(f"limits = {shown(limits)} are a slider's, in m; a hinge takes limits_deg = (low, high) in deg")
         limits = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
         motor = _checked(call, drive, 36000.0)
         rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N m")
@@ -110,6 +113,7 @@ class Joints(Author):
         anchor: Sequence[float] | None = None,
         axis: str | Sequence[float] = "Z",
         limits: Sequence[float] | None = None,
+        limits_deg: None = None,
         drive: Drive | None = None,
         friction: float = 0.0,
         break_force: None = None,
@@ -121,6 +125,10 @@ class Joints(Author):
         body to it.
         """
         call = Call("joint_prismatic", name)
+        if limits_deg is not None:
+            call.fail(
+                f"limits_deg = {shown(limits_deg)} are a hinge's, in deg; a slider takes limits = (low, high) in m"
+            )
         if _Strength.of(call, break_force, break_torque):
             call.fail(
                 "a slider cannot break: let a small carriage body slide, and hold the child to the carriage with a "
