@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from pxr import Sdf, Usd, UsdPhysics
 
+from wsim.limits import SHORTEST_WAY
 from wsim.scene import schema
 from wsim.scene.articulation import (
     dry_friction,
@@ -20,7 +21,6 @@ from wsim.scene.articulation import (
     may_break,
 )
 from wsim.scene.gears import contradicts, meshes_of
-from wsim.scene.limits import SHORTEST_WAY
 from wsim.scene.spanning import WORLD_END
 
 _CLOSING = (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
+from wsim.limits import MAX_POSITION, bad_stops
 from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, mark_articulations, may_break
 from wsim.scene.authoring import CONTACTS, Author, Handle, note_line, world_pose
 from wsim.scene.gears import contradicts, meshes_of
-from wsim.scene.limits import MAX_POSITION, SHORTEST_WAY
 from wsim.scene.usd_contacts import ends, tied
 from wsim.scene.validate import Call, shown
 
@@ -89,14 +89,14 @@ class Joints(Author):
         call = Call("joint_revolute", name)
         if limits is not None:
             call.fail(f"limits = {shown(limits)} are a slider's, in m; a hinge takes limits_deg = (low, high) in deg")
-        limits = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
+        bounds = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
         motor = _checked(call, drive, 36000.0)
         rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N m")
         strength = _Strength.of(call, break_force, break_torque)
-        if strength and (limits is not None or motor is not None or rubs):
+        if strength and (bounds is not None or motor is not None or rubs):
             call.fail("a hinge that may break can have no limits_deg, drive or friction: put them on another joint")
         prim = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis)
-        _write_limits(prim, limits)
+        _write_limits(prim, bounds)
         _write_friction(prim, rubs)
         strength.write(prim)
         if motor is not None:
@@ -334,10 +334,8 @@ def _write_drive(prim: Usd.Prim, freedom: str, drive: Drive, per_unit: float) ->
 
 def _limits(call: Call, field: str, value: Sequence[float], bound: float, unit: str) -> tuple[float, float]:
     low, high = call.range(field, value, bound, unit)
-    if not low <= 0.0 <= high:
-        call.fail(f"{field} = ({low:g}, {high:g}) {unit} must hold 0, where the joint starts")
-    if high - low < SHORTEST_WAY:
-        call.fail(f"{field} = ({low:g}, {high:g}) {unit} leave it no way to go; use a joint_fixed")
+    if wrong := bad_stops(low, high, unit):
+        call.fail(f"{field} = {wrong}")
     return low, high
 
 

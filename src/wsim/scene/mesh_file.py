@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
+from wsim.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
 from wsim.scene.bodies import MassProperties
 from wsim.scene.errors import one_line
-from wsim.scene.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
 from wsim.scene.static_mesh import define_mesh, smooth_normals
 from wsim.scene.validate import Call, shown
 

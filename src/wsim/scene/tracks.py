@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import UsdGeom
 
+from wsim.limits import MAX_SIZE
 from wsim.scene.authoring import Handle, note_line, set_pose
 from wsim.scene.bodies import finish_collider
 from wsim.scene.curves import TURNS, UP, Frames, Stretch, chain, spline, sweep
-from wsim.scene.limits import MAX_SIZE
 from wsim.scene.sections import Section, flat, rails, round_
 from wsim.scene.shapes import Shapes
 from wsim.scene.static_mesh import define_mesh

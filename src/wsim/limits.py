@@ -1,4 +1,4 @@
-"""What a world may hold: beyond these a number is a mistake. One table for the calls and for the check of a stage."""
+"""What a world may hold: beyond these a number is a mistake. One table for plans, calls and the check of a stage."""
 
 from __future__ import annotations
 
@@ -25,7 +25,26 @@ MAX_DURATION = 3600.0  # [s]
 MAX_FRAME_RATE = 1000.0  # [1/s]
 SHORTEST_WAY = 1e-6  # [m] or [deg] between a joint's stops
 MIN_TIME_STEP = 1e-5  # [s], of a step that is asked for, or that a spring needs
+MAX_TIME_STEP = 1.0  # [s]
 MAX_PRIMS = 20_000
 MAX_BYTES = 100_000_000
 MAX_POINTS = 5_000_000  # vertices of all meshes together
 MAX_CORNERS = 10_000  # of one face
+
+
+def bad_stops(low: float, high: float, unit: str) -> str:
+    """What is wrong with the stops of a joint, which starts at 0, said after the field's name; empty if nothing is."""
+    if low > high:
+        return f"({low:g}, {high:g}) {unit}: the low limit must not lie above the high one; swap them"
+    if not low <= 0.0 <= high:
+        return f"({low:g}, {high:g}) {unit} must hold 0, where the joint starts"
+    if high - low < SHORTEST_WAY:
+        return f"({low:g}, {high:g}) {unit} leave it no way to go; use a fixed joint"
+    return ""
+
+
+def bad_time_step(step: float) -> str:
+    """What is wrong with an upper bound of the time step [s], said after the field's name."""
+    if 0.0 < step < MIN_TIME_STEP:
+        return f"{step:g} must be >= {MIN_TIME_STEP:g} s, or 0 for the simulator's choice"
+    return "" if step <= MAX_TIME_STEP else f"{step:g} must be <= {MAX_TIME_STEP:g} s"
