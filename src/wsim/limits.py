@@ -7,6 +7,8 @@ MIN_SIZE = 1e-4  # [m]
 MAX_SIZE = 1e3  # [m]
 MIN_MASS = 1e-12  # [kg]; MuJoCo takes nothing below 1e-15
 MAX_MASS = 1e5  # [kg]
+MIN_FORCE = 1e-12  # [N] that a joint breaks at: a tenth of what the least mass weighs
+MIN_TORQUE = 1e-16  # [N m]: of that force at the least size
 MIN_DENSITY = 1e-3  # [kg/m^3]; hydrogen has 0.09
 MAX_DENSITY = 1e5  # [kg/m^3]
 MAX_FRICTION = 10.0
@@ -30,6 +32,8 @@ MAX_PRIMS = 20_000
 MAX_BYTES = 100_000_000
 MAX_POINTS = 5_000_000  # vertices of all meshes together
 MAX_CORNERS = 10_000  # of one face
+
+NO_BOUND = "needs a max_force: that is where a drive saturates"
 
 
 def bad_stops(low: float, high: float, unit: str) -> str:

@@ -65,7 +65,7 @@ KINDS: dict[str, tuple[object, ...]] = {
     "drive": (
         "fast", 1.0, True, {"velocity": 1.0}, Drive(), Drive(stiffness=-1.0), Drive(damping=NAN), Drive(position=1.0),
         Drive(velocity=1.0), Drive(stiffness=INF), Drive(damping=1.0, max_force=0.0),
-        Drive(damping=1.0, max_force=-1.0),
+        Drive(damping=1.0, max_force=-1.0), Drive(damping=1.0, saturates=True), Drive(damping=1.0, saturates="no"),
         Drive(damping="big"), Drive(stiffness=1.0, position="up"), Drive(damping=1.0, velocity=1e300),
         # type: ignore[arg-type]
     ),
@@ -269,7 +269,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
 }  # fmt: skip
 NOT_CALLS = {"random", "stage"}
 FIELDS = {  # of what a call takes whole: each has a bad value in its kind
-    Drive: {"position", "velocity", "stiffness", "damping", "max_force"},
+    Drive: {"position", "velocity", "stiffness", "damping", "max_force", "saturates"},
     Part: {
         "shape", "size", "radius", "height", "axis", "position", "rotation_deg", "density", "mass", "material",
         "friction", "restitution", "color",
