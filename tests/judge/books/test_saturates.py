@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from tests.judge.theory import with_world
@@ -40,13 +39,17 @@ def run(folder: Path, build: Build, saturates: bool) -> Recording:
     return read(folder / "run.rrd")
 
 
-@pytest.mark.parametrize("build", [slips, stalls])
-def test_a_drive_may_end_at_its_full_effort_where_it_is_meant_to(tmp_path: Path, build: Build) -> None:
-    recording = run(tmp_path, build, True)
-    if build is slips:
-        fallen = recording.body_q[0, 0, 2] - recording.body_q[-1, 0, 2]
+@pytest.fixture(scope="module", params=[slips, stalls])
+def meant(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    """A drive that is said to saturate, and does."""
+    return run(tmp_path_factory.mktemp("meant"), request.param, True)
+
+
+def test_a_drive_may_end_at_its_full_effort_where_it_is_meant_to(meant: Recording) -> None:
+    if meant.time[-1] < 2.0:  # the winch
+        fallen = meant.body_q[0, 0, 2] - meant.body_q[-1, 0, 2]
         assert fallen == pytest.approx(0.5 * (9.81 - 8.0) * 1.2**2, rel=1e-3)
-    verdict = judge(recording, None)
+    verdict = judge(meant, None)
     assert verdict.status == "accepted", [finding.message for finding in verdict.failures]
 
 
@@ -59,15 +62,12 @@ def test_without_the_word_it_is_too_weak(tmp_path: Path, build: Build) -> None:
 
 
 @pytest.mark.parametrize("share", [0.7, 1.4])
-@pytest.mark.parametrize("build", [slips, stalls])
-def test_with_the_word_a_drive_of_another_strength_is_found(tmp_path: Path, build: Build, share: float) -> None:
+def test_with_the_word_a_drive_of_another_strength_is_found(meant: Recording, share: float) -> None:
     """What is stated is `share` times what acted: the books of its body do not balance."""
-    recording = run(tmp_path, build, True)
-    joint = recording.world.joints[0]
-    assert joint.drive is not None
+    joint = meant.world.joints[0]
+    assert joint.drive is not None and joint.drive.max_effort is not None
     drive = joint.drive.model_copy(update={"max_effort": share * joint.drive.max_effort})
-    wrong = with_world(recording, joints=[joint.model_copy(update={"drive": drive})])
+    wrong = with_world(meant, joints=[joint.model_copy(update={"drive": drive})])
     failed = {finding.check for finding in judge(wrong, None).failures}
     assert failed & {"CheckForces", "CheckEnergy", "CheckRecordedTies", "CheckRecordedForces", "CheckCatches"}, failed
     assert "CheckDrives" not in failed
-    assert np.isfinite(recording.body_q).all()
