@@ -226,3 +226,20 @@ def test_a_bad_call_of_a_program_is_one_line(tmp_path: Path) -> None:
     (made,) = (tmp_path / "runs").iterdir()
     assert json.loads((made / "run.json").read_text())["status"] == "stopped"
     assert not (made / "accepted").exists()
+
+
+def test_a_stage_that_the_check_refuses_is_one_line_too(tmp_path: Path) -> None:
+    (tmp_path / "led.py").write_text(
+        "def build(scene):\n"
+        "    scene.box('k', size=(1, 1, 1), position=(0, 0, 1), kinematic=True, velocity=(1, 0, 0))\n"
+        "    scene.box('b', size=(1, 1, 1), position=(3, 0, 1))\n"
+        "    scene.joint_revolute('p', None, 'b', axis='Y')\n"
+        "    scene.joint_fixed('f', 'k', 'b')\n\n"
+        "if __name__ == '__main__':\n"
+        "    from wsim import run\n"
+        "    run(build)\n"
+    )
+    ended = subprocess.run([sys.executable, "led.py"], cwd=tmp_path, capture_output=True, text=True, timeout=STUCK)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("led.py: /World/f: joints hold the world and </World/k> together")
+    assert ended.stderr.count("\n") == 1

@@ -110,6 +110,22 @@ def test_the_schema_is_printed(wsim) -> None:
     assert "PlanObject" in schema["$defs"]
 
 
+@pytest.mark.parametrize("verb", [("plan",), ("generate", "--yes")])
+def test_a_plan_that_the_scene_refuses_is_refused(wsim, tmp_path: Path, verb: tuple[str, ...]) -> None:
+    plan = json.loads((EXAMPLES / "wood_afloat.json").read_text())
+    name = next(item["name"] for item in plan["objects"] if item["role"] == "rigid_body")
+    plan["joints"] = [
+        {"name": f"rail_{axis.lower()}", "kind": "slider", "child": name, "parent": None, "axis": axis} for axis in "XY"
+    ]
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    ended = wsim(*verb, "--plan", "plan.json")
+    assert ended.code == 2
+    assert ended.err.count("\n") == 1
+    said = 'plan.json: a plan that cannot be built: joint_prismatic("rail_y"): the joints rail_x, rail_y make a loop'
+    assert said in ended.err
+    assert "a loop needs one plain hinge" in ended.err
+
+
 def test_a_plan_that_cannot_be_written_is_said(wsim, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     ended = wsim("plan", PROMPT, "-o", "file/plan.json")

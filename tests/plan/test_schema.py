@@ -228,7 +228,56 @@ MISTAKES = {
         lambda d: d.update(joints=[joint(parent="steel_ball")]),
         ["joints.0.parent: steel_ball cannot hold itself"],
     ),
-    "joint's limits": (lambda d: d.update(joints=[joint(limits=[2, 1])]), ["joints.0.limits: 2 is above 1; swap"]),
+    "joint's limits": (
+        lambda d: d.update(joints=[joint(limits=[2, 1])]),
+        ["joints.0.limits: (2, 1) deg: the low limit", "swap"],
+    ),
+    "limits without the start": (
+        lambda d: d.update(joints=[joint(limits=[10, 20])]),
+        ["joints.0.limits: (10, 20) deg must hold 0, where the joint starts"],
+    ),
+    "limits that leave no way": (
+        lambda d: d.update(joints=[joint(limits=[0, 0])]),
+        ["joints.0.limits: (0, 0) deg leave it no way to go; use a fixed joint"],
+    ),
+    "limits that are no list": (
+        lambda d: d.update(joints=[joint(limits="wide")]),
+        ['joints.0.limits: Input should be a list; it is "wide"'],
+    ),
+    "a drive of no strength": (
+        lambda d: d.update(joints=[joint(drive={"damping": 1, "max_force": -1})]),
+        ["joints.0.drive.max_force: Input should be greater than 0; it is -1"],
+    ),
+    "duration": (lambda d: d["simulation"].update(duration=0), ["simulation.duration", "greater than 0; it is 0"]),
+    "an endless duration": (
+        lambda d: d["simulation"].update(duration=1e5),
+        ["simulation.duration: 100000 must be <= 3600 s"],
+    ),
+    "frames": (lambda d: d["simulation"].update(frame_rate=1e5), ["frame_rate: 100000 must be <= 1000 Hz"]),
+    "a time step of 28 days": (
+        lambda d: d["simulation"].update(time_step=1e-9),
+        ["simulation.time_step: 1e-09 must be >= 1e-05 s, or 0 for the simulator's choice"],
+    ),
+    "a time step of hours": (lambda d: d["simulation"].update(time_step=9), ["simulation.time_step: 9 must be <= 1 s"]),
+    "friction of a contact": (
+        lambda d: d.update(contacts=[{"object": "steel_ball", "ref": "ground", "friction": 20}]),
+        ["contacts.0.friction: 20 must be <= 10"],
+    ),
+    "friction of a material": (
+        lambda d: of(d, "steel_ball")["material"].update(friction=20),
+        ["objects.{steel_ball}.material.friction: 20 must be <= 10"],
+    ),
+    "a contact of what a joint ties": (
+        lambda d: d.update(
+            joints=[joint(parent="wooden_block_1")],
+            contacts=[{"object": "steel_ball", "ref": "wooden_block_1", "friction": 0.1}],
+        ),
+        ["contacts.0: steel_ball and wooden_block_1 never touch: the joint hinge ties them; leave one of the two out"],
+    ),
+    "speed of the ground": (
+        lambda d: of(d, "ground").update(velocity=[1, 0, 0]),
+        ["velocity: [1.0, 0.0, 0.0] of ground, which is static and never moves; remove it"],
+    ),
     "limits of a fixed joint": (
         lambda d: d.update(joints=[joint(kind="fixed", limits=[0, 1])]),
         ["joints.0.limits: a fixed joint has none"],

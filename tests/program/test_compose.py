@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from pydantic import ValidationError
 
 from wsim.assets import get
 from wsim.errors import UserError
@@ -318,6 +319,22 @@ def _hinged(**changes: object) -> Plan:
         **changes,
     }
     return Plan.model_validate(values)
+
+
+def test_a_drive_that_saturates_is_built_so_and_written_in_the_plan(tmp_path: Path) -> None:
+    drive = {"velocity": 30.0, "damping": 20.0, "max_force": 0.5}
+    joints = [Joint.model_validate({**joint.model_dump(), "drive": None}) for joint in _hinged().joints]
+    for saturates in (True, False):
+        joints[0] = Joint.model_validate(
+            {**joints[0].model_dump(), "drive": drive | ({"saturates": True} if saturates else {})}
+        )
+        plan = _hinged(joints=joints)
+        assert ("saturates" in plan.model_dump_json()) == saturates
+        assert ("saturates=True" in compose(plan)) == saturates
+        world = _world(compose(plan), tmp_path)
+        assert [joint.drive.saturates for joint in world.joints if joint.drive] == [saturates]
+    with pytest.raises(ValidationError, match="saturates: true needs a max_force"):
+        Joint.model_validate({**joints[0].model_dump(), "drive": {"damping": 1.0, "saturates": True}})
 
 
 def test_joints_and_masses_are_built(tmp_path: Path) -> None:

@@ -68,6 +68,15 @@ def test_a_failure_leaves_the_last_stage_as_it_is(program: Path, tmp_path: Path)
     assert target.read_bytes() == before
 
 
+def test_a_message_of_any_length_is_cut_and_stays_whole_in_the_log(program: Path, tmp_path: Path) -> None:
+    program.write_text("def build(scene):\n    raise ValueError('x' * 5000)\n")
+    result = build(program, tmp_path / "stage.usda", isolation="none")
+    assert len(result.message) <= 401
+    assert result.message.startswith("ValueError: xxx")
+    assert result.message.endswith("x…")
+    assert "x" * 5000 in result.log
+
+
 def test_a_syntax_error_names_its_line(program: Path, tmp_path: Path) -> None:
     program.write_text("def build(scene):\n    scene.ground(\n")
     result = build(program, tmp_path / "stage.usda", isolation="none")

@@ -65,7 +65,7 @@ KINDS: dict[str, tuple[object, ...]] = {
     "drive": (
         "fast", 1.0, True, {"velocity": 1.0}, Drive(), Drive(stiffness=-1.0), Drive(damping=NAN), Drive(position=1.0),
         Drive(velocity=1.0), Drive(stiffness=INF), Drive(damping=1.0, max_force=0.0),
-        Drive(damping=1.0, max_force=-1.0),
+        Drive(damping=1.0, max_force=-1.0), Drive(damping=1.0, saturates=True), Drive(damping=1.0, saturates="no"),
         Drive(damping="big"), Drive(stiffness=1.0, position="up"), Drive(damping=1.0, velocity=1e300),
         # type: ignore[arg-type]
     ),
@@ -203,13 +203,14 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     ),
     "joint_revolute": (
         {"name": "new", "parent": None, "child": "ball"},
-        {**TIED, **STRENGTH, "axis": "axis", "limits_deg": "range", "drive": "drive", "friction": "number >= 0"},
+        {**TIED, **STRENGTH, "axis": "axis", "limits_deg": "range", "limits": "never", "drive": "drive",
+         "friction": "number >= 0"},
     ),
     "joint_prismatic": (
         {"name": "new", "parent": None, "child": "ball"},
         {
-            **TIED, "axis": "axis", "limits": "range", "drive": "drive", "friction": "number >= 0",
-            "break_force": "never", "break_torque": "never",
+            **TIED, "axis": "axis", "limits": "range", "limits_deg": "never", "drive": "drive",
+            "friction": "number >= 0", "break_force": "never", "break_torque": "never",
         },
     ),
     "gear": (
@@ -268,7 +269,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
 }  # fmt: skip
 NOT_CALLS = {"random", "stage"}
 FIELDS = {  # of what a call takes whole: each has a bad value in its kind
-    Drive: {"position", "velocity", "stiffness", "damping", "max_force"},
+    Drive: {"position", "velocity", "stiffness", "damping", "max_force", "saturates"},
     Part: {
         "shape", "size", "radius", "height", "axis", "position", "rotation_deg", "density", "mass", "material",
         "friction", "restitution", "color",

@@ -79,6 +79,14 @@ def test_spoilt_stage_is_named(stage_path: Path, spoil: Callable[[Usd.Stage], No
     assert any(message in problem for problem in problems), problems
 
 
+def test_a_value_out_of_range_is_told_once_and_with_the_value(workshop: Scene, tmp_path: Path) -> None:
+    path = workshop.save(tmp_path / "stage.usda")
+    stage = Usd.Stage.Open(str(path))
+    stage.GetPrimAtPath("/World/pill").GetAttribute("physics:mass").Set(-1.0)
+    stage.GetRootLayer().Save()
+    assert check_stage(path, [tmp_path]) == ["/World/pill.physics:mass: -1 must be > 0 kg"]
+
+
 def test_unlimited_joints_may_say_so(workshop: Scene, tmp_path: Path) -> None:
     hinge = workshop.stage.GetPrimAtPath("/World/hinge")
     hinge.GetAttribute("physics:lowerLimit").Set(-math.inf)

@@ -5,7 +5,8 @@ import pytest
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.errors import UserError
-from wsim.scene import Scene
+from wsim.scene import Drive, Scene
+from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
 from wsim.scene.world import Parameter, World
 
@@ -167,3 +168,22 @@ def test_what_is_no_stage_is_refused(tmp_path: Path, text: str | None, message: 
         path.write_text(text)
     with pytest.raises(UserError, match=message):
         describe(path)
+
+
+def test_a_drive_says_that_it_saturates(tmp_path: Path) -> None:
+    scene = Scene()
+    for k, saturates in enumerate((True, False)):
+        scene.box(f"box_{k}", size=(0.1, 0.1, 0.1), position=(k, 0.0, 1.0))
+        drive = Drive(damping=1.0, max_force=5.0, saturates=saturates)
+        scene.joint_revolute(f"joint_{k}", None, f"box_{k}", drive=drive)
+    path = scene.save(tmp_path / "stage.usda")
+    assert check_stage(path, [tmp_path]) == []
+    assert [joint.drive.saturates for joint in describe(path).joints if joint.drive] == [True, False]
+    scene.stage.GetPrimAtPath("/World/joint_0").GetAttribute("drive:angular:physics:maxForce").Set(np.inf)
+    UsdPhysics.Joint(scene.stage.GetPrimAtPath("/World/joint_1")).CreateBreakForceAttr(1e-30)
+    assert check_stage(scene.save(path), [tmp_path]) == [
+        "/World/joint_0.wsim:saturates: 1 needs a max_force: that is where a drive saturates "
+        "(drive:angular:physics:maxForce, or linear)",
+        "/World/joint_1.physics:breakForce: 1e-30 must be >= 1e-12 N; inf never breaks",
+        "/World/joint_1: it breaks, and such a joint can have no drive; put that on another joint",
+    ]

@@ -100,7 +100,28 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.joint_revolute("j", None, "block", axis=(0, 0, 0)), "has no length"),
     (lambda s: s.joint_revolute("j", None, "block", limits_deg=(30, -30)), "low limit must not lie above"),
     (lambda s: s.joint_revolute("j", None, "block", limits_deg=(10, 30)), "must hold 0"),
+    (
+        lambda s: s.joint_revolute("j", None, "block", limits=(-1, 1)),  # type: ignore[arg-type]
+        "limits = (-1, 1) are a slider's, in m; a hinge takes limits_deg = (low, high) in deg",
+    ),
+    (
+        lambda s: s.joint_prismatic("j", None, "block", limits_deg=(-90, 0)),  # type: ignore[arg-type]
+        "limits_deg = (-90, 0) are a hinge's, in deg; a slider takes limits = (low, high) in m",
+    ),
     (lambda s: s.joint_revolute("j", None, "block", drive=Drive()), "would do nothing"),
+    (
+        lambda s: s.joint_revolute("j", None, "block", drive=Drive(damping=1.0, saturates=True)),
+        "drive.saturates = True needs a max_force: that is where a drive saturates",
+    ),
+    (lambda s: s.joint_fixed("j", None, "block", break_force=1e-30), "break_force = 1e-30 must be >= 1e-12 N"),
+    (lambda s: s.joint_fixed("j", None, "block", break_torque=1e-30), "break_torque = 1e-30 must be >= 1e-16 N m"),
+    (
+        lambda s: s.track("t", pieces=[("loop", 0.2, 0.02)], width=0.1),
+        "pieces[0] aside = 0.02 m: the loop runs through itself, for the track is 0.1 m wide with its walls",
+    ),
+    (lambda s: s.track("t", pieces=[("loop", 0.2, 0.1)], width=0.1, wall=0.05), "the track is 0.12 m wide"),
+    (lambda s: s.track("t", pieces=[("up", 1.0, 400.0)]), "pieces[0] angle = 400 deg must be <= 360: the bend runs"),
+    (lambda s: s.track("t", pieces=[("left", 1.0, 400.0)]), "pieces[0] angle = 400 deg: the bend runs into itself"),
     (lambda s: s.joint_revolute("j", None, "block", drive=Drive(stiffness=NAN)), "drive.stiffness = nan"),
     (lambda s: s.joint_prismatic("j", None, "block", drive=Drive(velocity=1, stiffness=1)), "needs drive.damping > 0"),
     (lambda s: s.joint_prismatic("j", None, "block", anchor=(0, NAN, 0)), "anchor[1] = nan"),

@@ -93,3 +93,46 @@ def test_broken_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "bad.glb").write_bytes(b"not a mesh")
     with pytest.raises(SceneError, match=r'file = ".*bad.glb" (cannot be read|holds no triangles)'):
         Scene().mesh("m", file=tmp_path / "bad.glb")
+
+
+CORNERS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0
+1 0 0
+0 1 0
+3 0 1 8
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        (
+            "m.obj",
+            CORNERS + "f 1 2 9\n",
+            r"a face names vertex 8 \(from 0\) of 4, which is not there; .*export it again",
+        ),
+        ("m.obj", CORNERS + "f 1 2 -9\n", r"a face names vertex -9 \(from 0\) of 4, which is not there"),
+        ("m.ply", PLY, r"a face names vertex 8 \(from 0\) of 3, which is not there; mend the file"),
+        ("m.ply", PLY.replace("1 8", "1 -2"), r"a face names vertex -2 \(from 0\) of 3, which is not there"),
+        (
+            "m.obj",
+            CORNERS.replace("1 0 0", "1 0 nan") + "f 1 2 3\nf 1 2 4\n",
+            r"holds 1 vertices that are not finite, such as number 1 \(from 0\), \(1.0, 0.0, nan\); export it again",
+        ),
+        ("m.obj", CORNERS + "f 1 2 3\n", "is flat: it has no volume that could move; static=True"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_what_is_wrong_in_a_file_is_told_in_a_meshs_words(tmp_path: Path, name: str, text: str, message: str) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(SceneError, match=message):
+        Scene().mesh("m", file=tmp_path / name)

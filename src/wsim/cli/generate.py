@@ -38,6 +38,7 @@ from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.phases import since_start
 from wsim.plan.store import load
+from wsim.program.drafted import refuse_unbuildable
 from wsim.rules.planner import plan as make_plan
 from wsim.runs.folder import check_base
 from wsim.runs.settings import Settings
@@ -125,7 +126,7 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
     builtin = options.models.planner == BUILTIN or path is not None
     if builtin:
         refuse_image(options.image)
-    chosen = _agreed(prompt, path, answers, yes) if builtin else None
+    chosen = _agreed(prompt, path, answers, yes, options.settings.isolation) if builtin else None
     if builtin and chosen is None:
         console.print("nothing was built")
         raise typer.Exit(0)
@@ -175,10 +176,12 @@ def _replay(recorded: Path, runs: Path, device: str) -> None:
     raise typer.Exit(EXIT_CODES[done.verdict.status] if not again.differing else 1)
 
 
-def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool) -> Plan | None:
+def _agreed(prompt: str, path: Path | None, answers: Path | None, yes: bool, isolation: str) -> Plan | None:
     """The plan to build: a file of answers is a yes, as --yes is; else a person is asked."""
     planner = make_plan if path is None else None
     proposed = with_answers(make_plan(prompt) if path is None else load(path), planner, answers)
+    if path is not None:
+        refuse_unbuildable(proposed, path, isolation)
     if not (yes or answers):
         return approved(proposed, planner)
     show_plan(proposed)

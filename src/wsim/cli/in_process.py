@@ -19,6 +19,7 @@ from wsim.errors import UserError
 from wsim.runs.folder import RunFolder
 from wsim.runs.settings import Settings
 from wsim.scene import Scene, SceneError
+from wsim.scene.check import check_stage
 
 
 def run_in_process(build: Callable[[Scene], None]) -> None:
@@ -36,7 +37,9 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
     scene = Scene()
     try:
         build(scene)
-        scene.save(folder / "stage.usda")
+        problems = check_stage(scene.save(folder / "stage.usda"), [folder.resolve().anchor])
+        if problems:
+            raise UserError(f"{problems[0]}{f' (and {len(problems) - 1} more)' if len(problems) > 1 else ''}")
         with ConsoleProgress() as progress:
             # The simulator loads now: what the program's calls have wrong was said before.
             iteration = passes.Iteration(folder, None, Settings(isolation="none"), progress, program)

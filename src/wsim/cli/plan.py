@@ -18,6 +18,7 @@ from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.plan.schema import Plan
 from wsim.plan.store import load
+from wsim.program.drafted import refuse_unbuildable
 from wsim.rules.planner import plan as make_plan
 from wsim.rules.questions import questions
 from wsim.runs.folder import write_whole
@@ -72,7 +73,9 @@ def _plan(prompt: str, file: Path | None, answers: Path | None) -> Plan:
             'give a sentence, such as wsim plan "A cork ball floats in a tank of water.", or --plan FILE; not both'
         )
     if file is not None:
-        return with_answers(load(file), None, answers)
+        made = with_answers(load(file), None, answers)
+        refuse_unbuildable(made, file)
+        return made
     return with_answers(make_plan(prompt), make_plan, answers)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from wsim.intake.lattice import hull_of
 from wsim.intake.model import Array, Body, Collider, IntakeError, Mesh
 from wsim.intake.repair import Solid
-from wsim.scene.limits import MAX_DENSITY, MIN_DENSITY
+from wsim.limits import MAX_DENSITY, MIN_DENSITY
 from wsim.scene.solids import solid as integrals
 from wsim.scene.world import Shape
 

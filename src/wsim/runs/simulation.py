@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 def open_simulation(
     stage: Path, program: Path, settings: Settings, progress: Progress = silent, seeds: Sequence[int] = (0,)
 ) -> Iterator[Simulation]:
-    """A simulation of a stage, a copy of the world for each seed, with the program's own `control` if it has one."""
-    with open_controller(program, describe(stage), settings, len(seeds)) as controller:
+    """A simulation of a checked stage, a copy of it for each seed, with the program's own `control` if it has one."""
+    world = describe(stage)
+    with open_controller(program, world, settings, len(seeds)) as controller:
         yield sim.Simulation(
             stage,
             device=settings.device,
@@ -33,6 +34,7 @@ def open_simulation(
             controller=controller,
             progress=progress,
             seeds=seeds,
+            worlds=[world],
             draws=settings.pictures,
         )
 

@@ -11,10 +11,10 @@ from pxr import Gf, UsdPhysics
 
 from wsim.geometry.catenary import hanging
 from wsim.geometry.laid import laid
+from wsim.limits import MAX_MASS
 from wsim.scene.authoring import WORLD, Handle
 from wsim.scene.cords import HEMP, Cords
 from wsim.scene.fluids import Fluids
-from wsim.scene.limits import MAX_MASS
 from wsim.scene.validate import Call, shown
 
 _LINKS, _MOST_LINKS = 30, 200

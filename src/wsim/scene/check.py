@@ -13,6 +13,21 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
 
+from wsim.limits import (
+    MAX_BYTES,
+    MAX_COUNT,
+    MAX_DENSITY,
+    MAX_DURATION,
+    MAX_FRAME_RATE,
+    MAX_MASS,
+    MAX_POINTS,
+    MAX_POSITION,
+    MAX_PRIMS,
+    MAX_SIZE,
+    MAX_SPEED,
+    MAX_TIME_STEP,
+    MIN_TIME_STEP,
+)
 from wsim.scene import schema
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
 from wsim.scene.check_colliders import check_solid
@@ -25,20 +40,6 @@ from wsim.scene.check_motion import motion_problems
 from wsim.scene.check_reach import overreached
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
-from wsim.scene.limits import (
-    MAX_BYTES,
-    MAX_COUNT,
-    MAX_DENSITY,
-    MAX_DURATION,
-    MAX_FRAME_RATE,
-    MAX_MASS,
-    MAX_POINTS,
-    MAX_POSITION,
-    MAX_PRIMS,
-    MAX_SIZE,
-    MAX_SPEED,
-    MIN_TIME_STEP,
-)
 
 _NOW = Usd.TimeCode.Default()
 # Where USD itself means "without limit" or "not given" by an infinity.
@@ -54,6 +55,8 @@ _MAY_BE_INFINITE = {
     "gravityMagnitude",
     "velocityLimit",
 }
+# What `_mass` tells with the value, which USD's validators leave out.
+_OURS = ("MassInvalidValues", "DensityInvalidValues")
 _SPACES = ("physics", "drive", "limit", "newton")
 _MAX_PROBLEMS = 50
 
@@ -105,7 +108,7 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
             yield f"{stage.GetRootLayer().GetDisplayName()}: more than {MAX_PRIMS} prims"
             return
     sound = True
-    for problem in chain(_metadata(stage), _validators(stage), _values(stage, prims)):
+    for problem in chain(_metadata(stage), _values(stage, prims), _validators(stage)):
         sound = False
         yield problem
     if sound:  # what follows reads shapes, and follows indices and paths
@@ -160,6 +163,8 @@ def _validators(stage: Usd.Stage) -> Iterator[str]:
     # Those of packages ask for what only a .usdz file has.
     found = [v for v in registry.GetOrLoadAllValidators() if "Usdz" not in v.GetMetadata().name]
     for error in UsdValidation.ValidationContext(found).Validate(stage):
+        if error.GetName() in _OURS:
+            continue
         sites = [str(site.GetPrim().GetPath()) for site in error.GetSites() if site.IsPrim()]
         where = sites[0] if sites else stage.GetRootLayer().GetDisplayName()
         yield f"{where}: {error.GetMessage()} [{error.GetIdentifier()}]"
@@ -265,7 +270,7 @@ def _wsim(prim: Usd.Prim) -> Iterator[str]:
     if schema.has(prim, schema.SCENE):
         for name, limit, unit in (("duration", MAX_DURATION, "s"), ("frameRate", MAX_FRAME_RATE, "Hz")):
             yield from _bounded(prim.GetAttribute(f"wsim:{name}"), limit, unit)
-        yield from _bounded(prim.GetAttribute("wsim:timeStep"), 1.0, "s", zero=True, low=MIN_TIME_STEP)
+        yield from _bounded(prim.GetAttribute("wsim:timeStep"), MAX_TIME_STEP, "s", zero=True, low=MIN_TIME_STEP)
     if schema.has(prim, schema.FLUID):
         yield from _fluid(prim)
     if schema.has(prim, schema.SURFACE_VELOCITY):

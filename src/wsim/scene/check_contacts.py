@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 
 from pxr import Sdf, Usd
 
+from wsim.limits import MAX_FRICTION
 from wsim.scene import schema
-from wsim.scene.limits import MAX_FRICTION
 from wsim.scene.usd_contacts import COEFFICIENTS, ends, stated, tied, yields
 
 _MOST = {"friction": MAX_FRICTION, "restitution": 1.0, "rolling": 1.0}

@@ -8,10 +8,10 @@ import numpy as np
 from pxr import Usd
 
 from wsim.geometry.ropes import ON_RIM, path_length, strayed
+from wsim.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene import schema
 from wsim.scene.check_leads import led
 from wsim.scene.describe_cords import read_pulley, read_rope, read_spring, stops_at_start
-from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene.usd_contacts import yields
 from wsim.scene.world import Guide, Rope, Spring
 

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 
 from pxr import Usd, UsdGeom, UsdSkel
 
+from wsim.limits import MAX_CORNERS
 from wsim.scene.check_arrays import as_many, first_value, sizes, steady, within
 from wsim.scene.check_nurbs import curves_problems, patch_problems
 from wsim.scene.check_skeletons import skeleton_problems
-from wsim.scene.limits import MAX_CORNERS
 
 _SUBSETS = ("face", "point", "tetrahedron")
 _PER_COPY = (

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from pxr import Sdf, Usd, UsdPhysics
 
+from wsim.limits import MIN_FORCE, MIN_TORQUE, NO_BOUND, SHORTEST_WAY
 from wsim.scene import schema
 from wsim.scene.articulation import (
     dry_friction,
@@ -20,8 +21,8 @@ from wsim.scene.articulation import (
     may_break,
 )
 from wsim.scene.gears import contradicts, meshes_of
-from wsim.scene.limits import SHORTEST_WAY
 from wsim.scene.spanning import WORLD_END
+from wsim.scene.usd_prims import value_of
 
 _CLOSING = (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)
 _ONE_FREEDOM = (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)
@@ -69,6 +70,20 @@ def _numbers(joint: UsdPhysics.Joint) -> Iterator[str]:
     for attribute in (joint.GetBreakForceAttr(), joint.GetBreakTorqueAttr()):
         if not attribute.Get() > 0.0:
             yield f"{attribute.GetPath()}: {attribute.Get():g} must be > 0; inf never breaks"
+    for attribute, least, unit in (
+        (joint.GetBreakForceAttr(), MIN_FORCE, "N"),
+        (joint.GetBreakTorqueAttr(), MIN_TORQUE, "N m"),
+    ):
+        if 0.0 < attribute.Get() < 0.99 * least:  # of single precision
+            yield f"{attribute.GetPath()}: {attribute.Get():g} must be >= {least:g} {unit}; inf never breaks"
+    if value_of(joint.GetPrim(), "saturates", False) and not _bounded(joint.GetPrim()):
+        yield f"{joint.GetPath()}.wsim:saturates: 1 {NO_BOUND} (drive:angular:physics:maxForce, or linear)"
+
+
+def _bounded(prim: Usd.Prim) -> bool:
+    """Whether a joint has a drive of a greatest effort."""
+    drives = [UsdPhysics.DriveAPI.Get(prim, kind) for kind in ("angular", "linear")]
+    return any(drive and math.isfinite(drive.GetMaxForceAttr().Get()) for drive in drives)
 
 
 def _kinematic(joint: UsdPhysics.Joint) -> Iterator[str]:

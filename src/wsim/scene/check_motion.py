@@ -8,9 +8,9 @@ import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
 from wsim.geometry.paths import Curve
+from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_PATH_SPEED, MAX_PATH_SPIN, MAX_POSITION
 from wsim.scene import schema
 from wsim.scene.articulation import WORLD_END, joint_ends, joints_of
-from wsim.scene.limits import MAX_DURATION, MAX_KEYS, MAX_PATH_SPEED, MAX_PATH_SPIN, MAX_POSITION
 from wsim.scene.usd_motion import curve_of, path_of, sample_times
 from wsim.scene.world import Path
 

@@ -8,11 +8,11 @@ from typing import NamedTuple
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 from wsim.geometry.ropes import path_length
+from wsim.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene import schema
 from wsim.scene.articulation import body_frame
 from wsim.scene.authoring import Handle, note_line, world_pose
 from wsim.scene.joints import Joints
-from wsim.scene.limits import FARTHEST, MAX_DAMPING, MAX_SIZE, MAX_STIFFNESS, MOST_STRETCH, TAUT
 from wsim.scene.usd_contacts import yields
 from wsim.scene.validate import Call, Vec3, shown
 

@@ -103,6 +103,7 @@ def _motion(prim: Usd.Prim, kind: str) -> dict[str, Any]:
             position=float(drive.GetTargetPositionAttr().Get()) * unit,
             velocity=float(drive.GetTargetVelocityAttr().Get()) * unit,
             max_effort=most if math.isfinite(most) else None,
+            saturates=bool(value_of(prim, "saturates", False)),
         )
     return found
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
+from wsim.limits import MAX_POSITION, MIN_FORCE, MIN_TORQUE, NO_BOUND, bad_stops
 from wsim.scene import schema
 from wsim.scene.articulation import is_kinematic, mark_articulations, may_break
 from wsim.scene.authoring import CONTACTS, Author, Handle, note_line, world_pose
 from wsim.scene.gears import contradicts, meshes_of
-from wsim.scene.limits import MAX_POSITION, SHORTEST_WAY
 from wsim.scene.usd_contacts import ends, tied
 from wsim.scene.validate import Call, shown
 
@@ -27,8 +27,9 @@ class Drive:
     A revolute joint: `position` [deg], `velocity` [deg/s], `stiffness` [N m/rad], `damping` [N m s/rad],
     `max_force` [N m]. A prismatic joint: [m], [m/s], [N/m], [N s/m], [N]. Zero is where the joint starts.
     With a `velocity` alone give `damping` alone; with a `position` give both. A target beyond a stop of the joint
-    presses against that stop, as a gripper does. A stiffness shortens the time step, and one that would need less than
-    10 microseconds is refused.
+    presses against that stop, as a gripper or a preloaded spring does. A stiffness shortens the time step, and one that
+    would need less than 10 microseconds is refused. `saturates` says that it is meant to end at its full `max_force`:
+    a winch that slips, a motor that stalls.
     """
 
     position: float = 0.0
@@ -36,15 +37,17 @@ class Drive:
     stiffness: float = 0.0
     damping: float = 0.0
     max_force: float | None = None
+    saturates: bool = False
 
 
 class Joints(Author):
     """The calls that make joints.
 
     `parent` and `child` are bodies; a parent of None, or a static one, is the world. `anchor` is where they meet, in
-    the world [m]; the child's origin if not given. `axis` is "X", "Y" or "Z" of the world, or a direction (x, y, z).
-    The pose of the bodies at time 0 is the joint's zero. Joints may close loops, in any order: one of each loop becomes
-    a constraint, and is a plain hinge, ball or fixed joint without drive, limits and friction.
+    the world [m]; the child's origin if not given. It may lie outside both bodies, as a long pendulum's pivot does:
+    what is between is an arm without mass, which touches nothing. `axis` is "X", "Y" or "Z" of the world, or a
+    direction (x, y, z). The pose of the bodies at time 0 is the joint's zero. Joints may close loops, in any order: one
+    of each loop becomes a constraint, and is a plain hinge, ball or fixed joint without drive, limits and friction.
 
     `friction` is dry: it holds up to so much, and slows by as much what moves. A joint breaks for good, between two
     steps, where what it bears reaches more than `break_force` [N] or, about its anchor, `break_torque` [N m].
@@ -76,6 +79,7 @@ class Joints(Author):
         anchor: Sequence[float] | None = None,
         axis: str | Sequence[float] = "Z",
         limits_deg: Sequence[float] | None = None,
+        limits: None = None,
         drive: Drive | None = None,
         friction: float = 0.0,
         break_force: float | None = None,
@@ -86,14 +90,16 @@ class Joints(Author):
         For the rest see `Joints`. A hinge that may break has neither limits nor drive nor friction.
         """
         call = Call("joint_revolute", name)
-        limits = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
+        if limits is not None:
+            call.fail(f"limits = {shown(limits)} are a slider's, in m; a hinge takes limits_deg = (low, high) in deg")
+        bounds = None if limits_deg is None else _limits(call, "limits_deg", limits_deg, 36000.0, "deg")
         motor = _checked(call, drive, 36000.0)
         rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N m")
         strength = _Strength.of(call, break_force, break_torque)
-        if strength and (limits is not None or motor is not None or rubs):
+        if strength and (bounds is not None or motor is not None or rubs):
             call.fail("a hinge that may break can have no limits_deg, drive or friction: put them on another joint")
         prim = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis)
-        _write_limits(prim, limits)
+        _write_limits(prim, bounds)
         _write_friction(prim, rubs)
         strength.write(prim)
         if motor is not None:
@@ -110,6 +116,7 @@ class Joints(Author):
         anchor: Sequence[float] | None = None,
         axis: str | Sequence[float] = "Z",
         limits: Sequence[float] | None = None,
+        limits_deg: None = None,
         drive: Drive | None = None,
         friction: float = 0.0,
         break_force: None = None,
@@ -121,6 +128,10 @@ class Joints(Author):
         body to it.
         """
         call = Call("joint_prismatic", name)
+        if limits_deg is not None:
+            call.fail(
+                f"limits_deg = {shown(limits_deg)} are a hinge's, in deg; a slider takes limits = (low, high) in m"
+            )
         if _Strength.of(call, break_force, break_torque):
             call.fail(
                 "a slider cannot break: let a small carriage body slide, and hold the child to the carriage with a "
@@ -285,8 +296,8 @@ class _Strength:
     def of(cls, call: Call, force: float | None, torque: float | None) -> _Strength:
         """As a call gives it."""
         return cls(
-            None if force is None else call.positive("break_force", force, _MAX_LOAD, "N"),
-            None if torque is None else call.positive("break_torque", torque, _MAX_LOAD, "N m"),
+            None if force is None else call.positive("break_force", force, _MAX_LOAD, "N", MIN_FORCE),
+            None if torque is None else call.positive("break_torque", torque, _MAX_LOAD, "N m", MIN_TORQUE),
         )
 
     def __bool__(self) -> bool:
@@ -322,14 +333,14 @@ def _write_drive(prim: Usd.Prim, freedom: str, drive: Drive, per_unit: float) ->
     api.CreateDampingAttr(drive.damping * per_unit)
     if drive.max_force is not None:
         api.CreateMaxForceAttr(drive.max_force)
+    if drive.saturates:
+        schema.apply(prim, schema.DRIVE, {"saturates": (Sdf.ValueTypeNames.Bool, True)})
 
 
 def _limits(call: Call, field: str, value: Sequence[float], bound: float, unit: str) -> tuple[float, float]:
     low, high = call.range(field, value, bound, unit)
-    if not low <= 0.0 <= high:
-        call.fail(f"{field} = ({low:g}, {high:g}) {unit} must hold 0, where the joint starts")
-    if high - low < SHORTEST_WAY:
-        call.fail(f"{field} = ({low:g}, {high:g}) {unit} leave it no way to go; use a joint_fixed")
+    if wrong := bad_stops(low, high, unit):
+        call.fail(f"{field} = {wrong}")
     return low, high
 
 
@@ -337,14 +348,18 @@ def _checked(call: Call, drive: Drive | None, bound: float) -> Drive | None:
     if drive is None:
         return None
     if not isinstance(drive, Drive):
-        call.fail(f"drive = {shown(drive)} must be a Drive(position=, velocity=, stiffness=, damping=, max_force=)")
+        names = ", ".join(f"{each.name}=" for each in fields(Drive))
+        call.fail(f"drive = {shown(drive)} must be a Drive({names})")
     checked = Drive(
         position=call.within("drive.position", drive.position, -bound, bound),
         velocity=call.within("drive.velocity", drive.velocity, -1e6, 1e6),
         stiffness=call.within("drive.stiffness", drive.stiffness, 0.0, _MAX_GAIN),
         damping=call.within("drive.damping", drive.damping, 0.0, _MAX_GAIN),
         max_force=None if drive.max_force is None else call.positive("drive.max_force", drive.max_force, _MAX_GAIN, ""),
+        saturates=call.flag("drive.saturates", drive.saturates),
     )
+    if checked.saturates and checked.max_force is None:
+        call.fail(f"drive.saturates = True {NO_BOUND}")
     if checked.stiffness == 0.0 and checked.damping == 0.0:
         call.fail("drive has stiffness = 0 and damping = 0 and would do nothing; give one of them")
     if checked.position != 0.0 and checked.stiffness == 0.0:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,9 +12,9 @@ from typing import Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
+from wsim.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
 from wsim.scene.bodies import MassProperties
 from wsim.scene.errors import one_line
-from wsim.scene.limits import MAX_POINTS, MAX_SIZE, MIN_SIZE
 from wsim.scene.static_mesh import define_mesh, smooth_normals
 from wsim.scene.validate import Call, shown
 
@@ -39,19 +41,29 @@ class MeshFile:
         import trimesh  # heavy, and few programs read meshes
 
         try:
-            mesh = trimesh.load(path, force="mesh", process=False)
+            with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite is told below
+                warnings.simplefilter("ignore")
+                mesh = trimesh.load(path, force="mesh", process=False)
         except Exception as error:  # noqa: BLE001 - each of trimesh's readers raises its own kinds
-            call.fail(f"file = {shown(path.name)} cannot be read as a mesh: {one_line(error)}")
+            call.fail(f"file = {shown(path.name)} cannot be read as a mesh: {_unread(error)}")
         if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
             call.fail(f"file = {shown(path.name)} holds no triangles")
         if len(mesh.vertices) > MAX_POINTS:
             call.fail(f"file = {shown(path.name)} has {len(mesh.vertices)} vertices; at most {MAX_POINTS}")
+        strays = mesh.faces[(mesh.faces < 0) | (mesh.faces >= len(mesh.vertices))]
+        if len(strays):
+            call.fail(f"file = {shown(path.name)}: {_stray(int(strays[0]), len(mesh.vertices))}")
+        bad = ~np.isfinite(mesh.vertices).all(axis=1)
+        if bad.any():
+            count, first = int(bad.sum()), int(np.argmax(bad))
+            call.fail(
+                f"file = {shown(path.name)} holds {count} vertices that are not finite, such as number {first} "
+                f"(from 0), {shown(tuple(mesh.vertices[first].tolist()))}; export it again"
+            )
         mesh.merge_vertices()
         vertices = np.asarray(mesh.vertices) * factors
         if up == "Y":
             vertices = vertices[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
-        if not np.isfinite(vertices).all():
-            call.fail(f"file = {shown(path.name)} holds vertices that are not finite")
         longest = float(np.ptp(vertices, axis=0).max())
         if not MIN_SIZE <= longest <= MAX_SIZE:
             call.fail(
@@ -61,7 +73,10 @@ class MeshFile:
         return cls(trimesh.Trimesh(vertices, mesh.faces, process=False))
 
     def approximation(self, call: Call, collision: str | None, *, static: bool) -> str:
-        """How the mesh collides: as asked for, or the default for what it is."""
+        """How the mesh collides: as asked for, or the default for what it is; one that moves has a volume."""
+        corners = np.asarray(self.mesh.vertices)
+        if not static and np.linalg.matrix_rank(corners - corners.mean(axis=0), 1e-6 * np.ptp(corners)) < 3:
+            call.fail("the mesh is flat: it has no volume that could move; static=True, or give it a thickness")
         if collision is None:
             return "none" if static else "convexHull"
         if call.one_of("collision", collision, APPROXIMATIONS) == "none" and not static:
@@ -85,6 +100,17 @@ class MeshFile:
             mass = float(density or 0.0) * float(hull.volume)
         inertia = np.asarray(hull.moment_inertia) * (mass / float(hull.volume))
         return MassProperties.of(mass, np.asarray(hull.center_mass), inertia)
+
+
+def _unread(error: Exception) -> str:
+    """Why a reader of trimesh's gave up; of an index in NumPy's words, in a mesh's."""
+    text = one_line(error)
+    found = re.search(r"index (-?\d+) is out of bounds .* size (\d+)", text)
+    return _stray(int(found[1]), int(found[2])) if found else text
+
+
+def _stray(index: int, count: int) -> str:
+    return f"a face names vertex {index} (from 0) of {count}, which is not there; mend the file, or export it again"
 
 
 def _find(call: Call, file: str | Path, folder: Path | None) -> Path:

@@ -9,9 +9,9 @@ import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
 from wsim.geometry.paths import Curve
+from wsim.limits import MAX_DURATION, MAX_KEYS, MAX_PATH_SPEED, MAX_PATH_SPIN
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, rotation, set_pose, world_pose
-from wsim.scene.limits import MAX_DURATION, MAX_KEYS, MAX_PATH_SPEED, MAX_PATH_SPIN
 from wsim.scene.validate import Call, Vec3, shown
 
 _MOST_SAMPLES = 5000  # of a path, for other tools

@@ -9,6 +9,7 @@ import numpy as np
 from pxr import Gf, Sdf, UsdGeom, UsdPhysics
 
 from wsim.defaults import DURATION, FRAME_RATE, GRAVITY
+from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_TIME_STEP, bad_time_step
 from wsim.scene import schema
 from wsim.scene.articulation import joints_of, mark_articulations
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
@@ -17,7 +18,6 @@ from wsim.scene.catalogued import Catalogued
 from wsim.scene.check_joints import joint_problems
 from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
-from wsim.scene.limits import MAX_DURATION, MAX_FRAME_RATE, MIN_TIME_STEP
 from wsim.scene.motions import Motions
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.views import Views
@@ -134,9 +134,9 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued):
             self._duration = call.positive("duration", duration, MAX_DURATION, "s")
         if frame_rate is not None:
             self._frame_rate = call.positive("frame_rate", frame_rate, MAX_FRAME_RATE, "Hz")
-        step = None if time_step is None else call.within("time_step", time_step, 0.0, 1.0, "s")
-        if step and step < MIN_TIME_STEP:
-            call.fail(f"time_step = {step:g} must be >= {MIN_TIME_STEP:g} s, or 0 for the simulator's choice")
+        step = None if time_step is None else call.within("time_step", time_step, 0.0, MAX_TIME_STEP, "s")
+        if step is not None and (wrong := bad_time_step(step)):
+            call.fail(f"time_step = {wrong}")
         number = None if seed is None else call.integer("seed", seed, 0, _MAX_SEED)
         if gravity is not None:
             self._set_gravity(call.vector("gravity", gravity, 1e3, "m/s^2"))

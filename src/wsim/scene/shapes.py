@@ -8,9 +8,9 @@ from pathlib import Path
 
 from pxr import UsdGeom
 
+from wsim.limits import MAX_POSITION
 from wsim.scene.authoring import Handle, calling_folder, note_line, set_pose
 from wsim.scene.bodies import Bodies, BodyOptions, finish_collider
-from wsim.scene.limits import MAX_POSITION
 from wsim.scene.mesh_file import MeshFile
 from wsim.scene.rolling import Round
 from wsim.scene.validate import Call

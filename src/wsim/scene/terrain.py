@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pxr import Gf, Sdf, UsdGeom
 
+from wsim.limits import MAX_SIZE
 from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_pose
 from wsim.scene.bodies import finish_collider
 from wsim.scene.compounds import Compounds
-from wsim.scene.limits import MAX_SIZE
 from wsim.scene.static_mesh import define_mesh, smooth_normals
 from wsim.scene.validate import Call, shown
 

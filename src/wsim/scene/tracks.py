@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pxr import UsdGeom
 
+from wsim.limits import MAX_SIZE
 from wsim.scene.authoring import Handle, note_line, set_pose
 from wsim.scene.bodies import finish_collider
 from wsim.scene.curves import TURNS, UP, Frames, Stretch, chain, spline, sweep
-from wsim.scene.limits import MAX_SIZE
 from wsim.scene.sections import Section, flat, rails, round_
 from wsim.scene.shapes import Shapes
 from wsim.scene.static_mesh import define_mesh
@@ -111,6 +112,8 @@ class Tracks(Shapes):
         path = self._path(call)
         stretches = _line(call, pieces, points, start, heading_deg, slope_deg)
         sections = _sections(call, profile, width, wall, thickness)
+        if pieces is not None:
+            _not_through_itself(call, pieces, stretches, sections)
         surface = self._surface(call, material, friction, restitution, color)
 
         def said(k: int) -> str:
@@ -191,6 +194,33 @@ def _not_steep(call: Call, pieces: Sequence[Sequence[object]], made: list[Stretc
             call.fail(
                 f"pieces[{k}] = {shown(piece)} begins where the track is vertical or upside down; bend it up first"
             )
+
+
+def _not_through_itself(
+    call: Call, pieces: Sequence[Sequence[Any]], made: list[Stretch], sections: list[Section]
+) -> None:
+    """A piece that goes more than once round passes beside, above or below itself; once round it may be a ring."""
+    corners = np.concatenate([section.corner for section in sections])
+    wide, high = np.ptp(corners, axis=0)
+    for k, (piece, stretch) in enumerate(zip(pieces, made, strict=True)):
+        if piece[0] == "loop" and abs(piece[2]) < wide * (1.0 - 1e-9):
+            call.fail(
+                f"pieces[{k}] aside = {piece[2]:g} m: the loop runs through itself, for the track is {wide:.4g} m wide "
+                "with its walls; take as much or more, or a smaller width"
+            )
+        if piece[0] in ("up", "down") and piece[2] > 360.0:
+            call.fail(
+                f"pieces[{k}] angle = {piece[2]:g} deg must be <= 360: the bend runs into itself; for once round take "
+                '("loop", radius, aside)'
+            )
+        if piece[0] in ("left", "right") and piece[2] > 360.0:
+            ends = stretch.at(np.array([0.0, stretch.length])).point
+            rise = abs(float(ends[1, 2] - ends[0, 2])) * 360.0 / piece[2]
+            if rise < high:
+                call.fail(
+                    f"pieces[{k}] angle = {piece[2]:g} deg: the bend runs into itself, for it rises by {rise:.4g} m a "
+                    f"turn and the track is {high:.4g} m high; take 360 at most, a steeper slope or a larger radius"
+                )
 
 
 def _through(call: Call, points: Sequence[Sequence[float]]) -> list[Stretch]:

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any, NoReturn, SupportsFloat, SupportsIndex, TypeAlias, cast
 
-from wsim.scene.errors import SceneError
-from wsim.scene.limits import (
+from wsim.limits import (
     MAX_COUNT,
     MAX_DENSITY,
     MAX_FRICTION,
@@ -23,6 +22,7 @@ from wsim.scene.limits import (
     MIN_MASS,
     MIN_SIZE,
 )
+from wsim.scene.errors import SceneError
 
 Number: TypeAlias = SupportsFloat | SupportsIndex
 Vector: TypeAlias = Sequence[float]

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 from pxr import Gf, Sdf, UsdGeom, UsdLux
 
+from wsim.limits import MAX_POSITION
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, set_pose
-from wsim.scene.limits import MAX_POSITION
 from wsim.scene.validate import Call, Vec3
 
 _APERTURE = 20.955  # [tenths of a unit], USD's own

@@ -118,6 +118,7 @@ class Motor(_Model):
     position: float = 0.0  # [rad] or [m]
     velocity: float = 0.0  # [rad/s] or [m/s]
     max_effort: float | None = None  # [N m] or [N]; None: without bound
+    saturates: bool = False  # it is meant to end at its greatest effort: it slips, or stalls
     told: bool = True  # False: something else sets its effort, and it may be any
 
 

@@ -15,7 +15,7 @@ from collections import defaultdict
 import numpy as np
 
 from wsim.errors import UserError
-from wsim.scene.limits import MIN_TIME_STEP
+from wsim.limits import MIN_TIME_STEP
 from wsim.scene.world import Body, Joint, World
 
 SHARE = 1.0  # of 1 / omega under what hangs at rest: what swings pulls up to three times as much, and 2 / sqrt(3) > 1

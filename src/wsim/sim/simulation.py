@@ -17,12 +17,12 @@ from wsim.errors import UserError
 from wsim.phases import Phases
 from wsim.progress import Progress, silent
 from wsim.recording import RecordingWriter
-from wsim.scene.describe import describe
 from wsim.scene.world import World
 from wsim.sim import compiling
 from wsim.sim.alike import paths_of
 from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device, steps_in_c
+from wsim.sim.entering import entered
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
@@ -45,7 +45,7 @@ class Simulation:
     """Newton simulation of a stage.
 
     Args:
-        stage: USD file; checked (`wsim.scene.check`) if it comes from somewhere else. Several, of one topology
+        stage: USD file, which is checked as `wsim run` checks it (`wsim.scene.check`). Several, of one topology
             (`wsim.sim.alike`), are a batch of as many worlds.
         device: "cpu", "cuda:0", or "auto": what is quicker for this world (`wsim.sim.devices`).
         world_count: Copies of one stage simulated at once.
@@ -55,7 +55,7 @@ class Simulation:
         progress: Told about compilation.
         seeds: One for each world, which then starts a little off what the stage states (`wsim.sim.perturb`); 0 does
             not. By default none does.
-        worlds: What `wsim.scene.describe` read from several stages, where that was done already.
+        worlds: What `wsim.scene.describe` read from the stages, where they were checked and read already.
         processes: That several stages are read in.
         draws: Whether pictures will be taken: their kernels are then compiled beside those of a step.
 
@@ -92,7 +92,7 @@ class Simulation:
             raise ValueError(f"seeds: {len(seeds)} were given for {world_count} worlds; give one for each")
         progress("compiling kernels", 0, 3)
         self.stage = stages[0]
-        described = worlds or [describe(each) for each in stages]
+        described = entered(stages, worlds)
         self.device = wp.get_device(pick_device(device, described[0], world_count, progress))
         self._draws = draws
         self.compiled = compiling.compile_first(

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from wsim.errors import UserError
-from wsim.scene.limits import MIN_TIME_STEP
+from wsim.limits import MIN_TIME_STEP
 from wsim.scene.world import Body, Guide, Spring, World
 
 DRIVE_SHARE = 0.25  # of 1 / omega of a drive or a spring: its force is taken at the step's start

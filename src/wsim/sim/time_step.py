@@ -10,7 +10,7 @@ import numpy as np
 from wsim.errors import UserError
 from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import kind_of
-from wsim.scene.limits import MIN_TIME_STEP
+from wsim.limits import MIN_TIME_STEP
 from wsim.scene.usd_motion import curve_of
 from wsim.scene.world import Body, Joint, World
 from wsim.sim.cable_steps import cable_limits

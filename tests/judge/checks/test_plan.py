@@ -287,6 +287,7 @@ def test_a_motor_turns_as_fast_as_the_plans(kind, velocity, passes):
         ({"damping": 20.0}, "drive.damping", "lower"),
         ({"max_effort": 4.0}, "drive.max_force", "raise"),
         ({"max_effort": None}, "drive.max_force", "lower"),
+        ({"saturates": True}, "drive.saturates", "remove"),
     ],
 )
 def test_a_drive_is_as_strong_as_the_plans(change, parameter, direction):

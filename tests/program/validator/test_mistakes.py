@@ -52,6 +52,7 @@ SCENE = {
     'scene.box("a", size=(1, 1, 1), rotation_deg=(0, 0, math.radians(30)))': ("unit", "given radians", "Scene.box("),
     'scene.joint_revolute("j", arm, fore, limits_deg=(-1.57, 1.57))': ("unit", "given radians", "joint_revolute("),
     'scene.joint_revolute("j", arm, fore, limits=(-30, 30))': ("argument", '"limits_deg"', "joint_revolute("),
+    'scene.joint_prismatic("j", arm, fore, limits_deg=(-30, 30))': ("argument", 'mean "limits"', "joint_prismatic("),
     'scene.joint_revolute("j", "arm", "foree")': ("prim", "not in the scene", '"fore"'),
     'scene.joint_revolute("j", arm, arm)': ("value", "two bodies", "joint_revolute("),
     'scene.joint_revolute("j", arm, fore, drive=45)': ("argument", '"drive"', "joint_revolute("),

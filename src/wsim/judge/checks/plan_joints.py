@@ -177,6 +177,12 @@ class CheckPlanJoints(Check):
         way = min((1.0, -1.0), key=lambda sign: sum(abs(sign * has - to) for has, to in (position, velocity)))
         for what, (has, to), of in (("position", position, unit), ("velocity", velocity, unit + "/s")):
             yield from self._target(made, what, has, to, abs(way * has - to), of)
+        if made.drive.saturates and not wanted.saturates:  # the other way round the judge is only stricter
+            yield self.failed(
+                f"{made.prim} is said to saturate; the plan's {planned.name} is to get where it is set to",
+                prim=made.prim, time=0.0, limit_from="the plan's joints",
+                target=RepairTarget(kind="drive", prim=made.prim, parameter="drive.saturates", direction="remove"),
+            )  # fmt: skip
         most, bound = (math.inf if end is None else end for end in (made.drive.max_effort, wanted.max_force))
         for what, has, to, of in (
             ("stiffness", made.drive.stiffness, wanted.stiffness, f"{effort}/{unit}"),

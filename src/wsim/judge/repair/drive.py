@@ -108,9 +108,9 @@ def to_point(evidence: Evidence, prim: str, point: Floats, window: tuple[float, 
 
 
 def strained(evidence: Evidence, joint: Joint) -> bool:
-    """Whether a drive ends at the end of its strength."""
+    """Whether a drive ends at the end of its strength, and is not meant to."""
     effort = evidence.recording.scalars.get("drive" + joint.prim.removeprefix("/World"))
-    if joint.drive is None or joint.drive.max_effort is None or effort is None:
+    if joint.drive is None or joint.drive.max_effort is None or joint.drive.saturates or effort is None:
         return False
     full = np.abs(effort[evidence.window]) >= FULL * joint.drive.max_effort
     return bool(full.mean() > HALF)

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from wsim.defaults import DURATION, FRAME_RATE
+from wsim.limits import NO_BOUND
 from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
 from wsim.plan.schema.formula import Formula
 from wsim.plan.schema.objects import PlanObject
@@ -49,12 +50,20 @@ class JointDrive(Strict):
     stiffness: NotNegative = 0.0
     damping: NotNegative = 0.0
     max_force: Positive | None = None
+    saturates: bool = False  # it is meant to end at its full max_force: a winch that slips, a motor that stalls
 
     @model_validator(mode="after")
     def _acts(self) -> JointDrive:
         if self.stiffness == 0.0 and self.damping == 0.0:
             raise ValueError("a drive needs stiffness to hold a position, or damping to hold a velocity")
+        if self.saturates and self.max_force is None:
+            raise ValueError(f"saturates: true {NO_BOUND}")
         return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without `saturates` where it does not, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if name != "saturates" or value}
 
 
 class Joint(Strict):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 from pydantic import ValidationError
 
 SHOWN = 20  # problems in a message
 LONGEST_PART = 60  # characters of a field's name, which may be anything in a file that is no plan
+_TOLD = ("value_error", "missing", "extra_forbidden", "string_unicode", "union_tag_not_found")  # in full by themselves
 LONGEST = 500  # characters of one problem
 
 
@@ -15,15 +17,22 @@ def explain(error: ValidationError) -> str:
     """One line for a person: each problem with its path in the plan."""
     lines = []
     # Not all of them: a list of a million wrong items has a million problems.
-    items = error.errors(include_url=False, include_input=False, include_context=False)
+    items = error.errors(include_url=False, include_context=False)
     for item in items[:SHOWN]:
         where = ".".join(_short(str(part), LONGEST_PART) for part in item["loc"])
-        text = _short(
-            str(item["msg"]).removeprefix("Value error, "), LONGEST if item["type"] != "value_error" else 4000
-        )
+        text = _short(_said(item).removeprefix("Value error, "), LONGEST if item["type"] != "value_error" else 4000)
         lines.append((f"{where}: {text}" if where else text) + _way_out(item))
     more = [f"and {len(items) - SHOWN} more"] if len(items) > SHOWN else []
     return "; ".join([*lines, *more])
+
+
+def _said(item: Any) -> str:
+    """What is wrong, with the value that is; JSON has lists, and no tuples."""
+    text = str(item["msg"]).replace("valid tuple", "list").replace("Tuple should", "List should")
+    value = item["input"]
+    if item["type"] in _TOLD or not isinstance(value, (bool, int, float, str, type(None))):
+        return text
+    return f"{text}; it is {'null' if value is None else json.dumps(value, ensure_ascii=False)[:LONGEST_PART]}"
 
 
 def _short(text: str, most: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, get_args
 
+from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.supports import support_problems
 
@@ -14,12 +15,15 @@ if TYPE_CHECKING:
     from wsim.plan.schema.relations import Relation
 
 SHOWN = 12  # names in a message
+_UNITS = {"hinge": "deg", "slider": "m"}
+_STATES = {"static": "static and never moves", "fluid": "a fluid, which starts at rest"}
 
 
 def problems(plan: Draft) -> list[str]:
     """All of them."""
     return [
         *_names(plan),
+        *_numbers(plan),
         *_rows(plan),
         *support_problems(plan),
         *_groups(plan),
@@ -28,6 +32,24 @@ def problems(plan: Draft) -> list[str]:
         *_actuation(plan),
         *_others(plan),
     ]
+
+
+def _numbers(plan: Draft) -> Iterator[str]:
+    """What the scene would refuse to be given."""
+    simulation = plan.simulation
+    for field, most, unit in (("duration", MAX_DURATION, "s"), ("frame_rate", MAX_FRAME_RATE, "Hz")):
+        value = getattr(simulation, field)
+        if value > most:
+            yield f"simulation.{field}: {value:g} must be <= {most:g} {unit}"
+    if wrong := bad_time_step(simulation.time_step):
+        yield f"simulation.time_step: {wrong}"
+    for i, item in enumerate(plan.objects):
+        if item.material is not None and item.material.friction > MAX_FRICTION:
+            yield f"objects.{i}.material.friction: {item.material.friction:g} must be <= {MAX_FRICTION:g}"
+        for field in ("velocity", "angular_velocity_deg"):
+            value = getattr(item, field)
+            if item.state in ("static", "fluid") and value is not None and any(value):
+                yield f"objects.{i}.{field}: {list(value)} of {item.name}, which is {_STATES[item.state]}; remove it"
 
 
 def _names(plan: Draft) -> Iterator[str]:
@@ -125,16 +147,22 @@ def _joints(plan: Draft) -> Iterator[str]:
                 yield f"joints.{i}.{field}: no object {name!r}; the plan has {_known(plan)}"
         if joint.child == joint.parent:
             yield f"joints.{i}.parent: {joint.child} cannot hold itself; name another object, or leave it out"
-        if joint.limits is not None and joint.limits[0] > joint.limits[1]:
-            yield f"joints.{i}.limits: {joint.limits[0]:g} is above {joint.limits[1]:g}; swap them"
         if joint.limits is not None and joint.kind in ("fixed", "ball"):
             yield f"joints.{i}.limits: a {joint.kind} joint has none; remove them"
+        elif joint.limits is not None and (wrong := bad_stops(*joint.limits, _UNITS[joint.kind])):
+            yield f"joints.{i}.limits: {wrong}"
+
+
+def _tied(plan: Draft) -> dict[frozenset[str], str]:
+    """Pairs that a joint keeps from touching, and its name."""
+    return {frozenset((joint.child, joint.parent)): joint.name for joint in plan.joints if joint.parent is not None}
 
 
 def _contacts(plan: Draft) -> Iterator[str]:
     """Two objects that meet, stated once."""
     items = {item.name: item for item in plan.objects}
     seen: dict[frozenset[str], int] = {}
+    ties = _tied(plan)
     for i, contact in enumerate(plan.contacts):
         unknown = [field for field in ("object", "ref") if getattr(contact, field) not in items]
         for field in unknown:
@@ -149,6 +177,13 @@ def _contacts(plan: Draft) -> Iterator[str]:
             yield f"contacts.{i}: {fluid.name} is a fluid, which has no friction or restitution; name two solids"
         elif one.state == other.state == "static":
             yield f"contacts.{i}: {one.name} and {other.name} are both static; they never meet"
+        elif pair in ties:
+            yield (
+                f"contacts.{i}: {one.name} and {other.name} never touch: the joint {ties[pair]} ties them; leave one "
+                "of the two out"
+            )
+        elif contact.friction is not None and contact.friction > MAX_FRICTION:
+            yield f"contacts.{i}.friction: {contact.friction:g} must be <= {MAX_FRICTION:g}"
         elif pair in seen:
             yield f"contacts.{i}: {one.name} and {other.name} are in contacts.{seen[pair]}, too; state the pair once"
         seen.setdefault(pair, i)

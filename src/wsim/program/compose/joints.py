@@ -45,4 +45,5 @@ def _anchor(child: PlanObject, joint: Joint) -> tuple[float, float, float]:
 def _drive(drive: JointDrive) -> str:
     """The `Drive` of a joint, with what it has of its own."""
     given = {name: value for name, value in drive.model_dump().items() if value}
-    return f"Drive({', '.join(f'{name}={number(value)}' for name, value in given.items())})"
+    said = {name: str(value) if isinstance(value, bool) else number(value) for name, value in given.items()}
+    return f"Drive({', '.join(f'{name}={value}' for name, value in said.items())})"

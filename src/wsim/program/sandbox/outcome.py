@@ -9,7 +9,7 @@ from wsim.program.sandbox.limits import Limits
 from wsim.program.sandbox.process import SandboxProcess
 from wsim.program.sandbox.result import Kind, Report, ending, printable, read_report
 
-_MESSAGE = 800  # characters
+_MESSAGE = 400  # characters of what a program's exception says; its log has the rest
 _NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EMFILE)
 
 
@@ -46,7 +46,7 @@ def _told(report: Report) -> str:
     text = ": ".join(part for part in (report.type, report.message) if part)
     # One line: USD's errors are pages long, and the log has them whole.
     line = " ".join(printable(text).split())
-    return line if len(line) <= _MESSAGE else line[:_MESSAGE] + " ..."
+    return line if len(line) <= _MESSAGE else line[:_MESSAGE] + "…"
 
 
 def _stopped(process: SandboxProcess, limits: Limits, call: str) -> tuple[Kind, str] | None:

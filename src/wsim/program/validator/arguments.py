@@ -153,7 +153,11 @@ def _types(arguments: Arguments, way: Sequence[Parameter], entry: Entry, fits: F
     for parameter, (value, node) in pairs:
         if parameter.annotation and not fits(value, parameter.annotation):
             name = f'"{parameter.name}" of ' if parameter.name else ""
-            return Misfit(node, f"{name}{entry.short}() must be {parameter.annotation}", parameter.name, 1)
+            told = f"{name}{entry.short}() must be {parameter.annotation}"
+            if parameter.annotation == "None":  # it is there to be refused: another may be meant
+                meant = _meant(parameter.name, [p.name for p in way if p.annotation != "None"], arguments)
+                told += f'; did you mean "{meant}"?' if meant else ""
+            return Misfit(node, told, parameter.name, 1)
     return None
 
 

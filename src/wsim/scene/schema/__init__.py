@@ -19,6 +19,7 @@ CONTACT = "WsimContactAPI"
 PATH = "WsimPathAPI"
 SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 GEAR = "WsimGearAPI"
+DRIVE = "WsimDriveAPI"
 
 
 def register() -> None:
