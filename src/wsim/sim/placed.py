@@ -1,0 +1,52 @@
+"""Where joints start: Newton's importer begins each at 0, and bodies may stand elsewhere on them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.scene.world import Body, Joint, World
+
+LEAST = 1e-7  # [rad or m]: nearer to 0 is rounding
+
+
+def place_joints(builder: Any, world: World) -> None:
+    """Give hinges and sliders the coordinates at which their bodies stand in the description.
+
+    Args:
+        builder: The `newton.ModelBuilder` of one world.
+        world: What the stage states.
+    """
+    bodies = {body.prim: body for body in world.bodies}
+    index = {str(label): k for k, label in enumerate(builder.joint_label)}
+    for joint in world.joints:
+        if joint.closing or joint.kind not in ("revolute", "prismatic"):
+            continue
+        at = coordinate(joint, bodies)
+        if abs(at) > LEAST:
+            builder.joint_q[builder.joint_q_start[index[joint.prim]]] = at
+
+
+def coordinate(joint: Joint, bodies: dict[str, Body]) -> float:
+    """Where a hinge or a slider is at the start [rad or m]."""
+    (ahead, facing), (behind, turned) = (_end(joint, bodies, side) for side in ("parent", "child"))
+    axis = np.eye(3)["XYZ".index(joint.axis)]
+    if joint.kind == "prismatic":
+        return float(rotate(facing, axis) @ (behind - ahead))
+    between = multiply(conjugate(facing), turned)
+    sine, cosine = float(between[:3] @ axis), float(between[3])
+    return 2.0 * (math.atan2(sine, cosine) if cosine >= 0.0 else math.atan2(-sine, -cosine))
+
+
+def _end(joint: Joint, bodies: dict[str, Body], side: str) -> tuple[np.ndarray, np.ndarray]:
+    """A joint's frame at one end, in the world."""
+    anchor = np.array(getattr(joint, f"{side}_anchor") or (0.0, 0.0, 0.0))
+    turn = np.array(getattr(joint, f"{side}_turn"))
+    body = bodies.get(getattr(joint, side) or "")
+    if body is None:
+        return anchor, turn
+    facing = np.array(body.rotation)
+    return np.array(body.position) + rotate(facing, anchor), multiply(facing, turn)
