@@ -40,7 +40,7 @@ def _located(path: Path, notes: list[str]) -> str:
     """A URDF's text with the whole path of each mesh; meshes to look at that MuJoCo cannot read are left out."""
     text = path.read_text(encoding="utf-8")
     if "xmlns:" not in text:
-        text = re.sub(r"<(/?)(\w+):", r"<\1\2_", text)  # marks of other tools
+        text = re.sub(r"(</?|\s)(\w+):(?=[\w.-]+\s*[=\s/>])", r"\1\2_", text)  # marks of other tools
     root = ET.fromstring(text)
     for other in [child for child in root if child.tag not in ("link", "joint", "material")]:
         root.remove(other)

@@ -27,7 +27,11 @@ _SLACK = 1e-6  # [rad or m]: by which a start may lie beyond a limit
 class Robot(Handle):
     """A robot in the scene. Its links and joints are called as in its file, but for signs that USD has not."""
 
-    _prim: Usd.Prim = field(repr=False, compare=False)
+    _stage: Usd.Stage = field(repr=False, compare=False)
+
+    @property
+    def _prim(self) -> Usd.Prim:
+        return self._stage.GetPrimAtPath(self.path)
 
     @property
     def links(self) -> list[str]:
@@ -169,7 +173,7 @@ class Robots(Author):
         for part in (prim, *prim.GetChildren()):
             note_line(part)
         mark_articulations(self._stage)
-        return Robot(prim.GetName(), path, "robot", prim)
+        return Robot(prim.GetName(), path, "robot", self._stage)
 
     def _hold(self, call: Call, robot: Usd.Prim, fixed: bool | None) -> None:
         """Make what the robot's trees begin with part of the world, or let it go; joints to the world are put there."""
