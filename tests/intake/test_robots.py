@@ -65,8 +65,8 @@ URDF = """\
       <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
     <collision><origin xyz="0.2 0 0"/><geometry>{shape}</geometry></collision></link>
   <joint name="pivot" type="revolute"><parent link="stand"/><child link="lever"/><origin xyz="0 0 0.5"/>
-    <axis xyz="0 1 0"/><limit lower="-0.5" upper="0.75" effort="7" velocity="1"/><dynamics damping="0.3" friction="0.1"/>
-  </joint></robot>
+    <axis xyz="0 1 0"/><limit lower="-0.5" upper="0.75" effort="7" velocity="1"/>
+    <dynamics damping="0.3" friction="0.1"/></joint></robot>
 """
 
 

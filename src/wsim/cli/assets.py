@@ -110,12 +110,12 @@ def robot(
 
 @assets.command("robots")
 def robots_(json: Json = False) -> None:
-    """List the robots that were taken in."""
+    """List the robots that programs may place: those of wsim, and those that were taken in."""
     if json:
-        _print(robots())
+        _print({id: str(path) for id, path in robots().items()})
         return
-    for id in robots() or ["none; `wsim assets robot FILE --name NAME` takes one in"]:
-        console.print(id, markup=False)
+    for id, path in robots().items():
+        console.print(f"{id}: {path}", markup=False, soft_wrap=True)
 
 
 @assets.command("list")

@@ -7,6 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from wsim.assets import assets_folder
 from wsim.assets.robots import SUFFIX, robots_folder
 from wsim.intake.model import IntakeError
 from wsim.intake.robot_model import Robot
@@ -38,6 +39,8 @@ def take_in(file: Path, name: str, *, replace: bool = False) -> TakenIn:
     if not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", id):
         raise IntakeError(f"name = {name[:80]!r} must begin with a letter a to z and have at most 60 characters")
     path = robots_folder() / f"{id}{SUFFIX}"
+    if (assets_folder() / "robots" / f"{id}.usda").exists():
+        raise IntakeError(f"name = {name!r} is that of a shipped robot; choose another, such as 'own {id}'")
     if path.exists() and not replace:
         raise IntakeError(f"name = {name!r} is there already; --replace takes its place")
     robot = read_robot(file)
