@@ -18,8 +18,8 @@ class Entry:
 
     `impulse` (W, bodies, 6) [N s, N m s about the centre of mass] and `work` (W, bodies) [J] are those of
     `State.body_f`, by the model's bodies; `control` is what of the impulse is the controller's. `drives` (W,) is the
-    work of drives and joint forces on the bodies [J], and `unsure` (W,) how far it may be from that; `effort` (W, dofs) is what each
-    degree of freedom's drive gives now [N m or N].
+    work of drives and joint forces on the bodies [J], and `unsure` (W,) how far it may be from that; `effort` (W, dofs)
+    is what each degree of freedom's drive gives now [N m or N].
     """
 
     impulse: np.ndarray

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
+import warp as wp
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.scene.world import Body, Joint, World
@@ -27,7 +28,11 @@ def place_joints(builder: Any, world: World) -> None:
             continue
         at = coordinate(joint, bodies)
         if abs(at) > LEAST:
-            builder.joint_q[builder.joint_q_start[index[joint.prim]]] = at
+            k = index[joint.prim]
+            builder.joint_q[builder.joint_q_start[k]] = at
+            if joint.parent is None and joint.parent_anchor is not None:
+                # Of a single body on the world the importer puts the zero where the body stands.
+                builder.joint_X_p[k] = wp.transform(joint.parent_anchor, joint.parent_turn)
 
 
 def coordinate(joint: Joint, bodies: dict[str, Body]) -> float:
