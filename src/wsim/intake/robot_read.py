@@ -46,6 +46,9 @@ def read_robot(path: Path) -> Robot:
     by_name = {link.name: link for link in links}
     for root in tree.roots:
         _hang(model, tree, root, owner, by_name, robot)
+    called = [joint.name for joint in robot.joints]
+    if twice := {name for name in called if called.count(name) > 1}:
+        raise IntakeError(f"joints = {', '.join(sorted(twice))} of {path.name}: two have one name in USD; rename one")
     if not model.njnt:
         notes.append("it has no joints")
     drive_joints(model, robot)

@@ -41,21 +41,21 @@ class JointLaw:
         return replace(self, motor_stiffness=stiffness, motor_damping=damping, effort=effort, motor=True)
 
 
-def hinged(prim: Usd.Prim) -> bool:
-    """Whether a joint is a hinge, whose numbers are in degrees in USD."""
+def is_angular(prim: Usd.Prim) -> bool:
+    """Whether a joint's numbers are angles, which USD has in degrees."""
     return bool(prim.IsA(UsdPhysics.RevoluteJoint))
 
 
 def write_drive(prim: Usd.Prim, law: JointLaw, position: float, velocity: float = 0.0) -> None:
     """Author the drive of a joint whose servo goes for a position [rad or m] and a velocity; none if nothing acts."""
-    freedom = "angular" if hinged(prim) else "linear"
+    freedom = "angular" if is_angular(prim) else "linear"
     stiffness, damping = law.spring + law.motor_stiffness, law.damping + law.motor_damping
     if stiffness == 0.0 and damping == 0.0:
         prim.RemoveAPI(UsdPhysics.DriveAPI, freedom)
         return
     target = (law.motor_stiffness * position + law.spring * law.spring_zero) / stiffness if stiffness else 0.0
     speed = law.motor_damping * velocity / damping if damping else 0.0
-    unit = 180.0 / math.pi if hinged(prim) else 1.0
+    unit = 180.0 / math.pi if is_angular(prim) else 1.0
     api = UsdPhysics.DriveAPI.Apply(prim, freedom)
     api.CreateTypeAttr("force")
     api.CreateTargetPositionAttr(target * unit)

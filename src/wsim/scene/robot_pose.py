@@ -8,12 +8,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
-from wsim.scene.robot_drives import hinged
+from wsim.scene.robot_drives import is_angular
 
 
 def one_freedom(prim: Usd.Prim) -> bool:
     """Whether a joint is a hinge or a slider."""
-    return hinged(prim) or bool(prim.IsA(UsdPhysics.PrismaticJoint))
+    return is_angular(prim) or bool(prim.IsA(UsdPhysics.PrismaticJoint))
 
 
 def followed(joint: Usd.Prim) -> tuple[str, float, float] | None:
@@ -22,7 +22,7 @@ def followed(joint: Usd.Prim) -> tuple[str, float, float] | None:
     targets = relation.GetTargets() if relation else []
     if not targets:
         return None
-    unit = math.pi / 180.0 if hinged(joint) else 1.0
+    unit = math.pi / 180.0 if is_angular(joint) else 1.0
     ratio, offset = (joint.GetAttribute(f"newton:mimicCoef{k}").Get() for k in (1, 0))
     return targets[0].name, float(ratio), float(offset) * unit
 
@@ -63,7 +63,7 @@ def _frame(joint: UsdPhysics.Joint, end: str) -> Gf.Matrix4d:
 def _moved(joint: Usd.Prim, coordinate: float) -> Gf.Matrix4d:
     """What a coordinate does in a joint's frame; its axis is X."""
     found = Gf.Matrix4d(1.0)
-    if hinged(joint):
+    if is_angular(joint):
         return found.SetRotate(Gf.Rotation(Gf.Vec3d.XAxis(), math.degrees(coordinate)))
     if one_freedom(joint):
         return found.SetTranslate(Gf.Vec3d(coordinate, 0.0, 0.0))

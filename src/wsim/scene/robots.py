@@ -12,7 +12,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene.articulation import mark_articulations
 from wsim.scene.authoring import Author, Handle, calling_folder, note_line, rotation, set_pose, world_pose
-from wsim.scene.robot_drives import ROBOT, JointLaw, hinged, write_drive
+from wsim.scene.robot_drives import ROBOT, JointLaw, is_angular, write_drive
 from wsim.scene.robot_pose import followed, lowest, one_freedom, place_links
 from wsim.scene.validate import Call, shown, suggestion
 
@@ -104,7 +104,7 @@ class Robot(Handle):
                     f"{prim.GetName()}: its file has no servo for that; give a stiffness and a damping, or of a "
                     "velocity a damping"
                 )
-            unit = math.pi / 180.0 if hinged(prim) else 1.0
+            unit = math.pi / 180.0 if is_angular(prim) else 1.0
             start = float(prim.GetCustomDataByKey(f"{ROBOT}Start") or 0.0)
             goal = start if position is None else call.within("position", position, -36000.0, 36000.0) * unit
             speed = 0.0 if velocity is None else call.within("velocity", velocity, -1e6, 1e6) * unit
@@ -259,7 +259,7 @@ def _start(call: Call, robot: Usd.Prim, pose: str | None, joints: Mapping[str, f
         prim = _named(call, robot, str(name))
         if str(name) not in found:
             call.fail(f"joints: {name} is no hinge and no slider; it starts as in the file")
-        unit = math.pi / 180.0 if hinged(prim) else 1.0
+        unit = math.pi / 180.0 if is_angular(prim) else 1.0
         found[str(name)] = call.number(f"joints[{shown(name)}]", value) * unit
     for prim in movable:
         leader = followed(prim)
@@ -271,13 +271,13 @@ def _start(call: Call, robot: Usd.Prim, pose: str | None, joints: Mapping[str, f
 
 def _limits(prim: Usd.Prim) -> tuple[float, float]:
     """A joint's stops [rad or m]; infinite where it has none."""
-    unit = math.pi / 180.0 if hinged(prim) else 1.0
+    unit = math.pi / 180.0 if is_angular(prim) else 1.0
     low, high = (prim.GetAttribute(f"physics:{end}Limit").Get() for end in ("lower", "upper"))
     return float(low) * unit, float(high) * unit
 
 
 def _within(call: Call, prim: Usd.Prim, value: float) -> None:
-    (low, high), (unit, of) = _limits(prim), (math.pi / 180.0, "deg") if hinged(prim) else (1.0, "m")
+    (low, high), (unit, of) = _limits(prim), (math.pi / 180.0, "deg") if is_angular(prim) else (1.0, "m")
     if not low - _SLACK <= value <= high + _SLACK:
         call.fail(
             f"{prim.GetName()} would start at {value / unit:.6g} {of}, beyond its limits {low / unit:.6g} to "
