@@ -11,7 +11,7 @@ import warp as wp
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.scene.world import Body, Joint, World
 
-LEAST = 1e-7  # [rad or m]: nearer to 0 is rounding
+LEAST = 5e-6  # [rad or m]: nearer to 0 is the rounding of anchors and poses in single precision
 
 
 def place_joints(builder: Any, world: World) -> None:
