@@ -74,3 +74,15 @@ def test_adding_tells_what_was_taken(told, keepsake: Path, tmp_path: Path) -> No
     assert (ended.code, row["id"], row["mass"], row["own"]) == (0, "red_keepsake", 2.0, True)
     wrong = told("assets", "add", tmp_path / "keepsake.stl", "--name", "mug")
     assert (wrong.code, wrong.err.count("\n")) == (2, 1)
+
+
+def test_a_robot_is_taken_in_and_listed(told, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "own"))
+    file = tmp_path / "flap.xml"
+    body = '<body name="flap"><joint name="hinge"/><geom size="0.1"/></body>'
+    file.write_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
+    ended = told("assets", "robot", str(file), "--name", "Flap")
+    assert ended.code == 0 and "flap: 1 links, 4.189 kg, 1 joints, 0 with a motor" in ended.out
+    assert set(json.loads(told("assets", "robots", "--json").out)) == {"desk_arm", "flap"}
+    again = told("assets", "robot", str(file), "--name", "Flap")
+    assert (again.code, "--replace takes its place" in again.err + again.out) == (2, True)

@@ -1,9 +1,11 @@
 """The books of a run: what drives, control and water do to bodies is what changes their energy and momentum."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from pxr import Sdf
 
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.fluid_books import CheckFluidMomentum
@@ -53,6 +55,26 @@ class Push:
 
     def __call__(self, t, simulation):
         simulation.control_force.assign(np.array([[3.0, 0.0, 50.0, 0.0, 0.2, 0.0]], dtype=np.float32))
+
+
+def test_what_a_rotor_takes_of_a_motors_work_does_not_come_to_the_bodies(tmp_path):
+    """A wheel that a motor spins up: its energy is the motor's work less that of the rotor."""
+    own, rotor, speed = 0.5 * 2.0 * 0.2**2, 0.1, math.radians(180.0)
+
+    def build(scene):
+        scene.simulation(duration=1.0, frame_rate=60.0)
+        wheel = scene.cylinder("wheel", radius=0.2, height=0.05, mass=2.0, position=(0.0, 0.0, 1.0))
+        scene.joint_revolute("axle", None, wheel, axis="Z", drive=Drive(velocity=180.0, damping=1.0))
+        axle = scene.stage.GetPrimAtPath("/World/axle")
+        axle.AddAppliedSchema("NewtonJointAPI")
+        axle.CreateAttribute("newton:armature", Sdf.ValueTypeNames.Float, False).Set(rotor)
+
+    recording = run(tmp_path, build)
+    reached = speed * (1.0 - math.exp(-1.0 / (own + rotor)))  # of I w' = c (u - w)
+    work, unsure = (np.cumsum(recording.scalars[name]) for name in ("work/drives", "work/drives_unsure"))
+    assert recording.body_qd[-1, 0, 5] == pytest.approx(reached, rel=1e-3)
+    assert work[-1] == pytest.approx(0.5 * own * reached**2, abs=0.01 * 0.5 * rotor * reached**2 + unsure[-1])
+    assert all(finding.passed for finding in CheckEnergy().run(Evidence(recording)))
 
 
 def kite(scene):

@@ -13,6 +13,7 @@ from rich.text import Text
 from wsim.assets import Asset, get, is_own, load_catalogue, unreadable, user_folder
 from wsim.assets import search as find
 from wsim.assets.catalogue import THUMBNAIL
+from wsim.assets.robots import robots
 from wsim.cli.show import ConsoleProgress, console
 from wsim.intake import removal
 
@@ -73,6 +74,48 @@ def add_(
         console.print(
             f"note: {asset.names[0]!r} is found as {first.asset.id} first; name it more exactly, or by its id"
         )
+
+
+@assets.command("robot")
+def robot(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="URDF or MJCF, with its meshes beside it.")],
+    name: Annotated[str, typer.Option("--name", help="What programs call it: scene.robot(..., NAME).")],
+    replace: Annotated[bool, typer.Option("--replace", help="Take the place of the robot of that name.")] = False,
+    json: Json = False,
+) -> None:
+    """Take a robot in, with its joints, drives, limits, masses and collision masks, for `scene.robot`."""
+    from wsim.intake.robots import take_in  # with MuJoCo
+
+    made = take_in(file, name, replace=replace)
+    read = made.robot
+    if json:
+        _print({
+            "id": made.id, "path": str(made.path), "links": [link.name for link in read.links],
+            "joints": [joint.name for joint in read.joints], "poses": list(read.poses), "notes": read.notes,
+            "mass": sum(link.mass for link in read.links),
+        })  # fmt: skip
+        return
+    driven = [joint.name for joint in read.joints if joint.motor]
+    lines = [
+        f"{made.id}: {len(read.links)} links, {sum(link.mass for link in read.links):.4g} kg, "
+        f"{len(read.joints)} joints, {len(driven)} with a motor",
+        f"  joints: {', '.join(joint.name for joint in read.joints) or 'none'}",
+        f"  poses: {', '.join(read.poses) or 'its reference pose alone'}",
+        *(f"  {note}" for note in read.notes),
+        f"  file: {made.path}",
+    ]
+    for line in lines:
+        console.print(line, markup=False, soft_wrap=True)
+
+
+@assets.command("robots")
+def robots_(json: Json = False) -> None:
+    """List the robots that programs may place: those of wsim, and those that were taken in."""
+    if json:
+        _print({id: str(path) for id, path in robots().items()})
+        return
+    for id, path in robots().items():
+        console.print(f"{id}: {path}", markup=False, soft_wrap=True)
 
 
 @assets.command("list")

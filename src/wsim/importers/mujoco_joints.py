@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -15,7 +15,11 @@ from wsim.scene.world import Give, Joint, Motor, Move
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 JOINT, FLAG = mujoco.mjtJoint, mujoco.mjtDisableBit
-KINDS = {JOINT.mjJNT_HINGE: "revolute", JOINT.mjJNT_SLIDE: "prismatic", JOINT.mjJNT_BALL: "spherical"}
+KINDS: dict[Any, Literal["revolute", "prismatic", "spherical"]] = {
+    JOINT.mjJNT_HINGE: "revolute",
+    JOINT.mjJNT_SLIDE: "prismatic",
+    JOINT.mjJNT_BALL: "spherical",
+}
 FREEDOMS = {JOINT.mjJNT_FREE: 6, JOINT.mjJNT_BALL: 3}
 HINGES = 3  # of a body, at most
 
@@ -27,7 +31,7 @@ def joints_of(model: Any, tree: Tree, b: int) -> list[Joint]:
         return []
     last = numbers[-1]
     place = model.jnt_pos[last].copy()
-    turn = _to_axis(model.jnt_axis[last]) if len(numbers) == 1 else IDENTITY
+    turn = to_axis(model.jnt_axis[last]) if len(numbers) == 1 else IDENTITY
     above, child = tree.parent(b), prim_of(body_name(model, b))
     position, rotation = tree.pose(b)
     at, facing = position + rotate(rotation, place), multiply(rotation, turn)
@@ -182,7 +186,7 @@ def _compound(model: Any, numbers: list[int]) -> dict[str, Any]:
     return {"kind": "compound", "moves": moves, "drive": drive}
 
 
-def _to_axis(axis: np.ndarray) -> np.ndarray:
+def to_axis(axis: np.ndarray) -> np.ndarray:
     """The shortest rotation of +X onto a unit axis, xyzw."""
     x, y, z = (float(c) for c in axis)
     if x < -1.0 + 1e-12:

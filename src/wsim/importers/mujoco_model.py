@@ -8,7 +8,6 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from wsim.geometry.rotations import rotate
 from wsim.geometry.shapes import Solid
 from wsim.importers.mujoco_contacts import give_of, with_contacts
 from wsim.importers.mujoco_equalities import closing, gear
@@ -74,14 +73,7 @@ def _shapes(model: Any, tree: Tree) -> dict[int, Shape]:
 def _body(model: Any, tree: Tree, root: int, known: dict[int, Shape]) -> Body:
     """A body and all that is welded to it, in its frame."""
     prim, members = prim_of(body_name(model, root)), tree.members(root)
-    masses = model.body_mass[members]
-    places, inertias = zip(*(_mass_frame(model, tree, root, b) for b in members), strict=True)
-    mass = float(masses.sum())
-    com = tree.centre(root)
-    inertia = np.zeros((3, 3))
-    for m, place, own in zip(masses, places, inertias, strict=True):
-        arm = place - com
-        inertia += own + m * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # Steiner's theorem
+    mass, com, inertia = tree.weight(members, tree.pose(root))
     shapes = [known[g] for b in members for g in tree.geoms(b) if g in known]
     position, rotation = tree.pose(root)
     kinematic = bool(model.body_mocapid[root] >= 0)
@@ -95,13 +87,6 @@ def _body(model: Any, tree: Tree, root: int, known: dict[int, Shape]) -> Body:
         position=tuple(position.tolist()),
         rotation=tuple(rotation.tolist()),
         kinematic=kinematic,
-        lift=float(model.body_gravcomp[members] @ masses / mass) if mass > 0.0 else 0.0,
+        lift=float(model.body_gravcomp[members] @ model.body_mass[members] / mass) if mass > 0.0 else 0.0,
         shapes=shapes,
     )
-
-
-def _mass_frame(model: Any, tree: Tree, root: int, b: int) -> tuple[np.ndarray, np.ndarray]:
-    """Centre of mass (3,) and inertia about it (3, 3) of one body, in its root's frame."""
-    place, turn = tree.seen_from(root, b)
-    axes = np.stack([rotate(turn, rotate(tree.xyzw(model.body_iquat[b]), axis)) for axis in np.eye(3)], axis=1)
-    return place + rotate(turn, model.body_ipos[b]), axes @ np.diag(model.body_inertia[b]) @ axes.T

@@ -73,26 +73,31 @@ def _form(model: Any, g: int) -> dict[str, Any] | None:
     kind = GEOM(int(model.geom_type[g]))
     if kind in sizes:
         return {"kind": sizes[kind][0], "size": sizes[kind][1]}
-    if kind == GEOM.mjGEOM_ELLIPSOID:
-        return _hull(_ellipsoid(a, b, c))
     if kind == GEOM.mjGEOM_HFIELD:
         return _field(model, int(model.geom_dataid[g]))
-    if kind == GEOM.mjGEOM_MESH:
-        mesh = int(model.geom_dataid[g])
-        first = model.mesh_vertadr[mesh]
-        return _hull(model.mesh_vert[first : first + model.mesh_vertnum[mesh]])
+    if kind in (GEOM.mjGEOM_ELLIPSOID, GEOM.mjGEOM_MESH):
+        return _mesh(*hull_of_points(points_of(model, g)))
     return None
 
 
-def _hull(points: np.ndarray) -> dict[str, Any]:
-    """What MuJoCo collides of a mesh."""
+def points_of(model: Any, g: int) -> np.ndarray:
+    """Points of a mesh, or on an ellipsoid, (n, 3) [m]."""
+    if GEOM(int(model.geom_type[g])) == GEOM.mjGEOM_ELLIPSOID:
+        return _ellipsoid(*(float(x) for x in model.geom_size[g]))
+    mesh = int(model.geom_dataid[g])
+    first = model.mesh_vertadr[mesh]
+    return np.array(model.mesh_vert[first : first + model.mesh_vertnum[mesh]], dtype=np.float64)
+
+
+def hull_of_points(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What MuJoCo collides of a mesh: vertices (n, 3) and triangles (m, 3) of the convex hull."""
     hull = ConvexHull(np.asarray(points, dtype=np.float64), qhull_options="QJ Pp")  # a flat mesh has one, too
     kept, numbers = np.unique(hull.simplices, return_inverse=True)
     vertices, triangles = hull.points[kept], numbers.reshape(-1, 3)
     corners = vertices[triangles]
     outwards = np.einsum("ni,ni->n", np.cross(*(corners[:, k] - corners[:, 0] for k in (1, 2))), hull.equations[:, :3])
     triangles = np.where(outwards[:, None] < 0.0, triangles[:, ::-1], triangles)
-    return _mesh(vertices, triangles)
+    return vertices, triangles
 
 
 def _ellipsoid(a: float, b: float, c: float) -> np.ndarray:

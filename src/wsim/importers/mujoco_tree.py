@@ -59,13 +59,27 @@ class Tree:
 
     def centre(self, root: int) -> np.ndarray:
         """Centre of mass of all that moves with a root, in its frame, (3,) [m]."""
-        model, members = self._model, self.members(root)
-        masses = model.body_mass[members]
-        if not masses.any():
-            return np.array(model.body_ipos[root])
-        poses = [self.seen_from(root, b) for b in members]
-        places = [at + rotate(turn, model.body_ipos[b]) for b, (at, turn) in zip(members, poses, strict=True)]
-        return np.asarray(masses @ np.array(places) / masses.sum())
+        return self.weight(self.members(root), self.pose(root))[1]
+
+    def weight(self, members: list[int], frame: Pose) -> tuple[float, np.ndarray, np.ndarray]:
+        """Mass [kg], centre of mass (3,) [m] and inertia about it (3, 3) [kg m^2] of bodies together, in a frame."""
+        model, (origin, facing) = self._model, frame
+        masses, back = model.body_mass[members], conjugate(facing)
+        places, inertias = [], []
+        for b in members:
+            at, turn = self._poses[b]
+            place, turn = rotate(back, at - origin), multiply(back, turn)
+            places.append(place + rotate(turn, model.body_ipos[b]))
+            own = multiply(turn, self.xyzw(model.body_iquat[b]))
+            axes = np.stack([rotate(own, axis) for axis in np.eye(3)], axis=1)
+            inertias.append(axes @ np.diag(model.body_inertia[b]) @ axes.T)
+        mass = float(masses.sum())
+        com = np.asarray(masses @ np.array(places) / mass) if mass > 0.0 else places[0]
+        inertia = np.zeros((3, 3))
+        for m, place, each in zip(masses, places, inertias, strict=True):
+            arm = place - com
+            inertia += each + m * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # Steiner's theorem
+        return mass, com, inertia
 
     @staticmethod
     def xyzw(wxyz: np.ndarray) -> np.ndarray:

@@ -39,6 +39,7 @@ def accumulate_drive(
     # Data in:
     effort: wp.array(dtype=wp.float32),  # of the drives at the step's end
     joint_f: wp.array(dtype=wp.float32),  # of the controller
+    armature: wp.array(dtype=wp.float32),  # of rotors, which keep a part
     before: wp.array(dtype=wp.float32),
     after: wp.array(dtype=wp.float32),
     dt: float,
@@ -50,12 +51,14 @@ def accumulate_drive(
     """Add a step's work [J] on each degree of freedom, and what the effort's change in the step leaves open of it.
 
     The effort is taken as the mean of both ends (trapezoidal rule), which is right but for the product of both changes.
+    What rotors gain in the step does not come to the bodies.
     """
     dof = wp.tid()
     change = effort[dof] - last[dof]
     mean = 0.5 * (before[dof] + after[dof])
     push = effort[dof] - 0.5 * change
     open_ = wp.abs(change * (after[dof] - before[dof]))
-    work[dof] = work[dof] + dt * (push + joint_f[dof]) * mean
+    spun = armature[dof] * mean * (after[dof] - before[dof])
+    work[dof] = work[dof] + dt * (push + joint_f[dof]) * mean - spun
     unsure[dof] = unsure[dof] + dt * open_
     last[dof] = effort[dof]

@@ -22,8 +22,9 @@ from wsim.scene.errors import SceneError  # noqa: E402
 from wsim.scene.fluids import Fluid  # noqa: E402
 from wsim.scene.joints import Drive  # noqa: E402
 from wsim.scene.materials import Material  # noqa: E402
+from wsim.scene.robots import Robot  # noqa: E402
 from wsim.scene.scene import Scene  # noqa: E402
 from wsim.scene.tanks import Tank  # noqa: E402
 from wsim.scene.tracks import Track  # noqa: E402
 
-__all__ = ["Drive", "Fluid", "Handle", "Material", "Part", "Scene", "SceneError", "Tank", "Track"]
+__all__ = ["Drive", "Fluid", "Handle", "Material", "Part", "Robot", "Scene", "SceneError", "Tank", "Track"]

@@ -65,7 +65,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
         joints=joints,
         gears=gears,
-        apart=list(_meshed(joints, gears)),
+        apart=[*_meshed(joints, gears), *_filtered(prims)],
         springs=springs(prims),
         ropes=ropes(prims),
         contacts=read_contacts(prims),
@@ -81,6 +81,14 @@ def _meshed(joints: list[Joint], gears: list[Gear]) -> Iterator[tuple[str, str]]
     for gear in gears:
         if gear.first in child and gear.second in child:
             yield child[gear.first], child[gear.second]
+
+
+def _filtered(prims: list[Usd.Prim]) -> Iterator[tuple[str, str]]:
+    """What `PhysicsFilteredPairsAPI` keeps from touching: bodies, or shapes."""
+    for prim in prims:
+        if prim.HasAPI(UsdPhysics.FilteredPairsAPI):
+            for path in UsdPhysics.FilteredPairsAPI(prim).GetFilteredPairsRel().GetTargets():
+                yield str(prim.GetPath()), str(path)
 
 
 def _open(path: Path) -> Usd.Stage:

@@ -89,7 +89,7 @@ def _motion(prim: Usd.Prim, kind: str) -> dict[str, Any]:
     if kind not in ("revolute", "prismatic"):
         return {}
     unit = math.pi / 180.0 if kind == "revolute" else 1.0
-    found: dict[str, Any] = {"friction": dry_friction(prim)}
+    found: dict[str, Any] = {"friction": dry_friction(prim), "armature": float(_number(prim, "newton:armature", 0.0))}
     for name, attribute in (("low", "physics:lowerLimit"), ("high", "physics:upperLimit")):
         value = prim.GetAttribute(attribute).Get()
         if value is not None and math.isfinite(value):

@@ -18,8 +18,8 @@ class Entry:
 
     `impulse` (W, bodies, 6) [N s, N m s about the centre of mass] and `work` (W, bodies) [J] are those of
     `State.body_f`, by the model's bodies; `control` is what of the impulse is the controller's. `drives` (W,) is the
-    work of drives and joint forces [J], and `unsure` (W,) how far it may be from that; `effort` (W, dofs) is what each
-    degree of freedom's drive gives now [N m or N].
+    work of drives and joint forces on the bodies [J], and `unsure` (W,) how far it may be from that; `effort` (W, dofs)
+    is what each degree of freedom's drive gives now [N m or N].
     """
 
     impulse: np.ndarray
@@ -86,7 +86,7 @@ class Ledger:
         self._packed.launch(
             accumulate_drive,
             dim=self.dofs,
-            inputs=[effort, control.joint_f, self._rate, state.joint_qd, dt],
+            inputs=[effort, control.joint_f, self.model.joint_armature, self._rate, state.joint_qd, dt],
             outputs=[self._last, self._drives, self._unsure],
             changing=(effort, control.joint_f, state.joint_qd, dt),
         )

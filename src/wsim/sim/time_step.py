@@ -104,7 +104,7 @@ def driven_inertia(world: World, joint: Joint) -> float:
         turned = float(axis @ np.array(body.inertia).reshape(3, 3) @ axis)
         turned += body.mass * float(arm @ arm - (arm @ axis) ** 2)
         yields += 1.0 / max(body.mass if joint.kind == "prismatic" else turned, 1e-12)
-    return 1.0 / max(yields, 1e-12)
+    return 1.0 / max(yields, 1e-12) + joint.armature
 
 
 def _crossing_time(world: World) -> float | None:

@@ -315,10 +315,11 @@ class Losses:
         joint, h = self.ties.joints[k], self._motion.h
         stated, held = self.ties.drive(k), self._evidence.joint(joint)
         at_most = joint.drive is not None and joint.drive.max_effort is not None
+        spun = 0.5 * joint.armature * np.diff(rate**2)  # what its rotor keeps
         if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
             stretch = joint.drive.position - held.position
             rubs, doubt = joint.drive.damping * np.array(over(self._evidence, rate * (rate - joint.drive.velocity)))
-            return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs, doubt
+            return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs - spun, doubt
         if stated is not None and (recorded := alone(self._evidence)) is not None:
             return recorded
         drive = np.asarray(self.ties.track.drive[1:, k], dtype=np.float64)
@@ -326,7 +327,7 @@ class Losses:
         force = np.gradient(drive / h) if len(drive) > 1 else np.zeros(len(drive))
         bend = h * force * change / 12.0  # where both change evenly
         jumps = np.abs(np.diff(change, prepend=change[:1]))
-        return drive * mean + bend, np.abs(bend) + np.abs(drive) * jumps / 6.0
+        return drive * mean + bend - spun, np.abs(bend) + np.abs(drive) * jumps / 6.0
 
     def ahead(self, rows: Rows) -> tuple[Floats, Floats]:
         """What steps of the first order show too little of the energy that they keep, and how unsure it is, (T,) [J].

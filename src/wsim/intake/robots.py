@@ -1,0 +1,52 @@
+"""Take a robot in: from URDF or MJCF to a USD layer among the user's assets, which programs place by its id."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from wsim.assets import assets_folder
+from wsim.assets.robots import SUFFIX, robots_folder
+from wsim.intake.model import IntakeError
+from wsim.intake.robot_model import Robot
+from wsim.intake.robot_read import read_robot
+from wsim.intake.robot_write import write_robot
+
+
+@dataclass(frozen=True)
+class TakenIn:
+    """A robot's layer, and what was read."""
+
+    id: str
+    path: Path
+    robot: Robot
+
+
+def take_in(file: Path, name: str, *, replace: bool = False) -> TakenIn:
+    """Make a robot of a file; its layer is there at the end, whole, or nothing is.
+
+    Args:
+        file: URDF or MJCF, with its meshes where it names them.
+        name: What to call it.
+        replace: Take the place of the one of that name.
+
+    Raises:
+        IntakeError: Naming the field, its value and the way out.
+    """
+    id = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+    if not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", id):
+        raise IntakeError(f"name = {name[:80]!r} must begin with a letter a to z and have at most 60 characters")
+    path = robots_folder() / f"{id}{SUFFIX}"
+    if (assets_folder() / "robots" / f"{id}.usda").exists():
+        raise IntakeError(f"name = {name!r} is that of a shipped robot; choose another, such as 'own {id}'")
+    if path.exists() and not replace:
+        raise IntakeError(f"name = {name!r} is there already; --replace takes its place")
+    robot = read_robot(file)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".taking-", dir=path.parent) as folder:
+        side = Path(folder) / path.name
+        write_robot(side, robot, file.name)
+        side.replace(path)
+    return TakenIn(id, path, robot)
