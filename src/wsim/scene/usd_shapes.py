@@ -72,6 +72,14 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
     )
 
 
+def volume_of(prim: Usd.Prim) -> float:
+    """Of a Gprim [m^3]; 0 of what is no solid."""
+    matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default())
+    found = _measure(prim, tuple(matrix.GetRow3(i).GetLength() for i in range(3)))
+    shape = Shape(prim="", kind=found[0], size=found[1]) if found else read_shape(prim, Gf.Matrix4d(1.0))
+    return solid(shape).volume if shape else 0.0
+
+
 def collides(prim: Usd.Prim) -> bool:
     """Whether a prim is a collider that is switched on."""
     if not prim.HasAPI(UsdPhysics.CollisionAPI):
