@@ -26,7 +26,7 @@ from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mes
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
-from wsim.sim.stated import confirmed, differ_in_known, loose, numbers_of, replicate, state_numbers
+from wsim.sim.stated import confirmed, differ_in_known, numbers_of, plain, replicate, state_numbers
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -157,7 +157,7 @@ def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World]) -> li
     Returns:
         None, with nothing done, where that is not all that there is to know.
     """
-    if not loose(worlds[0]) or not differ_in_known(stages):
+    if not plain(worlds[0]) or not differ_in_known(stages):
         return None
     for world in worlds:
         _weigh_spins(world)
