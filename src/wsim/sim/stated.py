@@ -1,8 +1,8 @@
 """The numbers of a builder that a world's description states, for many worlds at once and without an import each.
 
 Newton's importer takes some thirty milliseconds a stage. Of plain shapes, loose or on joints that make trees, all that
-differs from world to world, where their stages differ in nothing else (`differ_in_known`), is what `wsim.scene.describe`
-has read already.
+differs from world to world, where their stages differ in nothing else (`differ_in_known`), is what
+`wsim.scene.describe` has read already.
 """
 
 from __future__ import annotations
