@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import resource
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from wsim.program.sandbox import available, build, build_many
+from wsim.program.sandbox import BuildResult, Limits, available, build, build_many, many
 
 ISOLATION = [name for name in ("bubblewrap", "landlock") if name in available()] or ["none"]
 BOX = """
@@ -52,8 +53,6 @@ def test_each_stage_is_what_it_is_alone(tmp_path: Path, isolation: str) -> None:
 
 
 def test_one_that_ends_or_holds_up_its_process_costs_the_others_nothing(tmp_path: Path) -> None:
-    from wsim.program.sandbox import Limits
-
     program = tmp_path / "program.py"
     program.write_text(WEAK)
     edges = [0.2, 0.5, 0.7, 0.3, 0.9, 0.4]
@@ -95,3 +94,42 @@ def test_builds_beside_a_thousand_open_files(tmp_path: Path) -> None:
     program.write_text(BOX)
     built = list(build_many(program, [tmp_path / f"{k}.usda" for k in range(2)], [{}, {}], isolation=ISOLATION[0]))
     assert [result.message for result in built if not result.ok] == []
+
+
+def test_what_a_process_did_not_come_to_is_made_in_another_and_not_one_by_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(WEAK)
+    alone: list[Path] = []
+    one = many.build
+
+    def counted(program: Path, stage: Path, *given: Any, **named: Any) -> BuildResult:
+        alone.append(stage)
+        return one(program, stage, *given, **named)
+
+    monkeypatch.setattr(many, "build", counted)
+    edges = [0.2, 0.7, *(0.2 + 0.001 * k for k in range(20))]
+    stages = [tmp_path / f"{k}.usda" for k in range(len(edges))]
+    built = list(build_many(program, stages, [{"edge": edge} for edge in edges]))
+    assert [result.ok for result in built] == [True, False, *[True] * 20]
+    assert alone == [stages[1]]
+
+
+def test_stages_that_a_program_writes_itself_are_cut_where_they_end(tmp_path: Path) -> None:
+    target = os.open(tmp_path / "stages", os.O_RDWR | os.O_CREAT)
+    made = [tmp_path / f"{k}.usda" for k in range(6)]
+    limits = Limits()
+    for text, want in (
+        (b"", []),
+        (b"rubbish" * 9, []),
+        (b"%016d#usda 1.0\n" % 10 + b"%016d" % 0, [True, False]),
+        (b"%016dnonsense" % 8 + b"%016d#usda 1.0" % 9 + b"%016d#usda 1.0" % 11, [False, True]),
+        (b"%016d" % -1, []),
+    ):
+        os.ftruncate(target, 0)
+        os.pwrite(target, text, 0)
+        assert list(many._parted(target, made, limits)) == want
+        for path in made:
+            path.unlink(missing_ok=True)
+    os.close(target)

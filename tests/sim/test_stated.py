@@ -9,7 +9,7 @@ import pytest
 
 from tests.sim.test_batch import Build, carried, held, led, loose
 from tests.sim.test_numbers import _arrays, _stages
-from wsim.scene import Scene
+from wsim.scene import Drive, Scene
 from wsim.scene.describe import describe
 from wsim.sim import model
 from wsim.sim.model import Built, build_batch
@@ -45,6 +45,35 @@ def turned(scene: Scene, draw: np.random.Generator) -> None:
                    rotation_deg=(0, draw.uniform(0, 90), 30))  # fmt: skip
 
 
+def driven(scene: Scene, draw: np.random.Generator) -> None:
+    """Arms on hinges, a slider on one of them, a ball joint: masses, stops, friction and drives; and what is loose."""
+    scene.ground(friction=draw.uniform(0.3, 0.8))
+    scene.box("loose", size=(0.2, 0.2, 0.2), density=draw.uniform(200, 800), position=(3, draw.uniform(), 1))
+    scene.box("arm", size=(0.5, 0.1, 0.1), density=draw.uniform(200, 800), position=(0.3, 0, 2))
+    motor = Drive(position=draw.uniform(-20, 20), velocity=draw.uniform(-5, 5), stiffness=draw.uniform(10, 50),
+                  damping=draw.uniform(1, 5), max_force=40.0)  # fmt: skip
+    scene.joint_revolute("hinge", None, "arm", anchor=(0, 0, 2), axis="Y", drive=motor, friction=draw.uniform(0.1, 0.5),
+                         limits_deg=(-90, draw.uniform(30, 60)))  # fmt: skip
+    scene.box("slide", size=(0.1, 0.1, 0.1), mass=draw.uniform(0.5, 2), position=(0.7, 0, 2))
+    scene.joint_prismatic("rail", "arm", "slide", axis="X", limits=(-0.1, draw.uniform(0.1, 0.2)),
+                          drive=Drive(position=draw.uniform(0, 0.05), stiffness=draw.uniform(50, 90)))  # fmt: skip
+    scene.sphere("bob", radius=0.1, density=draw.uniform(200, 800), position=(0, 2, 1))
+    scene.joint_spherical("ball", None, "bob", anchor=(0, 2, 2))
+
+
+def beyond(scene: Scene, draw: np.random.Generator) -> None:
+    """A drive that is to go beyond a stop."""
+    scene.box("arm", size=(0.5, 0.1, 0.1), density=500.0, position=(0.3, 0, 2))
+    drive = Drive(position=draw.uniform(20, 30), stiffness=20.0)
+    scene.joint_revolute("hinge", None, "arm", anchor=(0, 0, 2), axis="Y", drive=drive, limits_deg=(-20, 20))
+
+
+def swung(scene: Scene, draw: np.random.Generator) -> None:
+    """A rod that hangs from a hinge and starts elsewhere in each world."""
+    scene.box("arm", size=(0.5, 0.1, 0.1), density=500.0, position=(draw.uniform(0.3, 0.4), 0, 2))
+    scene.joint_revolute("hinge", None, "arm", anchor=(0, 0, 2), axis="Y")
+
+
 def _both(folder: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> tuple[Built, Built, bool]:
     """Made as it comes, and by imports alone; and whether the first is by what is stated."""
     stages = _stages(folder, build, 4)
@@ -57,7 +86,7 @@ def _both(folder: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> tuple[
     return made, imported, took[0] is not None
 
 
-@pytest.mark.parametrize("build", [loose, carried, turned, tub, dam])
+@pytest.mark.parametrize("build", [loose, carried, turned, tub, dam, driven])
 def test_it_is_the_imported_batch(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
     made, imported, quick = _both(tmp_path, build, monkeypatch)
     assert quick
@@ -74,7 +103,7 @@ def test_it_is_the_imported_batch(tmp_path: Path, build: Build, monkeypatch: pyt
             assert pair[0].any()
 
 
-@pytest.mark.parametrize("build", [held, led])
+@pytest.mark.parametrize("build", [held, led, beyond, swung])
 def test_what_is_tied_or_led_is_imported(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
     assert not _both(tmp_path, build, monkeypatch)[2]
 

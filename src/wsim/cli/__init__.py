@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import atexit
 import gc
-import signal
 import sys
-import threading
 
 import typer
 
 from wsim import __version__
+from wsim.cli.interrupts import ignore_interrupts, keep_interrupts
 from wsim.cli.verbs import Verbs
 from wsim.door import keep_what_loads
 from wsim.errors import UserError
@@ -38,7 +37,7 @@ def _options(version: bool = typer.Option(False, "--version", help="Print the ve
 
 def main() -> None:
     """Run the command line; a user's mistake is one line and exit code 2."""
-    _keep_interrupts()
+    keep_interrupts()
     keep_what_loads()
     atexit.register(gc.freeze)  # Python would look for garbage among all that Newton made, for seconds
     try:
@@ -46,7 +45,7 @@ def main() -> None:
     except KeyboardInterrupt:  # pressed again while it was winding down
         sys.exit(STOPPED)
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # nothing is left to stop but Python's own end
+        ignore_interrupts()
 
 
 def _run() -> None:
@@ -59,18 +58,3 @@ def _run() -> None:
         if end.code == STOPPED:
             print("wsim: stopped", file=sys.stderr)
         raise
-
-
-def _keep_interrupts() -> None:
-    """Raise a Ctrl-C again that came while an object was being deleted: Python drops what `__del__` raises."""
-    report = sys.unraisablehook
-
-    def again(dropped: sys.UnraisableHookArgs) -> None:
-        if dropped.exc_type is not KeyboardInterrupt:
-            report(dropped)
-            return
-        timer = threading.Timer(0.02, signal.pthread_kill, (threading.main_thread().ident, signal.SIGINT))
-        timer.daemon = True
-        timer.start()
-
-    sys.unraisablehook = again

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics, UsdValidation, Vt
@@ -29,6 +30,7 @@ from wsim.limits import (
     MIN_TIME_STEP,
 )
 from wsim.scene import schema
+from wsim.scene.articulation import joints_of
 from wsim.scene.check_assets import LAYER_SUFFIXES, check_assets
 from wsim.scene.check_colliders import check_solid
 from wsim.scene.check_contacts import contact_problems, surface_problems
@@ -119,7 +121,7 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
         yield from contact_problems(prims)
         wrong = list(motion_problems(stage))
         yield from wrong
-        if not wrong:  # of paths that can be followed
+        if not wrong and any(joints_of(stage)):  # of paths that can be followed
             yield from parted(stage)
             yield from overreached(stage)
 
@@ -177,7 +179,10 @@ def _numbers(prim: Usd.Prim) -> Iterator[str]:
         may_be_infinite = parts[0] in _SPACES and parts[-1] in _MAY_BE_INFINITE
         times = [_NOW, *attribute.GetTimeSamples()]
         for time in times:
-            numbers = _as_array(attribute.Get(time))
+            value = attribute.Get(time)
+            if isinstance(value, float) and math.isfinite(value):
+                continue
+            numbers = _as_array(value)
             if numbers is None:
                 break
             bad = np.isnan(numbers) if may_be_infinite else ~np.isfinite(numbers)
@@ -186,13 +191,13 @@ def _numbers(prim: Usd.Prim) -> Iterator[str]:
                 break
 
 
-def _as_array(value: object) -> np.ndarray | None:
+def _as_array(value: Any) -> np.ndarray | None:
     """The floating-point numbers of a USD value, in one row; None if it holds none."""
     if isinstance(value, float):
         return np.array([value])
-    if isinstance(value, _QUATERNIONS):
+    if type(value) in _QUATERNIONS:
         return np.array([value.GetReal(), *value.GetImaginary()], dtype=np.float64)
-    if isinstance(value, _FLOATS):
+    if type(value) in _FLOATS:
         try:
             array = np.array(value, dtype=np.float64).reshape(-1)
         except (TypeError, ValueError):
@@ -201,8 +206,8 @@ def _as_array(value: object) -> np.ndarray | None:
     return None
 
 
-_QUATERNIONS = (Gf.Quatd, Gf.Quatf, Gf.Quath)
-_FLOATS = tuple(
+_QUATERNIONS = frozenset((Gf.Quatd, Gf.Quatf, Gf.Quath))
+_FLOATS = frozenset(
     getattr(module, name)
     for module in (Gf, Vt)
     for name in dir(module)
@@ -267,15 +272,16 @@ def _mass(prim: Usd.Prim) -> Iterator[str]:
 
 def _wsim(prim: Usd.Prim) -> Iterator[str]:
     """What wsim's own schemas say."""
-    if schema.has(prim, schema.SCENE):
+    applied = schema.applied(prim)
+    if schema.SCENE in applied:
         for name, limit, unit in (("duration", MAX_DURATION, "s"), ("frameRate", MAX_FRAME_RATE, "Hz")):
             yield from _bounded(prim.GetAttribute(f"wsim:{name}"), limit, unit)
         yield from _bounded(prim.GetAttribute("wsim:timeStep"), MAX_TIME_STEP, "s", zero=True, low=MIN_TIME_STEP)
-    if schema.has(prim, schema.FLUID):
+    if schema.FLUID in applied:
         yield from _fluid(prim)
-    if schema.has(prim, schema.SURFACE_VELOCITY):
+    if schema.SURFACE_VELOCITY in applied:
         yield from _within(prim.GetAttribute("wsim:surfaceVelocity"), MAX_SPEED, "m/s")
-    if schema.has(prim, schema.CONTAINER):
+    if schema.CONTAINER in applied:
         yield from _bounded(prim.GetAttribute("wsim:innerSize"), MAX_SIZE, "m")
 
 

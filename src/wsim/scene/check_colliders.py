@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from pxr import Gf, Usd, UsdGeom, UsdPhysics
+from pxr import Usd, UsdGeom, UsdPhysics
 
 from wsim.scene.articulation import body_above
-from wsim.scene.solids import solid
-from wsim.scene.usd_shapes import Array, collides, read_shape
+from wsim.scene.usd_shapes import Array, collides, volume_of
 
 _FLAT = 1e-5  # of a mesh's extent: MuJoCo's own bound is 1e-6, in single precision
 _MOST_TRIANGLES = 1_000_000  # of a mesh that collides
@@ -63,8 +62,7 @@ def _mass(prim: Usd.Prim) -> float:
 
 
 def _has_volume(collider: Usd.Prim) -> bool:
-    shape = read_shape(collider, Gf.Matrix4d(1.0)) if collider.IsA(UsdGeom.Gprim) else None
-    return shape is not None and solid(shape).volume > 0.0
+    return bool(collider.IsA(UsdGeom.Gprim)) and volume_of(collider) > 0.0
 
 
 def _mesh(mesh: UsdGeom.Mesh) -> Iterator[str]:

@@ -16,7 +16,7 @@ _MOST = {"friction": MAX_FRICTION, "restitution": 1.0, "rolling": 1.0}
 
 def surface_problems(prim: Usd.Prim) -> Iterator[str]:
     """Coefficients of one prim, a material or a pair, that are out of range."""
-    if schema.has(prim, schema.MATERIAL) or schema.has(prim, schema.CONTACT):
+    if {schema.MATERIAL, schema.CONTACT}.intersection(schema.applied(prim)):
         for name, value in stated(prim).items():
             # What is no number, or not finite, is told elsewhere.
             if isinstance(value, float) and math.isfinite(value) and not 0.0 <= value <= _MOST[name]:

@@ -18,7 +18,7 @@ from wsim.scene.world import Guide, Rope, Spring
 
 def cord_problems(prim: Usd.Prim) -> Iterator[str]:
     """Problems of a prim that is a spring or a rope; none of any other."""
-    if not (schema.has(prim, schema.SPRING) or schema.has(prim, schema.ROPE)):
+    if not {schema.SPRING, schema.ROPE}.intersection(schema.applied(prim)):
         return
     path = prim.GetPath()
     problems = list(_ends(prim))

@@ -56,6 +56,8 @@ def _order(xformable: UsdGeom.Xformable) -> Iterator[str]:
 
 def _connections(attribute: Usd.Attribute) -> Iterator[str]:
     """A connection to nothing, or one that comes back to where it starts."""
+    if not attribute.HasAuthoredConnections():
+        return
     stage = attribute.GetPrim().GetStage()
     seen, waiting = {attribute.GetPath()}, list(attribute.GetConnections())
     for path in waiting:

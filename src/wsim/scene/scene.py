@@ -170,9 +170,10 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued, Robots):
         except OSError as error:
             call.fail(f"path = {shown(str(target))}: its folder cannot be made, {error.strerror}; take another")
         side = target.with_name(f".{target.stem}.part{target.suffix}")
-        if any(joint_problems(self._stage)):
-            mark_articulations(self._stage)  # joints that the program made through USD alone
-        self._root_well()
+        if any(joints_of(self._stage)):
+            if any(joint_problems(self._stage)):
+                mark_articulations(self._stage)  # joints that the program made through USD alone
+            self._root_well()
         self._bake_paths(self._duration, self._frame_rate)
         self._stage.GetRootLayer().Export(str(side))
         side.replace(target)
@@ -184,11 +185,10 @@ class Scene(Cables, Contacts, Motions, Views, Catalogued, Robots):
 
     def _root_well(self) -> None:
         """Begin trees of joints that hang on nothing where single precision can factor their mass matrix."""
-        if any(joints_of(self._stage)):
-            from wsim.scene.rooting import better_roots  # brings pydantic, as masses do
+        from wsim.scene.rooting import better_roots  # brings pydantic, as masses do
 
-            if tops := better_roots(self._stage):
-                mark_articulations(self._stage, tops)
+        if tops := better_roots(self._stage):
+            mark_articulations(self._stage, tops)
 
     def _author_run(self, step: float | None, seed: int | None) -> None:
         double = Sdf.ValueTypeNames.Double

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pxr import Gf, Usd, UsdGeom, UsdPhysics, UsdShade
 
 from wsim.geometry.rotations import matrices, multiply
+from wsim.scene.solids import solid
 from wsim.scene.world import Quat, Shape, ShapeKind, Vec3
 
 Array = NDArray[np.float64]
@@ -60,6 +61,14 @@ def read_shape(prim: Usd.Prim, base: Gf.Matrix4d) -> Shape | None:
         triangles=[] if triangles is None else triangles.tolist(),
         normals=[] if normals is None else normals.reshape(-1, 3).tolist(),
     )
+
+
+def volume_of(prim: Usd.Prim) -> float:
+    """Of a Gprim [m^3]; 0 of what is no solid."""
+    matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(Usd.TimeCode.Default())
+    found = _measure(prim, tuple(matrix.GetRow3(i).GetLength() for i in range(3)))
+    shape = Shape(prim="", kind=found[0], size=found[1]) if found else read_shape(prim, Gf.Matrix4d(1.0))
+    return solid(shape).volume if shape else 0.0
 
 
 def collides(prim: Usd.Prim) -> bool:

@@ -27,7 +27,7 @@ from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
 from wsim.sim.placed import place_joints
-from wsim.sim.stated import confirmed, differ_in_known, loose, numbers_of, replicate, state_numbers
+from wsim.sim.stated import confirmed, differ_in_known, numbers_of, plain, replicate, state_numbers
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -158,7 +158,7 @@ def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World]) -> li
     Returns:
         None, with nothing done, where that is not all that there is to know.
     """
-    if not loose(worlds[0]) or not differ_in_known(stages):
+    if not plain(worlds[0]) or not differ_in_known(stages):
         return None
     for world in worlds:
         _weigh_spins(world)

@@ -1,20 +1,21 @@
 """The numbers of a builder that a world's description states, for many worlds at once and without an import each.
 
-Newton's importer takes some thirty milliseconds a stage. Of loose bodies of plain shapes all that differs from world to
-world, where their stages differ in nothing else (`differ_in_known`), is what `wsim.scene.describe` has read already.
+Newton's importer takes some thirty milliseconds a stage. Of plain shapes, loose or on joints that make trees, all that
+differs from world to world, where their stages differ in nothing else (`differ_in_known`), is what
+`wsim.scene.describe` has read already.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from newton import GeoType, JointType
 
-from wsim.scene.world import Body, Shape, World
+from wsim.scene.world import Body, Joint, Shape, World
 from wsim.sim.numbers import plain_text, values_of
 from wsim.solvers.contact_config import ContactConfig
 
@@ -25,7 +26,8 @@ Array = np.ndarray
 KNOWN = re.compile(
     rb"^( *(?:uniform )?[a-z0-9]+(?:\[\])? (?:xformOp:[\w:]+|wsim:\w+|size|height|radius|extent|physics:(?:mass|"
     rb"density|centerOfMass|diagonalInertia|principalAxes|velocity|angularVelocity|dynamicFriction|staticFriction|restitution|"
-    rb"gravityDirection|gravityMagnitude)) = )[-+\w.,() \[\]]*$",
+    rb"gravityDirection|gravityMagnitude|lowerLimit|upperLimit)|newton:friction|"
+    rb"drive:\w+:physics:(?:targetPosition|targetVelocity|stiffness|damping)) = )[-+\w.,() \[\]]*$",
     re.MULTILINE,
 )
 TEXT = b"#usda"
@@ -35,14 +37,25 @@ CLOSE = 1e-5  # relative: the importer adds up in single precision
 NEAR = 1e-6  # of a pose likewise [m], and of a quaternion
 MASSES = ("body_mass", "body_inv_mass", "body_com", "body_inertia", "body_inv_inertia")
 GRAVITY = "_gravity"
+# What a builder has of each degree of freedom; of a stop or a drive that no world has, any one number will do.
+JOINTS: dict[str, Callable[[Joint], float]] = {
+    "joint_limit_lower": lambda joint: joint.low or 0.0,
+    "joint_limit_upper": lambda joint: joint.high or 0.0,
+    "joint_friction": lambda joint: joint.friction,
+    "joint_target_q": lambda joint: joint.drive.position if joint.drive else 0.0,
+    "joint_target_qd": lambda joint: joint.drive.velocity if joint.drive else 0.0,
+    "joint_target_ke": lambda joint: joint.drive.stiffness if joint.drive else 0.0,
+    "joint_target_kd": lambda joint: joint.drive.damping if joint.drive else 0.0,
+}
 NO_MOMENT = 1e-6  # of the trace: a product of inertia below is rounding
 
 
-def loose(world: World) -> bool:
-    """Whether a world has loose bodies of plain shapes alone, which go where contacts and velocities take them."""
-    tied = (world.joints, world.gears, world.springs, world.ropes, world.foreign)
+def plain(world: World) -> bool:
+    """Whether a world has bodies of plain shapes alone, loose or on joints that make trees."""
+    tied = (world.gears, world.springs, world.ropes, world.foreign)
     return (
         not any(tied)
+        and not any(joint.closing for joint in world.joints)
         and all(shape.kind in PLAIN for shape in _shapes(world))
         and not any(body.path for body in world.bodies)
     )
@@ -148,29 +161,71 @@ def numbers_of(first: Any, worlds: Sequence[World]) -> dict[str, Array] | None:
 
     Args:
         first: The builder of the first of the worlds, its bodies' numbers stated.
-        worlds: All, loose and of one topology.
+        worlds: All, plain and of one topology.
 
     Returns:
         None where the builder has what no description states.
     """
     shapes = {shape.prim: shape for shape in _shapes(worlds[0])}
     prims = [body.prim for body in worlds[0].bodies]
-    joints = [joint for k in range(first.body_count) if (joint := _free_joint(first, k)) is not None]
-    if list(first.body_label) != prims or len(joints) != len(prims) or first.joint_count != len(prims):
+    free = {k: joint for k in range(first.body_count) if (joint := _free_joint(first, k)) is not None}
+    tied = [joint.prim for joint in worlds[0].joints]
+    named = {str(first.joint_label[j]): j for j in range(first.joint_count) if j not in free.values()}
+    if (
+        sorted(first.body_label) != sorted(prims)
+        or set(tied) != named.keys()
+        or len(tied) + len(free) != first.joint_count
+    ):
+        return None
+    order = [prims.index(label) for label in first.body_label]
+    held = [j for k, j in enumerate(order) if k not in free]
+    if any(_moved(world, worlds[0], held) for world in worlds[1:]) or any(map(_beyond, worlds)):
         return None
     if any(label not in shapes for label in first.shape_label):
         return None
-    bodies = _of_bodies(worlds)
+    bodies = {name: own[:, order] for name, own in _of_bodies(worlds).items()}
     found = {name: _changed(_held(first, name), own) for name, own in bodies.items()}
     for name, width in (("joint_q", 7), ("joint_qd", 6)):
         starts, source = getattr(first, f"{name}_start"), bodies[f"body_{name[6:]}"]
-        places = np.array([starts[joint] for joint in joints], dtype=np.int64)
+        places = np.array([starts[joint] for joint in free.values()], dtype=np.int64)
         found[name] = np.repeat(np.array(getattr(first, name), dtype=np.float32)[None], len(worlds), axis=0)
         columns = (places[:, None] + np.arange(width)).ravel()
-        found[name][:, columns] = _changed(found[name][0][columns], source.reshape(len(worlds), -1))
+        found[name][:, columns] = _changed(found[name][0][columns], source[:, list(free)].reshape(len(worlds), -1))
     gravity = np.array([world.gravity for world in worlds], dtype=np.float32)
     found[GRAVITY] = _changed(np.asarray(first.gravity, dtype=np.float32), gravity)
-    return found | _of_shapes(first, worlds)
+    return found | _of_joints(first, worlds, named) | _of_shapes(first, worlds)
+
+
+def _moved(world: World, first: World, bodies: Sequence[int]) -> bool:
+    """Whether bodies that joints hold start otherwise than in the first world: their coordinates follow from it."""
+    names = ("position", "rotation", "velocity", "angular_velocity")
+    return any(getattr(world.bodies[k], name) != getattr(first.bodies[k], name) for k in bodies for name in names)
+
+
+def _beyond(world: World) -> bool:
+    """Whether a drive is to go where a stop does not let it: Newton then takes the middle of its way for the target."""
+    driven = [joint for joint in world.joints if joint.drive]
+    return any(
+        not (joint.low if joint.low is not None else -np.inf)
+        < joint.drive.position  # type: ignore[union-attr]
+        < (joint.high if joint.high is not None else np.inf)
+        for joint in driven
+    )
+
+
+def _of_joints(first: Any, worlds: Sequence[World], index: Mapping[str, int]) -> dict[str, Array]:
+    """Stops, friction and drives of hinges and sliders, (N, degrees of freedom), under the builder's names."""
+    own = [k for k, joint in enumerate(worlds[0].joints) if joint.kind in ("revolute", "prismatic")]
+    at = [index[worlds[0].joints[k].prim] for k in own]
+    found = {}
+    for name, told in JOINTS.items():
+        rows = [[told(world.joints[k]) for k in own] for world in worlds]
+        numbers = np.array(rows, dtype=np.float64).astype(np.float32).reshape(len(worlds), -1)
+        found[name] = np.repeat(_held(first, name)[None], len(worlds), axis=0)
+        starts = first.joint_q_start if name == "joint_target_q" else first.joint_qd_start
+        places = [starts[j] for j in at]
+        found[name][:, places] = _changed(found[name][0][places], numbers)
+    return found
 
 
 def _of_shapes(first: Any, worlds: Sequence[World]) -> dict[str, Array]:

@@ -6,6 +6,7 @@ import errno
 import os
 import stat
 import traceback
+from collections.abc import Callable
 from typing import Any
 
 from pxr import Work
@@ -20,7 +21,7 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     """Run the program's `build` and copy the stage that it authored to the parent's descriptor."""
     program = job["program"]
     try:
-        author(job, program)
+        copy(author(job, program), job["stage_fd"])
     except BaseException as error:  # noqa: BLE001 - whatever a program raises is a finding
         # What the program piled up hangs on its frames; without it there is memory to write the report with.
         traceback.clear_frames(error.__traceback__)
@@ -28,8 +29,8 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     return {"outcome": "ok"}
 
 
-def author(job: dict[str, Any], program: str) -> None:
-    """Copy the stage that a program makes of `params` and `seed` to `stage_fd`; raises what the program raises."""
+def author(job: dict[str, Any], program: str) -> str:
+    """Save the stage that a program makes of `params` and `seed`; its path. Raises what the program raises."""
     Work.SetConcurrencyLimit(1)  # one address space is shared by all threads, and a large machine would start many
     module = load(program)
     call = function(module, "build", "scene")
@@ -50,16 +51,29 @@ def author(job: dict[str, Any], program: str) -> None:
             limit = job["limits"]["file_bytes"]
             raise OSError(errno.EFBIG, f"the stage has more than the {limit} bytes that are allowed") from None
         raise
-    _copy(path, job["stage_fd"])
+    return path
 
 
-def _copy(path: str, target: int) -> None:
+def copy(path: str, target: int, head: Callable[[int], bytes] | None = None) -> None:
+    """Make a file all that a descriptor holds; or append it, behind what `head` makes of its size."""
     source = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-    if not stat.S_ISREG(os.fstat(source).st_mode):
-        raise OSError(f"{path} is not a file")
-    os.ftruncate(target, 0)
-    os.lseek(target, 0, os.SEEK_SET)
-    while chunk := os.read(source, _CHUNK):
-        view = memoryview(chunk)
-        while view:
-            view = view[os.write(target, view) :]
+    try:
+        status = os.fstat(source)
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(f"{path} is not a file")
+        if head is None:
+            os.ftruncate(target, 0)
+            os.lseek(target, 0, os.SEEK_SET)
+        else:
+            write(target, head(status.st_size))
+        while chunk := os.read(source, _CHUNK):
+            write(target, chunk)
+    finally:
+        os.close(source)
+
+
+def write(target: int, data: bytes) -> None:
+    """Write all of it."""
+    view = memoryview(data)
+    while view:
+        view = view[os.write(target, view) :]

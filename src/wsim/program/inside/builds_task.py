@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from typing import Any
 
-from wsim.program.inside.build_task import author
+from wsim.program.inside.build_task import author, copy, write
+
+SIZE = 16  # digits ahead of each stage, which say how many bytes it has
 
 
 def run(job: dict[str, Any]) -> dict[str, Any]:
-    """Copy each stage to its descriptor; what fails leaves its own empty, and is told of by who builds it alone."""
-    for each in job["each"]:
+    """Append each stage to `stages_fd`; of what fails a size of 0 alone, and it is told of by who builds it alone."""
+    target = job["stages_fd"]
+    for params in job["each"]:
+        begin = os.lseek(target, 0, os.SEEK_END)
         try:
-            author({**job, **each}, job["program"])
+            copy(author({**job, "params": params}, job["program"]), target, _head)
         except BaseException:  # noqa: BLE001 - whatever a program raises
-            with contextlib.suppress(OSError):
-                os.ftruncate(each["stage_fd"], 0)
+            os.ftruncate(target, begin)
+            os.lseek(target, begin, os.SEEK_SET)
+            write(target, _head(0))
     return {"outcome": "ok"}
+
+
+def _head(size: int) -> bytes:
+    return b"%0*d" % (SIZE, size)

@@ -20,5 +20,7 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     paths = [Path(path) for path in job["stages"]]
     return {
         "outcome": "ok",
-        "sound": [k for k, path in enumerate(paths) if path.stat().st_size and not check_stage(path, roots)],
+        "sound": [
+            k for k, path in enumerate(paths) if path.is_file() and path.stat().st_size and not check_stage(path, roots)
+        ],
     }

@@ -40,7 +40,10 @@ def apply(prim: Usd.Prim, name: str, values: dict[str, tuple[Sdf.ValueTypeName, 
 
 def has(prim: Usd.Prim, name: str) -> bool:
     """Whether the API schema `name` is applied, whether or not USD knows it."""
-    if name in prim.GetAppliedSchemas():
-        return True
-    listed = prim.GetMetadata("apiSchemas")
-    return listed is not None and name in listed.GetAddedOrExplicitItems()
+    return name in applied(prim)
+
+
+def applied(prim: Usd.Prim) -> list[str]:
+    """The API schemas that are applied to a prim; `GetAppliedSchemas` leaves out those that USD does not know."""
+    found: list[str] = prim.GetPrimTypeInfo().GetAppliedAPISchemas()
+    return found
