@@ -1,4 +1,4 @@
-"""Joints start where their bodies stand."""
+"""Joints start where their bodies stand, and drives go where they are set."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wsim.scene import Scene
+from wsim.recording import read
+from wsim.scene import Drive, Scene
 from wsim.scene.authoring import rotation, set_pose
 from wsim.sim import Simulation
 
@@ -35,3 +36,19 @@ def test_a_hinge_and_a_slider_keep_where_their_bodies_were_moved_to(tmp_path: Pa
     starts = simulation.model.joint_q_start.numpy()
     found = {label: float(simulation.state.joint_q.numpy()[starts[k]]) for k, label in enumerate(labels)}
     assert found == pytest.approx({"hinge": turn, "rail": 0.25}, abs=1e-5)
+
+
+def test_a_drive_presses_against_a_stop_that_it_is_to_go_beyond(tmp_path: Path) -> None:
+    """With k (target - stop), as the spring of a preloaded hinge or a gripper does."""
+    scene = Scene()
+    scene.simulation(gravity=(0.0, 0.0, 0.0), duration=0.5)
+    scene.box("jaw", size=(0.1, 0.1, 0.1), position=(0.0, 0.0, 1.0), mass=1.0)
+    drive = Drive(position=0.2, stiffness=100.0, damping=20.0)
+    scene.joint_prismatic("rail", None, "jaw", axis="X", limits=(-0.1, 0.1), drive=drive)
+    Simulation(scene.save(tmp_path / "stage.usda"), "cpu").run(tmp_path / "r.rrd")
+    run = read(tmp_path / "r.rrd")
+    assert run.body_q[-1, 0, 0] == pytest.approx(0.1, abs=1e-5)
+    assert run.ties is not None
+    h = run.time[-1] - run.time[-2]
+    assert run.ties.drive[-1, 0] == pytest.approx(10.0 * h, rel=1e-3)
+    assert run.ties.stop[-1, 0] == pytest.approx(-10.0 * h, rel=1e-3)

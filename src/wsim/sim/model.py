@@ -26,7 +26,7 @@ from wsim.sim.fluids import Seeded, add_seeded, containers_of, largest_step, mes
 from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
-from wsim.sim.placed import place_joints
+from wsim.sim.placed import aim_drives, place_joints
 from wsim.sim.stated import confirmed, differ_in_known, numbers_of, plain, replicate, state_numbers
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
@@ -186,6 +186,7 @@ def _import(stage: Path, world: World, config: Any | None) -> _One:
     single.add_usd(importable(stage, world), ignore_paths=ignore, apply_up_axis_from_stage=True)
     complete_articulations(single)
     place_joints(single, world)
+    aim_drives(single, world)
     stated = state_numbers(single, world)
     breakable = add_constraints(single, world)
     fluids = _add_fluids(single, world, config) if config else {}

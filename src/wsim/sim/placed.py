@@ -1,4 +1,4 @@
-"""Where joints start: Newton's importer begins each at 0, and bodies may stand elsewhere on them."""
+"""Where joints start and drives go: Newton's importer begins each joint at 0, and turns a target beyond a stop back."""
 
 from __future__ import annotations
 
@@ -33,6 +33,17 @@ def place_joints(builder: Any, world: World) -> None:
             if joint.parent is None and joint.parent_anchor is not None:
                 # Of a single body on the world the importer puts the zero where the body stands.
                 builder.joint_X_p[k] = wp.transform(joint.parent_anchor, joint.parent_turn)
+
+
+def aim_drives(builder: Any, world: World) -> None:
+    """Give drives the targets that are stated.
+
+    For one beyond a stop, as of a preloaded hinge, the importer takes the middle between the stops.
+    """
+    index = {str(label): k for k, label in enumerate(builder.joint_label)}
+    for joint in world.joints:
+        if joint.drive is not None and joint.prim in index and joint.kind in ("revolute", "prismatic"):
+            builder.joint_target_q[builder.joint_q_start[index[joint.prim]]] = joint.drive.position
 
 
 def coordinate(joint: Joint, bodies: dict[str, Body]) -> float:

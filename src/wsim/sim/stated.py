@@ -179,7 +179,7 @@ def numbers_of(first: Any, worlds: Sequence[World]) -> dict[str, Array] | None:
         return None
     order = [prims.index(label) for label in first.body_label]
     held = [j for k, j in enumerate(order) if k not in free]
-    if any(_moved(world, worlds[0], held) for world in worlds[1:]) or any(map(_beyond, worlds)):
+    if any(_moved(world, worlds[0], held) for world in worlds[1:]):
         return None
     if any(label not in shapes for label in first.shape_label):
         return None
@@ -200,17 +200,6 @@ def _moved(world: World, first: World, bodies: Sequence[int]) -> bool:
     """Whether bodies that joints hold start otherwise than in the first world: their coordinates follow from it."""
     names = ("position", "rotation", "velocity", "angular_velocity")
     return any(getattr(world.bodies[k], name) != getattr(first.bodies[k], name) for k in bodies for name in names)
-
-
-def _beyond(world: World) -> bool:
-    """Whether a drive is to go where a stop does not let it: Newton then takes the middle of its way for the target."""
-    driven = [joint for joint in world.joints if joint.drive]
-    return any(
-        not (joint.low if joint.low is not None else -np.inf)
-        < joint.drive.position  # type: ignore[union-attr]
-        < (joint.high if joint.high is not None else np.inf)
-        for joint in driven
-    )
 
 
 def _of_joints(first: Any, worlds: Sequence[World], index: Mapping[str, int]) -> dict[str, Array]:
