@@ -63,7 +63,9 @@ def _goes(evidence: Evidence, firsts: Rows) -> Bools:
     calm = books.judged & ~books.hit & ~motion.meets
     carried = np.linalg.norm(books.wanted[spans, :, :3].mean(axis=1), axis=2) > ENOUGH * max(evidence.gravity, 1.0)
     solid = [all(shape.kind != "mesh" for shape in body.shapes) for body in evidence.world.bodies]
-    return np.asarray(calm[spans].all(axis=1) & carried & ~motion.jointed & np.array(solid, dtype=bool))
+    way = motion.surface_speed[spans].max(axis=1) * (evidence.time[spans[:, -1]] - evidence.time[firsts])[:, None]
+    found = calm[spans].all(axis=1) & carried & ~motion.jointed & np.array(solid, dtype=bool)
+    return np.asarray(found & (way > hair(evidence)))  # the others stand (`wsim.judge.books.standing`)
 
 
 def _aloft(copies: Sequence[Evidence], copy: Rows, first: Rows, asked: Bools) -> Bools:
