@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from tests.judge.test_turned import simulated
-from tests.judge.theory import EDGE, G, ask, box, record, slab, times
+from tests.judge.theory import EDGE, G, ask, box, record, slab, times, with_world
+from wsim.judge import judge
 from wsim.judge.checks.forces import CheckForces
 
 
@@ -72,4 +73,18 @@ def wheel(scene):
 
 def test_what_rolls_against_resistance_slips_inside_the_cone(tmp_path):
     """By C / mu x / sqrt(1 - x^2) of its rolling (`wsim.judge.books.sharing`), which is no creep against friction."""
-    assert off(simulated(tmp_path, wheel, 0.6)) == []
+    recording = simulated(tmp_path, wheel, 0.6)
+    assert judge(recording).failures == []
+    for by in (0.9, 1.1):
+        assert judge(resisted(recording, by)).status == "rejected"
+
+
+def resisted(recording, by):
+    """The same motion, of a world whose surfaces are said to resist rolling more."""
+
+    def other(owner):
+        shapes = [s.model_copy(update={"rolling": by * s.rolling}) for s in owner.shapes]
+        return owner.model_copy(update={"shapes": shapes})
+
+    world = recording.world
+    return with_world(recording, bodies=[*map(other, world.bodies)], statics=[*map(other, world.statics)])

@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.judge.theory import ask, edited, only
-from wsim.judge.books.driven import given_within, held
+from tests.judge.theory import ask, edited, only, with_world
+from wsim.judge import judge
+from wsim.judge.books.driven import given_within, held, settled
 from wsim.judge.books.laws import Laws
 from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.forces import CheckForces
@@ -128,3 +129,52 @@ def test_a_drive_that_is_struck_damps_by_how_far_it_went(tmp_path, build, second
         joints[blow + 1, 0, 13] -= 0.3 * (by_rates - damped) * h[blow]
         told = replace(recording, ties=replace(recording.ties, joints=joints))
         assert any("otherwise than by its drive's law" in f.message for f in ask(CheckRecordedTies(), told))
+
+
+def four_bar(scene):
+    """Links of 0.075, 0.2, 0.15 and 0.225 m, whose crank a servo turns to 1 rad within 33 ms."""
+    scene.simulation(frame_rate=60)
+    a, d, angle = np.array([0.0, 2.5]), np.array([0.225, 2.5]), 1.0
+    b = a + 0.075 * np.array([math.cos(angle), math.sin(angle)])
+    way = d - b
+    r = float(np.hypot(*way))
+    x = (0.2**2 - 0.15**2 + r * r) / (2.0 * r)
+    c = b + x * way / r + math.sqrt(0.2**2 - x * x) * np.array([-way[1], way[0]]) / r
+    links = {"crank": (a, b, 0.03, 0.0), "coupler": (b, c, 0.08, -0.015), "rocker": (d, c, 0.06, -0.03)}
+    for name, (start, end, mass, y) in links.items():
+        (x0, z0), (x1, z1) = start, end
+        lean, length = math.degrees(math.atan2(z1 - z0, x1 - x0)), float(np.hypot(x1 - x0, z1 - z0))
+        scene.box(name, size=(length, 0.01, 0.01), position=((x0 + x1) / 2, y, (z0 + z1) / 2), mass=mass,
+                  rotation_deg=(0, -lean, 0))  # fmt: skip
+    servo = Drive(position=math.degrees(1.0), stiffness=5, damping=0.05)
+    pins = [("p1", None, "crank", a, servo), ("p2", "crank", "coupler", b, None), ("p3", "coupler", "rocker", c, None)]
+    for name, parent, child, (x0, z0), drive in [*pins, ("p4", None, "rocker", d, None)]:
+        scene.joint_revolute(name, parent, child, anchor=(x0, 0, z0), axis=(0, -1, 0), drive=drive)
+
+
+def stiffer(recording, by):
+    """The same motion, of a world whose drives are said to be stiffer."""
+
+    def other(joint):
+        drive = joint.drive and joint.drive.model_copy(update={"stiffness": by * joint.drive.stiffness})
+        return joint.model_copy(update={"drive": drive})
+
+    return with_world(recording, joints=[*map(other, recording.world.joints)])
+
+
+@pytest.mark.parametrize("build", [served, thrown_up, four_bar])
+def test_a_stiff_drive_is_sound_and_one_that_bears_a_load_at_a_tenth_more_or_less_is_found(tmp_path, build):
+    """The frames do not show how it came where it is; there it holds the load by its law; one without shows none."""
+    recording = simulated(tmp_path, build, 0.5)
+    assert [(finding.check, finding.message) for finding in judge(recording).failures] == []
+    for by in (0.9, 1.1) if build is not served else ():
+        assert "CheckRecordedTies" in {finding.check for finding in judge(stiffer(recording, by)).failures}
+
+
+def test_what_swings_faster_than_frames_is_not_at_rest():
+    """A joint is seen at the same place each time, as it goes round once a frame, and a little less far each time."""
+    drive, h = Motor(stiffness=100.0, damping=0.1, position=0.0), np.full(9, 0.1)
+    swing = 0.01 * np.exp(-0.005 * np.arange(10))
+    found = settled(h, swing, np.zeros(10), drive, np.ones(10))
+    assert np.all(found > drive.stiffness * swing[:-1])
+    assert np.all(settled(h, np.zeros(10), np.zeros(10), drive, np.ones(10)) == 0.0)

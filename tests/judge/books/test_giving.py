@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from tests.judge.test_turned import simulated
-from tests.judge.theory import ask, edited
+from tests.judge.theory import ask, edited, with_world
+from wsim.judge import judge
 from wsim.judge.books.giving import held_by_joints
 from wsim.judge.books.recorded_ties import RecordedTies
 from wsim.judge.checks.energy import CheckEnergy
@@ -31,3 +32,13 @@ def test_a_cantilever_that_sags_at_the_start_loses_what_its_weld_holds(tmp_path)
     assert failed(recording) == []
     jerked = edited(recording, "body_qd", (20, 0, 2), 0.05)  # m v^2 / 2 = 6.7 times that
     assert failed(jerked) != []
+
+
+def test_a_cantilever_a_tenth_heavier_than_stated_is_found(tmp_path):
+    """Its weld bears what the simulator's weighs, and not what the world says."""
+    recording = simulated(tmp_path, cantilever, 0.5)
+    assert judge(recording).failures == []
+    bar = recording.world.bodies[0]
+    for by in (0.9, 1.1):
+        other = bar.model_copy(update={"mass": by * bar.mass, "inertia": tuple(by * each for each in bar.inertia)})
+        assert judge(with_world(recording, bodies=[other])).status == "rejected"

@@ -1,9 +1,11 @@
 """Ropes: simulated as one world has them, judged as another states them, and motions that no rope gives."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from tests.judge.test_turned import simulated
 from tests.judge.theory import G, ask, ball, record, times, with_world
@@ -129,3 +131,24 @@ def test_a_rope_bears_what_hangs_in_it():
 def test_a_rope_neither_pushes_nor_holds_where_it_is_slack_nor_aside(place):
     """Above its anchor; 1 % short of its length; 0.1 rad off the plumb, where a tenth of the weight is not borne."""
     assert off(held(place)) != []
+
+
+def swung(drag, length=0.6):
+    """A bob on a rope by Runge and Kutta, whose drag takes a share of its speed a second; nobody states a step."""
+    t = times(1.2, 60.0)
+    found = solve_ivp(lambda _, y: (y[1], -G / length * math.sin(y[0]) - drag * y[1]), (0.0, t[-1]), (1.2, 0.0),
+                      t_eval=t, rtol=1e-10, atol=1e-12)  # fmt: skip
+    angle, rate = found.y
+    none = 0.0 * t
+    place = length * np.stack([np.sin(angle), none, -np.cos(angle)], 1)
+    speed = length * rate[:, None] * np.stack([np.cos(angle), none, np.sin(angle)], 1)
+    made = record([ball()], place, speed, t)
+    ends = [Guide(position=(0, 0, 0)), Guide(body="/World/ball", owner="/World/ball", position=(0, 0, 0))]
+    rope = Rope(prim="/World/rope", path=ends, radius=0.01, length=length)
+    return replace(with_world(made, ropes=[rope], time_step=0.0), metadata={"velocities": "own", "complete": True})
+
+
+@pytest.mark.parametrize(("drag", "count"), [(0.0, 0), (0.1, 1), (0.2, 1)])
+def test_a_drag_of_a_tenth_a_second_is_found_where_nobody_states_the_step(drag, count):
+    """A step of 5 ms, the coarsest, turns the rope's pull by less than a frame of 17 ms would."""
+    assert len(off(swung(drag))) == count

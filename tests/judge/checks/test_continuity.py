@@ -1,7 +1,8 @@
 """Places by velocities where something pulls hard between two frames."""
 
 from tests.judge.test_turned import simulated
-from tests.judge.theory import ask, edited
+from tests.judge.theory import ask, edited, with_world
+from wsim.judge import judge
 from wsim.judge.checks.continuity import CheckContinuity
 
 
@@ -18,6 +19,10 @@ def failed(recording):
 
 
 def test_a_ball_that_a_spring_presses_bounces_within_a_frame(tmp_path):
-    recording = simulated(tmp_path, pressed, 2.0)
+    recording = simulated(tmp_path, pressed, 0.7)
     assert failed(recording) == []
-    assert failed(edited(recording, "body_q", (slice(60, None), 0, 2), 0.3)) != []
+    assert failed(edited(recording, "body_q", (slice(30, None), 0, 2), 0.3)) != []
+    spring = recording.world.springs[0]
+    for by in (0.9, 1.1):
+        other = spring.model_copy(update={"stiffness": by * spring.stiffness})
+        assert judge(with_world(recording, springs=[other])).status == "rejected"

@@ -8,6 +8,7 @@ import numpy as np
 
 from wsim.judge.books.balance import Balance, Books
 from wsim.judge.books.creep import Lacking, creeps
+from wsim.judge.books.gliding import gliding
 from wsim.judge.books.standing import standing
 from wsim.judge.books.touching import Touching
 from wsim.judge.evidence.alike import alike
@@ -56,12 +57,18 @@ def work_out(copies: Sequence[Evidence]) -> None:
             evidence.kept[Touching] = Touching.of(copies[0])
     for evidence, books in zip(copies, Balance(*copies).every(), strict=True):
         evidence.kept[Books] = books
-    for evidence, *lacking in zip(copies, creeps(copies), standing(copies), strict=True):
-        evidence.kept[Lacking] = lacking[0] + lacking[1]
+    for evidence, lacking in zip(copies, _lacking(copies), strict=True):
+        evidence.kept[Lacking] = lacking
 
 
 def lasting(evidence: Evidence) -> list[Lacking]:
-    """What bodies lack to creep, or to stand, as they do."""
+    """What bodies lack to creep, to stand or to go on as they do."""
     if Lacking not in evidence.kept:
-        evidence.kept[Lacking] = creeps([evidence])[0] + standing([evidence])[0]
+        evidence.kept[Lacking] = _lacking([evidence])[0]
     return cast("list[Lacking]", evidence.kept[Lacking])
+
+
+def _lacking(copies: Sequence[Evidence]) -> list[list[Lacking]]:
+    """Of each copy."""
+    kinds = creeps(copies), standing(copies), gliding(copies)
+    return [[each for part in parts for each in part] for parts in zip(*kinds, strict=True)]

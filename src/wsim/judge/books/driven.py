@@ -11,9 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.motion import FLOAT32
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.books.recorded_ties import RecordedTies
     from wsim.judge.evidence.evidence import Evidence
     from wsim.scene.world import Motor
 
@@ -55,3 +58,41 @@ def alone(evidence: Evidence) -> tuple[Floats, Floats] | None:
     if drives != 1 or worked is None or unsure is None or not np.isfinite([worked[1:], unsure[1:]]).all():
         return None
     return np.asarray(worked[1:], dtype=np.float64), np.asarray(unsure[1:], dtype=np.float64)
+
+
+def resting(ties: RecordedTies, k: int) -> tuple[Floats, Floats]:
+    """What joint k's drive gives at rest by its law, and how far that may be off, (T - 1,) each [N or N m].
+
+    Of one that is faster than the frames, which do not show how it came there; inf where it may not be at rest.
+    """
+    joint = ties.joints[k]
+    drive, motion, at = joint.drive, ties.laws.motion, ties.laws.position(joint)
+    if drive is None or at is None or drive.max_effort is not None:
+        return np.zeros(len(motion.h)), np.full(len(motion.h), np.inf)
+    effort, ours = drive.stiffness * (drive.position - at), motion.unit == motion.unit[ties.pairs[k][1]]
+    moved = (ties.struck | motion.meets)[:, ours].any(axis=1) | (drive.velocity != 0.0)
+    swings = settled(motion.h, at, ties.laws.rate(joint), drive, ties.laws.loose(joint))
+    rounding = 8.0 * FLOAT32 * drive.stiffness * float(max(np.pi, np.abs(motion.com).max()))
+    return 0.5 * (effort[1:] + effort[:-1]), np.where(moved, np.inf, swings + rounding)
+
+
+def settled(h: Floats, position: Floats, rate: Floats, drive: Motor, loose: Floats) -> Floats:
+    """How far a drive's mean effort may be from that of its joint at rest, (T - 1,) [N or N m], by its law.
+
+    Between frames that are too far apart to show it a joint may swing, by A at the first; it is A exp(-c h / 2 I) at
+    the next one, c its damping and I what it moves. By the difference of both the places differ, or the rates do: what
+    they change by in an interval and those beside it bounds A, and k A what the effort swings by.
+
+    Args:
+        h: Of each interval [s].
+        position: Of the joint, (T,) [rad or m].
+        rate: Its speed, (T,).
+        drive: Its law.
+        loose: 1 / I, (T,).
+    """
+    slowest = np.sqrt(drive.stiffness * loose.min())
+    dies = 1.0 - np.exp(-0.5 * drive.damping * loose.min() * h)
+    moved = np.abs(np.diff(position)) + np.maximum(np.abs(rate[1:]), np.abs(rate[:-1])) / max(slowest, 1e-12)
+    around = np.pad(moved, 1, mode="edge")
+    most = np.maximum(np.maximum(around[:-2], around[2:]), moved)
+    return np.asarray((drive.stiffness + drive.damping * slowest) * most / np.maximum(dies, 1e-12))

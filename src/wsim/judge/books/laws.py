@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.motion import Motion
     from wsim.scene.world import Guide, Joint, Motor, Spring
 
     Floats = NDArray[np.float64]
@@ -226,6 +227,20 @@ class Laws:
         known = ((law.known & (full[1:] == full[:-1])) | strained) & holds & told
         error = np.where(strained, 0.0, law.error)
         return replace(law, known=known, error=error, most=most if told else np.inf)
+
+    @property
+    def motion(self) -> Motion:
+        """Of the bodies."""
+        return self._motion
+
+    def position(self, joint: Joint) -> Floats | None:
+        """Of a hinge or a slider, (T,) [rad or m]; None of other kinds."""
+        track = track_of(self._evidence, joint)
+        return None if track is None else track.position
+
+    def loose(self, joint: Joint) -> Floats:
+        """By how much a unit effort speeds up a joint that is loose from all others, (T,) [1/kg or 1/(kg m^2)]."""
+        return self._along(joint).loose
 
     def slowing(self, joint: Joint) -> Floats:
         """By how much dry friction slows a joint that is loose from all others, (T,) [m/s^2 or rad/s^2]."""

@@ -16,6 +16,7 @@ import numpy as np
 from wsim.geometry.ropes import path_length, strands
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.forces import shared
+from wsim.judge.books.phases import COARSEST
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.cord_paths import moving_stops
 
@@ -81,7 +82,8 @@ class Ropes:
         A tension that changes by dT over an interval while its direction changes by dG leaves dT dG / 12; and a step
         pulls as the rope was at its start, or will be at its end, not as it goes meanwhile.
         """
-        motion, late = self._motion, 0.5 * np.minimum(self._motion.dt / self._motion.h, 1.0)
+        motion, step = self._motion, self._motion.step or min(self._motion.dt, COARSEST)
+        late = 0.5 * np.minimum(step / motion.h, 1.0)
         found = np.zeros((len(motion.h), len(self._row), 2))
         for pull, tension in zip(self.pulls, self._tensions().T, strict=True):
             change = np.abs(np.gradient(tension)) if len(tension) > 1 else np.abs(tension)

@@ -68,7 +68,7 @@ def _stand_in(evidence: Evidence, firsts: Rows) -> Bools:
     q, com = evidence.body_q[frames], motion.com[frames]  # (spans, frames, B, ...)
     way = np.linalg.norm(com - com[:, :1], axis=3).max(axis=1)
     turn = np.minimum(abs(q - q[:, :1]), abs(q + q[:, :1]))[..., 3:]
-    stays = way + 2.0 * np.linalg.norm(turn, axis=3).max(axis=1) * motion.radius < STILL * _hair(evidence)
+    stays = way + 2.0 * np.linalg.norm(turn, axis=3).max(axis=1) * motion.radius < STILL * hair(evidence)
     start = com[:, 0]
     apart = np.linalg.norm(start[:, :, None] - start[:, None], axis=3) - motion.radius[:, None] - motion.radius
     passed = np.any((apart < way[:, None] + NEAR) & ~stays[:, None] & ~np.eye(len(motion.mass), dtype=bool), axis=2)
@@ -91,8 +91,8 @@ def _left(copies: Sequence[Evidence], copy: Rows, first: Rows, stands: Bools) ->
     contacts = touching.of_many(poses.q.reshape(len(copy), -1, 7), np.full(len(copy), NEAR), spans, copy)
     meshes = np.array([shape.kind == "mesh" for _, _, shape in touching.shapes], dtype=bool)
     rows = np.stack([contacts.one, contacts.two])
-    hair = np.stack([_hair(one) for one in copies])[copy].ravel()
-    reach = np.where(rows >= 0, hair[rows], 0.0).max(axis=0, initial=HAIR)
+    finest = np.stack([hair(one) for one in copies])[copy].ravel()
+    reach = np.where(rows >= 0, finest[rows], 0.0).max(axis=0, initial=HAIR)
     reach = np.where(meshes[contacts.shapes].any(axis=1), NEAR, reach)  # a mesh may stand for what is round
     contacts = contacts.only(contacts.gap <= reach)
     scale = np.repeat(1.0 / np.stack([motion.mass for motion in motions])[copy].reshape(-1, 1), 6, axis=1)
@@ -109,7 +109,7 @@ def _left(copies: Sequence[Evidence], copy: Rows, first: Rows, stands: Bools) ->
     return rest.reshape(len(copy), bodies, 6)[..., :3]
 
 
-def _hair(evidence: Evidence) -> Floats:
+def hair(evidence: Evidence) -> Floats:
     """The gap of each body beyond which it touches nothing, (B,) [m]."""
     found: Floats = HAIR + SHARE * evidence.motion.radius
     return found

@@ -81,7 +81,7 @@ class CheckForces(Check):
         )
 
     def _over_many(self, evidence: Evidence, books: Books) -> list[Finding]:
-        """The body that lacks most to creep, or to stand, as it does; none where nothing lacks more than its limit."""
+        """The body that lacks most to creep, stand or go on as it does; none where none lacks more than its limit."""
         share = SHARES[8]
         least = np.maximum(share, _pushed(evidence)) * max(evidence.gravity, 1.0)
         limits = least + rounding(evidence) + books.turned[..., 0]
@@ -99,7 +99,7 @@ class CheckForces(Check):
             way = listed(tuple((worst.drift / far).round(2)))
             story = f"creeps by {far * 1e3:.3g} mm towards {way} over what it touches, against friction, by"
         else:
-            story = "stands where it is, with all that may carry it too far away, by"
+            story = "stands where it is, or goes on, with all that may carry it too far away, by"
         return [
             self.measured(
                 f"{body.prim} {story} {size * mass:.3g} N that nothing in the world gives, from {span[0]:.3f} to "

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.books.driven import resting
 from wsim.judge.books.recorded_ties import OWN, RecordedTies
 from wsim.judge.books.ties import NEAR_STOP
 from wsim.judge.checks.check import Check, Checks
@@ -143,6 +144,11 @@ class CheckRecordedTies(Check):
             yield Asked(
                 "drive", joint.prim, joint.child, "is driven otherwise than by its drive's law", off, limit, unit
             )
+            held, unsure = resting(ties, k)
+            rests = ~stated.known & np.isfinite(unsure)
+            off = np.where(rests, np.abs(given - held * h), 0.0)
+            limit = self.exact * least + (self.law * np.abs(held) + np.where(rests, unsure, 0.0)) * h
+            yield Asked("drive", joint.prim, joint.child, "is held otherwise than by its drive's law", off, limit, unit)
 
     def _rubbed(self, ties: RecordedTies, k: int, joint: Joint, least: Floats, unit: str, h: Floats) -> Iterator[Asked]:
         given, limit = ties.track.friction[1:, k].astype(np.float64), self.exact * (least + joint.friction * h)
