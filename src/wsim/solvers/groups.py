@@ -35,8 +35,8 @@ def tied_groups(mujoco: Any, model: Any) -> Array:
 def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array, *, driven: bool) -> Array:
     """Of each of MuJoCo's bodies the number of its mechanism, (bodies,): 0 for what is of none.
 
-    A mechanism is a group with a joint, or what springs and ropes tie to it or to each other, all of which its smooth
-    step moves: one with a part that goes as stated is none.
+    A mechanism is a group with a joint, or what springs and ropes tie to it or to each other, or what a spring or a
+    damper pulls, all of which its smooth step moves: one with a part that goes as stated is none.
 
     Args:
         mujoco: The module.
@@ -46,8 +46,10 @@ def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array, *, driven:
         driven: Whether what has a drive that is a constraint row may be one.
     """
     together, barred = groups.copy(), set(groups[stated].tolist())
+    sprung, gives = np.zeros(model.nbody, dtype=bool), (model.tendon_stiffness > 0.0) | (model.tendon_damping > 0.0)
     for tendon in range(model.ntendon):
         bodies = tendon_bodies(mujoco, model, tendon)
+        sprung[bodies] |= gives[tendon]
         own = sorted({int(together[body]) for body in bodies} - {0})
         if not driven and model.wrap_type[model.tendon_adr[tendon]] == mujoco.mjtWrap.mjWRAP_JOINT:
             barred |= {int(groups[body]) for body in bodies}
@@ -56,7 +58,7 @@ def mechanisms(mujoco: Any, model: Any, groups: Array, stated: Array, *, driven:
     found = np.zeros(model.nbody, dtype=int)
     for number in sorted(set(together.tolist()) - barred):
         parts = np.flatnonzero(together == number)
-        if len(parts) > 1 or np.count_nonzero(model.dof_bodyid == parts[0]) < FREE:
+        if len(parts) > 1 or np.count_nonzero(model.dof_bodyid == parts[0]) < FREE or sprung[parts[0]]:
             found[parts] = found.max() + 1
     return found
 
