@@ -28,4 +28,16 @@ from wsim.scene.tracks import Track  # noqa: E402
 from wsim.scene.vehicle_spec import VehicleSpec  # noqa: E402
 from wsim.scene.vehicles import Vehicle  # noqa: E402
 
-__all__ = ["Drive", "Fluid", "Handle", "Material", "Part", "Scene", "SceneError", "Tank", "Track", "Vehicle", "VehicleSpec"]
+__all__ = [
+    "Drive",
+    "Fluid",
+    "Handle",
+    "Material",
+    "Part",
+    "Scene",
+    "SceneError",
+    "Tank",
+    "Track",
+    "Vehicle",
+    "VehicleSpec",
+]

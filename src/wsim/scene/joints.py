@@ -308,12 +308,14 @@ def _write_limits(prim: Usd.Prim, limits: tuple[float, float] | None) -> None:
 
 
 def write_friction(prim: Usd.Prim, friction: float) -> None:
+    """State the dry friction of a joint [N m] or [N]."""
     if friction:
         prim.AddAppliedSchema("NewtonJointAPI")
         prim.CreateAttribute("newton:friction", Sdf.ValueTypeNames.Float, False).Set(friction)
 
 
 def write_drive(prim: Usd.Prim, freedom: str, drive: Drive, per_unit: float) -> None:
+    """State a drive of a joint: "angular" or "linear", its gains times `per_unit` in USD's units."""
     api = UsdPhysics.DriveAPI.Apply(prim, freedom)
     api.CreateTypeAttr("force")
     api.CreateTargetPositionAttr(drive.position)

@@ -196,8 +196,11 @@ def _checked(call: Call, spec: VehicleSpec) -> VehicleSpec:
     call.one_of("spec.driven", spec.driven, DRIVEN)
     call.one_of("spec.looks", spec.looks, LOOKS)
     call.color("spec.color", spec.color)
-    if spec.inertia is not None and min(call.vector("spec.inertia", spec.inertia, 1e9, "kg m^2")) <= 0.0:
-        call.fail(f"spec.inertia = {shown(spec.inertia)} kg m^2 must be positive")
+    if spec.inertia is not None:
+        moments = sorted(call.vector("spec.inertia", spec.inertia, 1e9, "kg m^2"))
+        if moments[0] <= 0.0 or moments[2] > moments[0] + moments[1]:
+            call.fail(f"spec.inertia = {shown(spec.inertia)} kg m^2: all must be positive, and none more than the "
+                      "other two together")  # fmt: skip
     _check_shape(call, spec)
     return spec
 
