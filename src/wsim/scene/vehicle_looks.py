@@ -102,12 +102,12 @@ class _Body:
             span = (middle - 0.5 * length, middle + 0.5 * length) if color != _GLASS else (
                 middle - 0.40 * length, middle + 0.40 * length)  # fmt: skip
             yield self.box(screen, span, width, color, trim=True, lean=rake)
-        if slant > 0.1:  # cheeks between the screen and the cab, in two steps
-            for k in range(4):
-                step = (x[1] - slant - 0.01, x[1] - slant * (0.12 + 0.25 * k))
-                if step[1] > step[0]:
-                    yield self.box(step, (low + tall * 0.25 * k, low + tall * 0.25 * (k + 1)), 0.985 * half, _GLASS,
-                                   trim=True)  # fmt: skip
+        steps = 8 if slant > 0.1 else 0  # cheeks between the screen and the cab
+        for k in range(steps):
+            cheek = (x[1] - slant - 0.01, x[1] - slant * (k + 1) / steps - 0.04)
+            if cheek[1] > cheek[0]:
+                rise = (low + tall * k / steps, low + tall * (k + 1) / steps)
+                yield self.box(cheek, rise, 0.985 * half, _GLASS, trim=True)
         window = (low + 0.38 * tall, top - 0.12 * tall)
         back, ahead = x[0] + 0.08, x[1] - slant - 0.04
         pillar = 0.5 * (back + ahead)

@@ -170,7 +170,9 @@ def spec_of(call: Call, given: object) -> VehicleSpec:
 
 def preset(kind: str) -> VehicleSpec:
     """The spec of a kind; KeyError if there is none."""
-    values = {key: tuple(each) if isinstance(each, list) else each for key, each in _table()[kind].items()}
+    values: dict[str, Any] = {
+        key: tuple(each) if isinstance(each, list) else each for key, each in _table()[kind].items()
+    }
     return VehicleSpec(**values)
 
 

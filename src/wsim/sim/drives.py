@@ -9,11 +9,14 @@ import warp as wp
 from wsim.scene.world import World
 
 FIXED = 0  # of the mujoco:tendon_type attribute
+ONE_DOF = ("revolute", "prismatic")
 UNBOUNDED = 1e15  # [N m or N]
 
 
 def add_drives(builder: Any, world: World) -> None:
     """Give each joint whose drive damps a tendon along it, whose dry friction is the most that the drive gives.
+
+    The drives' targets are stated anew, as the world has them.
 
     Args:
         builder: The `newton.ModelBuilder` of one world, with MuJoCo's custom attributes registered.
@@ -21,7 +24,12 @@ def add_drives(builder: Any, world: World) -> None:
     """
     joints = {str(label): k for k, label in enumerate(builder.joint_label)}
     for joint in world.joints:
-        if joint.drive is None or joint.drive.damping <= 0.0 or joint.closing:
+        if joint.drive is None or joint.closing:
+            continue
+        if joint.drive.stiffness > 0.0 and joint.kind in ONE_DOF:
+            # Newton puts a target that lies beyond a stop in the middle between both; it is to press against the stop.
+            builder.joint_target_q[builder.joint_q_start[joints[joint.prim]]] = joint.drive.position
+        if joint.drive.damping <= 0.0:
             continue
         most = joint.drive.max_effort
         first = len(builder.custom_attributes["mujoco:tendon_joint"].values or ())
