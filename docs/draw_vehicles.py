@@ -25,7 +25,7 @@ def build(scene: Scene) -> None:
     order = [kind for kind in ("cart", "polaris", "car", "hmmwv", "truck") if kind in presets()]
     for k, kind in enumerate(order):
         scene.vehicle(kind, kind, position=(0.4 * k - 0.8, APART * (k - 2), 0.0)).steer(15.0)
-    scene.camera("view", eye=(9.4, -4.2, 4.6), target=(0.6, -0.3, 0.7), fov=72.0, width=960, height=480)
+    scene.camera("view", eye=(10.2, -4.0, 5.0), target=(0.6, 0.0, 0.6), fov=80.0, width=960, height=480)
 
 
 if __name__ == "__main__":

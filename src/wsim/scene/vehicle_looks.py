@@ -73,7 +73,7 @@ class _Body:
         inner = max(0.5 * spec.track - reach - _GAP, 0.2 * spec.track)
         clear = spec.wheel_radius + 0.5 * spec.wheel_width * math.sin(turn) + _GAP
         axle, top = 0.5 * spec.wheelbase, self.deck
-        yield self.box((self.back, self.front), (self.floor, top), inner, _DARK)
+        yield self.box((self.back + 0.03, self.front - 0.03), (self.floor, top - 0.01), inner, _DARK)
         yield self.box((clear - axle, axle - clear), (self.floor, top), self.half)
         for ends in ((axle + clear, self.front), (self.back, -axle - clear)):
             if ends[1] - ends[0] > 0.02:
