@@ -97,3 +97,12 @@ def test_what_cannot_be_is_one_clear_line(spec, says):
 def test_it_cannot_be_steered_beyond_its_stops():
     with pytest.raises(SceneError, match="angle_deg"):
         Scene().vehicle("v", "car").steer(40.0)
+
+
+def test_what_meets_nothing_weighs_what_it_states(tmp_path):
+    """A hub has no colliders; its moments are its own, not those of a small sphere."""
+    scene = Scene()
+    scene.vehicle("v", "hmmwv")
+    hub = describe(scene.save(tmp_path / "v.usda")).body("/World/v_hub_rear_left")
+    assert not any(shape.collides for shape in hub.shapes)
+    assert hub.mass == pytest.approx(69.975) and hub.inertia[0] == pytest.approx(69.975 * 0.2**2)
