@@ -79,6 +79,16 @@ def truck_turns(bench: Bench) -> tuple[float, float]:
     return circle(rear_axle(track, spec)[75:]), spec.turning_radius(15.0)
 
 
+@case("m", reach=0.03, why="tyres slip a little, and the body rolls")
+def truck_corners(bench: Bench) -> tuple[float, float]:
+    """A truck in a bend at 0.6 of the speed's square that friction bears, v² = 0.6 μ g R, keeps L / tan 10°."""
+    radius = preset(KIND).turning_radius(10.0)
+    speed = math.sqrt(0.6 * preset(KIND).friction * G * radius)
+    spec, build = on_the_level(speed, drive=speed, steer=10.0)
+    track = bench.run(build, 2.5, rate=50.0)
+    return circle(rear_axle(track, spec)[60:]), radius
+
+
 @case("m", reach=0.01, why="it is to stay")
 def truck_holds_on_a_slope(bench: Bench) -> tuple[float, float]:
     """A truck with its brakes on stays on a slope of 15° for 5 s, once its springs have settled."""
