@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from wsim.scene import Drive, Part, Scene, SceneError
+from wsim.scene import Drive, Part, Scene, SceneError, VehicleSpec
 from wsim.scene.authoring import Handle
 
 NAN, INF, HUGE = math.nan, math.inf, 1e300
@@ -120,6 +120,7 @@ KINDS: dict[str, tuple[object, ...]] = {
     ),
     "file": (None, 7, "", "gone.obj", "model.docx", ".", b"a.obj", [], "/dev/null"),
     "scale": (*POSITIVE[:8], -1.0, 0.0, (1.0, 1.0), (1.0, 0.0, 1.0), (1.0, NAN, 1.0), None, {1.0, 2.0, 3.0}),
+    "vehicle": (None, 1.0, "hmwv", "", True, VehicleSpec(mass=-1.0), VehicleSpec(wheelbase=0.1), ["car"]),
     "asset": ("unicorn", "", 7, None, NAN, [], object()),
     "overrides": ("wide", 7, [], ["p"], {"p": NAN}, {"p": "1"}, {"p": None}, {"p"}, True),
     "USD file": ("world.txt", "world", None, 7, "", [], "/dev/null/x.usda"),
@@ -157,6 +158,11 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     ),
     "asset": (
         {"name": "new", "id": "barrel"}, {"name": "new name", "id": "asset", **POSE, **START, "static": "flag"},
+    ),
+    "vehicle": (
+        {"name": "new"},
+        {"name": "new name", "spec": "vehicle", "position": "three numbers", "yaw_deg": "number",
+         "pitch_deg": "number", "speed": "number"},
     ),
     "tank": (
         {"name": "new", "inner_size": (1.0, 1.0, 1.0)},

@@ -128,3 +128,17 @@ def test_a_ram_of_bounded_effort_shoves_a_crate_alike_by_all_steps(tmp_path, tim
     late = round(0.1 / run.dt)
     gained = (run.v["crate"][-1, 0] - run.v["crate"][late, 0]) / (run.dt * (len(run.v["crate"]) - 1 - late))
     assert gained == pytest.approx((effort - mu * crate * 9.81) / (crate + ram), rel=0.03)
+
+
+def test_a_target_beyond_a_stop_is_driven_to(simulate):
+    """By k (target - q), x = target (1 - cos omega t) until it meets the stop, and then pressed against it."""
+
+    def build(scene):
+        scene.simulation(gravity=(0, 0, 0))
+        scene.box("jaw", size=(0.1,) * 3, mass=1.0)
+        scene.joint_prismatic("rail", None, "jaw", axis="X", limits=(-0.3, 0.1), drive=Drive(0.2, stiffness=100.0))
+
+    run = simulate(build, 0.2)
+    k = round(0.25 * (len(run.q["jaw"]) - 1))  # after 0.05 s
+    assert run.q["jaw"][k, 0] == pytest.approx(0.2 * (1.0 - math.cos(0.5)), rel=0.03)
+    assert run.q["jaw"][-1, 0] == pytest.approx(0.1, abs=1e-3)

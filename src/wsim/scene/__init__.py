@@ -26,5 +26,20 @@ from wsim.scene.robots import Robot  # noqa: E402
 from wsim.scene.scene import Scene  # noqa: E402
 from wsim.scene.tanks import Tank  # noqa: E402
 from wsim.scene.tracks import Track  # noqa: E402
+from wsim.scene.vehicle_spec import VehicleSpec  # noqa: E402
+from wsim.scene.vehicles import Vehicle  # noqa: E402
 
-__all__ = ["Drive", "Fluid", "Handle", "Material", "Part", "Robot", "Scene", "SceneError", "Tank", "Track"]
+__all__ = [
+    "Drive",
+    "Fluid",
+    "Handle",
+    "Material",
+    "Part",
+    "Robot",
+    "Scene",
+    "SceneError",
+    "Tank",
+    "Track",
+    "Vehicle",
+    "VehicleSpec",
+]

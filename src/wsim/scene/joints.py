@@ -100,11 +100,11 @@ class Joints(Author):
             call.fail("a hinge that may break can have no limits_deg, drive or friction: put them on another joint")
         prim = self._joint(call, UsdPhysics.RevoluteJoint, parent, child, anchor, axis)
         _write_limits(prim, bounds)
-        _write_friction(prim, rubs)
+        write_friction(prim, rubs)
         strength.write(prim)
         if motor is not None:
             # USD counts an angular drive's gains per degree.
-            _write_drive(prim, "angular", motor, math.pi / 180.0)
+            write_drive(prim, "angular", motor, math.pi / 180.0)
         return self._spanned(call, prim)
 
     def joint_prismatic(
@@ -142,9 +142,9 @@ class Joints(Author):
         rubs = call.within("friction", friction, 0.0, _MAX_LOAD, "N")
         prim = self._joint(call, UsdPhysics.PrismaticJoint, parent, child, anchor, axis)
         _write_limits(prim, bounds)
-        _write_friction(prim, rubs)
+        write_friction(prim, rubs)
         if motor is not None:
-            _write_drive(prim, "linear", motor, 1.0)
+            write_drive(prim, "linear", motor, 1.0)
         return self._spanned(call, prim)
 
     def joint_spherical(
@@ -318,13 +318,15 @@ def _write_limits(prim: Usd.Prim, limits: tuple[float, float] | None) -> None:
     prim.CreateAttribute("physics:upperLimit", Sdf.ValueTypeNames.Float, False).Set(limits[1])
 
 
-def _write_friction(prim: Usd.Prim, friction: float) -> None:
+def write_friction(prim: Usd.Prim, friction: float) -> None:
+    """State the dry friction of a joint [N m] or [N]."""
     if friction:
         prim.AddAppliedSchema("NewtonJointAPI")
         prim.CreateAttribute("newton:friction", Sdf.ValueTypeNames.Float, False).Set(friction)
 
 
-def _write_drive(prim: Usd.Prim, freedom: str, drive: Drive, per_unit: float) -> None:
+def write_drive(prim: Usd.Prim, freedom: str, drive: Drive, per_unit: float) -> None:
+    """State a drive of a joint: "angular" or "linear", its gains times `per_unit` in USD's units."""
     api = UsdPhysics.DriveAPI.Apply(prim, freedom)
     api.CreateTypeAttr("force")
     api.CreateTargetPositionAttr(drive.position)

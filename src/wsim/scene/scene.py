@@ -21,12 +21,13 @@ from wsim.scene.errors import SceneError
 from wsim.scene.motions import Motions
 from wsim.scene.robots import Robots
 from wsim.scene.validate import Call, shown, suggestion
+from wsim.scene.vehicles import Vehicles
 from wsim.scene.views import Views
 
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Cables, Contacts, Motions, Views, Catalogued, Robots):
+class Scene(Cables, Vehicles, Contacts, Motions, Views, Catalogued, Robots):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

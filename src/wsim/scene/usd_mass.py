@@ -64,14 +64,25 @@ def mass_of(prim: Usd.Prim, shapes: list[Shape]) -> Mass:
     mass, diagonal, com, axes = UsdPhysics.RigidBodyAPI(prim).ComputeMassProperties(information)
     if not (math.isfinite(mass) and mass > 0.0):
         return _without_geometry(prim)
-    given = UsdPhysics.MassAPI(prim)
-    stated = given.GetDiagonalInertiaAttr().Get()
-    if stated is not None and any(stated):  # USD takes what is stated for none below 1e-5 kg m^2
-        diagonal, turned = stated, given.GetPrincipalAxesAttr().Get()
-        axes = turned if turned is not None and turned.GetLength() > 0.0 else Gf.Quatf(1.0)
-    turn = matrices(np.array(to_quat(axes)))
-    inertia = turn @ np.diag(np.array(diagonal, dtype=np.float64)) @ turn.T
+    inertia = _stated_inertia(prim)  # USD takes what is stated for none below 1e-5 kg m^2
+    if inertia is None:
+        inertia = _turned(diagonal, axes)
     return Mass(float(mass), np.array(com, dtype=np.float64), inertia, volume)
+
+
+def _stated_inertia(prim: Usd.Prim) -> Array | None:
+    """About the centre of mass, in the body's frame (3, 3) [kg m^2]; None where the body states none."""
+    given = UsdPhysics.MassAPI(prim)
+    stated, turned = given.GetDiagonalInertiaAttr().Get(), given.GetPrincipalAxesAttr().Get()
+    if stated is None or not any(stated):
+        return None
+    return _turned(stated, turned if turned is not None and turned.GetLength() > 0.0 else Gf.Quatf(1.0))
+
+
+def _turned(diagonal: Gf.Vec3f, axes: Gf.Quatf) -> Array:
+    turn = matrices(np.array(to_quat(axes)))
+    found: Array = turn @ np.diag(np.array(diagonal, dtype=np.float64)) @ turn.T
+    return found
 
 
 def _solid(stage: Usd.Stage, shape: Shape) -> Solid:
@@ -93,7 +104,10 @@ def _solid(stage: Usd.Stage, shape: Shape) -> Solid:
 
 
 def _without_geometry(prim: Usd.Prim) -> Mass:
+    """What the body states, of a small sphere where it states nothing; its centre at the body's origin if not given."""
     api = UsdPhysics.MassAPI(prim)
     mass = float(api.GetMassAttr().Get() or 0.0) if prim.HasAPI(UsdPhysics.MassAPI) else 0.0
-    mass = mass if mass > 0.0 else 1.0
-    return Mass(mass, np.zeros(3), np.eye(3) * 0.4 * mass * _SMALL_SPHERE**2, 0.0)
+    mass, inertia = mass if mass > 0.0 else 1.0, _stated_inertia(prim)
+    stated = api.GetCenterOfMassAttr().Get()
+    com = np.zeros(3) if stated is None or not np.isfinite(stated).all() else np.array(stated, dtype=np.float64)
+    return Mass(mass, com, np.eye(3) * 0.4 * mass * _SMALL_SPHERE**2 if inertia is None else inertia, 0.0)

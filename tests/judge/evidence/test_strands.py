@@ -24,3 +24,12 @@ def test_the_links_of_a_cable_are_one_thing(tmp_path: Path) -> None:
     assert sorted(body.prim for thing in found if len(thing) == 1 for body in thing) == [
         "/World/load", "/World/lower", "/World/upper"
     ]  # fmt: skip
+
+
+def test_a_vehicle_is_one_thing(tmp_path: Path) -> None:
+    """What is between its wheels and its springs meets nothing, and is hidden behind the wheels."""
+    scene = Scene()
+    scene.vehicle("car", "car")
+    scene.box("crate", size=(0.1, 0.1, 0.1), position=(5.0, 0.0, 0.0))
+    found = strands(describe(scene.save(tmp_path / "stage.usda")))
+    assert sorted(len(thing) for thing in found) == [1, 11]

@@ -1,4 +1,4 @@
-"""Bodies that are one thing to who looks at them: the links of a cable."""
+"""Bodies that are one thing to who looks at them: the links of a cable, and what inner parts hold together."""
 
 from __future__ import annotations
 
@@ -6,22 +6,34 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from wsim.scene.world import Body, World
+    from wsim.scene.world import Body, Joint, World
 
 ROUNDING = 1e-4  # of a size that a stage has in single precision, by way of a scale
 
 
 def strands(world: World) -> list[list[Body]]:
-    """All bodies, each by itself or, of a cable, with its other links: capsules of one radius on ball joints."""
+    """All bodies, each by itself or as one thing with others.
+
+    Of a cable with its other links, capsules of one radius on ball joints. A body of which nothing collides is an inner
+    part, as what is between a wheel and its spring: with all that joints tie to it, it is one thing, a vehicle.
+    """
     of = {body.prim: [body] for body in world.bodies}
+    bodies = {body.prim: body for body in world.bodies}
     for joint in world.joints:
-        if joint.kind != "spherical" or joint.parent is None:
+        if joint.parent is None:
             continue
         one, other = of[joint.parent], of[joint.child]
-        if one is not other and _alike(_radius(one[0]), _radius(other[0])):
+        if one is not other and _together(bodies[joint.parent], bodies[joint.child], joint):
             one += other
             of |= {body.prim: one for body in other}
     return list({id(thing): thing for thing in of.values()}.values())
+
+
+def _together(one: Body, other: Body, joint: Joint) -> bool:
+    """Whether both ends of a joint are one thing."""
+    if any(end.shapes and not any(shape.collides for shape in end.shapes) for end in (one, other)):
+        return True
+    return joint.kind == "spherical" and _alike(_radius(one), _radius(other))
 
 
 def _radius(body: Body) -> float | None:
