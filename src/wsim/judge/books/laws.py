@@ -125,13 +125,13 @@ class Laws:
         drive, track = joint.drive, self._evidence.joint(joint)
         if drive is None or track is None:
             return None
-        h, left, rate = self._motion.h, track.position - drive.position, self.rate(joint) - drive.velocity
+        h, left, rate = self._motion.h, track.position - drive.position, self.rate(joint)
         mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, self._motion.step)
-        most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate)
+        most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - drive.velocity)
         below = (
             np.full(len(h), True) if drive.max_effort is None else np.maximum(most[1:], most[:-1]) < drive.max_effort
         )
-        return -mean, may, below
+        return drive.damping * drive.velocity - mean, may, below
 
     def _refine(self, spring: Spring, law: Law, total: Floats, wrong: Floats) -> None:
         """What the mean of both ends leaves of a spring's force: of its size at a blow, and as its way turns.
