@@ -50,7 +50,7 @@ def test_what_is_struck_twice_within_a_frame_has_touched_what_struck_it():
     for pair in ("a, b", "b, c"):
         assert margin(f"touches({pair})", by_ways) < 0.0  # on from the frame before and back from the next they miss
         assert margin(f"touches({pair})", as_recorded) > 0.0
-        assert margin(f"never_touches({pair})", as_recorded) <= 0.0
+        assert margin(f"never_touches({pair})", as_recorded) < 0.0  # 0 would hold
     assert margin("collides_with(a, b)", by_ways) < 0.0 < margin("collides_with(a, b)", as_recorded)
     assert margin("touches(a, c)", as_recorded) < 0.0
 
@@ -60,12 +60,12 @@ def test_touches_and_never_touches_are_the_gap(tank_world):
     near = ball_and_box(tank_world, (0.85 * TIME)[:, None] * X + 0.5 * Z)
     assert margin("touches(ball, wall, 0.06 m)", near) == pytest.approx(0.01)
     assert margin("touches(ball, wall, 0.04 m)", near) == pytest.approx(-0.01)
-    assert margin("never_touches(ball, wall)", near) == pytest.approx(0.05)
+    assert margin("never_touches(ball, wall)", near) == pytest.approx(0.05, abs=1e-7)
     assert margin("never_touches(ball, wall, clearance 8 cm)", near) == pytest.approx(-0.03)
     # As far as a way between frames is known: 2 % of 0.85 m/s.
     assert margin("touches(ball, wall)", near) == pytest.approx(0.02 * 0.85 / RATE + REACH - 0.05)
     into = ball_and_box(tank_world, [0.92, 0.0, 0.5])
-    assert margin("never_touches(ball, wall)", into) == pytest.approx(-0.02)
+    assert margin("never_touches(ball, wall)", into) == pytest.approx(-0.02, abs=1e-7)
     assert margin("touches(ball, wall)", into) == pytest.approx(0.02 + REACH)
 
 

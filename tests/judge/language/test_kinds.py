@@ -1,6 +1,7 @@
 """The plan's kinds of objective: what carries a body, and how it falls, rolls, flies and swings, by theory."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tests.judge.theory import G, box, ground, record, slab, times, with_world
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import ObjectiveCheck
 from wsim.plan.schema import Objective
+from wsim.recording.contacts import ContactTrack
 from wsim.scene.world import Joint
 
 
@@ -80,6 +82,17 @@ def test_what_is_welded_is_carried_as_one(share, passes):
     found = asked("rests_on", welded_pair(share * 4.0 * G), ref="base")
     assert [f.passed for f in found] == [True, passes]
     assert found[1].expected == pytest.approx(8.0 * G)
+
+
+@pytest.mark.parametrize("recorded", [False, True])
+def test_what_hangs_just_above_does_not_rest_where_contacts_are_recorded(recorded):
+    """Of a world in which nothing touches all forces are 0, as they are where none is recorded."""
+    t = times(2.0)
+    place = np.tile([0.0, 0.0, 0.1 + 0.005], (len(t), 1))
+    hung = record([box()], place, 0.0 * place, t, force=0.0 * place, statics=[slab("base", (1, 1, 0.1), (0, 0, -0.05))])
+    none = ContactTrack(np.zeros(0, np.int32), np.zeros((0, 2), np.int32), np.zeros((0, 16), np.float32))
+    hung = replace(hung, contacts=none if recorded else None)
+    assert all(f.passed for f in asked("rests_on", hung, ref="base")) != recorded
 
 
 def tipping(tilt, drop):

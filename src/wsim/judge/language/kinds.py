@@ -51,7 +51,8 @@ def _stays_inside(asked: Objective, evidence: Evidence) -> Formula:
 
 def _rests_on(asked: Objective, evidence: Evidence) -> Formula:
     lies = say.mean(say.lies_on(asked.object, _ref(asked), _within(asked)))
-    if not np.any(evidence.recording.contact_force):  # not recorded
+    recording = evidence.recording
+    if recording.contacts is None and not np.any(recording.contact_force):  # not recorded
         return lies
     return lies & say.mean(say.weighs_on(asked.object, _ref(asked)))
 

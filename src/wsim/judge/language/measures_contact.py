@@ -62,8 +62,9 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
     source = "the objective's clearance" if asked.clearance else "the surfaces"
     return [
         Measure(
-            f"gap to {signals.prim(asked.ref)}", signals.prim(asked.object), value, asked.clearance, "m",
-            asked.clearance or size, source, at_most=False,
+            f"gap to {signals.prim(asked.ref)}", signals.prim(asked.object), value,
+            max(asked.clearance, FLOAT32 * size),  # what presses has no gap
+            "m", asked.clearance or size, source, at_most=False,
         )
     ]  # fmt: skip
 
