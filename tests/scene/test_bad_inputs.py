@@ -121,6 +121,12 @@ KINDS: dict[str, tuple[object, ...]] = {
     "file": (None, 7, "", "gone.obj", "model.docx", ".", b"a.obj", [], "/dev/null"),
     "scale": (*POSITIVE[:8], -1.0, 0.0, (1.0, 1.0), (1.0, 0.0, 1.0), (1.0, NAN, 1.0), None, {1.0, 2.0, 3.0}),
     "vehicle": (None, 1.0, "hmwv", "", True, VehicleSpec(mass=-1.0), VehicleSpec(wheelbase=0.1), ["car"]),
+    "robot": ("unicorn", "", 7, None, NAN, [], object(), "gone.urdf"),
+    "robot's pose": ("nobody", "", 7, NAN, [], object()),
+    "robot's joints": (
+        "wide", 7, ["elbow"], {"nobody": 1.0}, {"elbow": NAN}, {"elbow": "1"}, {"elbow": 1e300}, {7: 1.0},
+    ),
+    "flag or none": ("no", "", 0, 1, NAN, [], np.ones(2), object()),
     "asset": ("unicorn", "", 7, None, NAN, [], object()),
     "overrides": ("wide", 7, [], ["p"], {"p": NAN}, {"p": "1"}, {"p": None}, {"p"}, True),
     "USD file": ("world.txt", "world", None, 7, "", [], "/dev/null/x.usda"),
@@ -158,6 +164,11 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     ),
     "asset": (
         {"name": "new", "id": "barrel"}, {"name": "new name", "id": "asset", **POSE, **START, "static": "flag"},
+    ),
+    "robot": (
+        {"name": "new", "file_or_id": "desk_arm"},
+        {"name": "new name", "file_or_id": "robot", "position": "three numbers", "yaw_deg": "number",
+         "pose": "robot's pose", "joints": "robot's joints", "fixed": "flag or none", "origin": "flag"},
     ),
     "vehicle": (
         {"name": "new"},

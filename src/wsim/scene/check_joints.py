@@ -22,7 +22,6 @@ from wsim.scene.articulation import (
 )
 from wsim.scene.gears import contradicts, meshes_of
 from wsim.scene.spanning import WORLD_END
-from wsim.scene.usd_prims import value_of
 
 _CLOSING = (UsdPhysics.FixedJoint, UsdPhysics.RevoluteJoint, UsdPhysics.SphericalJoint)
 _ONE_FREEDOM = (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)
@@ -76,7 +75,8 @@ def _numbers(joint: UsdPhysics.Joint) -> Iterator[str]:
     ):
         if 0.0 < attribute.Get() < 0.99 * least:  # of single precision
             yield f"{attribute.GetPath()}: {attribute.Get():g} must be >= {least:g} {unit}; inf never breaks"
-    if value_of(joint.GetPrim(), "saturates", False) and not _bounded(joint.GetPrim()):
+    saturates = joint.GetPrim().GetAttribute("wsim:saturates")
+    if saturates and saturates.Get() and not _bounded(joint.GetPrim()):
         yield f"{joint.GetPath()}.wsim:saturates: 1 {NO_BOUND} (drive:angular:physics:maxForce, or linear)"
 
 

@@ -13,6 +13,7 @@ from wsim.defaults import BODY_DENSITY
 from wsim.geometry.rotations import matrices
 from wsim.scene.authoring import Handle, note_line, rotation, set_pose
 from wsim.scene.bodies import BodyOptions, MassProperties, finish_collider
+from wsim.scene.solids import about_all, solid
 from wsim.scene.tracks import Tracks
 from wsim.scene.validate import Call, shown
 
@@ -100,7 +101,6 @@ class Compounds(Tracks):
         )
         whole = None if mass is None else call.mass(mass)
         # It brings pydantic, and a program without compounds does not wait for it.
-        from wsim.scene.solids import solid
         from wsim.scene.usd_shapes import read_shape
 
         path, start = self._path(call), self._start(call, options)
@@ -181,7 +181,5 @@ def _together(weights: Floats, solids: list[tuple[Floats, Floats]], mass: float 
         factor = mass / float(weights.sum())
         weights = weights * factor
         solids = [(place, inertia * factor) for place, inertia in solids]
-    from wsim.scene.solids import about_all
-
     com, inertia = about_all(weights, *zip(*solids, strict=True))
     return MassProperties.of(float(weights.sum()), com, inertia)

@@ -235,11 +235,11 @@ def _joints(robot: Usd.Prim) -> list[Usd.Prim]:
     return [prim for prim in robot.GetChild("joints").GetChildren() if prim.IsA(UsdPhysics.Joint)]
 
 
-def _named(call: Call, robot: Usd.Prim, name: str) -> Usd.Prim:
+def _named(call: Call, robot: Usd.Prim, name: str, argument: str = "joint") -> Usd.Prim:
     found = next((prim for prim in _joints(robot) if prim.GetName() == name), None)
     if found is None:
         names = [prim.GetName() for prim in _joints(robot)]
-        call.fail(f"joint = {shown(name)} is none of {robot.GetName()}; {suggestion(name, names)}")
+        call.fail(f"{argument} = {shown(name)} is none of {robot.GetName()}; {suggestion(name, names)}")
     return found
 
 
@@ -250,13 +250,13 @@ def _start(call: Call, robot: Usd.Prim, pose: str | None, joints: Mapping[str, f
     poses = robot.GetCustomDataByKey(ROBOT).get("poses", {})
     pose = "home" if pose is None and "home" in poses else pose
     if pose is not None:
-        if pose not in poses:
+        if not isinstance(pose, str) or pose not in poses:
             call.fail(f"pose = {shown(pose)} is none of its file's; {suggestion(str(pose), poses)}")
         found |= {str(key): float(value) for key, value in poses[pose].items()}
     if joints is not None and not isinstance(joints, Mapping):
         call.fail(f'joints = {shown(joints)} must be angles by name, such as {{"elbow": 90.0}}')
     for name, value in (joints or {}).items():
-        prim = _named(call, robot, str(name))
+        prim = _named(call, robot, str(name), "joints")
         if str(name) not in found:
             call.fail(f"joints: {name} is no hinge and no slider; it starts as in the file")
         unit = math.pi / 180.0 if is_angular(prim) else 1.0
