@@ -162,7 +162,7 @@ API: Cases = {
     "glue two bodies together": _SCENE + "joint_fixed",
     "weld": _SCENE + "joint_fixed",
     "servo motor": "wsim.scene.Drive*",
-    "engine": "wsim.scene.Drive*",
+    "engine": "wsim.scene.Drive* wsim.scene.Vehicle*",
     "spring stiffness": "wsim.scene.Drive*",
     "tunable parameter": _SCENE + "param",
     "adjustable number": _SCENE + "param",

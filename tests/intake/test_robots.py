@@ -207,7 +207,7 @@ def test_what_cannot_be_is_said_in_a_line(own: Path, tmp_path: Path) -> None:
     scene = Scene()
     with pytest.raises(SceneError, match=r"no robot 'leaver'; did you mean 'lever'\?"):
         scene.robot("r", "leaver")
-    with pytest.raises(SceneError, match=r'joint = "pivo" is none of r; did you mean "pivot"\?'):
+    with pytest.raises(SceneError, match=r'joints = "pivo" is none of r; did you mean "pivot"\?'):
         scene.robot("r", "lever", joints={"pivo": 1.0})
     with pytest.raises(SceneError, match=r"pivot would start at 60 deg, beyond its limits -28\.6479 to 42\.9718 deg"):
         scene.robot("r", "lever", joints={"pivot": 60.0})

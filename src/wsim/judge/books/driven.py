@@ -67,7 +67,7 @@ def resting(ties: RecordedTies, k: int) -> tuple[Floats, Floats]:
     """
     joint = ties.joints[k]
     drive, motion, at = joint.drive, ties.laws.motion, ties.laws.position(joint)
-    if drive is None or at is None or drive.max_effort is not None:
+    if drive is None or at is None or drive.max_effort is not None or drive.stiffness <= 0.0:  # a damper holds nothing
         return np.zeros(len(motion.h)), np.full(len(motion.h), np.inf)
     effort, ours = drive.stiffness * (drive.position - at), motion.unit == motion.unit[ties.pairs[k][1]]
     moved = (ties.struck | motion.meets)[:, ours].any(axis=1) | (drive.velocity != 0.0)

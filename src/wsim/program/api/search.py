@@ -64,6 +64,8 @@ def _inner(name: str) -> bool:
     if name.startswith("wsim.program."):
         return not name.startswith("wsim.program.control_world.Control") or "Layout" in name
     if name.startswith("wsim.scene."):
+        if name.startswith("wsim.scene.VehicleSpec."):  # what follows from it; its numbers are its arguments
+            return True
         return not name.removeprefix("wsim.scene.")[:1].isupper()
     return name.startswith("wsim.") and name not in ("wsim.scene", "wsim.run", "wsim.assets.search", "wsim.assets.get")
 

@@ -40,13 +40,14 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "height_field": {"heights": _level, "size": (1.0, 1.0)},  # a function: cells go with no other
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
-    "gear": {"ratio": 1.0},
+    "gear": {"ratio": 1.0}, "robot": {"file_or_id": "desk_arm"}, "vehicle": {},
 }  # fmt: skip
+MANY = ("cable", "robot", "vehicle")  # whose bodies and joints have names of their own
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
 ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
-OBJECTS = (*BODIES, "ground", "track", "height_field", "tank", "fluid")
+OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
@@ -111,10 +112,11 @@ class World:
                 self.note(method, name, certain=certain)
                 return (None, *self._blame(method, arguments, _refusal(error)))
             self.note(method, name, certain=certain)
+            self.open = self.open or method in ("robot", "vehicle")
             for link in made if method == "cable" else ():
                 self.note("capsule", link.name, certain=certain)
             return Const(made), "", ""
-        self.open = self.open or method == "cable"  # its links have names of their own
+        self.open = self.open or method in MANY
         if certain and method in (*OBJECTS, *JOINTS, *CORDS, "gear", "camera", "light", "material", "param"):
             self.trusted = False
         self.note(method, name, certain=certain)
