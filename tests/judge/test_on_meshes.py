@@ -17,6 +17,14 @@ def rolls(scene):
     scene.sphere("ball", radius=0.05, position=(0.3, 0, 1 - 0.3 * math.tan(a) + 0.05 / math.cos(a)), friction=0.5)
 
 
+def rolls_on_rods(scene):
+    """A ball of 6 cm on rods of 1 cm, 4 cm apart, so steep that its rolling takes 0.14 of what presses."""
+    rods = {"profile": "rails", "width": 0.04, "thickness": 0.01, "friction": 0.5}
+    track = scene.track("run", pieces=[("line", 2.0)], start=(0, 0, 1), slope_deg=-25, **rods)
+    at = track.place(0.1, math.sqrt(0.035**2 - 0.02**2))
+    scene.sphere("ball", radius=0.03, density=2000, friction=0.5, position=at)
+
+
 def slides(scene):
     scene.height_field("slope", heights=lambda x, y: x * math.tan(SLOPE), size=(8, 4), cells=(40, 20), friction=0.2)
     at = (2 - 0.15 * math.sin(SLOPE), 0, 2 * math.tan(SLOPE) + 0.15 * math.cos(SLOPE))
@@ -32,6 +40,21 @@ def test_a_ball_beside_its_track_is_carried_by_nothing(tmp_path):
         "CheckStart",
         "CheckSupport",
     }
+
+
+def test_rods_carry_a_ball_and_hold_it_by_their_friction(tmp_path):
+    sound = simulated(tmp_path, rolls_on_rods, 0.5)
+    for run in (sound, replace(sound, contacts=None)):
+        assert failing(run) == set()
+        assert "CheckForces" in failing(edited(run, "body_q", (slice(None), 0, 2), 0.01))
+        shapes = [body.shapes[0].model_copy(update={"friction": 0.1}) for body in run.world.bodies]
+        bodies = [body.model_copy(update={"shapes": [s]}) for body, s in zip(run.world.bodies, shapes, strict=True)]
+        slippery = [
+            still.model_copy(update={"shapes": [s.model_copy(update={"friction": 0.1}) for s in still.shapes]})
+            for still in run.world.statics
+        ]
+        world = run.world.model_copy(update={"bodies": bodies, "statics": slippery})
+        assert "CheckForces" in failing(replace(run, world=world))
 
 
 def test_a_crate_that_hovers_or_slides_up_a_height_field_is_found(tmp_path):

@@ -159,6 +159,51 @@ def test_a_bend_takes_no_energy(simulate, worlds):
     assert z[low] == pytest.approx(z.min())
 
 
+@pytest.mark.parametrize("worlds", [1, 2])
+@pytest.mark.parametrize(("gauge", "rod", "ball"), [(0.04, 0.01, 0.03), (0.06, 0.02, 0.06)])
+def test_a_ball_rolls_down_two_rods(simulate, worlds, gauge, rod, ball):
+    """By g sin α / (1 + 2 r² / (5 ρ²)), ρ from its axis to the line between the places where it touches."""
+    lean, span = math.radians(25.0), ball + rod / 2
+    high = math.sqrt(span**2 - (gauge / 2) ** 2)
+
+    def build(scene):
+        track = scene.track(
+            "run", pieces=[("line", 2.0)], start=(0, 0, 1), slope_deg=-25, profile="rails", width=gauge, thickness=rod,
+            friction=0.6,
+        )  # fmt: skip
+        scene.sphere("ball", radius=ball, density=2000, friction=0.6, position=track.place(0.1, high))
+
+    seconds = 0.4 if worlds == 1 else 0.1
+    run = simulate(build, seconds, worlds)
+    speed = np.linalg.norm(run.v["ball"][-1])
+    about = high * ball / span
+    assert speed == pytest.approx(G * math.sin(lean) / (1 + 0.4 * (ball / about) ** 2) * seconds, rel=0.01)
+    off = (run.q["ball"] - run.q["ball"][0]) @ (math.sin(lean), 0.0, math.cos(lean))
+    assert np.abs(off).max() < 1e-5
+    assert np.abs(run.q["ball"][:, 1]).max() < 1e-5
+
+
+def test_rods_lead_a_ball_round_a_bend(simulate):
+    def build(scene):
+        track = scene.track(
+            "run", pieces=[("line", 0.2), ("left", 0.5, 45.0), ("line", 0.2)], start=(0, 0, 1), slope_deg=-20,
+            profile="rails", width=0.04, thickness=0.01, friction=0.6,
+        )  # fmt: skip
+        at = track.place(0.15, math.sqrt(0.035**2 - 0.02**2))
+        scene.sphere("ball", radius=0.03, density=2000, friction=0.6, position=at)
+        ends.append(track.place(0.2 + 0.5 * math.pi / 4, math.sqrt(0.035**2 - 0.02**2)))
+
+    ends = []
+    run = simulate(build, 0.8)
+    nearest = np.linalg.norm(run.q["ball"] - ends[0], axis=1).min()
+    assert nearest < 2e-3  # half of how far it goes in a step, and its lean outwards in the bend
+    z = run.q["ball"][:, 2]
+    assert z[-1] < ends[0][2]
+    ratio = 1 + 0.4 * (0.035**2) / (0.035**2 - 0.02**2)
+    energy = 0.5 * np.sum(run.v["ball"] ** 2, axis=1) * ratio + G * z
+    assert np.abs(energy - energy[0]).max() < 0.02 * G * (z[0] - z[-1])
+
+
 def test_a_crate_slides_down_a_slope_of_a_field(simulate):
     """By g (sin α - μ cos α) t² / 2."""
     lean = math.radians(25.0)

@@ -101,6 +101,36 @@ def _lift(corner: wp.vec3, own: wp.vec3, normal: wp.vec3, q: wp.vec3) -> float:
 
 
 @wp.func
+def _normal_change(
+    a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3, way: wp.vec3, m0: wp.vec3, m1: wp.vec3, m2: wp.vec3
+) -> wp.vec3:
+    """By how much the normal of a curved triangle changes along a way in its plane."""
+    turned = _shares(a, b, c, normal, a + way)
+    return (turned[0] - 1.0) * m0 + turned[1] * m1 + turned[2] * m2
+
+
+@wp.func
+def _way_to_foot(
+    first: float, second: float, above: float, e1: wp.vec3, e2: wp.vec3, n1: wp.vec3, n2: wp.vec3
+) -> wp.vec3:
+    """How far the foot is from a point of the triangle's plane, whose normal misses a place above by so much.
+
+    Over a surface that bulges, of radius R, the foot goes by R / (R + above) of what is missed: over a thin rod all
+    of it would be too far by more than it was missed. Into a hollow all of it is taken.
+    """
+    bulge = wp.dot(n1, e1) + wp.dot(n2, e2)
+    if bulge <= 0.0 or above <= 0.0:
+        return first * e1 + second * e2
+    a = 1.0 + above * wp.dot(n1, e1)
+    b = 0.5 * above * (wp.dot(n1, e2) + wp.dot(n2, e1))
+    d = 1.0 + above * wp.dot(n2, e2)
+    det = a * d - b * b
+    if det < 0.1:
+        return first * e1 + second * e2
+    return ((d * first - b * second) * e1 + (a * second - b * first) * e2) / det
+
+
+@wp.func
 def _carried_on(surface: Surface, at: wp.vec3, along: wp.vec3, normal: wp.vec3, third: wp.vec3) -> bool:
     """Whether beyond an edge another face carries on the plane of one: as pieces of one floor do."""
     out = wp.normalize(wp.cross(along, normal))
@@ -172,13 +202,18 @@ def _touch_face(
         up = normal
         foot = q
         if surface.curved[face] != 0:
+            e1 = wp.normalize(b - a)
+            e2 = wp.cross(normal, e1)
+            n1 = _normal_change(a, b, c, side * normal, e1, m0, m1, m2)
+            n2 = _normal_change(a, b, c, side * normal, e2, m0, m1, m2)
             for _step in range(FOOT_STEPS):
                 up = wp.normalize(shares[0] * m0 + shares[1] * m1 + shares[2] * m2)
                 lift = shares[0] * _lift(a, m0, normal, q) + shares[1] * _lift(b, m1, normal, q)
                 foot = q + (lift + shares[2] * _lift(c, m2, normal, q)) * normal
                 miss = p - foot
-                miss = miss - wp.dot(miss, up) * up
-                q = q + miss - wp.dot(miss, normal) * normal
+                above = wp.dot(miss, up)
+                miss = miss - above * up
+                q = q + _way_to_foot(wp.dot(miss, e1), wp.dot(miss, e2), above, e1, e2, n1, n2)
                 shares = _shares(a, b, c, side * normal, q)
         if wp.min(shares) < wp.where(surface.curved[face] != 0, -INSIDE_CURVED, -INSIDE):
             continue

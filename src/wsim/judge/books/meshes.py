@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 AROUND = 8  # points of a cylinder's rim
 ALONG = 9  # points of an edge
 OUTSIDE = 1e-3  # of a triangle: how far beside it a point still counts as over it
+OUTSIDE_CURVED = 1e-2  # two that stand for what is curved meet at their line to the second order only
+FOOT_STEPS = 8  # to the nearest point of what is curved
 FLAT = 1e-3  # sine between two faces whose edge does not stick out
 DEEPEST = 0.5  # of a shape's radius: what is deeper under a face is not pushed out by it
 MOST = 256  # corners of a mesh that are asked for over another's faces
@@ -171,6 +173,8 @@ def touching(mesh: Triangles, shape: Shape, other: Triangles | None, pose: Float
     lowest = _lowest(shape, other, pose, mesh.normals[faces])
     rounded = shape.size[0] if shape.kind in ("sphere", "capsule", "cylinder") else 0.0
     found = [_over_faces(mesh, faces, lowest, rounded, reach, DEEPEST * radius)]
+    if shape.kind == "sphere" and mesh.smooth is not None:
+        found.append(_over_bulges(mesh, faces, pose[:3], radius, reach))
     if other is None:
         found.append(_edges_in(mesh, faces, kind_of(shape).depth, pose, radius, reach))
     return _thinned(Near.of(found))
@@ -214,6 +218,44 @@ def _over_faces(mesh: Triangles, faces: Rows, points: Floats, rounded: float, re
         curved /= np.maximum(np.linalg.norm(curved, axis=1, keepdims=True), 1e-12)
         at, normal = at + rounded * (normal - curved), curved  # what is round touches where its side has the normal
     return Near(at, normal, gap)
+
+
+def _over_bulges(mesh: Triangles, faces: Rows, centre: Floats, radius: float, reach: float) -> Near:
+    """Where a ball touches triangles that stand for what bulges, as a rod does, of the second order.
+
+    A ball that is large beside the rod is over none of its sides, and over an edge it is up to a side's sagitta off.
+    A triangle's points are lifted half of the way to the tangent planes at its corners (Boubekeur and Alexa 2008).
+    """
+    assert mesh.smooth is not None
+    corners, normals, own = mesh.corners[faces], mesh.normals[faces], mesh.smooth[faces]
+    ways = np.stack([corners[:, 1] - corners[:, 0], np.zeros_like(normals)], axis=1)
+    ways[:, 0] /= np.maximum(lengths(ways[:, 0]), 1e-300)[:, None]
+    ways[:, 1] = cross(normals, ways[:, 0])
+    changes = np.stack(
+        [np.einsum("nk,nki->ni", _shares(corners, normals, corners[:, 0] + way) - (1.0, 0.0, 0.0), own)
+         for way in (ways[:, 0], ways[:, 1])], axis=1,
+    )  # fmt: skip
+    bend = np.einsum("nai,nbi->nab", ways, changes)
+    bend = 0.5 * (bend + np.swapaxes(bend, 1, 2))
+    height = np.einsum("ni,ni->n", centre - corners[:, 0], normals)
+    some = (np.trace(bend, axis1=1, axis2=2) > 1e-6 / max(radius, 1e-9)) & (height > 0.0)
+    corners, normals, own, ways, bend = (array[some] for array in (corners, normals, own, ways, bend))
+    foot = at = centre - height[some, None] * normals
+    up, shares = normals, _shares(corners, normals, at)
+    for _ in range(FOOT_STEPS):
+        up = np.einsum("nk,nki->ni", shares, own)
+        up = up / np.maximum(lengths(up), 1e-12)[:, None]
+        out = np.einsum("nki,nki->nk", at[:, None] - corners, own) * np.einsum("nki,ni->nk", own, normals)
+        foot = at - 0.5 * np.einsum("nk,nk->n", shares, out)[:, None] * normals
+        miss = centre - foot
+        above = np.einsum("ni,ni->n", miss, up)
+        aside = np.einsum("nai,ni->na", ways, miss - above[:, None] * up)
+        goes = np.linalg.solve(np.eye(2) + np.maximum(above, 0.0)[:, None, None] * bend, aside[..., None])[..., 0]
+        at = at + np.einsum("na,nai->ni", goes, ways)
+        shares = _shares(corners, normals, at)
+    gap = np.einsum("ni,ni->n", centre - foot, up) - radius
+    over = (shares.min(axis=1) > -OUTSIDE_CURVED) & (gap < reach) & (gap > -DEEPEST * radius)
+    return Near(foot[over] + 0.5 * gap[over, None] * up[over], up[over], gap[over])
 
 
 def _shares(corners: Floats, normals: Floats, points: Floats) -> Floats:
