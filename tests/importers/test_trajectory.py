@@ -24,6 +24,8 @@ from wsim.importers import read_npz
 from wsim.importers.mujoco_model import world_of
 from wsim.importers.trajectory import save
 from wsim.judge import judge
+from wsim.judge.checks.stated import CheckPath
+from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import Recording, read
 
 NAMES = ["brick", "ball", "arm"]
@@ -212,6 +214,31 @@ def test_velocities_are_those_of_the_centre_of_mass_in_the_worlds_frame(tmp_path
 def test_what_does_not_fit_is_named(recording, arrays, told: str) -> None:
     with pytest.raises(UserError, match=told):
         recording(**arrays)
+
+
+LED = """\
+<mujoco><worldbody>
+  <body name="table" mocap="true" pos="0 0 1"><geom type="cylinder" size="0.5 0.05"/></body></worldbody>
+</mujoco>"""
+
+
+@pytest.mark.parametrize(("stated", "failed"), [(1.5, False), (1.35, True), (0.0, False)])
+def test_a_turntable_keeps_the_velocity_that_its_world_states(tmp_path: Path, stated: float, failed: bool) -> None:
+    """A tenth slower than it goes is found; what states none is led by a script."""
+    time, rate = np.arange(61) / 60.0, 1.5
+    turned = np.zeros((61, 1, 7))
+    turned[:, 0, 2], turned[:, 0, 5], turned[:, 0, 6] = 1.0, np.sin(0.5 * rate * time), np.cos(0.5 * rate * time)
+    qd = np.zeros((61, 1, 6))
+    qd[..., 5] = rate
+    (tmp_path / "table.xml").write_text(LED)
+    world = world_of(tmp_path / "table.xml")
+    table = world.bodies[0].model_copy(update={"angular_velocity": (0.0, 0.0, stated)})
+    world = world.model_copy(update={"bodies": [table]})
+    arrays = {"time": time, "body_names": np.array([table.prim]), "body_q": turned, "body_qd": qd,
+              "world": np.array(world.model_dump_json())}  # fmt: skip
+    np.savez(tmp_path / "table.npz", **arrays)
+    found = CheckPath().run(Evidence(read_npz(tmp_path / "table.npz", None)))
+    assert any(not finding.passed for finding in found) == failed
 
 
 def test_a_file_that_is_none_and_a_model_that_is_missing_are_said(tmp_path: Path, run) -> None:

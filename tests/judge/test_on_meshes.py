@@ -4,9 +4,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from tests.judge.test_turned import failing, simulated
-from tests.judge.theory import edited
+from tests.judge.theory import ask, edited
+from wsim.judge.checks.forces import CheckForces
 
 SLOPE = math.radians(20.0)
 
@@ -71,3 +73,31 @@ def test_a_crate_that_hovers_or_slides_up_a_height_field_is_found(tmp_path):
     q[:, 0, :3] = 2 * q[0, 0, :3] - q[:, 0, :3]
     qd[:, 0, :3] *= np.float32(-1)
     assert "CheckEnergy" in failing(replace(sound, body_q=q, body_qd=qd))
+
+
+# ---- a slab of 1 cm
+DOWN, FRICTION = math.radians(20.0), 0.15
+
+
+def sled(friction):
+    def build(scene):
+        track = scene.track("run", pieces=[("line", 2.5)], start=(0, 0, 1), slope_deg=-20, profile="flat", width=0.4,
+                            friction=0.9)  # fmt: skip
+        scene.box("sled", size=(0.15, 0.1, 0.05), position=track.place(0.15, 0.0255), rotation_deg=(0, 20, 0),
+                  density=500, friction=friction)  # fmt: skip
+
+    return build
+
+
+def without_contacts(recording, world):
+    return replace(recording, world=world, contacts=None, ties=None)
+
+
+def test_a_slabs_underside_does_not_draw_a_sled_down_to_brake_it(tmp_path):
+    """Friction a fifth too great is 0.03 m g cos(20) that nothing gives; drawn down, friction would be any."""
+    sound, slow = (simulated(tmp_path / str(mu), sled(mu), 1.0) for mu in (FRICTION, 1.2 * FRICTION))
+    assert failing(without_contacts(sound, sound.world)) == set()
+    assert failing(without_contacts(slow, slow.world)) == set()
+    found = [f for f in ask(CheckForces(), without_contacts(slow, sound.world)) if not f.passed]
+    missing = 0.2 * FRICTION * slow.world.bodies[0].mass * 9.81 * math.cos(DOWN)
+    assert [f.value for f in found if f.unit == "N"] == [pytest.approx(missing, rel=0.05)]

@@ -201,17 +201,14 @@ def _array(arrays: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Ar
 
 
 def _started(world: World, time: Array, body_q: Array, body_qd: Array) -> World:
-    """The world with the trajectory's duration, frame rate and first frame."""
-    bodies = [
-        body.model_copy(
-            update={
-                "position": tuple(map(float, body_q[0, i, :3])),
-                "rotation": tuple(map(float, body_q[0, i, 3:])),
-                "velocity": tuple(map(float, body_qd[0, i, :3])),
-                "angular_velocity": tuple(map(float, body_qd[0, i, 3:])),
-            }
-        )
-        for i, body in enumerate(world.bodies)
-    ]
+    """The world with the trajectory's duration, frame rate and first frame; what is led keeps its stated velocity."""
+    bodies = []
+    for i, body in enumerate(world.bodies):
+        start: dict[str, object] = {"position": tuple(map(float, body_q[0, i, :3]))}
+        start["rotation"] = tuple(map(float, body_q[0, i, 3:]))
+        if not body.kinematic:
+            start["velocity"] = tuple(map(float, body_qd[0, i, :3]))
+            start["angular_velocity"] = tuple(map(float, body_qd[0, i, 3:]))
+        bodies.append(body.model_copy(update=start))
     rate = 1.0 / float(np.median(np.diff(time)))
     return world.model_copy(update={"bodies": bodies, "duration": float(time[-1]), "frame_rate": rate})

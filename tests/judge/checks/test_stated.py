@@ -93,6 +93,28 @@ def test_another_engine_s_model_may_start_anywhere(tmp_path):
     assert CheckStart().run(told) == []
 
 
+@pytest.mark.parametrize(
+    ("values", "failed"),
+    [({}, set()), ({"top": 1.65}, set()), ({"speed": 0.33}, {"/World/belt"}), ({"spin": 54.0}, {"/World/table"})],
+)
+def test_in_a_table_of_poses_what_states_a_velocity_has_it(tmp_path, values, failed):
+    """From wherever it starts; when a path has begun nobody says."""
+    told = evidence(tmp_path, led, **values)
+    told.recording.metadata.pop("loose_order")
+    told.recording.body_q[..., 0] += 2.0
+    assert {finding.prim for finding in CheckPath().run(told) if not finding.passed} == failed
+
+
+def test_what_states_no_motion_may_be_led_by_a_script(tmp_path):
+    told = evidence(tmp_path, led, speed=0.33, spin=54.0)
+    told.recording.metadata.pop("loose_order")
+    still = [
+        body.model_copy(update={"velocity": (0, 0, 0), "angular_velocity": (0, 0, 0)}) for body in told.world.bodies
+    ]
+    world = told.world.model_copy(update={"bodies": still})
+    assert CheckPath().run(Evidence(dataclasses.replace(told.recording, world=world))) == []
+
+
 # ---- what the repairs say, put into the program, is what happened
 THROWN = """
 def build(scene):

@@ -1,8 +1,9 @@
 """Forces that follow from where bodies are and how they go: of springs, drives and dry friction in joints.
 
 Each is taken as the mean of what its law gives at the frames at both ends of an interval, where these are near enough
-to tell: a mode of phase `p` between frames leaves p^2 / 12 of it (the trapezoidal rule's error). Where they are not,
-and where somebody sets the law's numbers while the world runs, the force is unknown, and any along its line may act.
+to tell: a mode of phase `p` between frames leaves p^2 / 12 of it (the trapezoidal rule's error), and of a spring, whose
+length and rate are known at both ends, p^4 / 720. Where they are not, and where somebody sets the law's numbers while
+the world runs, the force is unknown, and any along its line may act.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import jolts
+from wsim.judge.books.lateness import steps_at_most
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.joints import AXES, broken, track_of
+from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,6 +71,7 @@ class Laws:
         self._evidence, self._motion = evidence, evidence.motion
         self._row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
         self._set = bool(evidence.recording.metadata.get("controlled"))
+        self._steps, self._coarse = steps_at_most(evidence)
         self.springs = [self._spring(spring) for spring in evidence.world.springs]
         self.joints = {joint.prim: self._joint(joint) for joint in evidence.world.joints}
 
@@ -84,7 +88,7 @@ class Laws:
                 most = np.maximum(np.abs(wrench[1:]), np.abs(wrench[:-1])).reshape(-1, 2, 3)
                 change = np.linalg.norm((wrench[1:] - wrench[:-1]).reshape(-1, 2, 3), axis=2)
                 # A step takes the force at its end, or at its start.
-                late = 0.5 * (self._motion.dt / self._motion.h)[:, None] * change
+                late = 0.5 * (self._step(law) / self._motion.h)[:, None] * change
                 off = law.error[:, None] * np.linalg.norm(most, axis=2) + late
                 wrong[:, row] += np.where(law.known[:, None], off, 0.0)
         for spring, law in zip(self._evidence.world.springs, self.springs, strict=True):
@@ -134,20 +138,22 @@ class Laws:
         return drive.damping * drive.velocity - mean, may, below
 
     def _refine(self, spring: Spring, law: Law, total: Floats, wrong: Floats) -> None:
-        """What the mean of both ends leaves of a spring's force: of its size at a blow, and as its way turns.
+        """What the mean of both ends leaves of a spring's force: of its size, and as its way turns.
 
         A force that changes by f while its way turns by u is less by f u / 6 on the whole than the mean of both ends:
-        what the trapezoidal rule makes of their product. Where a blow may come, its size is what its length tells.
+        what the trapezoidal rule makes of their product. Its size is what its length and how that changes tell, blow or
+        none: an error of order p^4, p the phase between frames, where the mean of both ends leaves p^2 / 12.
         """
         motion, track = self._motion, track_of_spring(self._evidence, spring)
-        hit = law.known & self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
-        more, unsure = np.zeros(len(motion.h)), np.zeros(len(motion.h))
-        if hit.any():
-            gains, stretch = (spring.stiffness, spring.damping), track.length - spring.rest_length
-            mean, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.step)
-            more = np.where(hit, mean - 0.5 * (track.pull[1:] + track.pull[:-1]), 0.0)
-            unsure = np.where(hit, may, 0.0)
+        gains, stretch = (spring.stiffness, spring.damping), track.length - spring.rest_length
+        mean, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.step)
+        if not motion.step:  # a step's start has the rate by which the length went in the one before
+            may = may + 0.5 * self._step(law) / motion.h * spring.damping * np.abs(np.diff(track.rate))
+        may = may + 8.0 * FLOAT32 * spring.damping * np.abs(motion.com).max(initial=0.0) / motion.h
+        more = np.where(law.known, mean - 0.5 * (track.pull[1:] + track.pull[:-1]), 0.0)
+        unsure = np.where(law.known, may, 0.0)
         change = np.where(law.known, np.diff(track.pull), 0.0)
+        most = np.where(law.known, np.maximum(np.abs(track.pull[1:]), np.abs(track.pull[:-1])), 0.0)
         for guide, row, sign in zip(spring.path, (law.one, law.two), (1.0, -1.0), strict=True):
             if row >= 0:
                 arm = self.arm(row, self.end(guide))
@@ -155,6 +161,11 @@ class Laws:
                 middle = 0.5 * (way[1:] + way[:-1])
                 total[:, row] += more[:, None] * middle - change[:, None] * np.diff(way, axis=0) / 6.0
                 wrong[:, row] += unsure[:, None] * np.linalg.norm(middle.reshape(-1, 2, 3), axis=2)
+                wrong[:, row] += most[:, None] * _bent(way)
+
+    def _step(self, law: Law) -> float:
+        """The engine's time step for what a law acts on, or the longest that it may be [s]."""
+        return float(max((self._steps[row] for row in (law.one, law.two) if row >= 0), default=self._motion.dt))
 
     def _may_be_hit(self, rows: list[int]) -> Bools:
         """Whether anything may touch what some bodies hang together with, (T - 1,)."""
@@ -174,7 +185,9 @@ class Laws:
         arms = [self.arm(row, self.end(guide)) for row, guide in zip(rows, spring.path, strict=True)]
         force = -(track.pull[:, None] * track.along)
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
-        return self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
+        law = self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
+        coarse = max((self._coarse[row] for row in rows if row >= 0), default=1.0)
+        return replace(law, error=coarse * law.error + law.error**2 / 5.0)  # p^4 / 720 (`_refine`)
 
     def end(self, guide: Guide) -> Floats:
         """Where a point of a spring's way is, (T, 3) [m]."""
@@ -314,3 +327,16 @@ def _effort(drive: Motor, position: Floats, rate: Floats) -> Floats:
     most = np.inf if drive.max_effort is None else drive.max_effort
     asked = drive.stiffness * (drive.position - position) + drive.damping * (drive.velocity - rate)
     return np.asarray(np.clip(asked, -most, most))
+
+
+def _bent(way: Floats) -> Floats:
+    """What the mean of both ends may miss of ways (T, 6) in the mean of each interval, (T - 1, 2).
+
+    Of one that turns with its end at a corner by j a quarter of what it turns by more than before, or after, at most;
+    of one that bends evenly a twelfth.
+    """
+    if len(way) < 3:
+        return np.zeros((len(way) - 1, 2))
+    bends = np.linalg.norm(np.diff(way, n=2, axis=0).reshape(-1, 2, 3), axis=2)
+    bends = np.pad(bends, ((1, 1), (0, 0)), mode="edge")
+    return np.asarray(0.25 * np.maximum(bends[1:], bends[:-1]))

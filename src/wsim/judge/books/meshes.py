@@ -210,9 +210,11 @@ def _over_faces(mesh: Triangles, faces: Rows, points: Floats, rounded: float, re
     at = points[face if len(points) > 1 else 0, point]
     shares = _shares(corners[face], normals[face], at)  # of the few that are near their face's plane
     over = shares.min(axis=1) > -OUTSIDE
-    face, shares, gap = face[over], shares[over], height[face, point][over]
+    face, shares, gap, at = face[over], shares[over], height[face, point][over], at[over]
+    fronted = ~_behind(corners, normals, face, at, gap)
+    face, shares, gap, at = face[fronted], shares[fronted], gap[fronted], at[fronted]
     normal = normals[face]
-    at = at[over] - 0.5 * gap[:, None] * normal
+    at = at - 0.5 * gap[:, None] * normal
     if mesh.smooth is not None:
         curved = np.einsum("nk,nki->ni", shares, mesh.smooth[faces][face])
         curved /= np.maximum(np.linalg.norm(curved, axis=1, keepdims=True), 1e-12)
@@ -256,6 +258,30 @@ def _over_bulges(mesh: Triangles, faces: Rows, centre: Floats, radius: float, re
     gap = np.einsum("ni,ni->n", centre - foot, up) - radius
     over = (shares.min(axis=1) > -OUTSIDE_CURVED) & (gap < reach) & (gap > -DEEPEST * radius)
     return Near(foot[over] + 0.5 * gap[over, None] * up[over], up[over], gap[over])
+
+
+def _behind(corners: Floats, normals: Floats, face: Rows, points: Floats, gap: Floats) -> NDArray[np.bool_]:
+    """Which points (n, 3) under a face are on the other side of the mesh there: nearer to a face that looks away, (n,).
+
+    What lies on a thin slab is no deeper in it than that, and its underside does not draw it down.
+
+    Args:
+        corners: Of faces, (m, 3, 3), and their
+        normals: (m, 3).
+        face: Of each point the one that it is over, (n,).
+        points: (n, 3).
+        gap: Height of each over its face, (n,) [m].
+    """
+    found = np.zeros(len(face), dtype=bool)
+    under = np.flatnonzero(gap < 0.0)
+    which, other = np.nonzero(normals[face[under]] @ normals.T < 0.0)
+    which = under[which]
+    height = np.einsum("ni,ni->n", points[which] - corners[other, 0], normals[other])
+    nearer = np.abs(height) < -gap[which]
+    which, other = which[nearer], other[nearer]
+    shares = _shares(corners[other], normals[other], points[which])
+    found[which[shares.min(axis=1) > -OUTSIDE]] = True
+    return found
 
 
 def _shares(corners: Floats, normals: Floats, points: Floats) -> Floats:

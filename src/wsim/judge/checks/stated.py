@@ -79,27 +79,37 @@ class CheckStart(Check):
 
 @dataclass
 class CheckPath(Check):
-    """What is kinematic goes where its velocity takes it, or along its path."""
+    """What is kinematic goes where its velocity takes it, or along its path.
+
+    Of other engines, and of tables of poses, what states a velocity, and from where it is first seen: their models may
+    start anywhere, their clocks when a path has begun, and what states no motion may be led by a script.
+    """
 
     place: float = 1e-3  # of the body's radius
     turn: float = 1e-3  # [rad]
     share: float = 1e-3  # of the way gone, by adding up steps in single precision
+    others: float = (
+        1e-2  # of it, in others' steps: a turn by p a step is off by p^2 / 12 of it where quaternions add up
+    )
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The place and the turn that are farthest off, of each kinematic body."""
-        if OURS not in evidence.recording.metadata:
-            return []
+        metadata = evidence.recording.metadata
         found: list[Finding] = []
         for k, body in enumerate(evidence.world.bodies):
-            if body.kinematic:
-                found += self._of(evidence, k, body)
+            if body.kinematic and OURS in metadata:
+                found += self._of(evidence, k, body, self.share)
+            elif body.kinematic and body.path is None and _moves(body) and not metadata.get("controlled"):
+                first = evidence.motion.q[0, k].tolist()
+                start = {"position": tuple(first[:3]), "rotation": tuple(first[3:])}
+                found += self._of(evidence, k, body.model_copy(update=start), self.others)
         return worst(found)
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
         """The way that was taken."""
         return way_taken(evidence, finding)
 
-    def _of(self, evidence: Evidence, k: int, body: Body) -> list[Finding]:
+    def _of(self, evidence: Evidence, k: int, body: Body, share: float) -> list[Finding]:
         motion, time = evidence.motion, evidence.time
         places, turns = _led(body, time)
         far = lengths(motion.q[:, k, :3] - places)
@@ -108,8 +118,8 @@ class CheckPath(Check):
         turned = np.array([_angle(has, own) for has, own in zip(motion.q[:, k, 3:], turns, strict=True)])
         round_ = float(np.linalg.norm(body.angular_velocity)) * (time - time[0])
         return [
-            self._worst(body, time, far, self.place * motion.radius[k] + self.share * way + rounding, "m", "is"),
-            self._worst(body, time, turned, self.turn + self.share * round_, "rad", "is turned"),
+            self._worst(body, time, far, self.place * motion.radius[k] + share * way + rounding, "m", "is"),
+            self._worst(body, time, turned, self.turn + share * round_, "rad", "is turned"),
         ]
 
     def _worst(self, body: Body, time: Floats, off: Floats, limit: Floats, unit: str, verb: str) -> Finding:
@@ -119,7 +129,7 @@ class CheckPath(Check):
         message = f"{body.prim} {verb} {off[worst_at]:.3g} {unit} from where its {by} takes it"
         return self.measured(
             message, float(off[worst_at]), float(limit[worst_at]), unit, expected=0.0, prim=body.prim,
-            time=float(time[worst_at]), limit_from=f"{self.place:g} of its size, {self.share:g} of its way",
+            time=float(time[worst_at]), limit_from=f"{self.place:g} of its size, and a share of its way",
             fine=f"What is kinematic goes by its {by}",
         )  # fmt: skip
 
@@ -137,6 +147,11 @@ def _led(body: Body, time: Floats) -> tuple[Floats, Floats]:
     return centre - rotate(turns, np.broadcast_to(arm, centre.shape)), turns
 
 
+def _moves(body: Body) -> bool:
+    """Whether it is stated to have a velocity."""
+    return any((*body.velocity, *body.angular_velocity))
+
+
 def _free(evidence: Evidence) -> NDArray[np.bool_]:
     """Whether a body starts as it is stated, at rest where nothing is, (B,): joints and gears give it no speed."""
     world = evidence.world
@@ -148,7 +163,7 @@ def _free(evidence: Evidence) -> NDArray[np.bool_]:
     for one, other in pairs:
         if one in row and other in row:
             unit[unit == unit[row[other]]] = unit[row[one]]
-    moves = [any((*body.velocity, *body.angular_velocity)) or body.path is not None for body in world.bodies]
+    moves = [_moves(body) or body.path is not None for body in world.bodies]
     ends = {end for joint in world.joints for end in (joint.parent, joint.child)}
     tied = np.array([prim in ends for prim in row], dtype=bool)
     free: NDArray[np.bool_] = ~tied | ~np.isin(unit, unit[np.array(moves, dtype=bool)])
