@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
+from wsim.scene.solids import about_all
 
 Pose = tuple[np.ndarray, np.ndarray]  # position (3,) [m], quaternion xyzw (4,)
 
@@ -74,12 +75,9 @@ class Tree:
             axes = np.stack([rotate(own, axis) for axis in np.eye(3)], axis=1)
             inertias.append(axes @ np.diag(model.body_inertia[b]) @ axes.T)
         mass = float(masses.sum())
-        com = np.asarray(masses @ np.array(places) / mass) if mass > 0.0 else places[0]
-        inertia = np.zeros((3, 3))
-        for m, place, each in zip(masses, places, inertias, strict=True):
-            arm = place - com
-            inertia += each + m * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # Steiner's theorem
-        return mass, com, inertia
+        if mass <= 0.0:
+            return mass, places[0], np.sum(inertias, axis=0)
+        return mass, *about_all(masses, places, inertias)
 
     @staticmethod
     def xyzw(wxyz: np.ndarray) -> np.ndarray:

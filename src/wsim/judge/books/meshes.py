@@ -252,8 +252,9 @@ def _over_bulges(mesh: Triangles, faces: Rows, centre: Floats, radius: float, re
         miss = centre - foot
         above = np.einsum("ni,ni->n", miss, up)
         aside = np.einsum("nai,ni->na", ways, miss - above[:, None] * up)
-        goes = np.linalg.solve(np.eye(2) + np.maximum(above, 0.0)[:, None, None] * bend, aside[..., None])[..., 0]
-        at = at + np.einsum("na,nai->ni", goes, ways)
+        part = np.eye(2) + np.maximum(above, 0.0)[:, None, None] * bend
+        part[np.linalg.det(part) < 0.1] = np.eye(2)  # what is hollow along one way, as deep as it is wide
+        at = at + np.einsum("na,nai->ni", np.linalg.solve(part, aside[..., None])[..., 0], ways)
         shares = _shares(corners, normals, at)
     gap = np.einsum("ni,ni->n", centre - foot, up) - radius
     over = (shares.min(axis=1) > -OUTSIDE_CURVED) & (gap < reach) & (gap > -DEEPEST * radius)

@@ -88,9 +88,7 @@ class CheckPath(Check):
     place: float = 1e-3  # of the body's radius
     turn: float = 1e-3  # [rad]
     share: float = 1e-3  # of the way gone, by adding up steps in single precision
-    others: float = (
-        1e-2  # of it, in others' steps: a turn by p a step is off by p^2 / 12 of it where quaternions add up
-    )
+    others: float = 1e-2  # of it, in others' steps: where quaternions add up a turn by p a step is off by p^2 / 12
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """The place and the turn that are farthest off, of each kinematic body."""
