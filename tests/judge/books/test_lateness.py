@@ -10,6 +10,7 @@ from tests.judge.theory import ask, with_world
 from wsim.judge.books.lateness import steps_at_most
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.evidence.evidence import Evidence
+from wsim.scene import Drive
 
 RATE, STIFFNESS, SPEED = 60.0, 150.0, 2.0  # of a weight of 1 kg: 0.2 rad a frame
 FLOOR = {"size": (0.1, 0.1, 0.1), "position": (0.7, 0, 0.05), "mass": 1, "velocity": (SPEED, 0, 0)}
@@ -46,6 +47,24 @@ def test_a_damper_that_is_not_there_is_found(tmp_path, gravity, floor, damping):
     assert passes(bare(sound))
     assert passes(bare(damped))
     assert not passes(bare(with_world(damped, springs=sound.world.springs)))
+
+
+def lift(scene):
+    """A cage of 364 kg that its drive brings 0.7 m high: at first with all that it has."""
+    scene.simulation(duration=1.2, frame_rate=RATE, gravity=(0, 0, -2.41))
+    scene.box("cage", size=(0.6, 0.6, 0.6), mass=364)
+    drive = Drive(position=0.7, stiffness=41_850, damping=4_970, max_force=2_717)
+    scene.joint_prismatic("rail", None, "cage", axis="Z", drive=drive)
+
+
+def test_what_a_drive_gives_is_told_where_its_spring_and_its_damper_are_at_odds(tmp_path):
+    """They are 6 and 6 kN, and together 0.6: the mean of both ends misses 25 N, of a sum that is known to 5."""
+    sound = simulated(tmp_path, lift, 1.2)
+    (rail,) = sound.world.joints
+    assert passes(bare(sound))
+    for wrong in ({"damping": 1.05 * rail.drive.damping}, {"stiffness": 1.05 * rail.drive.stiffness}):
+        drive = rail.drive.model_copy(update=wrong)
+        assert not passes(bare(with_world(sound, joints=[rail.model_copy(update={"drive": drive})])))
 
 
 # ---- other engines, by closed form

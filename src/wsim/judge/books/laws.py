@@ -99,15 +99,21 @@ class Laws:
         return total, wrong
 
     def _refine_drive(self, joint: Joint, law: Law, total: Floats, wrong: Floats) -> None:
-        """What the mean of both ends leaves of a drive's effort where a blow may come."""
-        found = self.struck_drive(joint)
-        hit = law.known & self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
-        if found is None or not hit.any():
+        """What the mean of both ends leaves of a drive's effort where it is below its full strength.
+
+        What its stiffness and its damping give may be large, and their sum small: a share of the sum does not bound it.
+        """
+        found = self.mean_of_drive(joint)
+        if found is None or joint.drive is None:
             return
         mean, may, fits = found
-        effort = self.effort(joint)
-        hit &= fits
-        more, unsure = (np.where(hit, of, 0.0) for of in (mean - 0.5 * (effort[1:] + effort[:-1]), may))
+        effort, most = self.effort(joint), joint.drive.max_effort
+        below = fits if most is None else np.maximum(np.abs(effort[1:]), np.abs(effort[:-1])) < most
+        hit = self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
+        refined = law.known & np.where(hit, fits, below)
+        extent = np.pi if joint.kind == "revolute" else float(np.abs(self._motion.com).max(initial=0.0))
+        may = may + 8.0 * FLOAT32 * joint.drive.damping * extent / self._motion.h  # positions are rounded
+        more, unsure = (np.where(refined, of, 0.0) for of in (mean - 0.5 * (effort[1:] + effort[:-1]), may))
         along = self._along(joint)
         unit = self._law(*along.acting(np.ones(len(effort))), (0.0, 0.0), along.loose)
         for row, way in ((law.one, unit.back), (law.two, unit.wrench)):
@@ -122,9 +128,9 @@ class Laws:
         assert drive is not None and track is not None
         return _effort(drive, track.position, self.rate(joint))
 
-    def struck_drive(self, joint: Joint) -> tuple[Floats, Floats, Bools] | None:
-        """What a drive gives in the mean of each interval in which a blow may come, by how much that may be off, and
-        where it is sure to have been below its full strength, (T - 1,) each [N or N m]; None of what moves unseen.
+    def mean_of_drive(self, joint: Joint) -> tuple[Floats, Floats, Bools] | None:
+        """What a drive gives in the mean of each interval, blow or none, by how much that may be off, and where it is
+        sure to have been below its full strength, (T - 1,) each [N or N m]; None of what moves unseen.
         """
         drive, track = joint.drive, self._evidence.joint(joint)
         if drive is None or track is None:

@@ -219,7 +219,7 @@ class RecordedTies:
         rounding = 8.0 * FLOAT32 * (drive.stiffness * self._extent(k) + drive.damping * np.abs(rate).max())
         known = (law.error < RESOLVED**2 / 12.0) & (full[1:] == full[:-1]) | (full[1:] * full[:-1] > 0.0)
         known &= ~broken(self._evidence, joint)[1:]
-        mean, unsure, found = 0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull), self.laws.struck_drive(joint)
+        mean, unsure, found = 0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull), self.laws.mean_of_drive(joint)
         if found is not None:
             hit = self.struck[:, self.pairs[k][1]]
             mean, unsure = (np.where(hit, *pair) for pair in ((found[0], mean), (found[1], unsure)))
