@@ -29,6 +29,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
+from wsim import helpers
 from wsim.judge.checks.registry import physics_checks, run_checks
 from wsim.judge.decide import work_out
 from wsim.judge.evidence.evidence import Evidence
@@ -88,8 +89,10 @@ Value = TypeVar("Value")
 
 
 def cpu_seconds() -> float:
-    """Of this process and of all its children that have ended [s]."""
-    return sum(os.times()[:4])
+    """Of this process and of all its children [s]."""
+    alive = Path(f"/proc/self/task/{os.getpid()}/children").read_text(encoding="ascii").split()
+    stats = [Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split() for pid in alive]
+    return sum(os.times()[:4]) + sum(int(stat[k]) for stat in stats for k in (11, 12)) / os.sysconf("SC_CLK_TCK")
 
 
 def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
@@ -221,6 +224,7 @@ def main() -> None:
     args = parser.parse_args()
     args.vary = args.vary or list(AXES)
     in_one_thread()
+    helpers.start(args.cores)  # as a sweep's worker does
     with tempfile.TemporaryDirectory(prefix="wsim-sweep-setup-") as folder:
         found = measured(args, Path(folder))
     found |= {"count": args.count, "device": args.device, "cores": args.cores}

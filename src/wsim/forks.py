@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import gc
 import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Generator, Iterator, Sequence
 from multiprocessing.connection import Connection
-from typing import Any, TypeVar
+from typing import TypeVar
+
+from wsim import helpers
+from wsim.helpers import LostForkError, answered, fork, taken
+
+__all__ = ["LostForkError", "shared_out", "uncollected"]
 
 Item = TypeVar("Item")
 Value = TypeVar("Value")
 
-_PR_SET_PDEATHSIG = 1  # of prctl(2)
-_LIBC = ctypes.CDLL(None)
-
-
-class LostForkError(RuntimeError):
-    """A forked process ended before it had sent what it was to."""
-
 
 def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: int) -> Generator[Value, None, None]:
     """`call` of each item, in order. What it gives is pickled; what it raises is raised here.
+
+    Where helpers wait (`wsim.helpers`), a call that can be pickled goes to them, item by item. Others are forked anew.
 
     A process whose own parent may have no children by `multiprocessing` (a daemon) has these all the same. They live no
     longer than the thread that asks, nor than the iterator. A child has only the thread that forked it, so `call` is to
@@ -43,12 +42,16 @@ def shared_out(call: Callable[[Item], Value], items: Sequence[Item], processes: 
     if count < 2 or not hasattr(os, "fork"):
         yield from map(call, items)
         return
+    if (packed := helpers.packed(call)) and (waiting := helpers.free()):
+        with contextlib.closing(waiting.each(packed, items, count)) as found:
+            yield from found
+        return
     children: list[tuple[int, Connection]] = []
     try:
         for first in range(count):
             children.append(_fork(call, items[first::count], [pipe for _, pipe in children]))
         for k in range(len(items)):
-            yield _taken(children[k % count][1])
+            yield taken(children[k % count][1])
     finally:
         for pid, pipe in children:
             pipe.close()
@@ -69,42 +72,11 @@ def uncollected() -> Iterator[None]:
             gc.enable()
 
 
-def _taken(pipe: Connection) -> Any:
-    try:
-        done, value = pipe.recv()
-    except (EOFError, OSError) as error:
-        raise LostForkError("a forked process ended before its work was done") from error
-    if not done:
-        raise value
-    return value
-
-
 def _fork(call: Callable[[Item], Value], items: Sequence[Item], others: Sequence[Connection]) -> tuple[int, Connection]:
     ours, theirs = multiprocessing.Pipe(duplex=False)
-    parent = os.getpid()
-    pid = os.fork()
-    if pid:
-        theirs.close()
-        return pid, ours
-    try:
-        gc.freeze()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_DFL)
-        if hasattr(_LIBC, "prctl"):
-            _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-        if os.getppid() == parent:
-            for pipe in (ours, *others):
-                pipe.close()
-            _send_all(call, items, theirs)
-    finally:
-        os._exit(0)  # nothing that the parent has open is flushed or cleaned up twice
+    return fork(lambda: _send_all(call, items, theirs), theirs, ours, others), ours
 
 
 def _send_all(call: Callable[[Item], Value], items: Sequence[Item], pipe: Connection) -> None:
-    found: tuple[bool, Value | Exception]
     for item in items:
-        try:
-            found = (True, call(item))
-        except Exception as error:  # noqa: BLE001 - raised again where it was asked for
-            found = (False, error)
-        pipe.send(found)
+        pipe.send(answered(call, item))

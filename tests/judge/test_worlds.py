@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import gc
+import os
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from wsim import helpers
 from wsim.judge import judge
 from wsim.judge.books.balance import Balance
 from wsim.judge.checks.contact import CheckSupport
@@ -85,6 +89,32 @@ def test_worlds_are_collected_as_they_fall(worlds: Trajectories) -> None:
     assert worlds.contact_force[:, -1, 0, 2] == pytest.approx(4.0 * G, rel=0.01)
     assert worlds.contact_force[:, 1:, 1] == pytest.approx(0.0)
     assert worlds.problems == [[]] * WORLDS
+
+
+@pytest.fixture
+def waiting() -> Iterator[None]:
+    helpers.start(2)
+    yield
+    helpers.end()
+
+
+def test_helpers_come_to_the_same_without_a_fork(planted: Trajectories, waiting, monkeypatch) -> None:
+    monkeypatch.setattr("wsim.judge.worlds.CHUNK", 3)
+    here = [verdict.model_dump_json() for verdict in verdicts_of(planted, sweep_plan())]
+    monkeypatch.setattr(os, "fork", lambda: pytest.fail("it forks"))
+    for _ in range(2):
+        assert [verdict.model_dump_json() for verdict in verdicts_of(planted, sweep_plan(), 2)] == here
+
+
+def test_no_garbage_is_looked_for_among_all_worlds_while_they_are_judged(planted: Trajectories, monkeypatch) -> None:
+    looked = []
+    monkeypatch.setattr(
+        "wsim.judge.worlds.judge_copies", lambda copies: [looked.append(gc.isenabled()) for _ in copies]
+    )
+    verdicts_of(planted)
+    assert not any(looked)
+    assert len(looked) == WORLDS
+    assert gc.isenabled()
 
 
 @pytest.mark.parametrize("processes", [1, 2])

@@ -6,11 +6,12 @@ import os
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.forks import shared_out
+from wsim.forks import shared_out, uncollected
 from wsim.judge.decide import judge_copies
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.language import Signals, evaluate
@@ -91,6 +92,7 @@ def weigh(worlds: Trajectories, formula: Formula) -> Outcome:
     return evaluate(formula, Signals(worlds.world, worlds.time, *arrays, mass=worlds.mass))
 
 
+@uncollected()
 def verdicts_of(worlds: Trajectories, plan: Plan | None = None, processes: int = 1) -> list[Verdict]:
     """Each world's verdict in full.
 
@@ -103,15 +105,19 @@ def verdicts_of(worlds: Trajectories, plan: Plan | None = None, processes: int =
 
 
 def _judged(worlds: Trajectories, plan: Plan | None, processes: int) -> Iterator[list[Verdict]]:
-    """The verdicts on all worlds in order, some at a time. Children have the arrays already, and need no device."""
+    """The verdicts on all worlds in order, some at a time, by helpers if they wait (`wsim.helpers`).
+
+    Particles are too many to be sent: forks, which have them already, judge those worlds. Neither needs a device.
+    """
     count = worlds.world_count
     size = CHUNK if not worlds.worlds else max(1, min(CHUNK, -(-count // processes)))
-    chunks = [range(k, min(k + size, count)) for k in range(0, count, size)]
+    parts = [worlds.part(k, k + size) for k in range(0, count, size)]
+    judged = partial(_verdicts, plan)
+    yield from shared_out((lambda part: judged(part)) if worlds.fluids else judged, parts, processes)
 
-    def judged(chunk: range) -> list[Verdict]:
-        return judge_copies([Evidence(worlds.recording(k), plan) for k in chunk])
 
-    yield from shared_out(judged, chunks, processes)
+def _verdicts(plan: Plan | None, worlds: Trajectories) -> list[Verdict]:
+    return judge_copies([Evidence(worlds.recording(k), plan) for k in range(worlds.world_count)])
 
 
 def _row(verdict: Verdict) -> Row:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -88,6 +88,24 @@ class Trajectories:
     def world_count(self) -> int:
         """W."""
         return len(self.body_q)
+
+    def part(self, first: int, last: int) -> Trajectories:
+        """Worlds `first` to before `last`."""
+        some = slice(first, last)
+        return replace(
+            self,
+            body_q=self.body_q[some],
+            body_qd=self.body_qd[some],
+            contact_force=self.contact_force[some],
+            penetration=None if self.penetration is None else self.penetration[some],
+            mass=None if self.mass is None else self.mass[some],
+            scalars={name: array[some] for name, array in self.scalars.items()},
+            problems=self.problems[some],
+            worlds=self.worlds[some],
+            applied={name: array[some] for name, array in self.applied.items()},
+            fluids=self.fluids[some],
+            own_metadata=self.own_metadata[some],
+        )
 
     def world_of(self, k: int) -> World:
         """World k as it was, or with its own masses; inertias go with them."""

@@ -17,6 +17,7 @@ from wsim.sim import Simulation
 from wsim.sim.alike import together, topology
 from wsim.sim.collect import follow
 from wsim.sweep.screen import rejected
+from wsim.sweep.turns import turn
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -111,7 +112,8 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
                 worlds=[member.world for member in batch],
                 processes=processes,
             )
-            tracks = follow(simulation)
+            with turn():
+                tracks = follow(simulation)
     except (MemoryError, RuntimeError) as error:
         if len(batch) < 2 or not _is_no_room(error):
             raise

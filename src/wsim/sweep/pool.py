@@ -44,6 +44,9 @@ class Pool:
         work: Called in a process with each task; a function of a module. Yields what it has found, some at a time.
         workers: How many processes.
         environments: Variables that differ, as which GPU is seen; taken in turn.
+
+    Attributes:
+        environments: They.
     """
 
     def __init__(
@@ -52,7 +55,7 @@ class Pool:
         workers: int,
         environments: Sequence[Mapping[str, str]] = ({},),
     ) -> None:
-        self._work, self._environments = work, environments
+        self._work, self.environments = work, environments
         self._places = range(max(1, workers))
         self._workers: dict[int, _Worker] = {}
 
@@ -73,7 +76,7 @@ class Pool:
         """Send a task to a place's process."""
         place = attempt.place
         if place not in self._workers:
-            self._workers[place] = _start(self._work, self._environments[place % len(self._environments)])
+            self._workers[place] = _start(self._work, self.environments[place % len(self.environments)])
         self._workers[place].attempt = attempt
         with contextlib.suppress(OSError):  # it has died; what it was to do is found lost
             self._workers[place].pipe.send(task)

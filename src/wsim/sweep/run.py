@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ from wsim.sweep.pool import Pool
 from wsim.sweep.search import Search
 from wsim.sweep.shards import Dealer, Lost
 from wsim.sweep.table import ranked, write
+from wsim.sweep.turns import SHARING, sharing
 from wsim.sweep.work import Shard, work
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ def sweep(
 
     Args:
         folder: With what is asked; outcomes go there as they come.
-        workers: Processes; by default one for each core.
+        workers: Processes; by default one for each core, on GPUs one or two for each.
         progress: Told how many candidates are done.
         ray: A Ray cluster whose workers do it, as `wsim.sweep.cluster.connect` takes it; "": processes of this machine.
         store: Where outcomes are sent as they come; the table is not.
@@ -95,28 +97,45 @@ def run(
     Args:
         candidates: They.
         folder: Of the sweep that they belong to.
-        workers: How many; by default one for each core, on GPUs one for each.
+        workers: How many; by default one for each core, on GPUs one for each, or two that take turns at it
+            (`wsim.sweep.turns`) where there is more than a batch for each.
         ray: A Ray cluster whose workers do it; "": processes of this machine.
     """
     if not candidates:
         return
-    spec, doing = folder.spec, _workers(folder, min(workers, len(candidates)), ray)
-    cores = doing.cores if isinstance(doing, RayWorkers) else len(os.sched_getaffinity(0)) // len(doing.places)
-    pack = packed(
-        folder.path.resolve(), spec, max(1, cores), spec.device.startswith("cuda") and bool(ray or "," in spec.device)
-    )
-    for found in shards.run(dealer(spec, len(candidates)), candidates, pack, doing):
-        yield [_lost(candidate, came) if isinstance(came, Lost) else came for candidate, came in found]
+    spec, asked = folder.spec, min(workers, len(candidates))
+    with tempfile.TemporaryDirectory(prefix="wsim-turns-") as turns:
+        doing = _on_cluster(folder, asked, ray) if ray else _here(spec, asked, len(candidates), Path(turns))
+        alone = spec.device.startswith("cuda") and bool(ray or "," in spec.device)
+        pack = packed(folder.path.resolve(), spec, _cores(spec, doing), alone)
+        for found in shards.run(dealer(spec, len(candidates)), candidates, pack, doing):
+            yield [_lost(candidate, came) if isinstance(came, Lost) else came for candidate, came in found]
 
 
-def _workers(folder: SweepFolder, count: int, ray: str) -> Pool | RayWorkers:
-    spec, devices = folder.spec, folder.spec.device.split(",")
-    if ray:
-        files = {name: folder.path / name for name in [*spec.programs, "plan.json"]}
-        contents = {name: path.read_bytes() for name, path in files.items() if path.is_file()}
-        return RayWorkers(connect(ray), contents, devices[0].startswith("cuda"), count)
-    count = count or (len(devices) if devices[0].startswith("cuda") else len(os.sched_getaffinity(0)))
-    return Pool(work, count, [_seeing(device) for device in devices] if len(devices) > 1 else [{}])
+def _on_cluster(folder: SweepFolder, count: int, ray: str) -> RayWorkers:
+    spec = folder.spec
+    files = {name: folder.path / name for name in [*spec.programs, "plan.json"]}
+    contents = {name: path.read_bytes() for name, path in files.items() if path.is_file()}
+    return RayWorkers(connect(ray), contents, spec.device.startswith("cuda"), count)
+
+
+def _here(spec: Spec, asked: int, candidates: int, turns: Path) -> Pool:
+    """Processes of this machine, as many as are asked for, or 0."""
+    if not spec.device.startswith("cuda"):
+        return Pool(work, asked or len(os.sched_getaffinity(0)))
+    devices = spec.device.split(",")
+    more = candidates > len(devices) * spec.together
+    seen = [_seeing(device) if len(devices) > 1 else {} for device in devices]
+    environments = [{**sees, **sharing(turns, device)} for sees, device in zip(seen, devices, strict=True)]
+    return Pool(work, asked or len(devices) * (SHARING if more else 1), environments)
+
+
+def _cores(spec: Spec, doing: Pool | RayWorkers) -> int:
+    """Of each worker. Those that share a GPU have the same: one steps on it while the other needs them."""
+    if isinstance(doing, RayWorkers):
+        return doing.cores
+    shares = len(spec.device.split(",")) if spec.device.startswith("cuda") else len(doing.places)
+    return max(1, len(os.sched_getaffinity(0)) // min(shares, len(doing.places)))
 
 
 def dealer(spec: Spec, count: int) -> Dealer:

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 import numpy as np
 import warp as wp
 
+from wsim.forks import uncollected
 from wsim.judge.decide import conclude
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
@@ -328,6 +329,7 @@ def reduce(asked: Sequence[Watched], q: Any, qd: Any, world: World) -> Told:
     return Told(margin.numpy(), value.numpy(), moment.numpy())
 
 
+@uncollected()
 def rejected(tracks: Tracks, plan: Plan | None) -> dict[int, Verdict]:
     """The verdicts on worlds of which an objective is known to fail, by their number."""
     world = tracks.simulation.world

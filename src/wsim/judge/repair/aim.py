@@ -68,8 +68,10 @@ def _target(finding: Finding, evidence: Evidence | None) -> RepairTarget:
         )
     if finding.check in STAGES:
         return RepairTarget(kind="program", direction="change", why=STAGES[finding.check])
+    if evidence is None:
+        return unknown(finding)
     check = next((check for check in [*run_checks(), *physics_checks()] if check.name == finding.check), None)
-    if check is None or evidence is None:
+    if check is None:
         return unknown(finding)
     try:
         return check.repair(finding, evidence) or unknown(finding)
