@@ -13,6 +13,7 @@ from wsim.geometry.rotations import conjugate, rotate, upwards
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.posed import posed
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.language.between import Course
 from wsim.scene.contact import largest_friction
 
 if TYPE_CHECKING:
@@ -230,6 +231,12 @@ class Signals:
         q = self.body_q[:, :, i].astype(np.float64)
         com = np.array(self.world.bodies[i].com, dtype=np.float64)
         return q[..., :3] + rotate(q[..., 3:], com) if com.any() else q[..., :3]
+
+    def course(self, name: str) -> Course:
+        """How a body's centre of mass goes, between frames too."""
+        i = self.row(name)
+        pull = np.zeros(3) if self.world.bodies[i].kinematic else np.array(self.world.gravity, dtype=np.float64)
+        return Course(self.time, self.centre_of_mass(i), self.velocity(name), pull)
 
     def inertia_about(self, i: int, axes: Floats) -> Floats:
         """n . I n of body i about its centre of mass, (W, n) of axes n at the first frames (W, n, 3) [kg m^2 of n^2].
