@@ -15,6 +15,7 @@ from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.blows import blows, normals
 from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
+from wsim.judge.language.measures_carried import borne
 from wsim.judge.repair.lasting import settled
 from wsim.judge.repair.matter import friction, slides_off
 from wsim.judge.repair.passing import missed
@@ -74,8 +75,8 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
 @measures(SupportedBy)
 def _supported_by(asked: SupportedBy, signals: Signals) -> list[Measure]:
     touching = _touching(asked.object, asked.ref, None, signals)
-    weight = signals.weight(asked.object)
-    value = signals.force(asked.object) @ signals.up
+    weight = sum(signals.weight(each) for each in sorted(signals.together(asked.object)))
+    value = borne(signals, asked.object, asked.ref)
     source = f"{asked.share:g} of its weight"
     limit = asked.share * weight
     carried = Measure("force of contacts upwards", touching.prim, value, limit, "N", weight, source, at_most=False)
