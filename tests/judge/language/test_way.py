@@ -35,6 +35,9 @@ def test_moves_is_the_level_way_and_has_a_direction():
     signals = gone(TIME, -TIME, there_and_back)
     assert found("finally[0](moves(box, 1.5 m))", signals).margin == pytest.approx([0.5, 0.5, -1.5])
     assert found("finally[0](moves(box, 1.5 m, front))", signals).margin == pytest.approx([0.5, -3.5, -1.5])
+    # By itself it is where it ends, as the kind `moves` has it: what goes on need not have been there for long.
+    assert found("moves(box, 1.5 m)", signals).margin == pytest.approx([0.5, 0.5, -1.5])
+    assert found("moves(box, 1.9 m, front)", signals).margin == pytest.approx([0.1, -3.9, -1.9])
     assert found("eventually(moves(box, 0.9 m, front))", signals).satisfied.tolist() == [True, False, True]
     # Left open, it is half of its smallest extent; up is no way on the level.
     assert found("eventually(moves(box))", signals).margin == pytest.approx([1.9, 1.9, 0.9])
