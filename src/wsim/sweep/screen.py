@@ -154,7 +154,8 @@ def in_time(formula: Formula, time: Floats) -> InTime | None:
 
 def _alone(predicate: Predicate, time: Floats) -> InTime:
     """A predicate that stands outside of every temporal operator, read with its own."""
-    first = first_of_last(time, None) if predicate.alone == "finally" else 0
+    at_end = {"finally": None, "finally[0]": 0.0}
+    first = first_of_last(time, at_end[predicate.alone]) if predicate.alone in at_end else 0
     last = 1 if predicate.alone == "now" else len(time)
     how = kernel.GREATEST if predicate.alone == "eventually" else kernel.LEAST
     return InTime(predicate, how, 1.0, first, last)

@@ -1,12 +1,15 @@
 """Predicates about what carries a body: gaps seen from above, and the weight that contacts bear."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.judge.language.conftest import G, moving, shape, solid, still, times
+from tests.judge.theory import box, ground, record, slab, with_world
 from wsim.judge.language import Signals, evaluate, parse
+from wsim.recording.contacts import ContactTrack
 from wsim.scene.world import Joint, Shape, World
 
 TIME = times(2.0)
@@ -78,8 +81,55 @@ def test_what_weighs_on_something_is_carried_with_its_weight(share):
     assert strict.satisfied[0] == (abs(share - 1.0) < 0.1)
 
 
+def piled(recorded, loads, joints=()):
+    """A box of 4 kg on another on the ground, beside a wall; and what each pair is given upwards, over 4 g."""
+    t = times(2.0)
+    bodies = [box("top"), box("under")]
+    place = np.tile([[0.0, 0.0, 0.3], [0.0, 0.0, 0.1]], (len(t), 1, 1))
+    force = np.zeros((len(t), 2, 3))
+    sums = np.zeros((len(loads), 16), np.float32)
+    for row, ((under, over), load) in zip(sums, loads.items(), strict=True):
+        row[2], row[3] = load * 4.0 * G / 30.0, load * 4.0 * G / 30.0  # on the second of the pair, between frames
+        for which, sign in ((under, -1.0), (over, 1.0)):
+            if which < 2:
+                force[:, which, 2] += sign * load * 4.0 * G
+    frames = np.repeat(np.arange(1, len(t)), len(loads)).astype(np.int32)
+    pairs = np.tile(np.array(list(loads), np.int32), (len(t) - 1, 1))
+    still = [ground(), slab("wall", (0.2, 1.0, 1.0), (0.2, 0.0, 0.5))]
+    case = record(bodies, place, 0.0 * place, t, force=force, statics=still)
+    contacts = ContactTrack(frames, pairs, np.tile(sums, (len(t) - 1, 1))) if recorded else None
+    return Signals.of_recording(with_world(replace(case, contacts=contacts), joints=list(joints)))
+
+
+STACK = {(1, 0): 1.0, (2, 1): 2.0}  # shapes of top and under, then ground's and the wall's
+
+
+@pytest.mark.parametrize("recorded", [True, False])
+def test_what_weighs_on_another_is_carried_by_that(recorded):
+    stack = piled(recorded, STACK)
+    for text, holds in (("top, under", True), ("under, ground", True), ("top, ground", False), ("top, wall", False),
+                        ("under, wall", False), ("under, top", False)):  # fmt: skip
+        assert found(f"weighs_on({text})", stack).satisfied[0] == holds
+        assert found(f"supported_by({text})", stack).satisfied[0] == holds
+
+
+@pytest.mark.parametrize(("leans", "holds"), [(0.03, False), (0.07, True), (0.5, True)])
+def test_what_is_borne_by_several_weighs_on_each_that_bears_of_it(leans, holds):
+    """A part of it is borne by the wall's friction; what is less than a twentieth is no more than a touch."""
+    shared = piled(True, {(1, 0): 1.0, (2, 1): 2.0 - leans, (3, 1): leans})
+    assert found("weighs_on(under, ground)", shared).satisfied[0]
+    assert found("weighs_on(under, wall)", shared).satisfied[0] == holds
+
+
+def test_what_is_fixed_together_is_borne_as_one():
+    weld = Joint(prim="/World/weld", kind="fixed", parent="/World/top", child="/World/under")
+    one = piled(True, {(2, 1): 2.0}, [weld])
+    assert found("weighs_on(top, ground)", one).satisfied[0] and found("weighs_on(under, ground)", one).satisfied[0]
+    assert not found("weighs_on(top, ground)", piled(True, {(2, 1): 2.0})).satisfied[0]
+
+
 def test_what_is_fixed_together_weighs_as_one():
-    box = solid("box", shape("box", 0.2, 0.2, HEIGHT), 8.0)
+    own = solid("box", shape("box", 0.2, 0.2, HEIGHT), 8.0)
     other = solid("other", shape("box", 0.2, 0.2, HEIGHT), 4.0)
     weld = Joint(prim="/World/weld", kind="fixed", parent="/World/box", child="/World/other")
     table = still("table", shape("box", 1.0, 1.0, 0.5, position=(0.0, 0.0, 0.25)))
@@ -87,7 +137,7 @@ def test_what_is_fixed_together_weighs_as_one():
     force = np.zeros((2, 3))
     force[0, 2] = 12.0 * G
     for joints, holds in (([weld], True), ([], False)):
-        signals = moving(World(bodies=[box, other], statics=[table], joints=joints), TIME, *places, force=force)
+        signals = moving(World(bodies=[own, other], statics=[table], joints=joints), TIME, *places, force=force)
         assert found("weighs_on(box, table)", signals).satisfied[0] == holds
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
-from tests.judge.theory import RADIUS, ball, record, with_world
+from tests.judge.theory import RADIUS, ball, bouncing, ground, record, with_world
 from wsim.geometry.surfaces import box_surface
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
@@ -294,6 +294,43 @@ def test_collides_with_the_ground_at_its_restitution(tank_world, restitution):
     assert evaluate(parse("collides_with(ball, ground)"), signals).satisfied[0]
     for wrong in (restitution - 0.25, min(restitution + 0.25, 1.0) if restitution < 0.7 else 0.5):
         assert not evaluate(parse(f"collides_with(ball, ground, restitution {wrong})"), signals).satisfied[0]
+
+
+@pytest.mark.parametrize("rate", [24.0, 60.0])
+@pytest.mark.parametrize("restitution", [0.4, 0.7, 0.88])
+def test_the_first_clear_blow_shows_the_restitution_however_slow_later_ones_are(restitution, rate):
+    recording = bouncing(restitution, 3.0, 1.0, rate)
+    signals = Signals.of(Evidence(recording))
+    for off, holds in ((-0.105, False), (-0.095, True), (0.095, True), (0.105, False)):
+        asked = f"collides_with(ball, ground, restitution {restitution + off})"
+        assert evaluate(parse(asked), signals).satisfied[0] == holds
+    outcome = evaluate(parse(f"collides_with(ball, ground, restitution {restitution}, within 1 %)"), signals)
+    assert outcome.satisfied[0] and np.ptp(outcome.measures[-1].value[0]) == pytest.approx(1.0 + restitution, abs=1e-4)
+
+
+def test_restitution_is_along_the_normal_whatever_friction_does():
+    """Thrown askew, it parts at 0.7 of its speed downwards, and friction takes 2/7 of that along the ground."""
+    time, hit, speed = times(0.5, 30.0), 0.21, 3.0
+    after = time > hit
+    fall = speed + G * (time - hit)
+    v = np.stack([np.where(after, 5.0 / 7.0, 1.0) * speed, 0.0 * time, np.where(after, 0.7 * speed - G * (time - hit),
+                                                                              -fall)], axis=1)  # fmt: skip
+    since = time - hit
+    place = np.stack([v[:, 0] * since, 0.0 * time, RADIUS + np.where(after, 0.7, -1.0) * speed * since
+                      - G * since**2 / 2], axis=1)  # fmt: skip
+    spin = np.stack([0.0 * time, np.where(after, 5.0 / 7.0 * speed / RADIUS, 0.0), 0.0 * time], axis=1)
+    signals = Signals.of(Evidence(record([ball()], place, v, time, spin=spin, statics=[ground()])))
+    outcome = evaluate(parse("collides_with(ball, ground, restitution 0.7, within 2 %)"), signals)
+    assert outcome.satisfied[0] and np.max(outcome.measures[-1].value) == pytest.approx(0.7, abs=1e-4)
+
+
+def test_what_hits_a_wall_does_not_collide_with_what_it_rolls_on(tank_world):
+    x = 0.4 + np.where(TIME < 0.5, TIME, 1.0 - TIME)
+    v = np.zeros((len(TIME), 2, 3))
+    v[:, 0, 0] = np.where(TIME < 0.5, 1.0, -1.0)
+    rolls = ball_and_box(tank_world, np.stack([x, 0.0 * x, 0.1 + 0.0 * x], axis=1), v=v)
+    assert evaluate(parse("collides_with(ball, wall, restitution 1)"), rolls).satisfied[0]
+    assert not evaluate(parse("collides_with(ball, ground)"), rolls).satisfied[0]
 
 
 def test_resting_and_flying_are_no_collisions(tank_world):

@@ -7,6 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, times
+from tests.judge.theory import bouncing
+from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.pendulum import pivot_of, swing_stretch
 from wsim.judge.language import Signals, evaluate, parse
 from wsim.scene.world import Joint, World
@@ -230,3 +232,19 @@ def test_a_bounce_climbs_to_the_square_of_its_restitution(restitution):
     signals = moving(world, time[keep], np.stack([0.0 * z, 0.0 * z, z + 0.05], axis=1)[keep])
     assert margin(f"climbs_to(ball, {restitution**2 - 0.1})", signals) == pytest.approx(0.1, abs=0.02)
     assert not evaluate(parse(f"climbs_to(ball, {restitution**2 + 0.05})"), signals).satisfied[0]
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0, 60.0])
+def test_lowest_and_highest_places_are_between_frames(rate):
+    """A ball of e = 0.7 comes up to 0.49 of where it fell from, then to 0.24, whatever frames it is seen in."""
+    signals = Signals.of(Evidence(bouncing(0.7, 1.6, 1.0, rate)))
+    assert margin("climbs_to(ball, 49 %)", signals) == pytest.approx(0.0, abs=1e-4)
+    assert margin("dies_down(ball, z, 50 %)", signals) == pytest.approx(0.01, abs=1e-4)
+
+
+def test_how_far_a_swing_goes_is_between_frames():
+    signals = pendulums(math.radians(20.0))
+    every = slice(None, None, 3)  # 20 a second
+    few = Signals(signals.world, signals.time[every], *(
+        each[:, every] for each in (signals.body_q, signals.body_qd, signals.contact_force)))  # fmt: skip
+    assert margin("swings(bob, amplitude 20 deg, share 0.1 %)", few) > 0.0

@@ -19,6 +19,7 @@ class Pendulum:
     """A rigid body on a hinge in each of W worlds."""
 
     angle: Floats  # of its centre of mass from the vertical, about the hinge, (W, T) [rad]
+    rate: Floats  # of that, (W, T) [rad/s]
     mass: Floats  # (W,) [kg]
     arm: Floats  # from the hinge's axis to the centre of mass, (W,) [m]
     inertia: Floats  # about the hinge's axis, (W,) [kg m^2]

@@ -10,6 +10,7 @@ from wsim.geometry.rotations import multiply, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.language.between import turned
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -103,18 +104,10 @@ def _carried_on(signals: Signals, rows: list[int], w: Indices, t: Indices, back:
         place = q[:, :3] + rotate(q[:, 3:], com)
         centre = place[:, None] + qd[:, None, :3] * s[..., None]
         centre = centre + 0.5 * (falls[:, None] * s**2)[..., None] * gravity
-        turn = multiply(_turned(qd[:, 3:], s), q[:, None, 3:])
+        turn = multiply(turned(qd[:, 3:], s), q[:, None, 3:])
         poses[:, :, k, 3:] = turn
         poses[:, :, k, :3] = centre - rotate(turn, com)
     return poses
-
-
-def _turned(rate: Floats, s: Floats) -> Floats:
-    """Quaternions (N, P, 4) of a turn at rates (N, 3) [rad/s] for times (N, P) [s]."""
-    speed = np.linalg.norm(rate, axis=-1)
-    axis = rate / np.where(speed > 0.0, speed, 1.0)[:, None]
-    half = speed[:, None] * s / 2
-    return np.concatenate([axis[:, None] * np.sin(half)[..., None], np.cos(half)[..., None]], axis=-1)
 
 
 def _lowest(a: Floats, b: Floats) -> Floats:

@@ -210,8 +210,8 @@ class _Evaluation:
         trace = self._frames(predicate)
         if predicate.alone == "now":
             return trace
-        if predicate.alone == "finally":
-            return self._at_the_end(trace, None)
+        if predicate.alone.startswith("finally"):
+            return self._at_the_end(trace, 0.0 if predicate.alone == "finally[0]" else None)
         low, high = span_of(self.signals.time, len(trace), None)
         return extreme(trace, low, high, greatest=predicate.alone == "eventually")
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 STILL = 0.05  # of sqrt(g L): what rests bobs by 5 % of L, as in the checks
 RESTS, STAYS = 0.05, 0.1  # of its height, that what rests on something, or stays on it, may be off it
 SPACINGS = 0.25  # particle spacings, that what lies under fluid may be off the floor
+LITTLE = 0.05  # of a body's weight: what bears less of it does not carry it
 THIN = 0.05  # of a spacing: half of the slab that a section is measured by
 
 
@@ -98,9 +99,8 @@ def _off(signals: Signals, name: str, ref: str) -> tuple[Floats, Support]:
 @measures(WeighsOn)
 def _weighs_on(asked: WeighsOn, signals: Signals) -> list[Measure]:
     prim, other = signals.prim(asked.object), signals.prim(asked.ref)
-    everything = signals.frames(*(body.prim for body in signals.world.bodies))
-    parts = welded(everything, signals.row(asked.object))  # what is fixed together is carried as one
-    force = signals.contact_force[:, :, parts].astype(np.float64).sum(axis=2) @ signals.up
+    parts = sorted(signals.row(each) for each in signals.together(asked.object))  # what is one is carried as one
+    force = borne(signals, asked.object, asked.ref)
     assert signals.mass is not None
     weight = signals.mass[:, parts].sum(axis=1, keepdims=True) * signals.gravity
     fluid = next((each for each in signals.world.fluids if each.container == other), None)
@@ -115,6 +115,30 @@ def _weighs_on(asked: WeighsOn, signals: Signals) -> list[Measure]:
             force, band, expected, what="force of contacts upwards", prim=prim, unit="N", scale=room, limit_from=source
         )
     ]
+
+
+def borne(signals: Signals, name: str, ref: str) -> Floats:
+    """The net force of contacts upwards on a body, and on what is fixed to it, where another object bears of it (W, T).
+
+    Where it bears little of their weight, that alone [N]: they touch it, and something else carries them. Where
+    contacts are not recorded it bears them if they lie on it.
+    """
+    ours, theirs = signals.together(name), signals.together(ref)
+    rows = sorted(signals.row(prim) for prim in ours)
+    net = signals.contact_force[:, :, rows].astype(np.float64).sum(axis=2) @ signals.up
+    given = signals.given(ours, theirs)
+    if given is not None:
+        assert signals.mass is not None
+        least = LITTLE * signals.mass[:, rows].sum(axis=1, keepdims=True) * signals.gravity
+        by_it = given @ signals.up
+        return np.where(by_it >= least, net, np.minimum(net, by_it))
+    lies = np.zeros(net.shape, dtype=bool)
+    for one in ours:
+        for other in theirs:
+            off, support = _off(signals, one, other)
+            spacing = SPACINGS * support.fluid.spacing if support.fluid is not None else 0.0
+            lies |= np.abs(off) <= max(STAYS * _height(signals, one), spacing)
+    return np.where(lies | ~np.isfinite(net), net, 0.0)
 
 
 def _by_fluid(signals: Signals, name: str, fluid: Fluid) -> tuple[float, float]:

@@ -12,8 +12,10 @@ from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.language.blows import blows, normals
 from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
+from wsim.judge.language.measures_carried import borne
 from wsim.judge.repair.lasting import settled
 from wsim.judge.repair.matter import friction, slides_off
 from wsim.judge.repair.passing import missed
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
 
 STILL, QUIET = 0.05, 0.02  # of sqrt(g L): what rests bobs by 5 % of L, what has settled by 2 %, as in the checks
 CHANGE = 0.05  # of the speed of approach, that a collision changes at least
+SURE = 0.5  # of what a restitution may be off: a blow that is less sure shows none
 
 
 @measures(Touches)
@@ -72,8 +75,8 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
 @measures(SupportedBy)
 def _supported_by(asked: SupportedBy, signals: Signals) -> list[Measure]:
     touching = _touching(asked.object, asked.ref, None, signals)
-    weight = signals.weight(asked.object)
-    value = signals.force(asked.object) @ signals.up
+    weight = sum(signals.weight(each) for each in sorted(signals.together(asked.object)))
+    value = borne(signals, asked.object, asked.ref)
     source = f"{asked.share:g} of its weight"
     limit = asked.share * weight
     carried = Measure("force of contacts upwards", touching.prim, value, limit, "N", weight, source, at_most=False)
@@ -161,28 +164,41 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
         f"change of its speed to {signals.prim(asked.ref)}", touching.prim, jump, limit, "m/s", scale,
         f"{CHANGE:g} of the speed of approach, and what weight and friction can do in two frames", at_most=False,
     )  # fmt: skip
-    # The impulse acts along the contact's normal, but for friction; what parts over what approached, along it.
+    # They come at each other along the contact's normal: what is struck by a third thing meanwhile, or goes on over
+    # what it touches, does not.
+    w, t = np.nonzero((touching.margin >= 0.0) & (change.margin >= 0.0))
     normal = jolt / np.where(jump > 0.0, jump, 1.0)[..., None]
+    normal[w, t] = normals(signals, asked.object, asked.ref, w, t)
     approach = -np.sum(before * normal, axis=-1)
     coming = Measure(
         f"speed at which it comes at {signals.prim(asked.ref)}", touching.prim, approach, floor, "m/s", scale,
-        f"{CHANGE:g} sqrt(g L), along the impulse: what does not come at the other parts from it", at_most=False,
+        f"{CHANGE:g} sqrt(g L), along the contact's normal: what does not come at the other parts from it",
+        at_most=False,
     )  # fmt: skip
     found = [touching, change, coming]
     if asked.restitution is not None:
-        parting = np.sum(after * normal, axis=-1)
-        towards = approach > floor
-        ratio = np.clip(parting / np.where(towards, approach, 1.0), -1.0, 2.0)
-        # What does not approach has no restitution: as far from the one asked as one can be.
-        value = np.where(towards, ratio, np.where(np.isfinite(approach), -1.0, np.nan))
-        blur = np.linalg.norm(pull) * span / np.where(towards, approach, np.inf)
-        found.append(
-            Measure.about(
-                value, asked.restitution, asked.within + blur, what="restitution", prim=touching.prim, unit="1",
-                limit_from=f"{asked.within:g} about the objective's, and what gravity changes between two frames",
-            )
-        )  # fmt: skip
+        found.append(_restitution(asked, signals, floor))
     return found
+
+
+def _restitution(asked: CollidesWith, signals: Signals, least: float) -> Measure:
+    """At the frames of each blow that can be told apart what the first of them shows; it is the surfaces' own."""
+    found = blows(signals, asked.object, asked.ref)
+    came = np.maximum(found.approach, 1e-30)
+    ratio = found.parting / came
+    clear = (found.approach > least) & ((1.0 + np.abs(ratio)) * found.unsure <= SURE * asked.within * came)
+    # What has no clear blow has no restitution: as far from the one asked as one can be.
+    value = np.full((signals.count, len(signals.time)), -1.0)
+    for n in np.flatnonzero(clear)[::-1]:
+        w = found.world[n]
+        value[w, value[w] > -1.0] = np.clip(ratio[n], -1.0, 2.0)
+        value[w, found.first[n] : found.last[n] + 1] = np.clip(ratio[n], -1.0, 2.0)
+    finite = np.isfinite(signals.velocity(asked.object) - signals.velocity(asked.ref)).all(axis=-1)
+    source = f"{asked.within:g} about the objective's; of the first blow that frames tell to {SURE:g} of that"
+    return Measure.about(
+        np.where(finite, value, np.nan), asked.restitution or 0.0, asked.within, what="restitution",
+        prim=signals.prim(asked.object), unit="1", limit_from=source,
+    )  # fmt: skip
 
 
 @measures(Pushes)

@@ -97,15 +97,16 @@ def _bounces(asked: BouncesTo, signals: Signals) -> list[Measure]:
     off, near = gap(signals, asked.object, asked.ref), about(swept_gap(signals, asked.object, asked.ref))
     reach, _ = touch_reach(signals, asked.object, asked.ref)
     touching = near <= reach
-    low = signals.ends(asked.object)[0]
-    value = np.zeros(low.shape)
+    low, tops = _tops(signals, asked.object)
+    rising = signals.velocity(asked.object)[:, -1] @ signals.up > signals.gravity * signals.step
+    value, frames = np.zeros(low.shape), low.shape[1]
     for w in range(signals.count):
         touches = np.flatnonzero(touching[w])
         # A flight lies between two frames of touch that do not follow one another, and after the last.
-        for start, end in zip(touches, [*touches[1:], low.shape[1]], strict=True):
-            if end - start > 1:
+        for start, end in zip(touches, [*touches[1:], frames], strict=True):
+            if end - start > 1 and not (end == frames and rising[w]):  # it gets higher than is seen
                 ground = float(low[w, start] - off[w, start])
-                value[w, start + 1 : end] = max(_apex(signals, w, asked.object, int(start) + 1, int(end)) - ground, 0.0)
+                value[w, start + 1 : end] = max(float(tops[w, start + 1 : end].max()) - ground, 0.0)
     value = np.where(np.isfinite(near), value, np.nan)
     within = asked.within or max(0.1 * asked.height, 0.02)
     source = "the objective's" if asked.within else "a tenth of the height, at least 2 cm"
@@ -117,13 +118,15 @@ def _bounces(asked: BouncesTo, signals: Signals) -> list[Measure]:
     ]  # fmt: skip
 
 
-def _apex(signals: Signals, w: int, name: str, start: int, end: int) -> float:
-    """The height that the lowest point reaches within frames, and between them by the speed there [m]."""
-    low = signals.ends(name)[0][w, start:end]
-    v = signals.velocity(name)[w, start:end] @ signals.up
-    rise = np.where(v > 0.0, np.minimum(v, signals.gravity * signals.step) ** 2 / (2 * max(signals.gravity, 1e-9)), 0.0)
-    top = int(np.argmax(low))
-    return float(low[top] + rise[top])
+def _tops(signals: Signals, name: str) -> tuple[Floats, Floats]:
+    """Height of a body's lowest point at each frame, and the greatest about each, between frames too, (W, T) [m]."""
+    low, course = signals.ends(name)[0], signals.course(name)
+    height = course.place @ signals.up
+    # At the end it may be on its way to a top that is less than a frame ahead.
+    left = np.clip(course.velocity[:, -1:] @ signals.up, 0.0, signals.gravity * signals.step)
+    beyond = height[:, -1:] + left**2 / (2.0 * max(signals.gravity, 1e-9))
+    top = np.concatenate([height[:, :1], course.greatest(signals.up), beyond], axis=1)
+    return low, low + np.maximum(top[:, :-1], top[:, 1:]) - height
 
 
 @measures(Counts)

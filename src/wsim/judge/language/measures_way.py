@@ -123,8 +123,13 @@ def _rolls_freely(asked: RollsFreely, signals: Signals) -> list[Measure]:
 
 @measures(Flies)
 def _flies(asked: Flies, signals: Signals) -> list[Measure]:
-    last = _flight(signals, asked.object).sum(axis=1) - 1
-    value = np.repeat((signals.time[last] - signals.time[0])[:, None], len(signals.time), axis=1)
+    last, course = _flight(signals, asked.object).sum(axis=1) - 1, signals.course(asked.object)
+    ends = signals.time[last] - signals.time[0]
+    # Where a blow ends it, that is where the courses before and after it meet.
+    w = np.flatnonzero(last < len(signals.time) - 1)
+    w = w[course.struck[w, last[w]]]
+    ends[w] += course.meet(last[w], last[w] + 1, w)[0]
+    value = np.repeat(ends[:, None], len(signals.time), axis=1)
     source = "the objective's" if asked.least != Flies.model_fields["least"].default else "a shorter one is no flight"
     what, prim = "time before it touches anything", signals.prim(asked.object)
     return [Measure(what, prim, value, asked.least, "s", asked.least, source, at_most=False)]

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.pendulum import Pendulum, period_of, pivot_of
 from wsim.judge.evidence.welded import welded
+from wsim.judge.language.between import Course
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import latest
 from wsim.judge.repair.drive import drive_of
@@ -35,7 +36,7 @@ REST = 0.5  # [deg]: a smaller swing is rest
 def _swings(asked: Swings, signals: Signals) -> list[Measure]:
     prim = signals.prim(asked.object)
     swing = _pendulum(signals, asked.object)
-    half, highest = _half_swings(signals.time, swing.angle)
+    half, highest = _half_swings(signals.time, swing.angle, _farthest(signals.time, swing))
     if asked.period is None:
         expected = period_of(swing, signals.gravity)[:, None]
         source = f"2 pi sqrt(I / m g d) at its amplitude, to {asked.share:.0%}"
@@ -80,7 +81,8 @@ def _pendulum(signals: Signals, name: str) -> Pendulum:
     angle = np.arctan2(np.einsum("wti,wi->wt", np.cross(np.broadcast_to(down, arm.shape), arm), axis), arm @ down)
     own = sum(signals.inertia_about(k, axis[:, None])[:, 0] for k in parts)
     inertia = own + (masses * np.mean(np.sum(arms**2, axis=-1), axis=-1)).sum(axis=1)
-    return Pendulum(angle, mass, np.linalg.norm(arm, axis=-1).mean(axis=1), inertia)
+    rate = np.einsum("wti,wi->wt", twist[..., 3:], axis)
+    return Pendulum(angle, rate, mass, np.linalg.norm(arm, axis=-1).mean(axis=1), inertia)
 
 
 def _across(ways: Floats, axis: Floats) -> Floats:
@@ -88,7 +90,16 @@ def _across(ways: Floats, axis: Floats) -> Floats:
     return np.asarray(ways - np.einsum("wbti,wi->wbt", ways, axis)[..., None] * axis[:, None, None])
 
 
-def _half_swings(time: Floats, angle: Floats) -> tuple[Floats, Floats]:
+def _farthest(time: Floats, swing: Pendulum) -> Floats:
+    """The greatest angle to either side at each frame, and up to the next where it turns back before that (W, T)."""
+    course = Course(time, swing.angle[..., None], swing.rate[..., None], np.zeros(1))
+    between = np.maximum(course.greatest(np.ones(1)), -course.least(np.ones(1)))
+    ends = np.abs(swing.angle)
+    turns = swing.angle[:, :-1] * swing.angle[:, 1:] > 0.0
+    return np.concatenate([np.where(turns, between, ends[:, :-1]), ends[:, -1:]], axis=1)
+
+
+def _half_swings(time: Floats, angle: Floats, farthest: Floats) -> tuple[Floats, Floats]:
     """Length of the half swing that each frame is in, or is nearest to [s], and how far it goes [deg], (W, T) each.
 
     A half swing is from one passage of the middle to the next. Of those that the recording begins and ends in not all
@@ -97,7 +108,7 @@ def _half_swings(time: Floats, angle: Floats) -> tuple[Floats, Floats]:
     """
     count, frames = angle.shape
     if frames < 2:
-        return np.full(angle.shape, np.nan), np.degrees(np.abs(angle))
+        return np.full(angle.shape, np.nan), np.degrees(farthest)
     a, b = angle[:, :-1], angle[:, 1:]
     passes = (a * b < 0.0) | ((a == 0.0) & (b != 0.0) & (np.arange(frames - 1) > 0))
     moment = time[:-1] - a * np.diff(time) / np.where(passes, b - a, 1.0)
@@ -110,7 +121,7 @@ def _half_swings(time: Floats, angle: Floats) -> tuple[Floats, Floats]:
     half = np.minimum(until, time[-1]) - np.maximum(since, time[0])
     swing = np.concatenate([np.zeros((count, 1), np.intp), np.cumsum(passes, axis=1)], axis=1)
     highest = np.zeros((count, int(swing.max()) + 1))
-    np.maximum.at(highest, (np.arange(count)[:, None], swing), np.abs(angle))
+    np.maximum.at(highest, (np.arange(count)[:, None], swing), farthest)
     far = np.take_along_axis(highest, swing, axis=1)
     half, far = (np.where(whole, seen, _at_least(seen, whole)) for seen in (half, far))
     return np.where(whole.any(axis=1, keepdims=True), half, np.nan), np.degrees(far)
@@ -127,39 +138,62 @@ def _at_least(values: Floats, known: NDArray[np.bool_]) -> Floats:
 @measures(DiesDown)
 def _dies_down(asked: DiesDown, signals: Signals) -> list[Measure]:
     """The worst share of a way between two turning points over that two ways before it, at every frame (W, T)."""
-    place = signals.centre_of_mass(signals.row(asked.object))[..., "xyz".index(asked.axis)]
-    value = np.repeat([[_worst_share(each)] for each in place], len(signals.time), axis=1)
+    axis = np.eye(3)["xyz".index(asked.axis)]
+    course = signals.course(asked.object)
+    place, low, high = course.place @ axis, course.least(axis), course.greatest(axis)
+    shares = [_worst_share(_points(*each)) for each in zip(place, low, high, strict=True)]
+    value = np.repeat(np.array(shares)[:, None], len(signals.time), axis=1)
     source = "the objective's: of the way two turns before, the same way round"
     return [
         Measure("share that it goes as far", signals.prim(asked.object), value, asked.share, "1", asked.share, source)
     ]
 
 
+def _points(place: Floats, low: Floats, high: Floats) -> Floats:
+    """Places at frames (T,) and, where it turns between two of them, there, in their order."""
+    ends = np.stack([place[:-1], place[1:]])
+    turned = np.where(low < ends.min(axis=0), low, np.where(high > ends.max(axis=0), high, ends[0]))
+    return np.append(np.stack([place[:-1], turned], axis=1).ravel(), place[-1:])
+
+
 def _worst_share(place: Floats) -> float:
-    """Of one world (T,); infinite where it turns back too seldom to tell, NaN where it is not finite."""
+    """Of one world's places (N,); infinite where it turns back too seldom to tell, NaN where it is not finite."""
     if not np.isfinite(place).all():
         return math.nan
-    way = np.diff(place)
-    moves = np.flatnonzero(way)  # what stands still for a while has not turned back
-    if not len(moves):
-        return math.inf
-    turns = moves[1:][way[moves[1:]] * way[moves[:-1]] < 0.0]
-    points = np.concatenate([place[:1], place[turns], place[-1:]])
-    ways = np.abs(np.diff(points))
     # The last one is broken off where the recording ends: it may be as far, but not farther, than it is seen.
+    ways = np.abs(np.diff(_turning_points(place, FAINT * float(np.ptp(place)))))
     ways = ways[: len(ways) - (len(ways) > 3)]
-    large = ways > FAINT * ways.max(initial=0.0)
-    ways = ways[: int(np.argmin(large)) if not large.all() else len(ways)]
     return float((ways[2:] / ways[:-2]).max()) if len(ways) > 2 else math.inf
+
+
+def _turning_points(place: Floats, faint: float) -> Floats:
+    """The start, the places from which it goes back by more than what is faint, and the end, (N,)."""
+    found, far, way = [place[0]], place[0], 0.0
+    for here in place:
+        if way == 0.0 and abs(here - place[0]) > faint:
+            way = math.copysign(1.0, here - place[0])
+        if way * (here - far) >= 0.0:
+            far = here
+        elif way * (far - here) > faint:
+            found.append(far)
+            far, way = here, -way
+    return np.array([*found, place[-1] if way * (far - place[-1]) <= 0.0 else far])
 
 
 @measures(ClimbsTo)
 def _climbs_to(asked: ClimbsTo, signals: Signals) -> list[Measure]:
-    height = signals.centre_of_mass(signals.row(asked.object)) @ signals.up
-    lowest = np.minimum.accumulate(height, axis=1)
+    course, height = signals.course(asked.object), signals.centre_of_mass(signals.row(asked.object)) @ signals.up
+    # Of each frame what is known from the one before it on: lowest and highest are between frames.
+    low, high = (
+        np.concatenate([height[:, :1], each], axis=1)
+        for each in (course.least(signals.up), course.greatest(signals.up))
+    )
+    lowest = np.minimum.accumulate(low, axis=1)
     fall = height[:, :1] - lowest
     least = FLOAT32 * max(signals.solid(asked.object).smallest, float(np.nanmax(np.abs(height), initial=0.0)))
-    value = np.where(fall > least, (height - lowest) / np.maximum(fall, least), 0.0)
+    # Where it falls on, it has not come up from what it falls to.
+    above = np.where(low > lowest, high, height) - lowest
+    value = np.where(fall > least, above / np.maximum(fall, least), 0.0)
     what, source = "share of its start's height", "the objective's, over its lowest place so far"
     prim = signals.prim(asked.object)
     return [Measure(what, prim, value, asked.share, "1", asked.share, source, at_most=False, expected=1.0)]

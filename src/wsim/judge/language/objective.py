@@ -198,4 +198,4 @@ def conjuncts(formula: Formula) -> tuple[Formula, ...]:
 
 def _at_the_end(part: Formula) -> bool:
     """Whether a formula is about the end of the recording."""
-    return isinstance(part, Finally | Mean) or (isinstance(part, Predicate) and part.alone == "finally")
+    return isinstance(part, Finally | Mean) or (isinstance(part, Predicate) and part.alone.startswith("finally"))

@@ -13,6 +13,8 @@ from wsim.geometry.rotations import conjugate, rotate, upwards
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.posed import posed
 from wsim.judge.evidence.recorded import MissingError
+from wsim.judge.evidence.welded import welded
+from wsim.judge.language.between import Course
 from wsim.scene.contact import largest_friction
 
 if TYPE_CHECKING:
@@ -132,13 +134,40 @@ class Signals:
         found = np.zeros((self.count, len(self.time)), dtype=bool)
         contacts = self.evidence.recording.contacts if self.evidence is not None else None
         if contacts is not None:
-            owner = [body.prim for body in self.world.bodies for _ in body.shapes]
-            owners = np.array(owner + [static.prim for static in self.world.statics for _ in static.shapes])
-            ours = owners[contacts.pair]  # (n, 2)
-            a, b = self.prim(one), self.prim(other)
-            both = np.all(ours == (a, b), axis=1) | np.all(ours == (b, a), axis=1)
-            found[:, contacts.frame[both & (contacts.pressed > 0.0)]] = True
+            on = self._pushes({self.prim(one)}, {self.prim(other)}) != 0
+            found[:, contacts.frame[on & (contacts.pressed > 0.0)]] = True
         return found[:, 1:]
+
+    def given(self, prims: set[str], by: set[str]) -> Floats | None:
+        """What some objects are given by others through contacts, as a mean since the frame before, (1, T, 3) [N].
+
+        None where contacts are not recorded.
+        """
+        contacts = self.evidence.recording.contacts if self.evidence is not None else None
+        if contacts is None or len(self.time) < 2:
+            return None
+        found = np.zeros((len(self.time), 3))
+        np.add.at(found, contacts.frame, self._pushes(prims, by)[:, None] * contacts.impulse.astype(np.float64))
+        found[1:] /= np.diff(self.time)[:, None]
+        found[0] = found[1]
+        return found[None]
+
+    def _pushes(self, prims: set[str], by: set[str]) -> NDArray[np.int8]:
+        """Of each recorded push: 1 if it is on the first objects by the others, -1 if it is the other way, else 0."""
+        assert self.evidence is not None and self.evidence.recording.contacts is not None
+        owners = [body.prim for body in self.world.bodies for _ in body.shapes]
+        owners += [static.prim for static in self.world.statics for _ in static.shapes]
+        ours, theirs = (np.array([owner in some for owner in owners], dtype=np.int8) for some in (prims, by))
+        one, two = self.evidence.recording.contacts.pair.T
+        return np.asarray(ours[two] * theirs[one] - ours[one] * theirs[two])
+
+    def together(self, name: str) -> set[str]:
+        """The prims of an object and of what fixed joints hold to it."""
+        if not self.moves(name):
+            return {self.prim(name)}
+        bodies = self.world.bodies
+        everything = self.frames(*(body.prim for body in bodies))
+        return {bodies[k].prim for k in welded(everything, self.row(name))}
 
     # ---- who is who
     def prim(self, name: str) -> str:
@@ -230,6 +259,12 @@ class Signals:
         q = self.body_q[:, :, i].astype(np.float64)
         com = np.array(self.world.bodies[i].com, dtype=np.float64)
         return q[..., :3] + rotate(q[..., 3:], com) if com.any() else q[..., :3]
+
+    def course(self, name: str) -> Course:
+        """How a body's centre of mass goes, between frames too."""
+        i = self.row(name)
+        pull = np.zeros(3) if self.world.bodies[i].kinematic else np.array(self.world.gravity, dtype=np.float64)
+        return Course(self.time, self.centre_of_mass(i), self.velocity(name), pull)
 
     def inertia_about(self, i: int, axes: Floats) -> Floats:
         """n . I n of body i about its centre of mass, (W, n) of axes n at the first frames (W, n, 3) [kg m^2 of n^2].

@@ -38,7 +38,7 @@ class StaysOn(Predicate):
 
 
 class WeighsOn(Predicate):
-    """Contact forces carry the object's weight, less what the fluid on the other carries of it."""
+    """Contact forces, of which the other gives some, carry the object's weight, less what its fluid carries."""
 
     op: Literal["weighs_on"] = "weighs_on"
     alone: ClassVar[Literal["finally"]] = "finally"
@@ -48,7 +48,7 @@ class WeighsOn(Predicate):
 
 
 class SupportedBy(Predicate):
-    """The object touches another, and contact forces carry at least a share of its weight."""
+    """The object touches another that bears of it, and contact forces carry at least a share of its weight."""
 
     op: Literal["supported_by"] = "supported_by"
     alone: ClassVar[Literal["finally"]] = "finally"

@@ -59,10 +59,10 @@ class ClimbsTo(Predicate):
 
 
 class Moves(Predicate):
-    """The object's centre is so far, on the level, from where it started; in a direction, if one is given."""
+    """The object's centre ends so far, on the level, from where it started; in a direction, if one is given."""
 
     op: Literal["moves"] = "moves"
-    alone: ClassVar[Literal["finally"]] = "finally"
+    alone: ClassVar[Literal["finally[0]"]] = "finally[0]"  # it may be on its way up to the end
     object: Named
     least: Positive | None = quantity("m", None)
     direction: Literal["front", "back", "left", "right"] | None = None

@@ -22,7 +22,7 @@ class Predicate(Node):
     """Something that a frame of a recording shows, with a margin. `alone` is how it is read outside of any time."""
 
     op: str
-    alone: ClassVar[Literal["always", "eventually", "finally", "now"]] = "always"
+    alone: ClassVar[Literal["always", "eventually", "finally", "finally[0]", "now"]] = "always"
     NAMES: ClassVar[tuple[str, ...]] = ("object", "ref", "fluid", "target", "center", "on")
 
     def objects_named(self) -> set[str]:
