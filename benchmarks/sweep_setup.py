@@ -120,12 +120,17 @@ def measured(args: argparse.Namespace, folder: Path) -> dict[str, Any]:
     def run(some: tuple[Candidate, ...], scratch: Path) -> tuple[str, str]:
         scratch.mkdir()
         made = timed("built", build, Shard(some, folder, spec, args.cores), scratch, plan)
-        members = [(each, iteration) for each, (iteration, built) in zip(some, made, strict=True) if built.ok]
+        members = [
+            (each, iteration, built.told) for each, (iteration, built) in zip(some, made, strict=True) if built.ok
+        ]
         moved, said = hashlib.sha256(), hashlib.sha256()
         for batch in timed("grouped", batches, members, spec.together, args.cores):
             worlds = [member.world for member in batch]
             stages = [member.iteration.stage for member in batch]
-            simulation = timed("set up", Simulation, stages, device=args.device, worlds=worlds, processes=args.cores)
+            texts = [member.skeleton for member in batch]
+            simulation = timed(
+                "set up", Simulation, stages, device=args.device, worlds=worlds, skeletons=texts, processes=args.cores
+            )
             tracks = timed("simulated", follow, simulation)
             early = timed("screened", rejected, tracks, plan)
             left = [w for w in range(tracks.count) if w not in early]

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from wsim.program.sandbox import BuildResult, Limits, available, build, build_many, many
+from wsim.scene.reading import Reading, read
 
 ISOLATION = [name for name in ("bubblewrap", "landlock") if name in available()] or ["none"]
 BOX = """
@@ -50,6 +51,31 @@ def test_each_stage_is_what_it_is_alone(tmp_path: Path, isolation: str) -> None:
         alone = tmp_path / "alone.usda"
         if build(program, alone, values, isolation=isolation).ok:
             assert stage.read_text() == alone.read_text()
+
+
+@pytest.mark.parametrize("isolation", ISOLATION)
+def test_what_is_told_of_each_is_what_its_stage_says(tmp_path: Path, isolation: str) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(BOX)
+    stages = [tmp_path / f"{k}.usda" for k in range(4)]
+    params = [{}, {"edge": 0.3}, {"edge": -1.0}, {"edge": 1.5}]
+    built = list(build_many(program, stages, params, isolation=isolation, tell=True))
+    assert [bool(result.told) for result in built] == [True, True, False, True]
+    for stage, result in zip(stages, built, strict=True):
+        if result.ok:
+            assert repr(Reading.model_validate_json(result.told)) == repr(read(stage))
+    assert not any(result.told for result in build_many(program, stages, params, isolation=isolation))
+
+
+def test_a_number_that_is_unsound_is_seen_beside_sound_ones(tmp_path: Path) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(
+        BOX + "    scene.stage.GetPrimAtPath('/World/box').GetAttribute('physics:mass').Set(edge - 0.4)\n"
+    )
+    stages = [tmp_path / f"{k}.usda" for k in range(4)]
+    edges = [0.5, 0.6, 0.3, 0.7]
+    built = list(build_many(program, stages, [{"edge": edge} for edge in edges], tell=True))
+    assert [result.kind for result in built] == ["ok", "ok", "stage", "ok"]
 
 
 def test_one_that_ends_or_holds_up_its_process_costs_the_others_nothing(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from wsim.scene.describe import describe
 from wsim.sim import model
 from wsim.sim.model import Built, build_batch
 from wsim.sim.numbers import texts
-from wsim.sim.stated import confirmed, differ_in_known, numbers_of
+from wsim.sim.stated import confirmed, numbers_of
 
 
 def tub(scene: Scene, draw: np.random.Generator) -> None:
@@ -67,22 +67,26 @@ def swung(scene: Scene, draw: np.random.Generator) -> None:
     scene.joint_revolute("hinge", None, "arm", anchor=(0, 0, 2), axis="Y")
 
 
-def _both(folder: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> tuple[Built, Built, bool]:
-    """Made as it comes, and by imports alone; and whether the first is by what is stated."""
+def _both(folder: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> tuple[Built, Built]:
+    """Made as it comes, and by imports alone."""
     stages = _stages(folder, build, 4)
-    worlds, took, stated = [describe(stage) for stage in stages], [], model._stated
+    worlds = [describe(stage) for stage in stages]
+    made = build_batch(stages, worlds, "cpu")
+
+    def none(*_: object) -> None:
+        raise model._UnstatedError("it is to be imported")
+
     with monkeypatch.context() as patched:
-        patched.setattr(model, "_stated", lambda *given: took.append(stated(*given)) or took[0])
-        made = build_batch(stages, worlds, "cpu")
-        patched.setattr(model, "_stated", lambda *given: None)
+        patched.setattr(model, "_stated", none)
         imported = build_batch(stages, worlds, "cpu")
-    return made, imported, took[0] is not None
+    return made, imported
 
 
 @pytest.mark.parametrize("build", [loose, carried, turned, tub, dam, driven])
 def test_it_is_the_imported_batch(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
-    made, imported, quick = _both(tmp_path, build, monkeypatch)
-    assert quick
+    made, imported = _both(tmp_path, build, monkeypatch)
+    assert not made.singly
+    assert imported.singly == "it is to be imported"
     told, want = (_arrays(each.model) for each in (made, imported))
     for own in (told, want):
         own.pop("particle_colors", None)  # Newton leaves as it finds them what no colouring has written to
@@ -96,21 +100,21 @@ def test_it_is_the_imported_batch(tmp_path: Path, build: Build, monkeypatch: pyt
             assert pair[0].any()
 
 
-@pytest.mark.parametrize("build", [held, led, swung])
-def test_what_is_tied_or_led_is_imported(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not _both(tmp_path, build, monkeypatch)[2]
-
-
-def test_numbers_that_no_description_states_are_seen(tmp_path: Path) -> None:
-    stages = _stages(tmp_path, loose, 2)
-    assert differ_in_known(stages)
-    stages[1].write_text(stages[1].read_text().replace("float inputs:ior = 1.5", "float inputs:ior = 1.4"))
-    assert not differ_in_known(stages)
-    text = stages[0].read_text()
-    stages[1].write_text(text.replace("float physics:mass = ", "float physics:mass = 1; float newton:gap = ", 1))
-    assert not differ_in_known(stages)
-    stages[1].write_text(text + "# @other.usda@\n")
-    assert not differ_in_known([stages[1], stages[1]])
+@pytest.mark.parametrize(
+    ("build", "why"),
+    [
+        (held, "that close loops or break"),
+        (led, "worlds have meshes, paths"),
+        (swung, "differ in what no description states"),
+    ],
+)
+def test_what_is_tied_or_led_is_imported_and_it_is_said_why(tmp_path: Path, build: Build, why: str) -> None:
+    stages, told = _stages(tmp_path, build, 4), []
+    built = build_batch(
+        stages, [describe(stage) for stage in stages], "cpu", progress=lambda what, done, total: told.append(what)
+    )
+    assert why in built.singly
+    assert any("one by one" in each and why in each for each in told)
 
 
 def test_a_number_that_was_told_wrong_is_seen(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ A problem is one line naming the prim, the attribute and the value. No stage mak
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
@@ -59,6 +60,14 @@ _MAY_BE_INFINITE = {
 }
 # What `_mass` tells with the value, which USD's validators leave out.
 _OURS = ("MassInvalidValues", "DensityInvalidValues")
+# Validators of files, types, connections, materials and skins.
+_OF_SKELETONS = (
+    "usdValidation:",
+    "usdUtilsValidators:",
+    "usdShadeValidators:",
+    "usdSkelValidators:",
+    "usdLuxValidators:",
+)
 _SPACES = ("physics", "drive", "limit", "newton")
 _MAX_PROBLEMS = 50
 
@@ -73,22 +82,36 @@ def check_stage(path: str | Path, roots: Sequence[str | Path]) -> list[str]:
     Returns:
         At most 50 problems, one line each.
     """
+    return check_opened(path, roots)[0]
+
+
+def check_opened(
+    path: str | Path, roots: Sequence[str | Path], *, known: bool = False
+) -> tuple[list[str], Usd.Stage | None]:
+    """What is wrong with a stage, as `check_stage` has it, and the stage; None of one that is unsound.
+
+    Args:
+        path: A .usd, .usda or .usdc file.
+        roots: Folders that everything it names must lie in.
+        known: Whether a stage of the same skeleton (`wsim.scene.skeleton`) was found sound: only what hangs on numbers
+            that a skeleton leaves out is looked at then.
+    """
     path = Path(path)
     problems = _file_problems(path)
+    if not problems and not known:
+        problems = check_assets(path, [Path(root) for root in roots])
     if problems:
-        return problems
-    problems = check_assets(path, [Path(root) for root in roots])
-    if problems:
-        return problems[:_MAX_PROBLEMS]
+        return problems[:_MAX_PROBLEMS], None
     try:
         stage = Usd.Stage.Open(str(path))
         stage.Reload()
     except Tf.ErrorException as error:
-        return [f"{path.name}: does not open: {one_line(error)}"]
+        return [f"{path.name}: does not open: {one_line(error)}"], None
     try:
-        return list(islice(_stage_problems(stage), _MAX_PROBLEMS))
+        problems = list(islice(_stage_problems(stage, known), _MAX_PROBLEMS))
     except Exception as error:  # noqa: BLE001 - a stage that no reader foresaw is refused, not a crash
-        return [f"{path.name}: cannot be checked: {type(error).__name__}: {one_line(error)}"]
+        problems = [f"{path.name}: cannot be checked: {type(error).__name__}: {one_line(error)}"]
+    return problems, None if problems else stage
 
 
 def _file_problems(path: Path) -> list[str]:
@@ -102,7 +125,7 @@ def _file_problems(path: Path) -> list[str]:
     return []
 
 
-def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
+def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
     prims = []
     for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
         prims.append(prim)
@@ -110,7 +133,7 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
             yield f"{stage.GetRootLayer().GetDisplayName()}: more than {MAX_PRIMS} prims"
             return
     sound = True
-    for problem in chain(_metadata(stage), _values(stage, prims), _validators(stage)):
+    for problem in chain(_metadata(stage), _values(stage, prims, known), _validators(stage, known)):
         sound = False
         yield problem
     if sound:  # what follows reads shapes, and follows indices and paths
@@ -126,13 +149,14 @@ def _stage_problems(stage: Usd.Stage) -> Iterator[str]:
             yield from overreached(stage)
 
 
-def _values(stage: Usd.Stage, prims: list[Usd.Prim]) -> Iterator[str]:
+def _values(stage: Usd.Stage, prims: list[Usd.Prim], known: bool) -> Iterator[str]:
     """Numbers, indices and paths."""
     points = 0
     for prim in prims:
-        yield from _numbers(prim)
-        yield from check_indices(prim)
-        yield from check_targets(prim)
+        yield from _numbers(prim, known)
+        if not known:
+            yield from check_indices(prim)
+            yield from check_targets(prim)
         yield from _pose(prim)
         yield from _mass(prim)
         yield from _wsim(prim)
@@ -159,12 +183,19 @@ def _metadata(stage: Usd.Stage) -> Iterator[str]:
         yield f"{name}: upAxis = {UsdGeom.GetStageUpAxis(stage)} must be Z"
 
 
-def _validators(stage: Usd.Stage) -> Iterator[str]:
-    """USD's own validators."""
-    registry = UsdValidation.ValidationRegistry()
+@functools.cache
+def _context(known: bool) -> UsdValidation.ValidationContext:
+    """USD's own validators; where a skeleton is known, without those that ask for no number that it leaves out."""
+    names = {v: v.GetMetadata().name for v in UsdValidation.ValidationRegistry().GetOrLoadAllValidators()}
     # Those of packages ask for what only a .usdz file has.
-    found = [v for v in registry.GetOrLoadAllValidators() if "Usdz" not in v.GetMetadata().name]
-    for error in UsdValidation.ValidationContext(found).Validate(stage):
+    return UsdValidation.ValidationContext(
+        [v for v, name in names.items() if "Usdz" not in name and not (known and name.startswith(_OF_SKELETONS))]
+    )
+
+
+def _validators(stage: Usd.Stage, known: bool) -> Iterator[str]:
+    """What USD's own validators say."""
+    for error in _context(known).Validate(stage):
         if error.GetName() in _OURS:
             continue
         sites = [str(site.GetPrim().GetPath()) for site in error.GetSites() if site.IsPrim()]
@@ -172,20 +203,23 @@ def _validators(stage: Usd.Stage) -> Iterator[str]:
         yield f"{where}: {error.GetMessage()} [{error.GetIdentifier()}]"
 
 
-def _numbers(prim: Usd.Prim) -> Iterator[str]:
+@functools.lru_cache(maxsize=1 << 12)
+def _may_be_infinite(name: str) -> bool:
+    parts = name.split(":")
+    return parts[0] in _SPACES and parts[-1] in _MAY_BE_INFINITE
+
+
+def _numbers(prim: Usd.Prim, known: bool) -> Iterator[str]:
     """Authored values and time samples that are not finite."""
     for attribute in prim.GetAuthoredAttributes():
-        parts = attribute.GetName().split(":")
-        may_be_infinite = parts[0] in _SPACES and parts[-1] in _MAY_BE_INFINITE
-        times = [_NOW, *attribute.GetTimeSamples()]
-        for time in times:
+        for time in (_NOW,) if known else (_NOW, *attribute.GetTimeSamples()):
             value = attribute.Get(time)
             if isinstance(value, float) and math.isfinite(value):
                 continue
             numbers = _as_array(value)
             if numbers is None:
                 break
-            bad = np.isnan(numbers) if may_be_infinite else ~np.isfinite(numbers)
+            bad = np.isnan(numbers) if _may_be_infinite(attribute.GetName()) else ~np.isfinite(numbers)
             if bad.any():
                 yield f"{attribute.GetPath()}: {float(numbers[bad][0])} must be finite"
                 break

@@ -13,6 +13,8 @@ import numpy as np
 
 from wsim.errors import UserError
 from wsim.forks import shared_out, uncollected
+from wsim.progress import Progress, silent
+from wsim.scene.skeleton import skeleton
 from wsim.scene.usd_threads import forks
 from wsim.scene.world import World
 from wsim.sim.alike import check_alike, topology
@@ -27,7 +29,7 @@ from wsim.sim.forward import forward_only
 from wsim.sim.numbers import add_worlds, differences, texts
 from wsim.sim.pieces import with_pieces
 from wsim.sim.placed import aim_drives, place_joints
-from wsim.sim.stated import confirmed, differ_in_known, numbers_of, plain, replicate, state_numbers
+from wsim.sim.stated import confirmed, numbers_of, replicate, state_numbers, unstated
 from wsim.sim.surfaces import take_cylinders, take_surfaces
 from wsim.sim.time_step import TimeStep, choose_time_step
 from wsim.solvers.breaking import Breakable
@@ -47,7 +49,8 @@ class Built:
 
     `worlds` is what the stage of all worlds alike, or that of each, states. `bodies[k]` is the index of
     `world.bodies[k]` in the first world of the model; `fluids[w][prim]` the range of its particles in world w;
-    `breakable` the joints that may break, of all worlds alike or of each.
+    `breakable` the joints that may break, of all worlds alike or of each. `singly` says why each stage of a batch was
+    read by itself; "" where the numbers of descriptions did.
     """
 
     model: Any
@@ -60,6 +63,7 @@ class Built:
     breakable: list[list[Breakable]]
     surfaces: SurfaceParts | None = None  # what collides by its triangles
     cylinders: tuple[tuple[int, int], ...] = ()  # pairs of shapes that MuJoCo does not see touch, a cylinder first
+    singly: str = ""
 
     @property
     def world(self) -> World:
@@ -115,6 +119,8 @@ def build_batch(
     device: Any,
     time_step: float | None = None,
     processes: int = 1,
+    skeletons: Sequence[str] = (),
+    progress: Progress = silent,
 ) -> Built:
     """Import checked stages of one topology (`wsim.sim.alike`) into one Newton model, a world each.
 
@@ -126,53 +132,72 @@ def build_batch(
         device: Warp device, or its name.
         time_step: Upper bound for the time step of all worlds [s]; by default the shortest that one of them needs.
         processes: That stages are read in, side by side (`wsim.scene.usd_threads`).
+        skeletons: Of the stages (`wsim.scene.skeleton`), where they are known.
+        progress: Told that each stage has to be read by itself, and why, which takes thirty times as long.
 
     Raises:
         UserError: If a stage holds what the solvers cannot simulate.
         ValueError: If worlds differ in more than numbers.
     """
     config = sph_config(worlds)
-    builder, pressures = _builder(worlds[0]), None
+    builder, pressures, singly = _builder(worlds[0]), None, ""
     with uncollected():
-        ones = _stated(builder, stages, worlds)
-        if ones is None:
+        try:
+            ones = _stated(builder, stages, worlds, skeletons)
+        except _UnstatedError as error:
+            singly = str(error)
+            told = f"reading {len(stages)} stages one by one, as {singly}"
+            progress(told, 0, 1)
             ones = list(_imports(stages, worlds, config, processes))
             add_worlds(builder, ones[0].builder, [one.builder for one in ones[1:]])
-        elif config:
-            ranges, pressures = add_seeded(builder, worlds)
-            ones = [replace(one, fluids=own) for one, own in zip(ones, ranges, strict=True)]
+            progress(told, 1, 1)
+        else:
+            if config:
+                ranges, pressures = add_seeded(builder, worlds)
+                ones = [replace(one, fluids=own) for one, own in zip(ones, ranges, strict=True)]
         if config:
             for name, own in of_worlds(worlds).items():
                 builder.custom_attributes[f"sph:{name}"].values = dict(enumerate(own))
         built = _finalized(builder, ones, config, _time_step(worlds, config, time_step), device)
     if pressures is not None:
         built.model.sph.pressure.assign(pressures)
-    return built
+    return replace(built, singly=singly)
 
 
-def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World]) -> list[_One] | None:
+class _UnstatedError(ValueError):
+    """Descriptions do not state all that worlds differ in; says what."""
+
+
+def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World], skeletons: Sequence[str]) -> list[_One]:
     """Fill a builder with worlds, but for their fluids, by what their descriptions state (`wsim.sim.stated`).
 
     The first is imported; one in the middle and the last are, too, and are held against what was stated.
 
-    Returns:
-        None, with nothing done, where that is not all that there is to know.
+    Raises:
+        _UnstatedError: With nothing done, where that is not all that there is to know.
     """
-    if not plain(worlds[0]) or not differ_in_known(stages):
-        return None
+    if why := unstated(worlds[0]):
+        raise _UnstatedError(why)
+    texts_of = set(skeletons or map(skeleton, stages))
+    if "" in texts_of:
+        raise _UnstatedError("stages refer to other files")
+    if len(texts_of) > 1:
+        raise _UnstatedError("stages differ in what no description states")
     for world in worlds:
         _weigh_spins(world)
     first = _import(stages[0], worlds[0], None)
-    told = numbers_of(first.builder, worlds) if first.stated and first.surfaces is None else None
+    if not first.stated:
+        raise _UnstatedError("Newton weighs a body otherwise than its description")
+    told = numbers_of(first.builder, worlds) if first.surfaces is None else None
     if told is None:
-        return None
+        raise _UnstatedError("Newton's importer has made what no description states, or jointed bodies start elsewhere")
     rows, known = rows_of_rolling(first.builder, worlds[0]), texts(first.builder)
     if any(rows_of_rolling(first.builder, world) != rows for world in worlds[1:]):
-        return None
+        raise _UnstatedError("rolling is resisted in some worlds alone")
     for k in {len(worlds) // 2, len(worlds) - 1}:
         one = _import(stages[k], worlds[k], None)
         if not one.stated or one.cylinders != first.cylinders or not confirmed(one.builder, known, told, k):
-            return None
+            raise _UnstatedError(f"{stages[k].name}, read by itself, has other numbers than its description")
     replicate(builder, first.builder, told)
     return [replace(first, builder=None, world=world) for world in worlds]
 

@@ -56,6 +56,7 @@ class Simulation:
         seeds: One for each world, which then starts a little off what the stage states (`wsim.sim.perturb`); 0 does
             not. By default none does.
         worlds: What `wsim.scene.describe` read from the stages, where they were checked and read already.
+        skeletons: Of several stages (`wsim.scene.skeleton`), where they are known.
         processes: That several stages are read in.
         draws: Whether pictures will be taken: their kernels are then compiled beside those of a step.
 
@@ -79,6 +80,7 @@ class Simulation:
         progress: Progress = silent,
         seeds: Sequence[int] = (),
         worlds: Sequence[World] = (),
+        skeletons: Sequence[str] = (),
         processes: int = 1,
         draws: bool = False,
     ) -> None:
@@ -99,7 +101,7 @@ class Simulation:
             self.device, described[0], steps_in_c(self.device, world_count), draws, progress
         )
         if len(stages) > 1:
-            self.built = build_batch(stages, described, self.device, time_step, processes)
+            self.built = build_batch(stages, described, self.device, time_step, processes, skeletons, progress)
         else:
             self.built = build_model(self.stage, described[0], self.device, world_count, time_step)
         self.world: World = self.built.world

@@ -1,15 +1,13 @@
 """The numbers of a builder that a world's description states, for many worlds at once and without an import each.
 
 Newton's importer takes some thirty milliseconds a stage. Of plain shapes, loose or on joints that make trees, all that
-differs from world to world, where their stages differ in nothing else (`differ_in_known`), is what
+differs from world to world, where their stages are of one skeleton (`wsim.scene.skeleton`), is what
 `wsim.scene.describe` has read already.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,17 +19,6 @@ from wsim.solvers.contact_config import ContactConfig
 
 Array = np.ndarray
 
-# What is not held against the first stage: numbers of the description, or nothing to the importer. A plane's length
-# and width are neither; a line that goes on to say something else is held against it.
-KNOWN = re.compile(
-    rb"^( *(?:uniform )?[a-z0-9]+(?:\[\])? (?:xformOp:[\w:]+|wsim:\w+|size|height|radius|extent|physics:(?:mass|"
-    rb"density|centerOfMass|diagonalInertia|principalAxes|velocity|angularVelocity|dynamicFriction|staticFriction|restitution|"
-    rb"gravityDirection|gravityMagnitude|lowerLimit|upperLimit)|newton:friction|"
-    rb"drive:\w+:physics:(?:targetPosition|targetVelocity|stiffness|damping)) = )[-+\w.,() \[\]]*$",
-    re.MULTILINE,
-)
-TEXT = b"#usda"
-REFERENCE = b"@"  # to a file, which may be another
 PLAIN = ("box", "sphere", "cylinder", "capsule", "plane")
 CLOSE = 1e-5  # relative: the importer adds up in single precision
 NEAR = 1e-6  # of a pose likewise [m], and of a quaternion
@@ -50,26 +37,22 @@ JOINTS: dict[str, Callable[[Joint], float]] = {
 NO_MOMENT = 1e-6  # of the trace: a product of inertia below is rounding
 
 
-def plain(world: World) -> bool:
-    """Whether a world has bodies of plain shapes alone, loose or on joints that make trees."""
-    tied = (world.gears, world.springs, world.ropes, world.foreign)
-    return (
-        not any(tied)
-        and not any(joint.closing for joint in world.joints)
-        and all(shape.kind in PLAIN for shape in _shapes(world))
-        and not any(body.path for body in world.bodies)
-    )
+def unstated(world: World) -> str:
+    """Of what a world has that descriptions do not state all numbers of the importer; "" where there is none.
 
-
-def differ_in_known(stages: Sequence[Path]) -> bool:
-    """Whether stages are texts that differ in numbers alone which descriptions state, or the importer does not read."""
-    first = _unknown(stages[0])
-    return first is not None and all(_unknown(stage) == first for stage in stages[1:])
-
-
-def _unknown(stage: Path) -> bytes | None:
-    text = stage.read_bytes()
-    return KNOWN.sub(rb"\1", text) if text.startswith(TEXT) and REFERENCE not in text else None
+    They do of bodies of plain shapes alone, loose or on joints that make trees.
+    """
+    has = {
+        "gears": world.gears,
+        "springs": world.springs,
+        "ropes": world.ropes,
+        "another engine's doing": world.foreign,
+        "joints that close loops or break": [joint for joint in world.joints if joint.closing],
+        "meshes": [shape for shape in _shapes(world) if shape.kind not in PLAIN],
+        "paths": [body for body in world.bodies if body.path],
+    }
+    found = [what for what, own in has.items() if own]
+    return f"worlds have {', '.join(found)}" if found else ""
 
 
 def state_numbers(builder: Any, world: World) -> bool:

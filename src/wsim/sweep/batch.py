@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from pydantic import ValidationError
+
 from wsim.forks import shared_out, uncollected
 from wsim.judge.worlds import verdicts_of
 from wsim.memory import free_memory
 from wsim.runs.simulation import is_controlled, open_controller
-from wsim.scene.describe import describe
+from wsim.scene.reading import Reading, read
 from wsim.scene.usd_threads import forks
 from wsim.sim import Simulation
 from wsim.sim.alike import together, topology
@@ -40,10 +42,11 @@ class Member:
     candidate: Candidate
     iteration: Iteration
     world: World
-    topology: str = ""  # as `wsim.sim.alike` tells it
+    topology: str  # as `wsim.sim.alike` tells it
+    skeleton: str  # as `wsim.scene.skeleton` does
 
 
-def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: int = 1) -> list[list[Member]]:
+def batches(built: Sequence[tuple[Candidate, Iteration, bytes]], most: int, processes: int = 1) -> list[list[Member]]:
     """Those that can be simulated together, at most so many at a time; who must go alone is in none.
 
     A program with a `control` goes with its own kind: that may be another for each program, and knows no parameters. Of
@@ -51,14 +54,14 @@ def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: 
     that is free.
 
     Args:
-        built: Candidates that have a stage.
+        built: Candidates that have a stage, each with what is told of that (`BuildResult.told`), if anything is.
         most: Worlds of a batch.
         processes: That stages are read in, side by side.
     """
-    stages = [iteration.stage for _, iteration in built]
+    given = [(iteration.stage, told) for _, iteration, told in built]
     with uncollected():
-        said = list(shared_out(_described, stages, forks(processes)))
-    members = [Member(*each, *of) for each, of in zip(built, said, strict=True)]
+        said = list(shared_out(_described, given, forks(processes)))
+    members = [Member(candidate, iteration, *of) for (candidate, iteration, _), of in zip(built, said, strict=True)]
     moving = [member for member in members if member.world.fluids or member.world.bodies]
     found, room = [], free_memory() / 2
     for kind in _by_control(moving):
@@ -69,9 +72,14 @@ def batches(built: Sequence[tuple[Candidate, Iteration]], most: int, processes: 
     return [batch for batch in found if len(batch) > 1]
 
 
-def _described(stage: Path) -> tuple[World, str]:
-    world = describe(stage)
-    return world, topology(world)
+def _described(given: tuple[Path, bytes]) -> tuple[World, str, str]:
+    """A world, its topology and its skeleton, from what is told or, where that is nothing, from the stage."""
+    stage, told = given
+    try:
+        found = Reading.model_validate_json(told) if told else read(stage)
+    except ValidationError:  # the sandbox's word
+        found = read(stage)
+    return found.world, topology(found.world), found.skeleton
 
 
 def _by_control(members: Sequence[Member]) -> list[list[Member]]:
@@ -89,8 +97,8 @@ def bytes_of_particles(world: World) -> float:
     return count * (world.duration * world.frame_rate + 1.0) * BYTES_OF_A_PARTICLE
 
 
-def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> list[Verdict]:
-    """Each member's verdict. A batch that does not fit into memory is simulated in halves.
+def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> list[tuple[Verdict, str]]:
+    """Each member's verdict, and what is to be said of how it was set up. What does not fit into memory goes in halves.
 
     Args:
         batch: One of `batches`.
@@ -110,6 +118,7 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
                 controller=controller,
                 seeds=[member.candidate.seed for member in batch],
                 worlds=[member.world for member in batch],
+                skeletons=[member.skeleton for member in batch],
                 processes=processes,
             )
             with turn():
@@ -119,7 +128,9 @@ def verdicts(batch: Sequence[Member], plan: Plan | None, processes: int = 1) -> 
             raise
         half = len(batch) // 2
         return verdicts(batch[:half], plan, processes) + verdicts(batch[half:], plan, processes)
-    return judged(tracks, plan, processes)
+    singly = simulation.built.singly
+    note = f"stages were read one by one, which takes longer, as {singly}" if singly else ""
+    return [(verdict, note) for verdict in judged(tracks, plan, processes)]
 
 
 def judged(tracks: Tracks, plan: Plan | None, processes: int = 1) -> list[Verdict]:

@@ -55,7 +55,8 @@ class Outcome(BaseModel):
         seconds: What it took [s].
         together: Worlds that were simulated at once: of more than one neither contacts nor what ties gave are recorded,
             so that less is asked of it than of a run of its own.
-        note: Why it was not simulated with others, or what was said of it before it was run by itself.
+        note: Why it was not simulated with others, why those were set up one by one, or what was said of it before it
+            was run by itself.
     """
 
     model_config = ConfigDict(extra="forbid", ser_json_inf_nan="strings")  # JSON has no other word for them

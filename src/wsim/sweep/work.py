@@ -89,7 +89,11 @@ def work(shard: Shard) -> Iterator[list[tuple[int, Outcome]]]:
             yield [(places[number], outcome) for number, outcome in unfit.items()]
         notes: dict[int, str] = {}
         if shard.spec.together > 1:
-            runnable = [(candidate, iteration) for candidate, iteration, built in left.values() if built.ok]
+            runnable = [  # of a stage on which something was set what was told of it is no more so
+                (candidate, iteration, b"" if candidate.draws else built.told)
+                for candidate, iteration, built in left.values()
+                if built.ok
+            ]
             for batch in batches(runnable, shard.spec.together, shard.cores):
                 try:
                     found = _together(batch, plan, shard.cores)
@@ -135,6 +139,7 @@ def build(shard: Shard, scratch: Path, plan: Plan | None) -> list[tuple[Iteratio
             shard.spec.isolation,
             readable=asset_folders(),
             processes=shard.cores,
+            tell=shard.spec.together > 1,
         )
         made |= {
             candidate.number: each for candidate, each in zip(own, zip(iterations, built, strict=True), strict=True)
@@ -175,11 +180,11 @@ def _together(batch: Sequence[Member], plan: Plan | None, cores: int) -> dict[in
     started = time.perf_counter()
     found = verdicts(batch, plan, cores)
     seconds = (time.perf_counter() - started) / len(batch)
-    outcomes = [
-        _outcome(member.candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
-        for member, verdict in zip(batch, found, strict=True)
-    ]
-    return {each.candidate.number: each.model_copy(update={"together": len(batch)}) for each in outcomes}
+    outcomes = {}
+    for member, (verdict, note) in zip(batch, found, strict=True):
+        own = _outcome(member.candidate, lambda verdict=verdict: verdict, lambda: seconds)  # type: ignore[misc]
+        outcomes[member.candidate.number] = own.model_copy(update={"together": len(batch), "note": note})
+    return outcomes
 
 
 def _outcome(candidate: Candidate, run: Callable[[], Verdict], seconds: Callable[[], float]) -> Outcome:

@@ -16,13 +16,14 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
     for params in job["each"]:
         begin = os.lseek(target, 0, os.SEEK_END)
         try:
-            copy(author({**job, "params": params}, job["program"]), target, _head)
+            copy(author({**job, "params": params}, job["program"]), target, head)
         except BaseException:  # noqa: BLE001 - whatever a program raises
             os.ftruncate(target, begin)
             os.lseek(target, begin, os.SEEK_SET)
-            write(target, _head(0))
+            write(target, head(0))
     return {"outcome": "ok"}
 
 
-def _head(size: int) -> bytes:
+def head(size: int) -> bytes:
+    """What goes ahead of so many bytes."""
     return b"%0*d" % (SIZE, size)

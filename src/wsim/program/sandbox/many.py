@@ -32,12 +32,16 @@ def build_many(
     *,
     readable: Sequence[Path] = (),
     processes: int = 1,
+    tell: bool = False,
 ) -> Iterator[BuildResult]:
     """As `build` for each stage with its parameters, some hundred in one process; the program is loaded anew for each.
 
     A build that fails there is made again by itself, which says why, and what a process did not come to is made in
     another: what one does to others (a library that it changes, all the memory) costs them time alone, unless it
     changes what they build and lets them seem sound. So many processes are at it side by side; results come in order.
+
+    With `tell` the process that checks a stage describes it, too, if it is one of many: `BuildResult.told`. It never
+    had the program in it.
     """
     limits, isolation = limits or Limits(), choose(isolation)
     longest = max((len(json.dumps(numbers(values))) for values in params), default=0)
@@ -48,13 +52,13 @@ def build_many(
         last = min(first + size, len(stages))
         while first < last:
             part, started = slice(first, last), time.monotonic()
-            made = _together(program_file(program), stages[part], params[part], limits, isolation, readable)
+            made = _together(program_file(program), stages[part], params[part], limits, isolation, readable, tell)
             seconds = (time.monotonic() - started) / len(made)
             found += [
-                BuildResult(True, "ok", "built", None, "", seconds, isolation)
-                if ok
-                else build(program, stage, values, limits, isolation, readable=readable)
-                for stage, values, ok in zip(stages[part], params[part], made, strict=False)
+                build(program, stage, values, limits, isolation, readable=readable)
+                if told is None
+                else BuildResult(True, "ok", "built", None, "", seconds, isolation, told=told)
+                for stage, values, told in zip(stages[part], params[part], made, strict=False)
             ]
             first += len(made)
         return found
@@ -71,14 +75,17 @@ def _together(
     limits: Limits,
     isolation: str,
     readable: Sequence[Path],
-) -> list[bool]:
-    """Which of the stages one process made and another found sound; those alone that it came to, one at least."""
+    tell: bool,
+) -> list[bytes | None]:
+    """What is told of stages that one process made and another found sound; None of the others.
+
+    Those alone that the first process came to, one at least.
+    """
     roots = [Path(path).resolve() for path in readable]
     shared = _times(limits, -(-len(stages) // A_LIMIT))
     with tempfile.TemporaryDirectory(prefix="wsim-stage-") as folder, ExitStack() as stack:
         made = [Path(folder) / f"stage_{k}.usda" for k in range(len(stages))]
-        target = os.open(Path(folder) / "stages", os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
-        stack.callback(os.close, target)
+        target, told = (_opened(Path(folder) / name, stack) for name in ("stages", "told"))
         each = [numbers(values) for values in params]
         job = {"task": "builds", "program": str(program), "seed": 0, "each": each, "stages_fd": target}
         check = {"task": "checks", "stages": [str(path) for path in made], "roots": [str(root) for root in roots]}
@@ -86,7 +93,13 @@ def _together(
             SandboxProcess(job, limits=shared, isolation=isolation, readable=[program, *roots], descriptors=[target])
         )
         checker = stack.enter_context(
-            SandboxProcess(check, limits=shared, isolation=isolation, readable=[Path(folder), *roots])
+            SandboxProcess(
+                check | ({"told_fd": told} if tell else {}),
+                limits=shared,
+                isolation=isolation,
+                readable=[Path(folder), *roots],
+                descriptors=[told] if tell else [],
+            )
         )
         process.send()
         process.wait(shared.wall_seconds)
@@ -94,16 +107,24 @@ def _together(
         if len(written) < len(made):
             written.append(False)  # at this one it ended
         if not any(written):
-            return written
+            return [None] * len(written)
         checker.send(b"g")
         checker.wait(shared.check_seconds)
         report = read_report(checker.report()) if checker.code == 0 and not checker.stopped else None
         sound = set(report.sound) if report else set()
-        found = [ok and k in sound for k, ok in enumerate(written)]
-        for path, stage, ok in zip(made, stages, found, strict=False):
-            if ok:
-                deliver(path, stage)
+        said = [os.pread(told, size, at) for at, size in _parts(told, len(made))] if tell else []
+        found: list[bytes | None] = [None] * len(written)
+        for k in sorted(sound.intersection(k for k, ok in enumerate(written) if ok)):
+            deliver(made[k], stages[k])
+            found[k] = said[k] if k < len(said) else b""
         return found
+
+
+def _opened(path: Path, stack: ExitStack) -> int:
+    """A new file that is open as long as the stack is."""
+    target = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
+    stack.callback(os.close, target)
+    return target
 
 
 def _times(limits: Limits, count: int) -> Limits:
@@ -115,16 +136,22 @@ def _times(limits: Limits, count: int) -> Limits:
 
 def _parted(target: int, made: Sequence[Path], limits: Limits) -> Iterator[bool]:
     """Write what a process appended, each stage to its file; whether it is one. It ends where what is there does."""
-    total, at = os.fstat(target).st_size, 0
-    for path in made:
-        head = os.pread(target, SIZE, at)
-        at += SIZE
-        size = int(head) if len(head) == SIZE and head.isdigit() else total
-        if at + size > total:
-            return
+    for path, (at, size) in zip(made, _parts(target, len(made)), strict=False):
         with path.open("x+b") as out:
             left = size if size <= limits.file_bytes else 0
             while left and (sent := os.sendfile(out.fileno(), target, at + size - left, left)):
                 left -= sent
             yield look(out.fileno(), limits)[0] == "ok"
+
+
+def _parts(target: int, count: int) -> Iterator[tuple[int, int]]:
+    """Where each part of what a process appended begins, and its bytes; it ends where what is there does."""
+    total, at = os.fstat(target).st_size, 0
+    for _ in range(count):
+        head = os.pread(target, SIZE, at)
+        at += SIZE
+        size = int(head) if len(head) == SIZE and head.isdigit() else total
+        if at + size > total:
+            return
+        yield at, size
         at += size

@@ -27,6 +27,7 @@ class BuildResult:
         seconds: Wall time of it all [s].
         isolation: "bubblewrap", "landlock" or "none".
         problems: Of the stage, one a line.
+        told: What its check read of the stage, as JSON of a `wsim.scene.reading.Reading`; empty where nobody asked.
     """
 
     ok: bool
@@ -37,6 +38,7 @@ class BuildResult:
     seconds: float
     isolation: str
     problems: tuple[str, ...] = ()
+    told: bytes = b""
 
     def finding(self) -> dict[str, Any]:
         """The fields of a `wsim.judge.verdict.Finding`, as plain data."""
