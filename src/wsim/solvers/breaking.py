@@ -50,13 +50,18 @@ class BreakingC:
         self.broken = np.zeros((1, len(constraints)), dtype=bool)
         self.load = np.zeros((1, len(constraints), 2))
 
-    def give_way(self, data: Any) -> bool:
-        """Break what bears most, by its strength, if that is too much; whether the step must be made anew."""
+    def give_way(self, data: Any, force: Array) -> bool:
+        """Break what bears most, by its strength, if that is too much; whether the step must be made anew.
+
+        Args:
+            data: MuJoCo's.
+            force: Of its constraint rows [N, N m], (rows,).
+        """
         equality = data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
         whole = np.flatnonzero(~self.broken[0])
         if not len(whole):
             return False
-        loads = np.array([self._load(data, equality, self.constraints[k]) for k in whole.tolist()])
+        loads = np.array([self._load(data, force, equality, self.constraints[k]) for k in whole.tolist()])
         shares = (loads / self.strength[whole]).max(axis=1)
         worst = int(np.argmax(shares))
         if shares[worst] > 1.0:
@@ -67,9 +72,9 @@ class BreakingC:
         self.load[0, whole] = np.maximum(self.load[0, whole], loads)
         return False
 
-    def _load(self, data: Any, equality: Array, own: Sequence[int]) -> tuple[float, float]:
+    def _load(self, data: Any, force: Array, equality: Array, own: Sequence[int]) -> tuple[float, float]:
         model = self.model
-        forces = [data.efc_force[np.flatnonzero(equality & (data.efc_id == c))] for c in own]
+        forces = [force[np.flatnonzero(equality & (data.efc_id == c))] for c in own]
         if model.eq_type[own[0]] == WELD:
             # Its last rows are the vector part of a quaternion, half the angle.
             scale = 0.5 * model.eq_data[own[0], 10]
