@@ -2,6 +2,8 @@
 
 import warp as wp
 
+from wsim.kernels.contact_law import ROUNDS
+
 EQUALITY = wp.constant(0)  # mjtConstraint: mjCNSTR_EQUALITY
 WELD = wp.constant(1)  # mjtEq: mjEQ_WELD
 
@@ -43,28 +45,59 @@ def bear(
     turn: wp.array2d(dtype=wp.mat33),
     force: wp.array2d(dtype=float),
     # Data out:
-    now: wp.array2d(dtype=wp.vec2),
+    now: wp.array2d(dtype=wp.spatial_vector),
 ):
     """The force [N] and the torque about its anchor [N m] that each joint bears."""
     world, k = wp.tid()
     one, two = constraint[k, 0], constraint[k, 1]
     row = first[world, one]
-    now[world, k] = wp.vec2(0.0, 0.0)
+    now[world, k] = wp.spatial_vector()
     if row < 0:
         return
     push = three(force, world, row)
-    torque = float(0.0)
+    torque = wp.vec3()
     data = parameters[world % parameters.shape[0], one]
     if kind[one] == WELD:
         # The last rows are the vector part of a quaternion, half the angle.
-        torque = 0.5 * data[10] * wp.length(three(force, world, row + 3))
+        torque = 0.5 * data[10] * three(force, world, row + 3)
     elif two >= 0:
         far = parameters[world % parameters.shape[0], two]
         arm = turn[world, body[one]] * (0.5 * wp.vec3(far[0] - data[0], far[1] - data[1], far[2] - data[2]))
         second = three(force, world, first[world, two])
-        torque = wp.length(wp.cross(arm, second - push))
+        torque = wp.cross(arm, second - push)
         push += second
-    now[world, k] = wp.vec2(wp.length(push), torque)
+    now[world, k] = wp.spatial_vector(push, torque)
+
+
+@wp.kernel(enable_backward=False)
+def sum_up(
+    # Data in:
+    now: wp.array2d(dtype=wp.spatial_vector),
+    share: float,
+    # Data out:
+    total: wp.array2d(dtype=wp.spatial_vector),
+):
+    """Add what each joint bears for a share of the time that a blow lasts."""
+    world, k = wp.tid()
+    total[world, k] += share * now[world, k]
+
+
+@wp.kernel(enable_backward=False)
+def note_struck(
+    # Data in:
+    state: wp.array2d(dtype=int),
+    # Data out:
+    struck: wp.array(dtype=int),
+):
+    """Note which worlds have had a round of blows."""
+    world = wp.tid()
+    struck[world] = wp.where(state[world, ROUNDS] > 0, 1, 0)
+
+
+@wp.func
+def size(load: wp.spatial_vector) -> wp.vec2:
+    """Force and torque of a load [N], [N m]."""
+    return wp.vec2(wp.length(wp.spatial_top(load)), wp.length(wp.spatial_bottom(load)))
 
 
 @wp.func
@@ -89,8 +122,13 @@ def break_worst(
     strength: wp.array3d(dtype=float),  # force [N] and torque [N m], in all worlds alike or in each
     first: wp.array2d(dtype=int),
     kind: wp.array(dtype=int),
-    now: wp.array2d(dtype=wp.vec2),
+    now: wp.array2d(dtype=wp.spatial_vector),
+    share: float,
+    blown: wp.array2d(dtype=wp.spatial_vector),  # what each joint bears besides `share` of that
+    judged: wp.array(dtype=int),
+    which: int,  # worlds, by what is noted of them
     # Data out:
+    again: wp.array(dtype=int),
     anew: wp.array(dtype=int),
     broken: wp.array2d(dtype=int),
     load: wp.array2d(dtype=wp.vec2),
@@ -99,22 +137,25 @@ def break_worst(
 ):
     """Break the joint that bears most by its strength, if that is too much; else note what all bear."""
     world = wp.tid()
-    anew[world] = 0
+    if judged[world] != which:
+        return
     own = world % strength.shape[0]
     worst = int(-1)
     most = float(1.0)
     for k in range(constraint.shape[0]):
-        share = wp.max(now[world, k][0] / strength[own, k, 0], now[world, k][1] / strength[own, k, 1])
-        if broken[world, k] == 0 and share > most:
+        borne = size(blown[world, k] + share * now[world, k])
+        part = wp.max(borne[0] / strength[own, k, 0], borne[1] / strength[own, k, 1])
+        if broken[world, k] == 0 and part > most:
             worst = k
-            most = share
+            most = part
     if worst < 0:
         for k in range(constraint.shape[0]):
-            load[world, k] = wp.max(load[world, k], now[world, k])
+            load[world, k] = wp.max(load[world, k], size(blown[world, k] + share * now[world, k]))
         return
+    again[0] = 1
     anew[world] = 1
     broken[world, worst] = 1
-    load[world, worst] = wp.max(load[world, worst], now[world, worst])
+    load[world, worst] = wp.max(load[world, worst], size(blown[world, worst] + share * now[world, worst]))
     one, two = constraint[worst, 0], constraint[worst, 1]
     count = int(3)
     if kind[one] == WELD:

@@ -74,6 +74,14 @@ def target_speed(
 
 
 @wp.func
+def whole(goal: float, speed: float, least: float) -> float:
+    """The same where no blow is shared with the next step: see `at_once` of `wsim.solvers.targets`."""
+    if speed < -least and goal - speed > least:
+        return 0.0
+    return goal
+
+
+@wp.func
 def along(
     world: int,
     row: int,
@@ -197,6 +205,8 @@ def aim(
     contact_frame: wp.array(dtype=wp.mat33),
     state: wp.array2d(dtype=int),
     instant: bool,  # the blows of an instant, or the step after them
+    at_once: bool,  # whether no blow is shared with the next step
+    steady: float,
     free: wp.array2d(dtype=float),  # acceleration without constraints
     body_mechanism: wp.array(dtype=int),
     touched_for: wp.array2d(dtype=int),  # a mechanism's steps of the first order since its last smooth one
@@ -237,6 +247,8 @@ def aim(
     goal = target_speed(distance, speed, pair[1], h, threshold * h, settle_time, settle_speed)
     if instant and state[world, HITS] == 0:
         return
+    if at_once:
+        goal = whole(goal, speed, steady * h)
     if instant and meets(distance, speed, pair[1], h, threshold * h):
         pull = along(world, row, sparse, nv, jacobian, row_nnz, row_start, column, free)
         rough = int(0)
@@ -278,6 +290,57 @@ def aim(
     aref[world, row] = (goal - slip[k] - velocity[world, row]) / h
 
 
+@wp.func
+def bend_of(
+    world: int,
+    row: int,
+    kind: wp.array2d(dtype=int),
+    which: wp.array2d(dtype=int),
+    velocity: wp.array2d(dtype=float),
+    h: float,
+    length: wp.array2d(dtype=float),
+    back: wp.array2d(dtype=float),
+) -> float:
+    """What a rope's way grows by in a step beyond what its speed makes of it, over the step [m/s]; none of a stop's."""
+    if kind[world, row] != TAUT:
+        return 0.0
+    k = which[world, row]
+    return (back[world, k] - length[world, k]) / h - velocity[world, row]
+
+
+@wp.kernel(enable_backward=False)
+def look_at_stops(
+    # Data in:
+    rows: wp.array(dtype=int),
+    kind: wp.array2d(dtype=int),
+    position: wp.array2d(dtype=float),
+    velocity: wp.array2d(dtype=float),
+    timestep: wp.array(dtype=float),
+    which: wp.array2d(dtype=int),  # stop or tendon
+    length: wp.array2d(dtype=float),
+    back: wp.array2d(dtype=float),
+    most_rounds: int,
+    steady: float,
+    settle_time: float,
+    settle_speed: float,
+    # Data out:
+    state: wp.array2d(dtype=int),
+    seeking: wp.array(dtype=int),
+):
+    """Note in which worlds a joint comes to its stop, or a rope is drawn taut."""
+    world, row = wp.tid()
+    if row >= rows[world] or (kind[world, row] != LIMIT and kind[world, row] != TAUT):
+        return
+    if state[world, ROUNDS] >= most_rounds or state[world, ENDED] > 0:
+        return
+    h = timestep[world % timestep.shape[0]]
+    excess = settling(position[world, row], h, settle_time, settle_speed) - velocity[world, row]
+    if excess - 2.0 * wp.abs(bend_of(world, row, kind, which, velocity, h, length, back)) >= steady * h:
+        state[world, OPEN] = 1
+        state[world, HITS] = 1
+        seeking[0] = 1
+
+
 @wp.kernel(enable_backward=False)
 def stop(
     # Data in:
@@ -289,6 +352,8 @@ def stop(
     which: wp.array2d(dtype=int),  # stop or tendon
     length: wp.array2d(dtype=float),  # of tendons
     back: wp.array2d(dtype=float),  # the same where a step at the present speeds would have come from
+    at_once: bool,  # whether no blow is shared with the next step
+    steady: float,
     settle_time: float,
     settle_speed: float,
     # Data out:
@@ -303,7 +368,9 @@ def stop(
     goal = float(0.0)
     if what != RUBBING:
         goal = settling(position[world, row], h, settle_time, settle_speed)
-    if what == TAUT:
-        k = which[world, row]
-        goal += (back[world, k] - length[world, k]) / h - velocity[world, row]
+        bend = bend_of(world, row, kind, which, velocity, h, length, back)
+        if at_once and goal - velocity[world, row] - 2.0 * wp.abs(bend) >= steady * h:
+            goal = 0.0
+        else:
+            goal += bend
     aref[world, row] = (goal - velocity[world, row]) / h

@@ -70,7 +70,14 @@ class BlowsC:
         """A step begins, in which nothing is struck yet."""
         self.struck, self.jump = False, np.zeros(self._model.nv)
 
-    def strike(self, data: Any, contacts: Contacts, rows: ContactRows, smooth: Callable[[Array, Array], Array]) -> bool:
+    def strike(
+        self,
+        data: Any,
+        contacts: Contacts,
+        rows: ContactRows,
+        smooth: Callable[[Array, Array], Array],
+        whole: bool = False,
+    ) -> bool:
         """Give `data` the velocities after this step's blows; whether there are any.
 
         Args:
@@ -78,6 +85,7 @@ class BlowsC:
             contacts: Of its pose.
             rows: Of these.
             smooth: Whether bodies fly by a higher order, from normal speeds and accelerations without constraints.
+            whole: Whether no blow is shared with the next step (`wsim.solvers.targets.at_once`).
         """
         config, h = self._config, self._model.opt.timestep
         self._forces, rounds, ended = np.zeros(data.nefc), 0, False
@@ -85,7 +93,7 @@ class BlowsC:
         is_smooth = smooth(data.efc_vel[rows.normal], free)
         while rounds < config.most_blows:
             speed = data.efc_vel[rows.normal] + contacts.bow
-            goal, blow = after_blows(contacts.distance, speed, free, contacts.restitution, h, config, is_smooth)
+            goal, blow = after_blows(contacts.distance, speed, free, contacts.restitution, h, config, is_smooth, whole)
             bounces = bool(blow.any())
             jolts = (goal - speed).max(initial=0.0) >= config.steady * h or self.meets_stops(data)
             if not bounces and (ended or not jolts):
@@ -124,6 +132,13 @@ class BlowsC:
     def forces_after(self, data: Any) -> Array:
         """Of the constraints in the step after the blows, which `data` have together with those, (rows,)."""
         return np.asarray(data.efc_force - self._forces if self.struck else data.efc_force)
+
+    def loads(self, data: Any) -> Array:
+        """What constraints bear by the forces after the blows, and by the blows as long as these last, (rows,)."""
+        if not self.struck:
+            return np.asarray(data.efc_force)
+        share = self._model.opt.timestep / self._config.blow_time
+        return np.asarray(data.efc_force + (share - 1.0) * self._forces)
 
     def take_from(self, data: Any) -> None:
         """Leave `data` the accelerations after the blows."""

@@ -2,7 +2,11 @@
 
 A joint that bears more than it can is brittle: it gives way before the step is made, which is then solved again without
 it, so it passes on nothing in the step in which it breaks. Of several the weakest for its load goes first, and the
-others may be relieved: a chain breaks at one link. In Warp one joint of a world breaks in a step, in C as many as must.
+others may be relieved: a chain breaks at one link. As many break in a step as must; with a CUDA driver before 12.4,
+whose graphs have no loops, one in each world.
+
+A blow of a rigid world has no duration: it counts as lasting a set time, whatever the step. What meets without a bounce
+would share its blow between two steps; for what breaks all of it counts at once (`wsim.solvers.targets.at_once`).
 """
 
 from __future__ import annotations
@@ -14,7 +18,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from wsim.kernels.breaking import bear, break_worst, find_rows
+from wsim.kernels.breaking import bear, break_worst, find_rows, note_struck, sum_up
 
 Array = np.ndarray
 POINTS = 2  # of a hinge; a ball joint has one, a weld is one row
@@ -50,13 +54,18 @@ class BreakingC:
         self.broken = np.zeros((1, len(constraints)), dtype=bool)
         self.load = np.zeros((1, len(constraints), 2))
 
-    def give_way(self, data: Any) -> bool:
-        """Break what bears most, by its strength, if that is too much; whether the step must be made anew."""
+    def give_way(self, data: Any, force: Array) -> bool:
+        """Break what bears most, by its strength, if that is too much; whether the step must be made anew.
+
+        Args:
+            data: MuJoCo's.
+            force: Of its constraint rows [N, N m], (rows,).
+        """
         equality = data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
         whole = np.flatnonzero(~self.broken[0])
         if not len(whole):
             return False
-        loads = np.array([self._load(data, equality, self.constraints[k]) for k in whole.tolist()])
+        loads = np.array([self._load(data, force, equality, self.constraints[k]) for k in whole.tolist()])
         shares = (loads / self.strength[whole]).max(axis=1)
         worst = int(np.argmax(shares))
         if shares[worst] > 1.0:
@@ -67,9 +76,9 @@ class BreakingC:
         self.load[0, whole] = np.maximum(self.load[0, whole], loads)
         return False
 
-    def _load(self, data: Any, equality: Array, own: Sequence[int]) -> tuple[float, float]:
+    def _load(self, data: Any, force: Array, equality: Array, own: Sequence[int]) -> tuple[float, float]:
         model = self.model
-        forces = [data.efc_force[np.flatnonzero(equality & (data.efc_id == c))] for c in own]
+        forces = [force[np.flatnonzero(equality & (data.efc_id == c))] for c in own]
         if model.eq_type[own[0]] == WELD:
             # Its last rows are the vector part of a quaternion, half the angle.
             scale = 0.5 * model.eq_data[own[0], 10]
@@ -99,7 +108,8 @@ class BreakingWarp:
     `strength` is (N, joints, 2), N = 1 where all worlds are alike.
 
     Attributes:
-        anew: (worlds,), whether something broke in the last step.
+        anew: (worlds,), whether something broke since the last `begin`.
+        again: (1,), whether anything did in the last solution, so that others may be relieved by the next.
     """
 
     def __init__(self, model: Any, constraints: Sequence[Sequence[int]], strength: Array, worlds: int) -> None:
@@ -108,14 +118,49 @@ class BreakingWarp:
         self._constraint = wp.array(pairs, dtype=wp.int32)
         self._strength = wp.array(np.minimum(strength, 1e30).astype(np.float32), dtype=wp.float32)
         self._own = wp.array(pairs[pairs >= 0], dtype=wp.int32)
-        self._now = wp.zeros((worlds, count), dtype=wp.vec2)
+        self._now, self._blown = (wp.zeros((worlds, count), dtype=wp.spatial_vector) for _ in range(2))
+        self._struck = wp.zeros(worlds, dtype=int)
         self._row = wp.full((worlds, model.neq), -1, dtype=wp.int32)
-        self.anew = wp.zeros(worlds, dtype=wp.int32)
+        self.anew, self.again = wp.zeros(worlds, dtype=wp.int32), wp.zeros(1, dtype=wp.int32)
         self.broken = wp.zeros((worlds, count), dtype=wp.int32)
         self.load = wp.zeros((worlds, count), dtype=wp.vec2)
 
-    def give_way(self, model: Any, data: Any) -> None:
-        """Break what bears most, if that is too much, in each world by itself."""
+    def begin(self) -> None:
+        """A step begins, in which nothing was struck yet, and nothing breaks."""
+        for array in (self.anew, self._blown, self._struck):
+            array.zero_()
+
+    def give_way(self, model: Any, data: Any, share: float = 1.0, *, struck: bool = False) -> None:
+        """Break what bears most, if that is too much, in each world by itself, and note in `again` if anything did.
+
+        Args:
+            model: MuJoCo Warp's.
+            data: MuJoCo Warp's, with the forces of what acts.
+            share: For which that does, of the time that a blow lasts, or of the step.
+            struck: Of worlds that were struck, or of those that were not.
+        """
+        self._measure(model, data)
+        self.again.zero_()
+        wp.launch(
+            break_worst,
+            dim=data.nworld,
+            inputs=[
+                self._constraint, self._strength, self._row, model.eq_type, self._now, share, self._blown,
+                self._struck, int(struck),
+            ],
+            outputs=[self.again, self.anew, self.broken, self.load, data.efc.D, data.eq_active],
+        )  # fmt: skip
+
+    def add_blow(self, model: Any, data: Any, share: float) -> None:
+        """Count the forces of a round of blows to what acts in the step: none in worlds that it is none of."""
+        self._measure(model, data)
+        wp.launch(sum_up, dim=self.broken.shape, inputs=[self._now, share], outputs=[self._blown])
+
+    def end_blows(self, state: Any) -> None:
+        """Note which worlds were struck, by the `state` of their rounds of blows."""
+        wp.launch(note_struck, dim=self.anew.shape, inputs=[state], outputs=[self._struck])
+
+    def _measure(self, model: Any, data: Any) -> None:
         efc = data.efc
         self._row.fill_(-1)
         wp.launch(find_rows, dim=(data.nworld, data.njmax), inputs=[data.nefc, efc.type, efc.id], outputs=[self._row])
@@ -127,12 +172,6 @@ class BreakingWarp:
             ],
             outputs=[self._now],
         )  # fmt: skip
-        wp.launch(
-            break_worst,
-            dim=data.nworld,
-            inputs=[self._constraint, self._strength, self._row, model.eq_type, self._now],
-            outputs=[self.anew, self.broken, self.load, efc.D, data.eq_active],
-        )
 
     def clear(self, data: Any) -> None:
         """Mend all joints."""

@@ -70,5 +70,7 @@ class ContactConfig:
     steady: float = 0.5
     """Change of a contact's speed over the step's time that is left to the step, and is no jolt at its start [m/s^2]:
     what it puts a gap off by, in steps of 1.25 ms, is 0.4 um."""
+    blow_time: float = 1.25e-3
+    """Time that a blow lasts for what may break [s]: that of a rigid world has none. It is the longest step's."""
     smallest_friction: float = 1e-5
     """MuJoCo's least, and ours for none."""

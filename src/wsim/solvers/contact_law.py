@@ -46,12 +46,12 @@ from wsim.solvers.cylinder_contacts import CylinderContacts
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
-from wsim.solvers.ropes import RopesC
 from wsim.solvers.slips import seek_slip
 from wsim.solvers.smooth_steps import REVERSAL_PARTS, Note, Owners, SmoothStepsC
+from wsim.solvers.stops import StopsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
-from wsim.solvers.targets import settling, targets
+from wsim.solvers.targets import targets
 from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
@@ -110,10 +110,9 @@ class ContactLawC:
         self.rolls = bool(self.law[..., 2].any())
         self.flat_ended = model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER
         rows = mujoco.mjtConstraint
-        self.stops = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
+        self.stops = StopsC(mujoco, model, config)
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
-        self.jumping = (*self.stops, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
-        self.ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
+        self.jumping = (*self.stops.kinds, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
         self._groups = tied_groups(mujoco, model)
         moves_as_one = np.zeros(model.nbody, dtype=int)
         if smooth:
@@ -125,6 +124,7 @@ class ContactLawC:
         self.blows = BlowsC(mujoco, model, config, self._aim_others, self._ends_of_stops)
         self._divides = touching is None and not flight.stated[1:].any()
         self._led = np.flatnonzero(flight.stated & (model.body_dofnum > 0))
+        self._shared = False  # whether a blow may be shared with the next step
         self._turns = False  # whether friction on what is led round stops a slip in this step
         tilt_cylinders(mujoco, model)
 
@@ -151,15 +151,27 @@ class ContactLawC:
         self.mujoco.mj_checkPos(self.model, data)
         self.mujoco.mj_checkVel(self.model, data)
         touching = self._forward(data)
-        while self.breaking is not None and self.breaking.give_way(data):
-            self.blows.undo(data)
-            self.flight.keep()
-            touching = self._forward(data)
+        if self.breaking is not None:
+            touching = self._break(data, self.breaking, touching)
         time = data.time
         self.mujoco.mj_checkAcc(self.model, data)
         if data.time < time:  # no numbers, of which it has a warning: MuJoCo has begun the world anew, with other rows
             self.blows.begin()
         return touching
+
+    def _break(self, data: Any, breaking: BreakingC, touching: bool) -> bool:
+        """Have joints break by what they bear in the step and by whole blows, and make it without them."""
+        while breaking.give_way(data, self.blows.loads(data)):
+            self._undo(data)
+            touching = self._forward(data)
+        if self._shared:
+            self._undo(data)
+            self._answer(data, touching)
+        return touching
+
+    def _undo(self, data: Any) -> None:
+        self.blows.undo(data)
+        self.flight.keep()
 
     def _parts(self, data: Any) -> int:
         """In how many parts a step is made, that of a mechanism which is hit, or which a contact presses.
@@ -236,27 +248,34 @@ class ContactLawC:
     def _forward(self, data: Any) -> bool:
         """The blows of the step, and accelerations after them; whether a contact, a stop or dry friction may be among
         their causes."""
-        self.blows.begin()
-        self._turns = False
         self._position(data)
         self.closing.begin(data)
         touching = bool(np.isin(data.efc_type, self.jumping).any())
         if self.drives is not None:
             self.drives.choose(data, are_rows=not self._is_whole(touching))
+        self._answer(data, touching, at_once=self.breaking is not None)
+        return touching
+
+    def _answer(self, data: Any, touching: bool, at_once: bool = False) -> None:
+        """The blows and the accelerations; `at_once` those by which joints break, of blows that are not shared with the
+        next step. Notes whether any would be."""
+        self.blows.begin()
+        self._turns, self._shared, self.stops.at_once = False, False, at_once
         self._accelerate(data, touching)
         contacts = self._contacts(data)
         if contacts is None:
             self._aim_others(data)
             self.mujoco.mj_fwdConstraint(self.model, data)
-            return touching
+            return
         rows = self.blows.rows(data, contacts)
-        if self.blows.strike(data, contacts, rows, partial(self._flies_smoothly, contacts.bodies)):
+        if self.blows.strike(data, contacts, rows, partial(self._flies_smoothly, contacts.bodies), at_once):
+            self._shared = at_once
             self.flight.keep()
             self._accelerate(data, touching)
             rows = self.blows.rows(data, contacts)
+        self.stops.at_once = False
         self._solve_contacts(data, contacts, rows)
         self.blows.add_to(data)
-        return touching
 
     def _accelerate(self, data: Any, touching: bool) -> None:
         """Accelerations without constraints, at the present velocities."""
@@ -306,24 +325,14 @@ class ContactLawC:
 
     def _aim_others(self, data: Any) -> None:
         """Ask what is no contact for the speeds that it should have."""
-        kinds = data.efc_type
-        stops = np.flatnonzero(np.isin(kinds, self.stops))  # ropes that are taut among them
-        h = self.model.opt.timestep
-        if len(stops):
-            goal = settling(data.efc_pos[stops], h, self.config)
-            taut = kinds[stops] == self.stops[1]
-            if self.ropes is not None and taut.any():
-                rows = stops[taut]
-                goal[taut] += self.ropes.growth(data, data.efc_id[rows], data.efc_vel[rows], h) / h
-            data.efc_aref[stops] = (goal - data.efc_vel[stops]) / h
+        self.stops.aim(data)
         self.closing.aim(data)
-        rubbing = np.flatnonzero(kinds == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
-        data.efc_aref[rubbing] = -data.efc_vel[rubbing] / h
+        rubbing = np.flatnonzero(data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
+        data.efc_aref[rubbing] = -data.efc_vel[rubbing] / self.model.opt.timestep
 
     def _ends_of_stops(self, data: Any) -> Array:
         """By how much joints of mechanisms approach their stops too fast to reach them by the step's end, (rows,)."""
-        rows = self.smooth_steps.stops(data)
-        return np.asarray(settling(data.efc_pos[rows], self.model.opt.timestep, self.config) - data.efc_vel[rows])
+        return self.stops.ends(data, self.smooth_steps.stops(data))
 
     def _contacts(self, data: Any) -> Contacts | None:
         """The contacts that have rows, if there are any, or none that something else is hit beside."""

@@ -9,7 +9,7 @@ import warp as wp
 
 from wsim.kernels import slips
 from wsim.kernels.blows import begin_round, count_round, lose_finite, silence
-from wsim.kernels.contact_law import ENDED, aim, look, stop, vec5
+from wsim.kernels.contact_law import ENDED, aim, look, look_at_stops, stop, vec5
 from wsim.kernels.slips import go_on_from, guess, settle, weigh
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesWarp
@@ -61,7 +61,7 @@ class ContactLawWarp:
     ) -> None:
         mujoco, self._mujoco_warp = modules
         self._mujoco, self._model, self._data, self._flight, self._config = mujoco, model, data, flight, config
-        self._breaking, self._drives = breaking, drives
+        self._breaking, self._drives, self._at_once = breaking, drives, False
         self._touching, self._cylinders = touching, cylinders
         self.impulses: ContactImpulsesWarp | None = None  # where somebody wants them summed
         groups = tied_groups(mujoco, host)
@@ -88,6 +88,7 @@ class ContactLawWarp:
             self._search = wp.zeros((data.nworld, ENDED + 1), dtype=int)
             self._struck = wp.zeros(1, dtype=int)
             self._free, self._warm = wp.empty_like(data.qacc_smooth), wp.empty_like(data.qacc_warmstart)
+            self._speeds = [wp.empty_like(speed) for speed in flight.speeds]  # before a step's blows
             self._change = wp.zeros(data.nworld, dtype=float)
             self._nearest = wp.zeros(data.nworld, dtype=float)
             self._seeking = wp.zeros(1, dtype=int)
@@ -113,6 +114,8 @@ class ContactLawWarp:
             self._ropes.look_back(model, data)
         warp.fwd_position(model, data)
         self._accelerate(model, data, h)
+        if self._breaking is not None:
+            self._break_by_blows(model, data, h)
         self._strike(model, data, h)
         if self._smooth_steps:
             self._smooth_steps.begin()
@@ -120,7 +123,8 @@ class ContactLawWarp:
         if self._drives:
             self._drives.aim(model, data)
         self._seek(model, data)
-        self._break(model, data)
+        if self._breaking is not None:
+            self._break(model, data, struck=False)
         self._solve_last(model, data)
         if self.impulses is not None:
             self.impulses.add(data, h)
@@ -166,11 +170,14 @@ class ContactLawWarp:
         wp.launch(lose_finite, dim=rows, inputs=[data.nefc, efc.type], outputs=[efc.frictionloss])
         self._aim(model, data, instant=True)
         self._seek(model, data)
-        wp.launch(silence, dim=rows, inputs=[search], outputs=[efc.force])
-        self._break(model, data)
+        share = h / self._config.blow_time
+        if self._at_once:
+            self._break(model, data, share=share, instant=True)
         self._solve_last(model, data)
         wp.launch(silence, dim=rows, inputs=[search], outputs=[efc.force])
-        if self.impulses is not None:
+        if self._at_once:
+            self._breaking.add_blow(model, data, share)
+        elif self.impulses is not None:
             self.impulses.add(data, h)
         self._flight.jump(search, model.opt.timestep)
         self._mujoco_warp.make_constraint(model, data)
@@ -180,10 +187,48 @@ class ContactLawWarp:
         wp.copy(data.qacc_warmstart, self._warm)
         self._accelerate(model, data, h)
 
-    def _break(self, model: Any, data: Any) -> None:
-        if self._breaking is not None:
-            self._solve(model, data)
-            self._breaking.give_way(model, data)
+    def _break(self, model: Any, data: Any, **how: Any) -> None:
+        """Solve until in all worlds joints bear what they must: `how` that is judged, `_break_worst` says."""
+        self._breaking.again.fill_(1)
+        if model.opt.graph_conditional:
+            wp.capture_while(self._breaking.again, self._break_worst, model=model, data=data, **how)
+        else:
+            self._break_worst(model, data, **how)
+
+    def _break_worst(
+        self, model: Any, data: Any, share: float = 1.0, struck: bool = False, instant: bool = False
+    ) -> None:
+        """A solution, and what breaks by it, by what acts all the step or in an instant's blows."""
+        self._solve(model, data)
+        if instant:
+            rows = data.nworld, data.njmax
+            wp.launch(silence, dim=rows, inputs=[self._search], outputs=[data.efc.force])
+        self._breaking.give_way(model, data, share, struck=struck)
+
+    def _break_by_blows(self, model: Any, data: Any, h: float) -> None:
+        """Have joints break in worlds that are struck, by blows that end at once, and go back to before these."""
+        self._breaking.begin()
+        for speed, kept in zip(self._flight.speeds, self._speeds, strict=True):
+            wp.copy(kept, speed)
+        self._at_once = True
+        self._strike(model, data, h)
+        self._at_once = False
+        self._breaking.end_blows(self._search)
+        if model.opt.graph_conditional:
+            wp.capture_if(self._struck, self._break_struck, model=model, data=data, h=h)
+        else:
+            self._break_struck(model, data, h)
+
+    def _break_struck(self, model: Any, data: Any, h: float) -> None:
+        self._aim(model, data, instant=False)
+        if self._drives:
+            self._drives.aim(model, data)
+        self._seek(model, data)
+        self._break(model, data, struck=True)
+        for speed, kept in zip(self._flight.speeds, self._speeds, strict=True):
+            wp.copy(speed, kept)
+        self._mujoco_warp.make_constraint(model, data)
+        self._go_on(model, data, h)
 
     def _add_contacts(self, model: Any, data: Any) -> None:
         """After MuJoCo Warp's search for contacts those that it does not find."""
@@ -235,6 +280,22 @@ class ContactLawWarp:
             ],
             outputs=[self._search, self._seeking],
         )  # fmt: skip
+        if self._at_once:
+            wp.launch(
+                look_at_stops,
+                dim=(data.nworld, data.njmax),
+                inputs=[
+                    *self._stops(model, data), config.most_blows, config.steady, config.settle_time,
+                    config.settle_speed,
+                ],
+                outputs=[self._search, self._seeking],
+            )  # fmt: skip
+
+    def _stops(self, model: Any, data: Any) -> list[Any]:
+        """Of the rows of stops and ropes what they should reach is told from."""
+        efc, length = data.efc, data.ten_length
+        back = self._ropes.length if self._ropes else length
+        return [data.nefc, efc.type, efc.pos, efc.vel, model.opt.timestep, efc.id, length, back]
 
     def _aim(self, model: Any, data: Any, instant: bool) -> None:
         """Ask for the speeds after the blows of an `instant`, or at the step's end."""
@@ -248,9 +309,9 @@ class ContactLawWarp:
             inputs=[
                 data.nacon, contact.worldid, contact.geom, contact.dist, contact.efc_address, contact.dim, efc.vel, h,
                 self._bow, self._geom_class, model.geom_bodyid, self._law, model.geom_type, self._curvature,
-                data.geom_xmat, contact.frame, self._search, instant, self._free, self._mechanism, self._touched_for,
-                flight.row, flight.since, *self._jacobian(model, efc), config.threshold, config.settle_time,
-                config.settle_speed, config.smallest_friction,
+                data.geom_xmat, contact.frame, self._search, instant, self._at_once, config.steady, self._free,
+                self._mechanism, self._touched_for, flight.row, flight.since, *self._jacobian(model, efc),
+                config.threshold, config.settle_time, config.settle_speed, config.smallest_friction,
             ],
             outputs=[
                 self._friction, contact.friction, self._target, self._blow, self._slip, efc.D, efc.aref,
@@ -260,8 +321,7 @@ class ContactLawWarp:
             stop,
             dim=(data.nworld, data.njmax),
             inputs=[
-                data.nefc, efc.type, efc.pos, efc.vel, h, efc.id, data.ten_length,
-                self._ropes.length if self._ropes else data.ten_length, config.settle_time, config.settle_speed,
+                *self._stops(model, data), self._at_once, config.steady, config.settle_time, config.settle_speed,
             ],
             outputs=[efc.aref],
         )  # fmt: skip

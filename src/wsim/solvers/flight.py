@@ -164,6 +164,11 @@ class Flight:
         """Whether a body of MuJoCo's goes as is stated, (bodies,): the world does."""
         return np.asarray(self._row_c == STATED)
 
+    @property
+    def speeds(self) -> list[Any]:
+        """The velocities that steps go on from, and what they are in double precision, arrays of Warp's."""
+        return [self._qvel, self._true[1]]
+
     def jump(self, search: Any, timestep: Any) -> None:
         """Take in Warp the velocities after a round of blows, in the worlds that it is one of."""
         wp.launch(

@@ -43,6 +43,7 @@ def after_blows(
     h: float,
     config: ContactConfig,
     smooth: Array | bool = False,
+    whole: bool = False,
 ) -> tuple[Array, Array]:
     """Normal speeds that contacts should have after the blows of an instant [m/s], and which of them meet and bounce,
     (contacts,) each.
@@ -58,10 +59,13 @@ def after_blows(
         h: Time step [s].
         config: How the law is applied.
         smooth: Whether bodies fly by steps of a higher order.
+        whole: Whether no blow is shared with the next step (`at_once`).
     """
     bouncy = restitution > 0.0
     meets = bouncy & _meets(distance, speed, h, config)
     goal = targets(distance, speed, restitution, h, config)
+    if whole:
+        goal = at_once(goal, speed, h, config)
     if not meets.any():
         return goal, meets
     rebound = rebounds(distance, speed, free, restitution, h, np.broadcast_to(smooth, speed.shape))
@@ -96,6 +100,16 @@ def stopped(goal: Array, speed: Array, h: float, config: ContactConfig) -> Array
     """Whether a step ends an approach [m/s] that a step of falling does not make, (contacts,)."""
     least = config.threshold * h
     return (speed < -least) & (goal - speed > least)
+
+
+def at_once(goal: Array, speed: Array, h: float, config: ContactConfig) -> Array:
+    """Speeds that end at once all approaches which a step ends, or which it shares with the next [m/s], (n,).
+
+    What does not bounce keeps the speed that closes its gap by the step's end and loses it in the next one. What that
+    passes on is a blow and its half, by where the step began; this is the whole.
+    """
+    least = config.steady * h
+    return np.where((speed < -least) & (goal - speed > least), 0.0, goal)
 
 
 def friction_pays(blow: Array, most: Array, push: Array, rub: Array, before: Array, after: Array) -> Array:
