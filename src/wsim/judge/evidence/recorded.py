@@ -14,6 +14,7 @@ from wsim.geometry.rotations import mean_rotation, upwards
 from wsim.geometry.shapes import Solid
 from wsim.judge.evidence.containment import Containment, local
 from wsim.judge.evidence.placed import placed_shapes
+from wsim.scene.world import Shape
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.placed import Placed
     from wsim.plan.schema import Plan, PlanObject
     from wsim.recording.recording import FluidTrack, Recording
-    from wsim.scene.world import Body, Container, Fluid, Shape, Static
+    from wsim.scene.world import Body, Container, Fluid, Static
 
     Floats = NDArray[np.float64]
 
@@ -40,6 +41,13 @@ class Part:
 
     whole: Recorded
     frames: slice
+
+
+def _stand_in(body: Body) -> Shape:
+    """A ball of a body's mass about its centre that turns as hard as the body does: I = 2/5 m r^2 on the mean."""
+    moment = max(float(np.trace(np.reshape(body.inertia, (3, 3)))) / 3.0, 0.0)
+    radius = math.sqrt(2.5 * moment / body.mass) if body.mass > 0.0 else 0.0
+    return Shape(prim=body.prim, kind="sphere", size=(radius,), position=body.com, collides=False)
 
 
 class Recorded:
@@ -161,11 +169,12 @@ class Recorded:
 
     # ---- bodies
     def solid(self, i: int) -> Solid[Shape]:
-        """A body's shapes."""
+        """A body's shapes; of one without any, as between two joints of a robot, a ball that nothing touches."""
         if self.part is not None:
             return self.part.whole.solid(i)
         if i not in self._solids:
-            self._solids[i] = Solid(self.world.bodies[i].shapes)
+            body = self.world.bodies[i]
+            self._solids[i] = Solid(body.shapes or [_stand_in(body)])
         return self._solids[i]
 
     def ends(self, i: int) -> tuple[Floats, Floats]:
