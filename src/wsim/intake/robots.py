@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,13 +25,22 @@ class TakenIn:
     robot: Robot
 
 
-def take_in(file: Path, name: str, *, replace: bool = False) -> TakenIn:
+def take_in(
+    file: Path,
+    name: str,
+    *,
+    replace: bool = False,
+    adapt: Callable[[Robot], None] | None = None,
+    source: str | None = None,
+) -> TakenIn:
     """Make a robot of a file; its layer is there at the end, whole, or nothing is.
 
     Args:
         file: URDF or MJCF, with its meshes where it names them.
         name: What to call it.
         replace: Take the place of the one of that name.
+        adapt: Changes what was read before it is written.
+        source: Where it is from; by default the file's name.
 
     Raises:
         IntakeError: Naming the field, its value and the way out.
@@ -44,9 +54,11 @@ def take_in(file: Path, name: str, *, replace: bool = False) -> TakenIn:
     if path.exists() and not replace:
         raise IntakeError(f"name = {name!r} is there already; --replace takes its place")
     robot = read_robot(file)
+    if adapt is not None:
+        adapt(robot)
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".taking-", dir=path.parent) as folder:
         side = Path(folder) / path.name
-        write_robot(side, robot, file.name)
+        write_robot(side, robot, source or file.name)
         side.replace(path)
     return TakenIn(id, path, robot)
