@@ -6,6 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from wsim.assets.folders import AssetError, assets_folder, user_folder
+from wsim.assets.policies import policies
 from wsim.assets.sources import named, sources
 
 SUFFIX = ".usdc"
@@ -43,6 +44,6 @@ def robot_path(id: str) -> Path:
 
 
 def missing(program: str) -> list[str]:
-    """Robots that a program's text names, that are not here, and that can be pulled."""
-    known = robots()
-    return [id for id in named(program) if id not in known]
+    """What a program's text names of robots and their policies, is not here whole, and can be pulled."""
+    here, walking = robots(), policies()
+    return [id for id in named(program) if id not in here or not walking.keys() >= sources()[id].policies.keys()]

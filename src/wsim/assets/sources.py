@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from wsim.assets.folders import AssetError
 
 _FILE = Path(__file__).with_name("sources.toml")
+_CALLS = ("robot", "policy")
 
 
 class _Model(BaseModel):
@@ -28,6 +29,14 @@ class Servo(_Model):
     stiffness: float = Field(ge=0.0)  # [N m/rad] or [N/m]
     damping: float = Field(ge=0.0)  # [N m s/rad] or [N s/m]
     max_force: float = Field(gt=0.0)  # [N m] or [N]
+
+
+class PolicyFile(_Model):
+    """A policy of the robot: its network in the wheel, and the description that wsim has of it, in `described/`."""
+
+    network: str
+    license: str  # SPDX
+    licenses: list[str]
 
 
 class Source(_Model):
@@ -47,6 +56,7 @@ class Source(_Model):
     robot: str  # its URDF or MJCF
     servos: dict[str, Servo] = Field(default_factory=dict)
     poses: dict[str, dict[str, float]] = Field(default_factory=dict)
+    policies: dict[str, PolicyFile] = Field(default_factory=dict)  # by id
 
     @property
     def wheel(self) -> str:
@@ -72,15 +82,25 @@ def source(id: str) -> Source:
     return sources()[id]
 
 
+def source_of_policy(id: str) -> str | None:
+    """What is pulled to get a policy, if something is."""
+    return next((each for each, what in sources().items() if id in what.policies), None)
+
+
+def description(policy: str) -> Path:
+    """The description of a policy that is pulled."""
+    return _FILE.with_name("described") / f"{policy}.json"
+
+
 def named(program: str) -> list[str]:
-    """What a program's text names of what can be pulled, in its calls of `robot`; nothing where it cannot be read."""
+    """What a program's text names of what can be pulled, robots and policies; nothing where it cannot be read."""
     try:
         tree = ast.parse(program)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    given = [text for call in calls if getattr(call.func, "attr", "") == "robot" for text in _texts(call)]
-    return [id for id in sources() if id in given]
+    given = {text for call in calls if getattr(call.func, "attr", "") in _CALLS for text in _texts(call)}
+    return [id for id, what in sources().items() if given & {id, *what.policies}]
 
 
 def _texts(call: ast.Call) -> Iterator[str]:

@@ -115,6 +115,21 @@ def pull(
     _show_robot(pull_(id, replace=replace), json)
 
 
+@assets.command("policy")
+def policy(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Its description, JSON: docs/robots.md.")],
+    network: Annotated[Path, typer.Option("--network", help="Its network, ONNX.")],
+    name: Annotated[str, typer.Option("--name", help="What programs call it: scene.policy(..., NAME).")],
+    replace: Annotated[bool, typer.Option("--replace", help="Take the place of the policy of that name.")] = False,
+) -> None:
+    """Take a policy in, a network that walks a robot, for `scene.policy`."""
+    from wsim.intake.policies import take_in_policy  # with readers and NumPy
+
+    id, spec = take_in_policy(file, network, name, replace=replace)
+    said = f"{id}: sees {spec.size} numbers, sets {len(spec.joints)} joints at {spec.rate:g} Hz"
+    console.print(said, markup=False, soft_wrap=True)
+
+
 @assets.command("robots")
 def robots_(json: Json = False) -> None:
     """List the robots that programs may place: those of wsim, and those that were taken in."""

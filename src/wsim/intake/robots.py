@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from pathlib import Path
 from wsim.assets import assets_folder
 from wsim.assets.robots import SUFFIX, robots_folder
 from wsim.intake.model import IntakeError
+from wsim.intake.policies import id_of
 from wsim.intake.robot_model import Robot
 from wsim.intake.robot_read import read_robot
 from wsim.intake.robot_write import write_robot
@@ -45,9 +45,7 @@ def take_in(
     Raises:
         IntakeError: Naming the field, its value and the way out.
     """
-    id = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-    if not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", id):
-        raise IntakeError(f"name = {name[:80]!r} must begin with a letter a to z and have at most 60 characters")
+    id = id_of(name)
     path = robots_folder() / f"{id}{SUFFIX}"
     if (assets_folder() / "robots" / f"{id}.usda").exists():
         raise IntakeError(f"name = {name!r} is that of a shipped robot; choose another, such as 'own {id}'")
