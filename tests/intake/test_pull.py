@@ -41,6 +41,16 @@ def build(scene: Scene) -> None:
     scene.robot("go2")
 """
 
+WALKS = """from wsim.scene import Scene
+
+
+def build(scene: Scene) -> None:
+    scene.simulation(duration=5.0, frame_rate=50.0)
+    scene.ground()
+    dog = scene.robot("go2")
+    scene.policy("walk", dog, "go2_walk", command=(0.5, 0.0, 0.0))
+"""
+
 
 @pytest.fixture
 def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
@@ -152,3 +162,21 @@ def mujoco_stands(height: float) -> tuple[float, float]:
         data.ctrl[:] = 20.0 * (home - data.qpos[7:]) - 0.5 * data.qvel[6:]
         mujoco.mj_step(model, data)
     return float(data.qpos[0]), float(data.qpos[2])
+
+
+def test_the_go2_walks_as_fast_as_it_is_told(go2: TakenIn, tmp_path: Path) -> None:
+    """0.5 m/s for 5 s on flat ground: within 10 % once it is under way, straight and upright, and accepted."""
+    (tmp_path / "program.py").write_text(WALKS)
+    iteration = Iteration(tmp_path, settings=Settings(device="cpu", pictures=False))
+    verdict = iteration.run()
+    assert verdict.status == "accepted", verdict.summary
+    recording = read(iteration.recording)
+    base = [body.prim for body in recording.world.bodies].index("/World/go2/base")
+    pose, time = recording.body_q[:, base], recording.time
+    late = time >= 2.0
+    speed = (pose[-1, 0] - pose[late][0, 0]) / (time[-1] - time[late][0])
+    assert speed == pytest.approx(0.5, rel=0.1)
+    assert abs(pose[-1, 1]) < 0.1
+    assert (1.0 - 2.0 * (pose[:, 3] ** 2 + pose[:, 4] ** 2)).min() > 0.95  # how far its own z points up
+    assert pose[late, 2] == pytest.approx(0.32, abs=0.03)
+    assert (go2.path.parents[1] / "policies" / "go2_walk" / "LICENSE").read_text().count("Apache License") >= 1

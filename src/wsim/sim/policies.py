@@ -55,8 +55,8 @@ class Commands:
 
     def at(self, t: float, measured: Floats) -> Floats:
         """(W, 3) at a time [s], where the robots go as `measured` (W, 3) along their headings."""
-        found = [np.searchsorted(times, t + 1e-9, side="right") - 1 for times in self._times]
-        wanted = np.stack([commands[max(k, 0)] for commands, k in zip(self._commands, found, strict=True)])
+        rows = [max(0, int(np.searchsorted(times, t + 1e-9, side="right")) - 1) for times in self._times]
+        wanted = np.stack([commands[row] for commands, row in zip(self._commands, rows, strict=True)])
         change = np.clip(wanted, -self._limit, self._limit) - self._now
         self._now += change if self._most is None else np.clip(change, -self._most, self._most)
         return self._now + self._trim.of(self._now, measured) if self._trim else self._now
@@ -134,7 +134,7 @@ class PolicyController:
         """The base's motion in its own frame, and along its heading, (W, 3) each."""
         pose = state.body_q.numpy()[self._base].astype(np.float64)
         motion = state.body_qd.numpy()[self._base].astype(np.float64)
-        own = _axes(pose[:, 3:])  # rows of each are the frame's axes in the world
+        own = axes(pose[:, 3:])  # rows of each are the frame's axes in the world
         spin = motion[:, 3:]
         velocity = motion[:, :3] - np.cross(spin, np.einsum("wij,wi->wj", own, self._com))  # of its origin
         heading = own[:, 0, :2] / np.maximum(np.linalg.norm(own[:, 0, :2], axis=1, keepdims=True), 1e-9)
@@ -148,7 +148,7 @@ class PolicyController:
         }
 
 
-def _axes(q: Floats) -> Floats:
+def axes(q: Floats) -> Floats:
     """(W, 3, 3): the axes of frames turned by quaternions xyzw, a row each."""
     x, y, z, w = q.T
     rows = [
