@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.assets import policies
+from wsim.assets.folders import VARIABLE
 from wsim.scene import Drive, Part, Scene, SceneError, VehicleSpec
 from wsim.scene.authoring import Handle
 
@@ -126,6 +128,18 @@ KINDS: dict[str, tuple[object, ...]] = {
     "robot's joints": (
         "wide", 7, ["elbow"], {"nobody": 1.0}, {"elbow": NAN}, {"elbow": "1"}, {"elbow": 1e300}, {7: 1.0},
     ),
+    "robot there": ("nobody", "ball", "", 7, None, NAN, [], object()),
+    "policy": ("unicorn", "", 7, NAN, [], object()),
+    "command": (
+        "ahead", 1.0, None, (1.0,), (1.0, 0.0), (NAN, 0.0, 0.0), (1e300, 0.0, 0.0), ("1", 0.0, 0.0), {1.0, 2.0, 3.0},
+    ),
+    "command times": (
+        "now", 1.0, [], [0.0], [1.0, 2.0], [0.0, 0.0], [0.0, -1.0], [0.0, NAN], [0.0, "1"], [0.0, 1.0, 2.0], {0.0, 1.0},
+    ),
+    "commands": (
+        "ahead", 1.0, [], [HERE], [HERE, (1.0,)], [HERE, (NAN, 0.0, 0.0)], [HERE, None], [HERE, (1e300, 0.0, 0.0)],
+        {HERE, (1.0, 0.0, 0.0)},
+    ),
     "flag or none": ("no", "", 0, 1, NAN, [], np.ones(2), object()),
     "asset": ("unicorn", "", 7, None, NAN, [], object()),
     "overrides": ("wide", 7, [], ["p"], {"p": NAN}, {"p": "1"}, {"p": None}, {"p"}, True),
@@ -169,6 +183,11 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {"name": "new", "file_or_id": "desk_arm"},
         {"name": "new name", "file_or_id": "robot", "position": "three numbers", "yaw_deg": "number",
          "pose": "robot's pose", "joints": "robot's joints", "fixed": "flag or none", "origin": "flag"},
+    ),
+    "policy": (
+        {"name": "new", "robot": "arm", "policy": "steer", "times": (0.0, 1.0), "commands": (HERE, (1.0, 0.0, 0.0))},
+        {"name": "new name", "robot": "robot there", "policy": "policy", "command": "command",
+         "times": "command times", "commands": "commands"},
     ),
     "vehicle": (
         {"name": "new"},
@@ -344,6 +363,10 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     scene.joint_fixed("weld", None, "stuck")
     scene.tank("tank", inner_size=(1, 1, 1), position=(9.0, 0.0, 0.0))
     scene.camera("cam", eye=(0, -3, 1), target=(0, 0, 0))
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "own"))
+    spec = {"joints": ["pan"], "rate": 50.0, "observations": [{"of": "command"}]}
+    policies.write(tmp_path / "own", "steer", spec, b"read where it runs")
+    scene.robot("arm", "desk_arm", position=(0.0, 20.0, 0.0), fixed=False)
     return scene
 
 

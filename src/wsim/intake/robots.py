@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from wsim.assets import assets_folder
 from wsim.assets.robots import SUFFIX, robots_folder
 from wsim.intake.model import IntakeError
+from wsim.intake.policies import id_of
 from wsim.intake.robot_model import Robot
 from wsim.intake.robot_read import read_robot
 from wsim.intake.robot_write import write_robot
@@ -24,29 +25,38 @@ class TakenIn:
     robot: Robot
 
 
-def take_in(file: Path, name: str, *, replace: bool = False) -> TakenIn:
+def take_in(
+    file: Path,
+    name: str,
+    *,
+    replace: bool = False,
+    adapt: Callable[[Robot], None] | None = None,
+    source: str | None = None,
+) -> TakenIn:
     """Make a robot of a file; its layer is there at the end, whole, or nothing is.
 
     Args:
         file: URDF or MJCF, with its meshes where it names them.
         name: What to call it.
         replace: Take the place of the one of that name.
+        adapt: Changes what was read before it is written.
+        source: Where it is from; by default the file's name.
 
     Raises:
         IntakeError: Naming the field, its value and the way out.
     """
-    id = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
-    if not re.fullmatch(r"[a-z][a-z0-9_]{0,59}", id):
-        raise IntakeError(f"name = {name[:80]!r} must begin with a letter a to z and have at most 60 characters")
+    id = id_of(name)
     path = robots_folder() / f"{id}{SUFFIX}"
     if (assets_folder() / "robots" / f"{id}.usda").exists():
         raise IntakeError(f"name = {name!r} is that of a shipped robot; choose another, such as 'own {id}'")
     if path.exists() and not replace:
         raise IntakeError(f"name = {name!r} is there already; --replace takes its place")
     robot = read_robot(file)
+    if adapt is not None:
+        adapt(robot)
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".taking-", dir=path.parent) as folder:
         side = Path(folder) / path.name
-        write_robot(side, robot, file.name)
+        write_robot(side, robot, source or file.name)
         side.replace(path)
     return TakenIn(id, path, robot)

@@ -16,6 +16,7 @@ from wsim.judge.evidence.framing import framed
 from wsim.judge.verdict import Finding, RepairTarget, Verdict
 from wsim.program.validator import validate
 from wsim.runs.iteration import Iteration, no_world, reject
+from wsim.runs.pulled import pull_missing
 from wsim.runs.trajectory import Trajectory
 from wsim.scene.describe import describe
 from wsim.scene.world import Camera
@@ -97,6 +98,7 @@ def attempt(iteration: Iteration, cheap_first: bool = True) -> Attempt:
         cheap_first: False goes from the build to the full recording: where nothing would be repaired, the cheap passes
             only take time.
     """
+    pull_missing(iteration.text, iteration.progress)  # the validator makes the program's calls, too
     made = Attempt(iteration.folder, iteration.text)
     looks = [_framed, _moved] if iteration.settings.pictures else []
     passes = [_validated, _built, *looks, _recorded] if cheap_first else [_built, _recorded]

@@ -21,6 +21,7 @@ from wsim.program.control import ControlError
 from wsim.progress import Progress, silent
 from wsim.runs import draws
 from wsim.runs.folder import write_json, write_whole
+from wsim.runs.pulled import pull_missing
 from wsim.runs.settings import Settings
 from wsim.runs.simulation import is_controlled, open_simulation
 from wsim.runs.verify import Verification
@@ -109,8 +110,9 @@ class Iteration:
         """Program → stage, in the sandbox, with what is drawn set on it; checks.json says how it went.
 
         Raises:
-            UserError: If what is drawn cannot be set on the stage.
+            UserError: If what is drawn cannot be set on the stage, or a robot that it names cannot be pulled.
         """
+        pull_missing(self.text, self.progress)
         self.progress("building the stage", 0, 1)
         built = sandbox.build(
             self.program,

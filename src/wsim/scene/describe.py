@@ -21,6 +21,7 @@ from wsim.scene.errors import one_line
 from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
+from wsim.scene.usd_policies import read_policies
 from wsim.scene.usd_prims import line_of, object_path, owner_of, rigid_frame, turn_of, value_of
 from wsim.scene.usd_shapes import collides_as_hull, collides_exactly, read_shape, to_quat, to_vec3
 from wsim.scene.world import (
@@ -65,6 +66,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
         joints=joints,
         gears=gears,
+        policies=list(read_policies(prims)),
         apart=[*_meshed(joints, gears), *_filtered(prims)],
         springs=springs(prims),
         ropes=ropes(prims),

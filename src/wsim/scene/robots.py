@@ -119,7 +119,7 @@ class Robots(Author):
     def robot(
         self,
         name: str,
-        file_or_id: str | Path,
+        file_or_id: str | Path | None = None,
         *,
         position: Sequence[float] = _HERE,
         yaw_deg: float = 0.0,
@@ -132,7 +132,8 @@ class Robots(Author):
 
         Args:
             name: Of its prim; its links are prims under it, its joints under "joints".
-            file_or_id: A robot that `wsim assets robot FILE --name ID` took in, or a USD file that it wrote.
+            file_or_id: A robot that `wsim assets robot FILE --name ID` took in or `wsim assets pull ID` got, or a USD
+                file that one of them wrote; by default the robot called `name`.
             position: x and y of its file's origin, z of the lowest point of what collides of it [m].
             yaw_deg: About the vertical [deg].
             pose: A key frame of the file to start in; by default "home" if it has one, else its reference pose, within
@@ -147,6 +148,7 @@ class Robots(Author):
         """
         call = Call("robot", name)
         path = self._path(call)
+        file_or_id = name if file_or_id is None else file_or_id
         place = call.position("position", position)
         yaw = call.within("yaw_deg", yaw_deg, -36000.0, 36000.0, "deg")
         layer = Sdf.Layer.OpenAsAnonymous(str(_layer(call, file_or_id)))

@@ -19,6 +19,7 @@ from wsim.scene.check_joints import joint_problems
 from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
 from wsim.scene.motions import Motions
+from wsim.scene.policies import Policies
 from wsim.scene.robots import Robots
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.vehicles import Vehicles
@@ -27,7 +28,7 @@ from wsim.scene.views import Views
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Cables, Vehicles, Contacts, Motions, Views, Catalogued, Robots):
+class Scene(Cables, Vehicles, Contacts, Motions, Views, Catalogued, Robots, Policies):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

@@ -9,6 +9,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from wsim.assets.policies import PolicySpec
 from wsim.defaults import DURATION, FIELD_OF_VIEW, FRAME_RATE, GRAVITY
 
 Vec3 = tuple[float, float, float]
@@ -185,6 +186,20 @@ class Gear(_Model):
     line: str | None = None
 
 
+class Policy(_Model):
+    """A network that sets where a robot's servos go, by what it sees of it and as it is commanded."""
+
+    prim: str
+    base: str  # prim of the body whose motion it feels
+    joints: list[str]  # prims, in the order of the description's
+    spec: PolicySpec
+    network: str  # path of the ONNX file
+    sha256: str  # of that file
+    times: list[float] = [0.0]  # [s], from 0 on, rising: when each command begins
+    commands: list[Vec3] = [(0.0, 0.0, 0.0)]  # forward, to the left [m/s], turning to the left [rad/s]
+    line: str | None = None
+
+
 class Contact(_Model):
     """The law of one pair of objects, before what their surfaces combine to; None leaves a coefficient to them."""
 
@@ -296,6 +311,7 @@ class World(_Model):
     gears: list[Gear] = Field(default_factory=list)
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
+    policies: list[Policy] = Field(default_factory=list)
     apart: list[tuple[str, str]] = Field(default_factory=list)  # objects or shapes that never touch
     foreign: list[Foreign] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 
 from wsim.errors import UserError
 from wsim.scene.validate import shown
-from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Rope, Shape, Spring, World
+from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Policy, Rope, Shape, Spring, World
 
 # Numbers that each world of a batch has of its own.
 FREE: dict[type[BaseModel], frozenset[str]] = {
@@ -23,6 +23,7 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     Motor: frozenset({"position", "velocity"}),
     Gear: frozenset({"ratio", "offset"}),
     Contact: frozenset({"friction", "restitution"}),
+    Policy: frozenset({"times", "commands"}),
     Guide: frozenset({"position", "axis", "side"}),
     Spring: frozenset({"stiffness", "damping", "rest_length"}),
     Rope: frozenset({"length"}),

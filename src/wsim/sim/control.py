@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.scene.world import World
+from wsim.sim.joint_arrays import in_every_world, joint_indices
 
 if TYPE_CHECKING:
     from wsim.sim.simulation import Simulation
@@ -38,8 +39,8 @@ class ArrayController:
         """Read the state, ask, and set the simulation's control."""
         model, state, control = simulation.model, simulation.state, simulation.control
         worlds = max(1, model.world_count)
-        bodies = _in_every_world(simulation.built.bodies, worlds, model.body_count)
-        coordinate, dof, target = _joint_indices(simulation, worlds)
+        bodies = in_every_world(simulation.built.bodies, worlds, model.body_count)
+        coordinate, dof, target = joint_indices(model, worlds, driven_joints(simulation.world))
         targets = control.joint_target_q.numpy()
         answer = self.exchange(
             t,
@@ -62,21 +63,3 @@ class ArrayController:
             wrench = simulation.control_force.numpy()
             wrench[bodies] = answer["body_force"]
             simulation.control_force.assign(wrench)
-
-
-def _in_every_world(first: np.ndarray, worlds: int, total: int) -> np.ndarray:
-    """Indices (W, n) of the first world's things in all worlds, which follow each other."""
-    return first[None, :] + (total // worlds) * np.arange(worlds)[:, None]
-
-
-def _joint_indices(simulation: Simulation, worlds: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where the driven joints' coordinates, degrees of freedom and targets are, each (W, J)."""
-    model = simulation.model
-    first: dict[str, int] = {}
-    for k, label in enumerate(model.joint_label):
-        first.setdefault(str(label), k)
-    joints = np.array([first[prim] for prim in driven_joints(simulation.world)], dtype=np.int64)
-    every = _in_every_world(joints, worlds, model.joint_count)
-    starts = (model.joint_q_start, model.joint_qd_start, model.joint_target_q_start)
-    coordinate, dof, target = (start.numpy()[every] for start in starts)
-    return coordinate, dof, target

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import newton
 import numpy as np
@@ -27,18 +27,13 @@ from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
+from wsim.sim.policies import PolicyController
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
 from wsim.sim.starts import start
+from wsim.sim.turns import Controller, Turns
 from wsim.solvers.solver_sph import SolverSPH
-
-
-class Controller(Protocol):
-    """What drives joints and pushes bodies: called once a control step."""
-
-    def __call__(self, t: float, simulation: Simulation) -> None:
-        """Read the state, and set `simulation.control` and `simulation.control_force`."""
 
 
 class Simulation:
@@ -116,7 +111,7 @@ class Simulation:
                 self.model,
                 self.built.worlds,
                 self.dt,
-                controller is not None,
+                controller is not None or bool(self.world.policies),
                 self.built.breakable,
                 self.built.surfaces,
                 self.built.cylinders,
@@ -132,8 +127,12 @@ class Simulation:
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         if self.rigid and self.rigid.ledger and controller is not None:
             self.rigid.ledger.control = self.control_force
-        self._controller = controller
-        self._control_every = max(1, round(control_interval / self.dt))
+        self._steered, self._turns = controller is not None, Turns(self.dt)
+        for k in range(len(self.world.policies)):
+            policy = PolicyController(self.model, self.built.worlds, self.built.bodies, k)
+            self._turns.add(policy, policy.interval)
+        if controller is not None:  # after the policies: it sees what they set
+            self._turns.add(controller, control_interval)
         self._graphs: dict[int, Any] = {}  # by how many steps they are
         self._asked: tuple[Any, ...] = ()
         self._warm_up(progress)
@@ -144,8 +143,8 @@ class Simulation:
 
     @property
     def controlled(self) -> bool:
-        """Whether a controller drives joints and pushes bodies."""
-        return self._controller is not None
+        """Whether a controller or a policy drives joints."""
+        return bool(self._turns)
 
     def _warm_up(self, progress: Progress) -> None:
         """Compile every kernel of a step, on a state that is thrown away."""
@@ -199,7 +198,7 @@ class Simulation:
 
     def _push_and_flow(self) -> None:
         self.state.clear_forces()
-        if self._controller is not None and self.control_force is not None:
+        if self._steered and self.control_force is not None:
             wp.copy(self.state.body_f, self.control_force)
         if self.fluid:
             self.fluid.step(self.state, self.state, self.control, None, self.dt)
@@ -209,7 +208,7 @@ class Simulation:
 
         On CUDA its steps are captured in a graph once and replayed; with a controller, those between two of its calls.
         """
-        if self.rigid and self.rigid.alone and not self.fluid and self._controller is None:
+        if self.rigid and self.rigid.alone and not self.fluid and not self._turns:
             self.state.clear_forces()
             self.rigid.steps(self.state, self.control, self.dt, self.substeps)
             self._count(self.substeps)
@@ -225,13 +224,8 @@ class Simulation:
                 self.step()
 
     def _until_control(self) -> int:
-        """Steps until the controller is asked again; it is, if its turn is now."""
-        if self._controller is None:
-            return self.substeps
-        past = self.step_count % self._control_every
-        if past == 0:
-            self._controller(self.time, self)
-        return self._control_every - past
+        """Steps until a controller is asked again; those are whose turn is now."""
+        return self._turns.ask(self.step_count, self) if self._turns else self.substeps
 
     def _count(self, steps: int) -> None:
         self.step_count += steps
@@ -239,7 +233,7 @@ class Simulation:
 
     def _captured(self, steps: int) -> Any:
         """A graph of some steps as they are asked for now."""
-        asked = (self.state, self.control, self.dt, self._controller is None)
+        asked = (self.state, self.control, self.dt, self._steered)
         if self._asked != asked:
             self._graphs.clear()
             self._asked = asked
@@ -374,6 +368,7 @@ class Simulation:
             "time_step_reason": self.built.time_step.reason,
             "particles": self.model.particle_count,
             "controlled": self.controlled,
+            "steered": self._steered,  # by the program's own control
             "speed_of_sound": self.built.sph.speed_of_sound if self.built.sph else None,
             "sph": self.method_of_fluid(0),
             "versions": {name: version(name) for name in ("newton", "warp-lang", "mujoco", "usd-core")},

@@ -12,6 +12,7 @@ from wsim.assets import asset_folders
 from wsim.errors import UserError
 from wsim.program import sandbox
 from wsim.runs.draws import apply
+from wsim.runs.pulled import pull_missing
 from wsim.scene.describe import describe
 from wsim.scene.world import Parameter
 from wsim.sweep.axis import Axis
@@ -45,6 +46,7 @@ def built(programs: Sequence[Path], isolation: str) -> Iterator[dict[str, Path]]
 def _built(program: Path, isolation: str) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="wsim-parameters-") as scratch:
         stage = Path(scratch) / "stage.usda"
+        pull_missing(program.read_text(encoding="utf-8", errors="replace"))
         made = sandbox.build(program, stage, isolation=isolation, readable=asset_folders())
         if not made.ok:
             raise UserError(f"{program.name} makes no world as it stands: {made.message}")

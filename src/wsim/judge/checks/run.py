@@ -210,7 +210,8 @@ class CheckPlanControl(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding where the plan asks for control or the program has one, none for another world."""
-        plan, controlled = evidence.plan, bool(evidence.recording.metadata.get("controlled"))
+        plan, facts = evidence.plan, evidence.recording.metadata
+        controlled = bool(facts.get("steered", facts.get("controlled")))
         if plan is None:
             return []
         driven = {joint.prim for joint in evidence.world.joints if joint.drive is not None}
@@ -221,8 +222,8 @@ class CheckPlanControl(Check):
             if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
         ]
         asked += [step.title for step in plan.steps if step.asks_for_control]
-        if bool(asked) == controlled:
-            return [self.passed(f"The plan asks for control: {asked[0]}")] if controlled else []
+        if bool(asked) == controlled or (asked and evidence.world.policies):
+            return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
         message = (
             "The program's control acts on the world, and the plan asks for none: what happens may be its doing"
             if controlled

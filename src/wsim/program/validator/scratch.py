@@ -41,6 +41,7 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
     "gear": {"ratio": 1.0}, "robot": {"file_or_id": "desk_arm"}, "vehicle": {},
+    "policy": {},
 }  # fmt: skip
 MANY = ("cable", "robot", "vehicle")  # whose bodies and joints have names of their own
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
@@ -117,7 +118,7 @@ class World:
                 self.note("capsule", link.name, certain=certain)
             return Const(made), "", ""
         self.open = self.open or method in MANY
-        if certain and method in (*OBJECTS, *JOINTS, *CORDS, "gear", "camera", "light", "material", "param"):
+        if certain and method in (*OBJECTS, *JOINTS, *CORDS, "gear", "policy", "camera", "light", "material", "param"):
             self.trusted = False
         self.note(method, name, certain=certain)
         field, refusal = self._try(method, arguments)
@@ -159,7 +160,7 @@ class World:
     def _try(self, method: str, arguments: Mapping[str, Value]) -> tuple[str, str]:
         """Try each known argument by itself, then all together; the one that is refused, and why."""
         kind = "box" if method == "mesh" else method
-        if kind not in _NEEDS:
+        if kind not in _NEEDS or kind == "policy":  # of which no robot that is at hand is sure to have the joints
             return "", ""
         if kind == "asset":
             return "id", _no_asset(_known(arguments.get("id")))

@@ -20,6 +20,7 @@ PATH = "WsimPathAPI"
 SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 GEAR = "WsimGearAPI"
 DRIVE = "WsimDriveAPI"
+POLICY = "WsimPolicyAPI"
 
 
 def register() -> None:

@@ -1,0 +1,84 @@
+"""Policies of a stage, read back, and held against what the simulator needs of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from itertools import pairwise
+
+from pxr import Usd, UsdPhysics
+from pydantic import ValidationError
+
+from wsim.assets.policies import PolicySpec
+from wsim.limits import MAX_KEYS
+from wsim.scene import schema
+from wsim.scene.usd_prims import line_of, value_of
+from wsim.scene.usd_shapes import to_vec3
+from wsim.scene.world import Policy
+
+_LARGEST = 1e4  # [m/s], [rad/s]
+
+
+def read_policies(prims: Iterable[Usd.Prim]) -> Iterator[Policy]:
+    """The policies among a stage's prims, which was checked."""
+    for prim in prims:
+        if not schema.has(prim, schema.POLICY):
+            continue
+        network = value_of(prim, "network", None)
+        yield Policy(
+            prim=str(prim.GetPath()),
+            base=str(_targets(prim, "base")[0].GetPath()),
+            joints=[str(joint.GetPath()) for joint in _targets(prim, "joints")],
+            spec=PolicySpec.model_validate_json(value_of(prim, "description", "")),
+            network=str(network.resolvedPath or network.path),
+            sha256=value_of(prim, "sha256", ""),
+            times=list(value_of(prim, "times", None) or [0.0]),
+            commands=[to_vec3(each) for each in value_of(prim, "commands", None) or [(0.0, 0.0, 0.0)]],
+            line=line_of(prim),
+        )
+
+
+def policy_problems(stage: Usd.Stage) -> Iterator[str]:
+    """Problems of the policies of a stage."""
+    set_by: dict[str, str] = {}
+    for prim in stage.Traverse():
+        if not schema.has(prim, schema.POLICY):
+            continue
+        for problem in _problems(prim):
+            yield f"{prim.GetPath()}.wsim:{problem}"
+        for joint in _targets(prim, "joints"):
+            other = set_by.setdefault(str(joint.GetPath()), str(prim.GetPath()))
+            if other != str(prim.GetPath()):
+                yield f"{prim.GetPath()}.wsim:joints: <{joint.GetPath()}> is set by <{other}>, too"
+
+
+def _problems(prim: Usd.Prim) -> Iterator[str]:
+    try:
+        spec = PolicySpec.model_validate_json(value_of(prim, "description", ""))
+    except ValidationError as error:
+        yield f"description: {error.errors()[0]['msg']}"
+        return
+    bases, joints = _targets(prim, "base"), _targets(prim, "joints")
+    if len(bases) != 1 or not bases[0].HasAPI(UsdPhysics.RigidBodyAPI):
+        yield "base: it must be one rigid body"
+    if len(joints) != len(spec.joints):
+        yield f"joints: {len(joints)} are there, and the description has {len(spec.joints)}"
+    for joint in joints:
+        freedom = "angular" if joint.IsA(UsdPhysics.RevoluteJoint) else "linear"
+        if not joint.HasAPI(UsdPhysics.DriveAPI, freedom):
+            yield f"joints: <{joint.GetPath()}> has no drive, whose target it would set"
+    if not getattr(value_of(prim, "network", None), "path", ""):
+        yield "network: no file is named"
+    times, commands = list(value_of(prim, "times", ())), list(value_of(prim, "commands", ()))
+    if len(times) != len(commands) or len(times) > MAX_KEYS:
+        yield f"times: {len(times)} are there, and {len(commands)} commands; at most {MAX_KEYS}, as many of both"
+    elif times and (times[0] != 0.0 or not all(one < two < math.inf for one, two in pairwise(times))):
+        yield "times: they must begin with 0 and rise"
+    if not all(abs(x) <= _LARGEST for each in commands for x in each):
+        yield f"commands: each must be at most {_LARGEST:g} in size"
+
+
+def _targets(prim: Usd.Prim, name: str) -> list[Usd.Prim]:
+    relation = prim.GetRelationship(f"wsim:{name}")
+    found = (prim.GetStage().GetPrimAtPath(path) for path in (relation.GetTargets() if relation else []))
+    return [each for each in found if each]

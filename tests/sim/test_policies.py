@@ -1,0 +1,183 @@
+"""Policies in the simulator: what they see, what they set, how they are told where to go."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from tests.assets import policies
+from wsim.assets.folders import VARIABLE
+from wsim.assets.policies import PolicySpec
+from wsim.errors import UserError
+from wsim.scene import Scene
+from wsim.scene.check import check_stage
+from wsim.scene.describe import describe
+from wsim.scene.world import Policy, World
+from wsim.sim import Simulation
+from wsim.sim.alike import alike
+from wsim.sim.policies import Commands, axes
+
+JOINTS = ["pan", "lift"]
+SEEN = [
+    "linear_velocity", "angular_velocity", "gravity", "command", "joint_position", "joint_velocity", "last_action",
+]  # fmt: skip
+SIZE = 18
+
+
+def spec(**changed: Any) -> dict[str, Any]:
+    return {
+        "joints": JOINTS, "rate": 50.0, "observations": [{"of": each} for each in SEEN],
+        "stiffness": 30.0, "damping": 1.0, "command_limit": [1.0, 0.5, 1.5],
+    } | changed  # fmt: skip
+
+
+def stage(folder: Path, weight: np.ndarray, command: tuple = (0.5, 0.0, 0.0), name: str = "stage", **changed) -> Path:
+    """An arm that nothing holds, turned by 90 degrees, floats without gravity's pull and is set by a matrix."""
+    if not (folder / "policies" / "matrix").exists():
+        policies.write(folder, "matrix", spec(**changed), policies.linear(weight))
+    scene = Scene()
+    scene.simulation(duration=0.1, frame_rate=50.0, time_step=0.002, gravity=(0.0, 0.0, -9.81))
+    arm = scene.robot("arm", "desk_arm", position=(0.0, 0.0, 5.0), yaw_deg=90.0, fixed=False)
+    scene.policy("steer", arm, "matrix", command=command)
+    return scene.save(folder / f"{name}.usda")
+
+
+@pytest.fixture
+def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "own"))
+    (tmp_path / "own").mkdir()
+    return tmp_path / "own"
+
+
+def picked(row: int, gain: float = 1.0) -> np.ndarray:
+    """Sets the first joint to one of the numbers that it sees."""
+    weight = np.zeros((SIZE, 2))
+    weight[row, 0] = gain
+    return weight
+
+
+def test_a_stage_says_its_policy(own: Path) -> None:
+    path = stage(own, picked(6))
+    assert check_stage(path, [own]) == []
+    (policy,) = describe(path).policies
+    assert policy.base == "/World/arm/base"
+    assert policy.joints == [f"/World/arm/joints/{name}" for name in JOINTS]
+    assert policy.spec == PolicySpec.model_validate(spec())
+    assert policy.commands == [(0.5, 0.0, 0.0)]
+    drives = {joint.prim: joint.drive for joint in describe(path).joints}
+    assert drives[policy.joints[0]].stiffness == pytest.approx(30.0)
+    assert check_stage(path, [own / "elsewhere"]) == [
+        f"stage.usda: @{own}/policies/matrix/policy.onnx@ lies outside the folders that a stage may read"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("row", "value"),
+    [(8, -1.0), (9, 0.5), (12, "start")],  # gravity along z, the command, the joint itself
+    ids=["gravity", "command", "joint"],
+)
+def test_a_target_is_what_the_network_makes_of_what_it_sees(own: Path, row: int, value: float | str) -> None:
+    simulation = Simulation(stage(own, picked(row)), device="cpu")
+    simulation.step()
+    wanted = simulation.model.joint_q.numpy()[7] if value == "start" else value
+    assert simulation.control.joint_target_q.numpy()[7] == pytest.approx(wanted, abs=1e-6)
+    assert simulation.controlled and simulation.facts()["steered"] is False
+
+
+def test_velocities_are_those_of_the_base_in_its_own_frame(own: Path) -> None:
+    """It falls from rest: after 0.02 s its base goes down by g t in its own z, and along nothing else."""
+    simulation = Simulation(stage(own, picked(2)), device="cpu")
+    while simulation.time < 0.0205:  # the second turn is before the step that begins at 0.02 s
+        simulation.step()
+    fallen = simulation.control.joint_target_q.numpy()[7]
+    assert fallen == pytest.approx(-9.81 * 0.02, rel=0.15)  # the arm's own motors move the base a little
+
+
+def test_axes_of_a_frame_are_those_of_its_rotation() -> None:
+    turns = Rotation.random(20, random_state=1)
+    np.testing.assert_allclose(axes(turns.as_quat()), np.swapaxes(turns.as_matrix(), 1, 2), atol=1e-12)
+
+
+def test_scales_offsets_and_limits(own: Path) -> None:
+    observations = [{"of": "command", "scale": [2.0, 1.0, 1.0], "offset": 0.1}]
+    weight = np.zeros((3, 2))
+    weight[0] = 1.0, 100.0
+    changed = {"observations": observations, "action_limit": 3.0, "action_scale": [1.0, 0.1], "action_offset": 0.05}
+    simulation = Simulation(stage(own, weight, **changed), device="cpu")
+    simulation.step()
+    targets = simulation.control.joint_target_q.numpy()[7:9]
+    np.testing.assert_allclose(targets, [0.05 + 2.0 * 0.4, 0.05 + 0.1 * 3.0], rtol=1e-6)
+
+
+def test_worlds_that_differ_by_their_commands_are_one_batch(own: Path) -> None:
+    stages = [stage(own, picked(9), (speed, 0.0, 0.0), f"stage_{k}") for k, speed in enumerate((0.2, 0.9))]
+    assert len(alike([describe(path) for path in stages])) == 1
+    simulation = Simulation(stages, device="cpu")
+    simulation.step()
+    targets = simulation.control.joint_target_q.numpy().reshape(2, -1)[:, 7]
+    np.testing.assert_allclose(targets, [0.2, 0.9], rtol=1e-6)
+
+
+def test_a_network_that_has_changed_is_refused(own: Path) -> None:
+    path = stage(own, picked(6))
+    (own / "policies" / "matrix" / "policy.onnx").write_bytes(policies.linear(picked(7)))
+    with pytest.raises(UserError, match="has changed since the stage was made; build it again"):
+        Simulation(path, device="cpu")
+
+
+def commanded(**changed: Any) -> Commands:
+    given = {"times": [0.0, 1.0], "commands": [(2.0, 0.0, 0.0), (0.0, 0.0, 1.0)]}
+    policy = Policy(
+        prim="/World/p", base="/World/b", joints=["/World/j"] * 2, network="", sha256="",
+        spec=PolicySpec.model_validate(spec(**changed)), **given,
+    )  # fmt: skip
+    return Commands([policy])
+
+
+def test_a_command_holds_from_its_time_on_within_its_limits() -> None:
+    commands = commanded()
+    still = np.zeros((1, 3))
+    np.testing.assert_allclose(commands.at(0.0, still), [[1.0, 0.0, 0.0]])
+    np.testing.assert_allclose(commands.at(0.98, still), [[1.0, 0.0, 0.0]])
+    np.testing.assert_allclose(commands.at(1.0, still), [[0.0, 0.0, 1.0]])
+
+
+def test_a_command_comes_on_as_quickly_as_it_may() -> None:
+    commands = commanded(command_slew=[2.5, 2.0, 5.0])
+    still = np.zeros((1, 3))
+    speeds = [commands.at(0.02 * k, still)[0, 0] for k in range(25)]
+    np.testing.assert_allclose(speeds[:3], [0.05, 0.10, 0.15])
+    assert speeds[-1] == 1.0
+
+
+def test_the_trim_adds_what_the_robot_lacks_up_to_its_limit() -> None:
+    """It lacks 0.2 m/s: the sum grows by 1.5 x 0.2 a second once the smoothing has caught up."""
+    commands = commanded(trim={"smoothing": 0.3, "gain": [1.5, 1.5, 2.0], "limit": [0.4, 0.3, 0.6]})
+    measured = np.array([[0.8, 0.0, 0.0]])
+    told = np.array([commands.at(0.0, measured)[0, 0] for _ in range(300)])
+    assert told[-1] == pytest.approx(1.4)
+    slow = commanded(trim={"smoothing": 0.3, "gain": [1.5, 1.5, 2.0], "limit": [9.0, 0.3, 0.6]})
+    late = np.array([slow.at(0.0, measured)[0, 0] for _ in range(300)])
+    assert (late[250] - late[200]) / 1.0 == pytest.approx(1.5 * 0.2, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"action_scale": [1.0]}, "action_scale has 1 numbers and needs 2"),
+        ({"joints": ["pan", "pan"]}, "one is named twice"),
+        ({"command_limit": [1.0]}, "command_limit has 1 numbers and needs 3"),
+        ({"observations": [{"of": "gravity", "scale": [1.0]}]}, "gravity: scale has 1 numbers and needs 3"),
+    ],
+)
+def test_a_description_that_does_not_fit_is_told(changed: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        PolicySpec.model_validate(spec(**changed))
+
+
+def test_a_world_without_a_policy_has_none() -> None:
+    assert World().policies == []
