@@ -378,6 +378,7 @@ def touch(
     planes: wp.array(dtype=wp.vec4),
     body_q: wp.array(dtype=wp.transform),
     body_qd: wp.array(dtype=wp.spatial_vector),
+    ahead: wp.array(dtype=wp.spatial_vector),  # by which velocities at the step's end are, as far as is known
     body_com: wp.array(dtype=wp.vec3),
     reach: float,
     h: float,
@@ -400,8 +401,8 @@ def touch(
     room += wp.vec3(wp.abs(x[0]), wp.abs(x[1]), wp.abs(x[2])) + wp.vec3(wp.abs(y[0]), wp.abs(y[1]), wp.abs(y[2]))
     room += wp.vec3(wp.abs(z[0]), wp.abs(z[1]), wp.abs(z[2]))
     com = wp.transform_point(body_q[body], body_com[body])
-    velocity = wp.spatial_top(body_qd[body])
-    spin = wp.spatial_bottom(body_qd[body])
+    velocity = wp.spatial_top(body_qd[body] + ahead[body])
+    spin = wp.spatial_bottom(body_qd[body] + ahead[body])
     deepest = wp.min(half)  # as deep as its middle
     row = probe_row[probe]
     query = wp.mesh_query_aabb(surface.mesh, middle - room, middle + room)

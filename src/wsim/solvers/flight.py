@@ -22,7 +22,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.blows import jump
-from wsim.kernels.flight import fly, keep, recall, say, tumble
+from wsim.kernels.flight import Loose, Noted, fly, keep, recall, say, tumble
 from wsim.solvers.packed import Packed
 
 Array = np.ndarray
@@ -31,7 +31,7 @@ NEVER = 2**30  # steps
 SETTLING = 3  # steps that a start takes
 EVEN = 0.1  # change of an acceleration that is none [m/s^2]: five times what a gap of 3e-8 m, rounding, makes of it
 PATIENCE = 0.02  # without a jolt, for which it must have been even [s]
-ROUGH = 0.3  # change of an acceleration in a step, from which on it is a jolt [m/s^2]
+ROUGH = 0.3  # by which an acceleration changes otherwise than in the step before, where it jolts [m/s^2]
 
 
 class Flight:
@@ -63,25 +63,29 @@ class Flight:
         rows = _rows_of_bodies(solver, loose, place[kinematic[model.joint_child.numpy()[: self.joints]]])
         with wp.ScopedDevice(model.device):
             self._joints = [wp.array(np.where(ours, start, -1), dtype=int) for start in (place, freedom)]
-            self._place = wp.array(solver.mj_model.jnt_qposadr[jnt], dtype=int)
-            self._freedom = wp.array(solver.mj_model.jnt_dofadr[jnt], dtype=int)
-            self._center = wp.array(center, dtype=wp.vec3d)
-            self._principal = wp.array(principal, dtype=wp.quatd)
-            self._moments = wp.array(moments, dtype=wp.vec3d)
+            self._loose, self._noted = Loose(), Noted()
+            self._loose.place = wp.array(solver.mj_model.jnt_qposadr[jnt], dtype=int)
+            self._loose.freedom = wp.array(solver.mj_model.jnt_dofadr[jnt], dtype=int)
+            self._loose.body = wp.array(solver.mjc_body_to_newton.numpy()[:, loose], dtype=int)
+            self._loose.center = wp.array(center, dtype=wp.vec3d)
+            self._loose.principal = wp.array(principal, dtype=wp.quatd)
+            self._loose.moments = wp.array(moments, dtype=wp.vec3d)
+            self._loose.arm = wp.array(arm, dtype=wp.float64)
+            self._loose.tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
             self._change = wp.zeros(shape, dtype=wp.vec3d)
-            self._arm = wp.array(arm, dtype=wp.float64)
-            self._known, self._gain, self._shift = (wp.zeros((*shape, 2), dtype=wp.vec3d) for _ in range(3))
+            for name in ("known", "gain", "trend", "shift"):
+                setattr(self._noted, name, wp.zeros((*shape, 2), dtype=wp.vec3d))
+            for name in ("calm", "behind", "since"):
+                setattr(self._noted, name, wp.zeros(shape, dtype=int))
+            self._noted.ahead = wp.zeros(model.body_count, dtype=wp.spatial_vector)
             self.row = wp.array(rows, dtype=int)  # of each of MuJoCo's bodies among the loose ones, or below 0
-            self._tied = wp.array(_tied(mujoco, solver.mj_model, loose), dtype=int)
-            self._behind, self._calm = (wp.zeros(shape, dtype=int) for _ in range(2))
-            self._loose = wp.array(_rows_of_joints(place, solver.mj_model.jnt_qposadr[jnt]), dtype=int)
-            self.since = wp.zeros(shape, dtype=int)  # the last exact step: steps of the first order
+            self._row_of_joint = wp.array(_rows_of_joints(place, solver.mj_model.jnt_qposadr[jnt]), dtype=int)
             self._true = [wp.zeros(array.shape, dtype=wp.float64) for array in (self._qpos, self._qvel)]
             self._told = [wp.zeros(n, dtype=float) for n in (model.joint_coord_count, model.joint_dof_count)]
         # Of C's numbers: a kernel's launch takes longer than a step of a small world.
         in_c = [(true.numpy(), array.numpy()) for true, array in zip(self._true, (self._qpos, self._qvel), strict=True)]
         self._shared = in_c if isinstance(data.qpos, Array) else []
-        self._row_c, self._since_c, self._behind_c = rows, self.since.numpy()[0], self._behind.numpy()
+        self._row_c, self._since_c, self._behind_c = rows, self.since.numpy()[0], self._noted.behind.numpy()
         self._lead = np.zeros((*shape, 2, 3))
         self.forget()
 
@@ -89,10 +93,11 @@ class Flight:
         """Start from the state, whatever was told."""
         for told in self._told:
             told.fill_(math.nan)
-        self._known.fill_(math.nan)
-        self._gain.fill_(math.nan)  # nothing is a jolt at a start
-        self._calm.fill_(-SETTLING)
-        for array in (self._shift, self._behind, self.since):
+        noted = self._noted
+        for array in (noted.known, noted.gain, noted.trend):
+            array.fill_(math.nan)  # nothing is a jolt at a start
+        noted.calm.fill_(-SETTLING)
+        for array in (noted.shift, noted.behind, noted.since, noted.ahead):
             array.zero_()
         self._lead[:] = 0.0
 
@@ -104,9 +109,9 @@ class Flight:
             dim=(self._qpos.shape[0], self.joints),
             inputs=[
                 state.joint_q, state.joint_qd, *self._told, self.joints, model.joint_q_start, model.joint_qd_start,
-                *self._joints, self._loose, self._gain,
+                *self._joints, self._row_of_joint, self._loose,
             ],
-            outputs=[self._behind, self._shift, self.since, *self._true, self._qpos, self._qvel],
+            outputs=[self._noted, *self._true, self._qpos, self._qvel],
             changing=(state.joint_q, state.joint_qd),
         )  # fmt: skip
 
@@ -117,13 +122,10 @@ class Flight:
         self._packed.launch(
             say,
             dim=self._change.shape,
-            inputs=[
-                self._place, self._freedom, self._center, self._principal, self._moments, *self._true, self._gain,
-                self._behind, int(centred),
-            ],
+            inputs=[self._loose, self._noted, *self._true, int(centred)],
             outputs=[self._qvel],
             changing=(centred,),
-        )  # fmt: skip
+        )
 
     def take_lead(self) -> tuple[Array, Array]:
         """What velocities of loose bodies gained since the last call that no force gave them.
@@ -135,8 +137,8 @@ class Flight:
             MuJoCo's numbers of the bodies, (bodies,), and for each world the gain of the velocity of their centres of
             mass [m/s] and of their angular momentum about them [kg m^2/s], (worlds, bodies, 2, 3).
         """
-        lags = self._behind.numpy()[..., None, None] > 0
-        lead = self._shift.numpy() + np.where(lags, self._gain.numpy(), 0.0)
+        lags = self._noted.behind.numpy()[..., None, None] > 0
+        lead = self._noted.shift.numpy() + np.where(lags, self._noted.gain.numpy(), 0.0)
         gained, self._lead = lead - self._lead, lead
         return self._bodies, gained
 
@@ -158,6 +160,16 @@ class Flight:
         """Of bodies in C, the steps of the first order since they went exactly."""
         known = np.append(self._since_c, [NEVER, 0])  # at OTHER, and at STATED
         return np.asarray(known[self._row_c[bodies]])
+
+    @property
+    def since(self) -> Any:
+        """Steps of the first order of loose bodies since they went exactly, (worlds, bodies)."""
+        return self._noted.since
+
+    @property
+    def ahead(self) -> Any:
+        """By how much velocities at the next step's end are ahead of those told, (bodies,), if forces stay."""
+        return self._noted.ahead
 
     @property
     def stated(self) -> Array:
@@ -184,7 +196,7 @@ class Flight:
         self._packed.launch(
             tumble,
             dim=self._change.shape,
-            inputs=[self._freedom, self._principal, self._moments, wp.float64(h), self._true[1]],
+            inputs=[self._loose, wp.float64(h), self._true[1]],
             outputs=[self._change, self._bias],
             changing=(h,),
         )
@@ -195,14 +207,10 @@ class Flight:
             fly,
             dim=self._change.shape,
             inputs=[
-                self._place, self._freedom, self._center, self._principal, self._moments, wp.float64(h), self._change,
-                self._qacc, self._held, self._pushed, self._bias, self._tied, self._arm, wp.float64(EVEN),
-                wp.float64(PATIENCE), wp.float64(ROUGH),
+                self._loose, wp.float64(h), self._change, self._qacc, self._held, self._pushed, self._bias,
+                wp.float64(EVEN), wp.float64(PATIENCE), wp.float64(ROUGH),
             ],
-            outputs=[
-                self._known, self._gain, self._calm, self._behind, self._shift, self.since, *self._true, self._qpos,
-                self._qvel,
-            ],
+            outputs=[self._noted, *self._true, self._qpos, self._qvel],
             changing=(h,),
         )  # fmt: skip
 

@@ -301,8 +301,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     ) -> None:
         """Advance by `dt` [s]; see `newton.solvers.SolverMuJoCo.step`."""
         self._dt = dt
-        if self._touching:
-            self._touching.find(state_in, dt)
+        if self._touching and self._flight:
+            self._touching.find(state_in, self._flight.ahead, dt)
         if not self.use_mujoco_cpu:
             super().step(state_in, state_out, control, contacts, dt, observables=observables)
             return

@@ -86,12 +86,12 @@ class SurfaceContacts:
             self.found.distance, self.found.bend = wp.zeros(size, dtype=float), wp.zeros(size, dtype=float)
             self.found.part = wp.zeros(size, dtype=int)
 
-    def find(self, state: Any, h: float) -> None:
-        """Find what touches at a state, for a step of `h` [s]."""
+    def find(self, state: Any, ahead: Any, h: float) -> None:
+        """Find what touches at a state, for a step of `h` [s]; at its end velocities are `ahead` of the state's."""
         wp.launch(
             touch,
             dim=len(self.shapes),
-            inputs=[*self._inputs, state.body_q, state.body_qd, self.model.body_com, self.reach, h],
+            inputs=[*self._inputs, state.body_q, state.body_qd, ahead, self.model.body_com, self.reach, h],
             outputs=[self.found],
             device=self.model.device,
         )
