@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from tests.sim.cord_runs import period, run
 from wsim.errors import UserError
@@ -155,3 +156,41 @@ def test_the_judge_knows_a_spring_and_sees_one_that_is_switched_off(tmp_path):
         "CheckEnergy",
         "CheckRecordedTies",
     } <= wrong  # what is recorded of it explains the motion, but is not its law
+
+
+def bounces_on_a_spring(stiffness, heavy, light, drop, times):
+    """Heights of a plate on a spring, at rest at 1 m, and of an elastic ball, its radius 5 cm, that falls on it."""
+    found, state, start = np.zeros((len(times), 2)), np.array([1.0, 1.1 + drop, 0.0, 0.0]), 0.0
+
+    def falls(_, y):
+        return [y[2], y[3], -stiffness * (y[0] - 1.0) / heavy, -G]
+
+    def gap(_, y):
+        return y[1] - y[0] - 0.1
+
+    gap.terminal, gap.direction = True, -1
+    while start < times[-1]:
+        way = solve_ivp(falls, (start, times[-1]), state, events=gap, rtol=1e-11, atol=1e-12, dense_output=True)
+        flies = (times >= start) & (times <= way.t[-1])
+        found[flies] = way.sol(times[flies])[:2].T
+        start, (z, _, u, v) = way.t[-1], way.y[:, -1]
+        both = (heavy * u + light * v) / (heavy + light)
+        state = np.array([z, z + 0.1 + 1e-13, 2.0 * both - u, 2.0 * both - v])
+    return found
+
+
+@pytest.mark.parametrize(("stiffness", "heavy", "light", "drop"), [(200, 2.0, 1.0, 0.5), (1000, 1.0, 0.5, 0.3)])
+def test_a_ball_bounces_on_what_hangs_in_a_spring(tmp_path, stiffness, heavy, light, drop):
+    """Where the two meet within a step decides how fast the plate is then: the ball was 14 and 174 mm off in 2 s."""
+
+    def build(scene):
+        scene.box("plate", size=(0.3, 0.3, 0.1), mass=heavy, position=(0, 0, 1), restitution=1.0, friction=0.0)
+        rest = 0.5 - heavy * G / stiffness
+        scene.spring("spring", None, "plate", stiffness=stiffness, rest_length=rest, anchor_a=(0, 0, 1.5))
+        at = {"position": (0, 0, 1.1 + drop), "restitution": 1.0, "friction": 0.0}
+        scene.sphere("ball", radius=0.05, mass=light, **at)
+
+    _, q, _ = run(tmp_path, "cpu", build, 2.0)
+    known = bounces_on_a_spring(stiffness, heavy, light, drop, np.arange(201) / 100.0)
+    assert q["plate"][:, 2] == pytest.approx(known[:, 0], abs=1e-3)
+    assert q["ball"][:, 2] == pytest.approx(known[:, 1], abs=1e-3)

@@ -118,17 +118,20 @@ class BreakingWarp:
         self._constraint = wp.array(pairs, dtype=wp.int32)
         self._strength = wp.array(np.minimum(strength, 1e30).astype(np.float32), dtype=wp.float32)
         self._own = wp.array(pairs[pairs >= 0], dtype=wp.int32)
-        self._now, self._blown = (wp.zeros((worlds, count), dtype=wp.spatial_vector) for _ in range(2))
-        self._struck = wp.zeros(worlds, dtype=int)
+        self._now = wp.zeros((worlds, count), dtype=wp.spatial_vector)
+        self._blown: Any = wp.zeros((worlds, count), dtype=wp.spatial_vector)
+        self._struck: Any = wp.zeros(worlds, dtype=wp.int32)
         self._row = wp.full((worlds, model.neq), -1, dtype=wp.int32)
-        self.anew, self.again = wp.zeros(worlds, dtype=wp.int32), wp.zeros(1, dtype=wp.int32)
+        self.anew: Any = wp.zeros(worlds, dtype=wp.int32)
+        self.again = wp.zeros(1, dtype=wp.int32)
         self.broken = wp.zeros((worlds, count), dtype=wp.int32)
         self.load = wp.zeros((worlds, count), dtype=wp.vec2)
 
     def begin(self) -> None:
         """A step begins, in which nothing was struck yet, and nothing breaks."""
-        for array in (self.anew, self._blown, self._struck):
-            array.zero_()
+        self._blown.zero_()
+        self.anew.zero_()
+        self._struck.zero_()
 
     def give_way(self, model: Any, data: Any, share: float = 1.0, *, struck: bool = False) -> None:
         """Break what bears most, if that is too much, in each world by itself, and note in `again` if anything did.

@@ -41,8 +41,8 @@ from wsim.solvers.breaking import BreakingC
 from wsim.solvers.closing import ClosingC
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC
-from wsim.solvers.contact_rows import ContactRows
-from wsim.solvers.cylinder_contacts import CylinderContacts
+from wsim.solvers.contact_rows import ContactRows, weigh_rows
+from wsim.solvers.cylinder_contacts import CylinderContacts, tilt_cylinders
 from wsim.solvers.drives import DrivesC
 from wsim.solvers.flight import Flight
 from wsim.solvers.groups import mechanisms, tied_groups
@@ -51,25 +51,13 @@ from wsim.solvers.smooth_steps import REVERSAL_PARTS, Note, Owners, SmoothStepsC
 from wsim.solvers.stops import StopsC
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
-from wsim.solvers.targets import targets
+from wsim.solvers.targets import first_meeting, targets
 from wsim.solvers.tie_impulses import TieImpulsesC
 
 Array = np.ndarray
+MOST_MEETINGS = 8  # by which a step is parted
+MEETS_AT_END = 1.0 / 64.0  # of a step: what meets so near its start or its end meets there
 ON_END = math.sqrt(0.5)  # cosine between a cylinder's axis and the contact's normal, above which its flat end touches
-
-
-def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
-    """Turn each cylinder by `angle` [rad] in its body.
-
-    MuJoCo takes the points of a cylinder on a plane from the direction in which its axis leans; of one that leans by no
-    more than the rounding of its pose that direction is noise, and the points come and go (mujoco 3.17).
-    """
-    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER):
-        turned = np.zeros(4)
-        lean = np.array([1.0, 0.5 * angle, 0.0, 0.0])
-        mujoco.mju_mulQuat(turned, model.geom_quat[geom], lean / np.linalg.norm(lean))
-        model.geom_quat[geom] = turned
-        model.geom_sameframe[geom] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
 
 
 class ContactLawC:
@@ -124,26 +112,40 @@ class ContactLawC:
         self.blows = BlowsC(mujoco, model, config, self._aim_others, self._ends_of_stops)
         self._divides = touching is None and not flight.stated[1:].any()
         self._led = np.flatnonzero(flight.stated & (model.body_dofnum > 0))
+        self._meeting = math.inf  # when surfaces of mechanisms meet that bounce, from the step's start [s]
         self._shared = False  # whether a blow may be shared with the next step
         self._turns = False  # whether friction on what is led round stops a slip in this step
         tilt_cylinders(mujoco, model)
 
     def step(self, data: Any) -> None:
-        """Advance `data` by the model's time step, in parts where a mechanism that is hit or pressed whirls, or where a
-        slip on what is led to and fro turns round."""
-        touching, model = self._begin(data), self.model
-        parts, h = self._parts(data), model.opt.timestep
+        """Advance `data` by the model's time step, in parts where something changes within it."""
+        h = self.model.opt.timestep
+        try:
+            self._advance(data, h, MOST_MEETINGS)
+        finally:
+            self.model.opt.timestep = h
+
+    def _advance(self, data: Any, h: float, meetings: int) -> None:
+        """Advance by `h` [s]: parted where surfaces of mechanisms meet and bounce, so many times at most, and in equal
+        parts where one that is hit or pressed whirls, or a slip on what is led to and fro turns round."""
+        self.model.opt.timestep = h
+        touching = self._begin(data)
+        until = self._meeting if meetings and self._divides else h
+        if MEETS_AT_END * h < until < (1.0 - MEETS_AT_END) * h:
+            self._undo(data)
+            self._advance(data, until, 0)
+            self.flight.keep()
+            self._advance(data, h - until, meetings - 1)
+            return
+        parts = self._parts(data)
         if parts == 1:
             self._end(data, touching)
             return
         self.blows.undo(data)
-        model.opt.timestep = h / parts
-        try:
-            for _ in range(parts):
-                self.flight.keep()
-                self._end(data, self._begin(data))
-        finally:
-            model.opt.timestep = h
+        self.model.opt.timestep = h / parts
+        for _ in range(parts):
+            self.flight.keep()
+            self._end(data, self._begin(data))
 
     def _begin(self, data: Any) -> bool:
         """The blows of a step and the accelerations after them; whether a contact, a stop or dry friction may be among
@@ -260,14 +262,16 @@ class ContactLawC:
         """The blows and the accelerations; `at_once` those by which joints break, of blows that are not shared with the
         next step. Notes whether any would be."""
         self.blows.begin()
-        self._turns, self._shared, self.stops.at_once = False, False, at_once
+        self._turns, self._shared, self._meeting, self.stops.at_once = False, False, math.inf, at_once
         self._accelerate(data, touching)
         contacts = self._contacts(data)
         if contacts is None:
+            self.stops.at_once = False
             self._aim_others(data)
             self.mujoco.mj_fwdConstraint(self.model, data)
             return
         rows = self.blows.rows(data, contacts)
+        self._meeting = self._first_meeting(data, contacts, rows)
         if self.blows.strike(data, contacts, rows, partial(self._flies_smoothly, contacts.bodies), at_once):
             self._shared = at_once
             self.flight.keep()
@@ -344,9 +348,19 @@ class ContactLawC:
         law = self.law[classes[:, 0], classes[:, 1]]
         friction = self._coefficients(data, chosen, geoms, law)
         if self.rolls:
-            self._weigh_rows(data, data.contact.efc_address[chosen], data.contact.dim[chosen], friction)
+            weigh_rows(data, data.contact.efc_address[chosen], data.contact.dim[chosen], friction)
         bodies, distance = self.model.geom_bodyid[geoms], data.contact.dist[chosen]
         return Contacts(chosen, bodies, friction, law[:, 1], distance, self._bow[chosen])
+
+    def _first_meeting(self, data: Any, contacts: Contacts, rows: ContactRows) -> float:
+        """When surfaces of mechanisms first meet that bounce, from the step's start [s]."""
+        meets = (self.owners.of_body[contacts.bodies] > 0).any(axis=1) & (contacts.restitution > 0.0)
+        if not meets.any():
+            return math.inf
+        speed = (data.efc_vel[rows.normal] + contacts.bow)[meets]
+        return first_meeting(
+            contacts.distance[meets], speed, rows.pull()[meets], self.config.threshold * self.model.opt.timestep
+        )
 
     def _flies_smoothly(self, bodies: Array, speed: Array, free: Array) -> Array:
         """Whether what meets at these speeds has not gone by the first order all the fall, (contacts,)."""
@@ -380,15 +394,3 @@ class ContactLawC:
         return np.maximum(
             np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction
         )
-
-    @staticmethod
-    def _weigh_rows(data: Any, normal: Array, dim: Array, friction: Array) -> None:
-        """Weights of the rows of spinning and rolling by their coefficients, as MuJoCo's cone has them."""
-        wide = dim > 3
-        first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
-        for k in range(2, 5):
-            row, weight = first + k, data.efc_D[first] * share[:, k]
-            data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
-            if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
-                row = data.map_efc2iefc[row]
-                data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight

@@ -98,3 +98,15 @@ class ContactRows:
         left = self.left(np.zeros(len(self.normal)))
         self._rub(self._friction)
         return left
+
+
+def weigh_rows(data: Any, normal: Array, dim: Array, friction: Array) -> None:
+    """Weights of the rows of spinning and rolling by their coefficients, as MuJoCo's cone has them."""
+    wide = dim > 3
+    first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
+    for k in range(2, 5):
+        row, weight = first + k, data.efc_D[first] * share[:, k]
+        data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
+        if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+            row = data.map_efc2iefc[row]
+            data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight

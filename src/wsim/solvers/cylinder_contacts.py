@@ -17,6 +17,20 @@ Array = np.ndarray
 POINTS = 8  # of a pair at most
 
 
+def tilt_cylinders(mujoco: Any, model: Any, angle: float = 1e-6) -> None:
+    """Turn each cylinder by `angle` [rad] in its body.
+
+    MuJoCo takes the points of a cylinder on a plane from the direction in which its axis leans; of one that leans by no
+    more than the rounding of its pose that direction is noise, and the points come and go (mujoco 3.17).
+    """
+    for geom in np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_CYLINDER):
+        turned = np.zeros(4)
+        lean = np.array([1.0, 0.5 * angle, 0.0, 0.0])
+        mujoco.mju_mulQuat(turned, model.geom_quat[geom], lean / np.linalg.norm(lean))
+        model.geom_quat[geom] = turned
+        model.geom_sameframe[geom] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
+
+
 class CylinderContacts:
     """Finds the contacts of pairs of shapes of which one is a cylinder, and MuJoCo does not see the other touch it.
 

@@ -78,6 +78,21 @@ def _meets(distance: Array, speed: Array, h: float, config: ContactConfig) -> Ar
     return (speed < -config.threshold * h) & (after < 0.0) & (-after > distance)
 
 
+def first_meeting(distance: Array, speed: Array, free: Array, least: float) -> float:
+    """When the first of surfaces that are apart meet, by their normal accelerations without constraints [s].
+
+    Args:
+        distance: Gaps [m].
+        speed: Normal speeds, negative where they approach [m/s].
+        free: Normal accelerations [m/s^2].
+        least: Slower ones do not count [m/s].
+    """
+    squared = speed**2 - 2.0 * free * distance
+    meets = (distance > 0.0) & (speed < -least) & (squared >= 0.0)
+    after = 2.0 * distance[meets] / (np.sqrt(squared[meets]) - speed[meets])
+    return float(after.min(initial=np.inf))
+
+
 def targets(distance: Array, speed: Array, restitution: Array, h: float, config: ContactConfig) -> Array:
     """Normal speeds that contacts should end a step of `h` [s] with after its blows [m/s], (contacts,).
 
