@@ -12,8 +12,8 @@ from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.blows import blows, normals
-from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
+from wsim.judge.language.blows import blows
+from wsim.judge.language.contacts import NEAR, about, against, moving_size, normals, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_carried import borne
 from wsim.judge.repair.lasting import settled
@@ -213,10 +213,18 @@ def _pushes(asked: Pushes, signals: Signals) -> list[Measure]:
     behind = np.sum((signals.centre(asked.ref) - signals.centre(asked.object)) * ahead, axis=-1) > 0.0
     together = np.abs(np.sum((v - u) * ahead, axis=-1)) <= np.maximum(STILL * speed, still)
     on = (touching.margin >= 0.0) & (speed > still) & behind & together
-    held = np.zeros(on.shape)
+    # It begins and ends between frames, where the ways before and after a blow meet.
+    course = against(signals, asked.object, asked.ref)
+    late, early = np.zeros((2, *on.shape))
+    w, t = np.nonzero(course.struck)
+    when = course.meet(t, t + 1, w)[0]
+    late[w, t], early[w, t + 1] = when, course.h[t] - when
+    held = np.where(on, early, 0.0)
     for k in range(1, on.shape[1]):
-        held[:, k] = np.where(on[:, k] & on[:, k - 1], held[:, k - 1] + signals.time[k] - signals.time[k - 1], 0.0)
-    value = np.where(np.isfinite(touching.value), held, np.nan)
+        goes_on = held[:, k - 1] + signals.time[k] - signals.time[k - 1]
+        held[:, k] = np.where(on[:, k] & on[:, k - 1], goes_on, held[:, k])
+    ends = on & ~np.concatenate([on[:, 1:], np.ones_like(on[:, :1])], axis=1)
+    value = np.where(np.isfinite(touching.value), held + np.where(ends, late, 0.0), np.nan)
     return [
         Measure(
             f"time for which it has pushed {signals.prim(asked.ref)}", touching.prim, value, asked.least, "s",
