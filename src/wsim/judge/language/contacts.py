@@ -24,6 +24,7 @@ PARTS = 8  # of the time between two frames, at which a gap is looked for
 NEAR = 0.02  # of a body's smallest extent, and of its way between two frames: what touches may be off by
 NUDGE = 1e-3  # of the smallest extent, by which a body is moved to see which way the gap grows
 ALONG = 0.5  # cosine of what a blow changes and its normal: friction may turn it by so much
+SLOP = 1e-3  # of the smallest extent: surfaces as near as that are one, to the solver
 ONLY_CROSSED = 1e9  # [m]: where two lines do not cross there is no least of theirs
 
 
@@ -144,8 +145,22 @@ def about(values: Floats) -> Floats:
     return np.minimum(values, np.concatenate([values[:, :1], values[:, :-1]], axis=1))
 
 
+def touch_limit(signals: Signals, one: str, other: str) -> tuple[Floats, str]:
+    """The gap up to which two objects are taken to touch (W, T) [m], and why.
+
+    Where it is recorded what presses on what, what does not press does not touch, however near it is; but for two that
+    are both led, or fixed, between which no contacts are looked for.
+    """
+    free = [name for name in (one, other) if signals.moves(name) and not signals.body(name).kinematic]
+    if signals.evidence is None or signals.evidence.recording.contacts is None or not free:
+        return touch_reach(signals, one, other)
+    return np.full(
+        (1, 1), SLOP * moving_size(signals, one, other)
+    ), f"{SLOP:g} L, as no contact is recorded farther off"
+
+
 def touch_reach(signals: Signals, one: str, other: str) -> tuple[Floats, str]:
-    """The gap up to which two objects count as touching (W, T) [m], and why."""
+    """The gap up to which two objects may touch, as far as their ways tell (W, T) [m], and why."""
     relative = np.linalg.norm(signals.velocity(one) - signals.velocity(other), axis=-1)
     size, fall = moving_size(signals, one, other), signals.gravity * signals.step**2 / 8
     source = f"{NEAR:g} L, {NEAR:g} of the way between two frames, and g h^2 / 8: how well that way is known"
