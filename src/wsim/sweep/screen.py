@@ -116,6 +116,9 @@ NUMBERS: dict[type[Predicate], Callable[[Any, Signals], Number | None]] = {
     Upright: lambda asked, signals: Number(kernel.TILT, signals.up),
     SpinBetween: _spins,
 }
+# Between frames the language sees what is nearer or farther along than at any, and what leans, strays or is faster: by
+# frames alone no world is to be rejected for the first, nor for the second where that is denied.
+KEPT_BETWEEN, LOST_BETWEEN = (Reaches, Crosses), (StaysWithin, SpeedBetween, Upright)
 
 
 @dataclass(frozen=True)
@@ -245,7 +248,7 @@ def watched(plan: Plan, starts: Trajectories, time: Floats) -> list[Watched]:
 def _watch(check: ObjectiveCheck, formula: Formula, starts: Starts, time: Floats) -> Watched | None:
     when = in_time(formula, time)
     kind = None if when is None else type(when.predicate)
-    if when is None or kind not in NUMBERS:
+    if when is None or kind not in NUMBERS or kind in (KEPT_BETWEEN if when.sign > 0.0 else LOST_BETWEEN):
         return None
     asked, count = when.predicate, starts.count
     numbers = starts.ask(

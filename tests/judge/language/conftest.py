@@ -64,7 +64,8 @@ def two_balls() -> Callable[..., Signals]:
         margins = [np.atleast_2d(np.asarray(given, dtype=float)) for given in ((a, b) if b is not None else (a, a))]
         paths = [(1.0 - margin)[..., None] * np.array([1.0, 0.0, 0.0]) for margin in margins]
         world = World(bodies=[solid("a", shape("sphere", 0.1)), solid("b", shape("sphere", 0.1))])
-        return moving(world, np.arange(margins[0].shape[1]) / rate, *paths)
+        # At rest at each frame they go nowhere else in between.
+        return moving(world, np.arange(margins[0].shape[1]) / rate, *paths, v=np.zeros(3))
 
     return make
 

@@ -55,6 +55,18 @@ def test_what_is_struck_twice_within_a_frame_has_touched_what_struck_it():
     assert margin("touches(a, c)", as_recorded) < 0.0
 
 
+@pytest.mark.parametrize("recorded", [True, False])
+def test_what_presses_on_nothing_touches_nothing_where_contacts_are_recorded(recorded):
+    """A ball hangs 1 mm over the ground: half of a hundredth of its size."""
+    t = times(1.0)
+    hung = record([ball()], np.tile([0.0, 0.0, RADIUS + 1e-3], (len(t), 1)), np.zeros((len(t), 3)), t,
+                  statics=[ground()])  # fmt: skip
+    none = ContactTrack(np.zeros(0, np.int32), np.zeros((0, 2), np.int32), np.zeros((0, 16), np.float32))
+    signals = Signals.of(Evidence(replace(hung, contacts=none if recorded else None)))
+    assert evaluate(parse("touches(ball, ground)"), signals).satisfied[0] != recorded
+    assert evaluate(parse("touches(ball, ground, 2 mm)"), signals).satisfied[0]
+
+
 def test_touches_and_never_touches_are_the_gap(tank_world):
     # 1 m/s towards the wall, whose face is at 1 m: the ball's front gets from 0.1 to 0.95 m, 0.05 m before it.
     near = ball_and_box(tank_world, (0.85 * TIME)[:, None] * X + 0.5 * Z)

@@ -93,7 +93,7 @@ def test_robustness_is_that_of_the_definition_in_each_world(formula, rows):
 def balls(a: np.ndarray, b: np.ndarray):
     paths = [(1.0 - m)[..., None] * np.array([1.0, 0.0, 0.0]) for m in (a, b)]
     world = World(bodies=[solid("a", shape("sphere", 0.1)), solid("b", shape("sphere", 0.1))])
-    return moving(world, np.arange(a.shape[-1]) / RATE, *paths)
+    return moving(world, np.arange(a.shape[-1]) / RATE, *paths, v=np.zeros(3))
 
 
 @settings(max_examples=100, deadline=None)

@@ -89,6 +89,24 @@ class Course:
         place = 0.5 * (x + u * when + 0.5 * a * when**2 + y + v * rest + 0.5 * b * rest**2)
         return when[:, 0], place, u + a * when, v + b * rest
 
+    def samples(self, w: Rows, k: Rows, parts: int) -> Floats:
+        """Places at even moments of intervals k of worlds w, both frames included, (N, parts + 1, C)."""
+        h = self.h[k, None, None]
+        s = np.linspace(0.0, 1.0, parts + 1)[:, None] * h
+        x, y, u, v = (of[w, at][:, None] for of in (self.place, self.velocity) for at in (k, k + 1))
+        r = s / h
+        bent, rise = (u + v) * h - 2.0 * (y - x), y - x
+        found: Floats = x + r * (u * h + r * (3.0 * rise - (2.0 * u + v) * h + r * bent))
+        n = np.flatnonzero(self.struck[w, k])
+        if len(n):
+            when = self.meet(k[n], k[n] + 1, w[n])[0][:, None, None]
+            a, b = (each[:, None] for each in self.speeding(k[n], k[n] + 1, w[n]))
+            # The moment nearest to the blow is that of the blow.
+            s, h = np.where(np.abs(s[n] - when) <= 0.5 * h[n] / parts, when, s[n]), h[n]
+            before, after = x[n] + u[n] * s + 0.5 * a * s**2, y[n] + v[n] * (s - h) + 0.5 * b * (s - h) ** 2
+            found[n] = np.where(s <= when, before, after)
+        return found
+
     # ---- extremes along a direction
     def least(self, along: Floats) -> Floats:
         """The least coordinate along a direction (C,) in each interval, its frames included, (W, T - 1)."""
@@ -134,6 +152,14 @@ def _least_of_cubic(x: Floats, v: Floats, h: Floats) -> Floats:
     inside = (under > 0.0) & (s > 0.0) & (s < 1.0)
     s = np.where(inside, s, 0.0)
     return np.where(inside, x[:, :-1] + s * (start + s * (q + s * c)), np.inf)
+
+
+def peaks(values: Floats, between: Floats) -> Floats:
+    """Numbers at frames (W, T), or how high they go in the intervals beside (W, T - 1) where they turn back there."""
+    turns = between > np.maximum(values[:, :-1], values[:, 1:])
+    high = np.where(turns, between, -np.inf)
+    edge = np.full_like(values[:, :1], -np.inf)
+    return np.maximum(values, np.maximum(np.concatenate([edge, high], axis=1), np.concatenate([high, edge], axis=1)))
 
 
 def turned(rate: Floats, s: Floats) -> Floats:

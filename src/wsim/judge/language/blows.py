@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
-from wsim.judge.evidence.contact import distance
+from wsim.geometry.rotations import conjugate, lengths, rotate
 from wsim.judge.evidence.motion import FLOAT32
-from wsim.judge.language.between import Course, turned
-from wsim.judge.language.contacts import gap, moving_size, touch_reach
+from wsim.judge.language.contacts import against, gap, normal_of, struck_poses, touch_reach
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +20,6 @@ if TYPE_CHECKING:
     Rows = NDArray[np.intp]
 
 FINE = 0.1  # of the time between frames: about a step, where nobody says how long one is
-NUDGE = 1e-3  # of the smallest extent, by which a body is moved to see which way the gap grows
 FLAT = 1e-3  # of a body's smallest extent: points as far out as that touch together
 
 
@@ -40,7 +37,7 @@ class Blows:
 
 def blows(signals: Signals, one: str, other: str) -> Blows:
     """What the frames tell of the blows of two objects: of those that are over before there is another."""
-    course = _against(signals, one, other)
+    course = against(signals, one, other)
     w, first, last = _alone(course.struck)
     near = gap(signals, one, other)
     reach = np.broadcast_to(touch_reach(signals, one, other)[0], near.shape)
@@ -49,8 +46,8 @@ def blows(signals: Signals, one: str, other: str) -> Blows:
     w, first, last = w[whole], first[whole], last[whole]
     when, _, before, after = course.meet(first, last, w)
     rows = [signals.row(name) for name in (one, other) if signals.moves(name)]
-    poses = _poses(signals, rows, w, first, last, when)
-    apart, normal = _normal(signals, one, other, rows, poses)
+    poses = struck_poses(signals, rows, w, first, last, when)
+    apart, normal = normal_of(signals, one, other, rows, poses)
     arms = _arms(signals, one, other, rows, poses, normal)
     speeds = []
     for velocity, frame in ((before, first), (after, last)):
@@ -65,54 +62,12 @@ def blows(signals: Signals, one: str, other: str) -> Blows:
     return Blows(w[met], first[met], last[met], -speeds[0][met], speeds[1][met], unsure[met])
 
 
-def _against(signals: Signals, one: str, other: str) -> Course:
-    """How the first of two objects goes as seen from the second."""
-    place, velocity = np.zeros((2, signals.count, len(signals.time), 3))
-    pull = np.zeros(3)
-    for name, sign in ((one, 1.0), (other, -1.0)):
-        if signals.moves(name):
-            own = signals.course(name)
-            place, velocity, pull = place + sign * own.place, velocity + sign * own.velocity, pull + sign * own.pull
-    return Course(signals.time, place, velocity, pull)
-
-
 def _alone(struck: NDArray[np.bool_]) -> tuple[Rows, Rows, Rows]:
     """World, frame before and frame after of stretches of one interval or two that are struck (W, T - 1)."""
     edges = np.diff(np.pad(struck, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     (w, first), last = np.nonzero(edges > 0), np.nonzero(edges < 0)[1]
     short = last - first <= 2
     return w[short], first[short], last[short]
-
-
-def _poses(signals: Signals, rows: list[int], w: Rows, first: Rows, last: Rows, when: Floats) -> Floats:
-    """Poses of some bodies as a blow begins, (N, B, 7)."""
-    found = np.empty((len(w), len(rows), 7))
-    for k, i in enumerate(rows):
-        q, qd = (each[w, first, i].astype(np.float64) for each in (signals.body_q, signals.body_qd))
-        course, com = signals.course(signals.world.bodies[i].prim), np.array(signals.world.bodies[i].com)
-        before, _ = course.speeding(first, last, w)
-        place = course.place[w, first] + qd[:, :3] * when[:, None] + 0.5 * before * when[:, None] ** 2
-        turn = multiply(turned(qd[:, 3:], when[:, None])[:, 0], q[:, 3:])
-        found[:, k, :3], found[:, k, 3:] = place - rotate(turn, com), turn
-    return found
-
-
-def normals(signals: Signals, one: str, other: str, w: Rows, frame: Rows) -> Floats:
-    """The way that the first of two objects has to go for their gap to grow, at frames of worlds w, (N, 3)."""
-    rows = [signals.row(name) for name in (one, other) if signals.moves(name)]
-    poses = np.stack([signals.body_q[w, frame, i].astype(np.float64) for i in rows], axis=1)
-    return _normal(signals, one, other, rows, poses)[1]
-
-
-def _normal(signals: Signals, one: str, other: str, rows: list[int], poses: Floats) -> tuple[Floats, Floats]:
-    """The gap of two objects at poses (N, B, 7), and the unit vector to the first along which it grows (N, 3)."""
-    nudge = NUDGE * moving_size(signals, one, other) * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
-    asked = np.repeat(poses[:, None], len(nudge), axis=1)
-    asked[:, :, 0, :3] += nudge
-    evidence = signals.posed(rows, np.zeros(asked.shape[0] * len(nudge)), asked.reshape(-1, len(rows), 7))
-    gaps = distance(evidence, signals.prim(one), signals.prim(other)).reshape(len(poses), len(nudge))
-    grows = (gaps[:, 1:4] - gaps[:, 4:]) * (1.0 if signals.moves(one) else -1.0)
-    return gaps[:, 0], grows / np.maximum(lengths(grows), 1e-30)[:, None]
 
 
 def _arms(signals: Signals, one: str, other: str, rows: list[int], poses: Floats, normal: Floats) -> Floats:

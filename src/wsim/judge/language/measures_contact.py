@@ -12,8 +12,8 @@ from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.faces import normal_under
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.blows import blows, normals
-from wsim.judge.language.contacts import NEAR, about, moving_size, swept_gap, touch_reach
+from wsim.judge.language.blows import blows
+from wsim.judge.language.contacts import NEAR, about, against, moving_size, normals, swept_gap, touch_limit, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_carried import borne
 from wsim.judge.repair.lasting import settled
@@ -50,10 +50,14 @@ def _touches(asked: Touches, signals: Signals) -> list[Measure]:
 
 
 def _touching(one: str, other: str, within: float | None, signals: Signals) -> Measure:
-    limit, source = touch_reach(signals, one, other)
-    value = about(swept_gap(signals, one, other))
+    limit, source = touch_limit(signals, one, other)
     if within is not None:
         limit, source = np.full(1, within), "the objective's"
+    return _near(one, other, limit, source, signals)
+
+
+def _near(one: str, other: str, limit: Floats, source: str, signals: Signals) -> Measure:
+    value = about(swept_gap(signals, one, other))
     scale = np.maximum(limit, FLOAT32 * moving_size(signals, one, other))
     return Measure(f"gap to {signals.prim(other)}", signals.prim(one), value, limit, "m", scale, source)
 
@@ -74,7 +78,7 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
 
 @measures(SupportedBy)
 def _supported_by(asked: SupportedBy, signals: Signals) -> list[Measure]:
-    touching = _touching(asked.object, asked.ref, None, signals)
+    touching = _near(asked.object, asked.ref, *touch_reach(signals, asked.object, asked.ref), signals)
     weight = sum(signals.weight(each) for each in sorted(signals.together(asked.object)))
     value = borne(signals, asked.object, asked.ref)
     source = f"{asked.share:g} of its weight"
@@ -204,7 +208,8 @@ def _restitution(asked: CollidesWith, signals: Signals, least: float) -> Measure
 @measures(Pushes)
 def _pushes(asked: Pushes, signals: Signals) -> list[Measure]:
     """For how long, without a break, the one has been behind the other, touching it, and going on with it (W, T)."""
-    touching = _touching(asked.object, asked.ref, None, signals)
+    gaps = about(swept_gap(signals, asked.object, asked.ref))
+    near = gaps <= touch_reach(signals, asked.object, asked.ref)[0]
     v, u = signals.velocity(asked.object), signals.velocity(asked.ref)
     speed = np.linalg.norm(u, axis=-1)
     ahead = u / np.where(speed > 0.0, speed, 1.0)[..., None]
@@ -212,15 +217,23 @@ def _pushes(asked: Pushes, signals: Signals) -> list[Measure]:
     # It drives the other on: from behind, and by its own motion, at a speed that is the other's along its way.
     behind = np.sum((signals.centre(asked.ref) - signals.centre(asked.object)) * ahead, axis=-1) > 0.0
     together = np.abs(np.sum((v - u) * ahead, axis=-1)) <= np.maximum(STILL * speed, still)
-    on = (touching.margin >= 0.0) & (speed > still) & behind & together
-    held = np.zeros(on.shape)
+    on = near & (speed > still) & behind & together
+    # It begins and ends between frames, where the ways before and after a blow meet.
+    course = against(signals, asked.object, asked.ref)
+    late, early = np.zeros((2, *on.shape))
+    w, t = np.nonzero(course.struck)
+    when = course.meet(t, t + 1, w)[0]
+    late[w, t], early[w, t + 1] = when, course.h[t] - when
+    held = np.where(on, early, 0.0)
     for k in range(1, on.shape[1]):
-        held[:, k] = np.where(on[:, k] & on[:, k - 1], held[:, k - 1] + signals.time[k] - signals.time[k - 1], 0.0)
-    value = np.where(np.isfinite(touching.value), held, np.nan)
+        goes_on = held[:, k - 1] + signals.time[k] - signals.time[k - 1]
+        held[:, k] = np.where(on[:, k] & on[:, k - 1], goes_on, held[:, k])
+    ends = on & ~np.concatenate([on[:, 1:], np.ones_like(on[:, :1])], axis=1)
+    value = np.where(np.isfinite(gaps), held + np.where(ends, late, 0.0), np.nan)
     return [
         Measure(
-            f"time for which it has pushed {signals.prim(asked.ref)}", touching.prim, value, asked.least, "s",
-            asked.least, "the objective's: a blow is over sooner", at_most=False,
+            f"time for which it has pushed {signals.prim(asked.ref)}", signals.prim(asked.object), value,
+            asked.least, "s", asked.least, "the objective's: a blow is over sooner", at_most=False,
         )
     ]  # fmt: skip
 

@@ -12,7 +12,8 @@ from wsim.geometry.rotations import conjugate, rotate, sides_of
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.contacts import about, swept_gap, touch_reach
+from wsim.judge.language.between import Course, peaks
+from wsim.judge.language.contacts import PARTS, about, swept_gap, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.repair.drive import by_drive
 from wsim.judge.repair.lasting import leak
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.language.signals import Signals
+    from wsim.plan.schema.predicate import Place
     from wsim.scene.world import Container
 
     Floats = NDArray[np.float64]
@@ -49,7 +51,7 @@ def _reaches(asked: Reaches, signals: Signals) -> list[Measure]:
         default, source = touch_reach(signals, asked.object, asked.target)
         what = f"gap to {signals.prim(asked.target)}"
     else:
-        value = np.linalg.norm(signals.centre(asked.object) - np.array(asked.target), axis=-1)
+        value = _distances(signals, asked.object, asked.target, nearest=True)
         size = signals.solid(asked.object).smallest
         default, source = np.full(1, size / 2), f"half of its smallest extent, {size:.3g} m: the point is in it"
         what = "distance to the point"
@@ -60,10 +62,42 @@ def _reaches(asked: Reaches, signals: Signals) -> list[Measure]:
 
 @measures(StaysWithin)
 def _stays_within(asked: StaysWithin, signals: Signals) -> list[Measure]:
-    centre = signals.centre(asked.center) if isinstance(asked.center, str) else np.array(asked.center)
-    value = np.linalg.norm(signals.centre(asked.object) - centre, axis=-1)
+    value = _distances(signals, asked.object, asked.center, nearest=False)
     prim = signals.prim(asked.object)
     return [Measure("distance", prim, value, asked.radius, "m", asked.radius, "the objective's radius")]
+
+
+def _distances(signals: Signals, name: str, target: Place, nearest: bool) -> Floats:
+    """From a body's origin to a point or another's, at frames and beside them, where nearest or farthest (W, T) [m].
+
+    Looked for between frames wherever it may come nearer, or go farther, than at any frame.
+    """
+    sign = 1.0 if nearest else -1.0
+    apart = signals.centre(name) - (signals.centre(target) if isinstance(target, str) else np.array(target))
+    value = sign * np.linalg.norm(apart, axis=-1)
+    if len(signals.time) < 2:
+        return sign * value
+    course = signals.origin_course(name)
+    velocity, pull = course.velocity, course.pull
+    if isinstance(target, str):
+        other = signals.origin_course(target)
+        velocity, pull = velocity - other.velocity, pull - other.pull
+    course = Course(signals.time, apart, velocity, pull)
+    speed = np.linalg.norm(course.velocity, axis=-1)
+    way = np.maximum(speed[:, :-1], speed[:, 1:]) * course.h + np.linalg.norm(course.pull) * course.h**2
+    bound = 0.5 * (value[:, :-1] + value[:, 1:] - way)
+    w, k = np.nonzero(bound < value.min(axis=1, keepdims=True))
+    between = np.full(way.shape, np.inf)
+    between[w, k] = _nearest_on(sign, course.samples(w, k, PARTS))
+    return -sign * peaks(-value, -between)
+
+
+def _nearest_on(sign: float, path: Floats) -> Floats:
+    """The least of a sign times the distance from the origin on straight lines between points (N, P, 3), (N,)."""
+    ends = sign * np.linalg.norm(path, axis=-1)
+    if sign < 0.0:
+        return np.asarray(ends.min(axis=1))
+    return np.asarray(_to_segment(np.zeros(3), path[:, :-1], path[:, 1:]).min(axis=1))
 
 
 @measures(ContainedIn)
@@ -126,7 +160,11 @@ def _upright(asked: Upright, signals: Signals) -> list[Measure]:
     if all(shape.kind == "sphere" for shape in solid.shapes):
         raise MissingError("a ball has no upright")
     own = rotate(conjugate(q[:, :1]), signals.up)  # what points up at the start, in the body's frame
-    value = np.degrees(np.arccos(np.clip(rotate(q, own) @ signals.up, -1.0, 1.0)))
+    points = rotate(q, own)
+    level_ = np.cross(signals.qd(asked.object)[..., 3:], points) @ signals.up
+    course = Course(signals.time, (points @ signals.up)[..., None], level_[..., None], np.zeros(1))
+    highest = peaks(-course.place[..., 0], -course.least(np.ones(1)))  # of what leans out and back between frames
+    value = np.degrees(np.arccos(np.clip(-highest, -1.0, 1.0)))
     limit, source = asked.within, "the objective's angle"
     if limit is None:
         limit, source = _tipping(signals, asked.object)
@@ -150,9 +188,17 @@ def _tipping(signals: Signals, name: str) -> tuple[float, str]:
 def _speed_between(asked: SpeedBetween, signals: Signals) -> list[Measure]:
     prim = signals.prim(asked.object)
     value = np.linalg.norm(signals.qd(asked.object)[..., :3], axis=-1)
+    fastest = value
+    if len(signals.time) > 1:
+        course = signals.course(asked.object)
+        w, k = np.nonzero(course.struck)
+        met = np.full(course.struck.shape, -np.inf)
+        _, _, before, after = course.meet(k, k + 1, w)
+        met[w, k] = np.maximum(np.linalg.norm(before, axis=-1), np.linalg.norm(after, axis=-1))
+        fastest = peaks(value, met)  # as it meets what it strikes, or parts from it
     low, high = (
-        Measure("speed", prim, value, limit, "m/s", asked.high or 1.0, "the objective's range", at_most=at_most)
-        for limit, at_most in ((asked.low, False), (asked.high, True))
+        Measure("speed", prim, of, limit, "m/s", asked.high or 1.0, "the objective's range", at_most=at_most)
+        for of, limit, at_most in ((value, asked.low, False), (fastest, asked.high, True))
     )
     return [low, high]
 
@@ -161,7 +207,11 @@ def _speed_between(asked: SpeedBetween, signals: Signals) -> list[Measure]:
 def _crosses(asked: Crosses, signals: Signals) -> list[Measure]:
     prim, size = signals.prim(asked.object), signals.solid(asked.object).smallest
     value = signals.centre(asked.object)[..., "xyz".index(asked.axis)]
-    from_above = np.broadcast_to(value[:, :1] > asked.at, value.shape)
+    above = value[:, :1] > asked.at
+    from_above = np.broadcast_to(above, value.shape)
+    if len(signals.time) > 1:
+        course, axis = signals.origin_course(asked.object), np.eye(3)["xyz".index(asked.axis)]
+        value = np.where(above, -peaks(-value, -course.least(axis)), peaks(value, course.greatest(axis)))
     source = "the objective's plane; it started on the other side, or on it"
     return [Measure(asked.axis, prim, value, asked.at, "m", size, source, at_most=from_above)]
 

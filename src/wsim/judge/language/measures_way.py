@@ -12,6 +12,7 @@ from wsim.geometry.shapes import into, kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.support import downhill
+from wsim.judge.language.between import Course, peaks
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.language.measures_place import latest
 from wsim.judge.repair.drive import by_drive
@@ -197,7 +198,10 @@ def _tilts_to(asked: TiltsTo, signals: Signals) -> list[Measure]:
     q = signals.q(asked.object)[..., 3:]
     since = multiply(q, np.broadcast_to(conjugate(q[:, :1]), q.shape))
     turned = rotate(since, np.broadcast_to((side / length)[:, None], (*q.shape[:2], 3)))
-    value = np.degrees(np.arcsin(np.clip(-turned @ signals.up, -1.0, 1.0)))
+    rate = np.cross(signals.qd(asked.object)[..., 3:], turned) @ signals.up
+    down = -turned @ signals.up
+    course = Course(signals.time, down[..., None], -rate[..., None], np.zeros(1))
+    value = np.degrees(np.arcsin(np.clip(peaks(down, course.greatest(np.ones(1))), -1.0, 1.0)))
     what, prim = f"angle down on the side of {asked.ref}", signals.prim(asked.object)
     source = "clearly out of level" if math.isclose(asked.least, 5.0) else "the objective's"
     return [Measure(what, prim, value, asked.least, "deg", asked.least, source, at_most=False)]

@@ -266,6 +266,17 @@ class Signals:
         pull = np.zeros(3) if self.world.bodies[i].kinematic else np.array(self.world.gravity, dtype=np.float64)
         return Course(self.time, self.centre_of_mass(i), self.velocity(name), pull)
 
+    def origin_course(self, name: str) -> Course:
+        """How a body's origin goes, between frames too; of what stands still, its middle."""
+        if not self.moves(name):
+            place = np.broadcast_to(self.centre(name), (self.count, len(self.time), 3))
+            return Course(self.time, place, np.zeros_like(place), np.zeros(3))
+        course, qd = self.course(name), self.qd(name)
+        place, velocity = self.centre(name), course.velocity
+        if any(self.body(name).com):
+            velocity = velocity + np.cross(qd[..., 3:], place - course.place)
+        return Course(self.time, place, velocity, course.pull)
+
     def inertia_about(self, i: int, axes: Floats) -> Floats:
         """n . I n of body i about its centre of mass, (W, n) of axes n at the first frames (W, n, 3) [kg m^2 of n^2].
 
