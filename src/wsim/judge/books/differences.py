@@ -45,6 +45,25 @@ def followed(evidence: Evidence) -> Bools:
     return found
 
 
+def missed(evidence: Evidence) -> Floats:
+    """How unsure the kinetic energy of each frame is, (T, B) [J]; 0 of own velocities.
+
+    A parabola about a frame misses h / 6 of what the acceleration changes by there, at the ends h / 3 of what it does
+    beside them. What importers make good of that is less. It is of one frame alone, and does not add up.
+    """
+    motion = evidence.motion
+    found = np.zeros(motion.speed.shape)
+    if not by_differences(evidence) or len(motion.h) < 2:
+        return found
+    for rates, inertia in ((motion.v, motion.mass), (motion.spin, np.linalg.norm(motion.inertia, 2, axis=(1, 2)))):
+        changed = np.linalg.norm(np.diff(np.diff(rates, axis=0) / motion.h[:, None, None], axis=0), axis=2)
+        unsure = np.pad(changed / 6.0, ((1, 1), (0, 0)))
+        unsure[[0, -1]] = 2.0 * unsure[[1, -2]]
+        unsure *= np.pad(motion.h, (0, 1), mode="edge")[:, None]
+        found += inertia * unsure * (np.linalg.norm(rates, axis=2) + 0.5 * unsure)
+    return found
+
+
 def unknown(evidence: Evidence, changes: Floats) -> Floats:
     """What may be missing of force and torque, (T - 1, B, 2), of changes (T - 1, B, 6); nothing of own velocities."""
     parts = changes.reshape(*changes.shape[:2], 2, 3)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from wsim.geometry.rotations import lengths
+from wsim.judge.books.differences import missed
 from wsim.judge.books.giving import held_by_joints
 from wsim.judge.books.led import Led, late_fall, untold
 from wsim.judge.books.losses import Losses
@@ -97,7 +98,8 @@ class CheckEnergy(Check):
         # The work on joints, by drives or by a controller, is not known of each mechanism.
         driven, one = any(joint.drive for joint in evidence.world.joints) or bool(np.any(worked)), self._one(evidence)
         together = energy.sum(axis=1) - np.nancumsum(worked) - np.nancumsum(unsure)
-        stored, phase, sinks = self._stored(evidence), hidden(evidence), sinking(evidence)
+        phase, sinks = hidden(evidence) + missed(evidence), sinking(evidence)
+        stored = self._stored(evidence)
         units, rows = np.unique(motion.unit[~motion.kinematic]), np.flatnonzero(~motion.kinematic)
         if driven or one or not len(units):
             whole = (each[:, rows].sum(axis=1)[:, None] for each in (sinks, phase, stored))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 AXES = {"X": 0, "Y": 1, "Z": 2}
+HELD = 0.02  # of the child's smallest extent, that anchors of a joint that holds may be apart
+LEANS = 0.02  # [rad] that its ends may be turned against what it allows
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,14 @@ class JointTrack:
 
 def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
     """A joint's track; None where the recording does not say where its anchors are."""
+    track, gone = _as_it_is(evidence, joint), broken(evidence, joint)
+    if track is None or not gone.any():
+        return track
+    return replace(track, apart=np.where(gone, 0.0, track.apart), turned=np.where(gone, 0.0, track.turned))
+
+
+def _as_it_is(evidence: Recorded, joint: Joint) -> JointTrack | None:
+    """A joint's track, broken or not."""
     if joint.parent_anchor is None or joint.child_anchor is None:
         return None
     above, above_turn = _anchor(evidence, joint.parent, joint.parent_anchor, joint.parent_turn)
@@ -58,8 +68,7 @@ def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
     if joint.kind == "compound":
         anchors = compound.Anchors(above, above_turn, below, below_turn)
         apart, angle = compound.errors(joint, anchors, offset, turn)
-    gone = broken(evidence, joint)
-    return JointTrack(np.where(gone, 0.0, apart), np.where(gone, 0.0, angle), position)
+    return JointTrack(apart, angle, position)
 
 
 def anchors_of(evidence: Recorded, joint: Joint) -> compound.Anchors:
@@ -70,10 +79,18 @@ def anchors_of(evidence: Recorded, joint: Joint) -> compound.Anchors:
 
 
 def broken(evidence: Recorded, joint: Joint) -> NDArray[np.bool_]:
-    """In which frames a joint is broken, (T,), as the recording says."""
+    """In which frames a joint is broken, (T,), as the recording says.
+
+    Where it does not say, one that may break is broken once it does not hold.
+    """
     said = evidence.recording.scalars.get("broken" + joint.prim.removeprefix("/World"))
-    found: NDArray[np.bool_] = np.zeros(len(evidence.time), dtype=bool) if said is None else np.nan_to_num(said) > 0.0
-    return found
+    if said is not None:
+        return np.asarray(np.nan_to_num(said) > 0.0)
+    track = _as_it_is(evidence, joint) if joint.may_break else None
+    if track is None:
+        return np.zeros(len(evidence.time), dtype=bool)
+    far = track.apart > HELD * evidence.solid(evidence.index(joint.child)).smallest
+    return np.asarray(np.logical_or.accumulate(far | (track.turned > LEANS)))
 
 
 def _anchor(evidence: Recorded, prim: str | None, position: Vec3, turn: Quat) -> tuple[Floats, Floats]:

@@ -1,0 +1,63 @@
+"""What a joint that may break bore, where nobody recorded it: by the motion of what it holds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask
+from wsim.importers.trajectory import from_arrays
+from wsim.judge import judge
+from wsim.judge.checks.joint import CheckBreakage, CheckJoints
+from wsim.recording import read
+from wsim.scene import Scene
+from wsim.sim import Simulation
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from wsim.recording.recording import Recording
+
+
+def torn(folder: Path, strength: float, judged_as: float) -> Recording:
+    """A weight of 2 kg at the end of an arm, let go level, whose weld breaks as it swings down: what poses and
+    velocities say of it, in a world that states another strength."""
+    scene = Scene()
+    scene.simulation(duration=0.6, frame_rate=60.0)
+    scene.box("arm", size=(0.4, 0.04, 0.04), position=(0.2, 0.0, 1.5), mass=1.0)
+    scene.joint_revolute("hinge", None, "arm", anchor=(0.0, 0.0, 1.5), axis="Y")
+    scene.sphere("weight", radius=0.05, position=(0.45, 0.0, 1.5), mass=2.0)
+    scene.joint_fixed("weld", "arm", "weight", break_force=strength)
+    Simulation(scene.save(folder / "stage.usda"), device="cpu").run(folder / "r.rrd")
+    found = read(folder / "r.rrd")
+    joints = [
+        joint.model_copy(update={"break_force": judged_as}) if joint.may_break else joint
+        for joint in found.world.joints
+    ]
+    names = np.array([body.prim for body in found.world.bodies])
+    arrays = {"time": found.time, "body_names": names, "body_q": found.body_q, "body_qd": found.body_qd}
+    return from_arrays(arrays, found.world.model_copy(update={"joints": joints}))
+
+
+def test_a_weld_that_breaks_at_its_strength_is_accepted(tmp_path: Path) -> None:
+    recording = torn(tmp_path, 50.0, 50.0)
+    verdict = judge(recording)
+    assert verdict.status == "accepted", verdict.summary
+    assert ask(CheckJoints(), recording)[0].passed
+    (finding,) = ask(CheckBreakage(), recording)
+    assert finding.passed
+
+
+@pytest.mark.parametrize("strength", [40.0, 44.0, 56.0, 300.0])
+def test_one_that_breaks_sooner_or_later_is_found(tmp_path: Path, strength: float) -> None:
+    (finding,) = ask(CheckBreakage(), torn(tmp_path, strength, 50.0))
+    assert not finding.passed
+
+
+def test_a_joint_that_cannot_break_still_has_to_hold(tmp_path: Path) -> None:
+    recording = torn(tmp_path, 50.0, 50.0)
+    for joint in recording.world.joints:
+        joint.break_force = None
+    assert not ask(CheckJoints(), recording)[0].passed
