@@ -2,13 +2,15 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from wsim.scene import Scene
 from wsim.scene.check import check_stage
-from wsim.scene.contact import curvature, pair_law
+from wsim.scene.contact import curvature, pair_law, pair_laws
 from wsim.scene.describe import describe
 from wsim.scene.errors import SceneError
+from wsim.scene.world import Contact, Shape, World
 
 
 @pytest.fixture
@@ -95,3 +97,21 @@ def test_a_stage_written_by_hand_is_checked(scene, tmp_path: Path, old, new, say
     assert old in text
     path.write_text(text.replace(old, new, 1), encoding="utf-8")
     assert any(says in problem for problem in check_stage(path, [tmp_path]))
+
+
+@pytest.mark.parametrize("combine", ["smaller", "larger"])
+def test_the_laws_of_many_pairs_are_those_of_each(combine: str) -> None:
+    values = [(None, None, None), (0.3, None, 0.01), (0.6, 0.2, None), (0.6, 0.9, 0.02), (0.0, 0.0, 0.0)]
+    shapes = [
+        Shape(prim=f"/World/{k}", kind="sphere", size=(1.0,), friction=mu, restitution=e, rolling=rolling)
+        for k, (mu, e, rolling) in enumerate(values)
+    ]
+    world = World(
+        name="World",
+        contacts=[Contact(prim="/World/pair", first="/World/3", second="/World/1", friction=0.05)],
+        combine=combine,
+    )
+    for own in (world, world.model_copy(update={"contacts": []})):
+        laws = [[pair_law(own, a, b) for b in shapes] for a in shapes]
+        want = np.array([[(law.friction, law.restitution, law.rolling) for law in row] for row in laws])
+        assert np.array_equal(pair_laws(own, shapes), want)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 from dataclasses import dataclass
@@ -80,12 +81,17 @@ class Author:
         return [prim.GetName() for prim in children if str(prim.GetPath()) not in reserved]
 
 
+@functools.cache
+def _file_name(path: str) -> str:
+    return Path(path).name
+
+
 def note_line(prim: Usd.Prim) -> None:
     """Write on a prim which line of the program made it, as customData `wsim:line` = "program.py:12"."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
         frame = frame.f_back
-    prim.SetCustomDataByKey("wsim:line", f"{Path(frame.f_code.co_filename).name}:{frame.f_lineno}")
+    prim.SetCustomDataByKey("wsim:line", f"{_file_name(frame.f_code.co_filename)}:{frame.f_lineno}")
 
 
 def calling_folder() -> Path | None:

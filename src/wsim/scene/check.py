@@ -138,9 +138,11 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         sound = False
         yield problem
     if sound:  # what follows reads shapes, and follows indices and paths
+        ours = set(schema.ours(prims))
         for prim in prims:
             yield from check_solid(prim)
-            yield from cord_problems(prim)
+            if prim in ours:
+                yield from cord_problems(prim)
         yield from joint_problems(stage)
         yield from policy_problems(stage)
         yield from contact_problems(prims)
@@ -153,7 +155,7 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
 
 def _values(stage: Usd.Stage, prims: list[Usd.Prim], known: bool) -> Iterator[str]:
     """Numbers, indices and paths."""
-    points = 0
+    points, ours = 0, set(schema.ours(prims))
     for prim in prims:
         yield from _numbers(prim, known)
         if not known:
@@ -161,8 +163,9 @@ def _values(stage: Usd.Stage, prims: list[Usd.Prim], known: bool) -> Iterator[st
             yield from check_targets(prim)
         yield from _pose(prim)
         yield from _mass(prim)
-        yield from _wsim(prim)
-        yield from surface_problems(prim)
+        if prim in ours:
+            yield from _wsim(prim)
+            yield from surface_problems(prim)
         if prim.IsA(UsdGeom.Gprim):
             yield from _geometry(prim)
         if prim.IsA(UsdGeom.PointBased):

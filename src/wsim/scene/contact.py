@@ -13,8 +13,11 @@ What a world states of a pair of objects (`World.contacts`) comes before all tha
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from wsim.defaults import FRICTION
 from wsim.scene.world import Contact, Shape, World
@@ -50,6 +53,25 @@ def pair_law(world: World, a: Shape, b: Shape) -> Pair:
         law.restitution if stated.restitution is None else stated.restitution,
         law.rolling if stated.rolling is None else stated.rolling,
     )
+
+
+def pair_laws(world: World, shapes: Sequence[Shape]) -> NDArray[np.float64]:
+    """What holds between any two of some shapes, as `pair_law` has it: friction, restitution, rolling, (n, n, 3)."""
+    choose = np.fmin if world.combine == "smaller" else np.fmax
+    found = np.empty((len(shapes), len(shapes), 3))
+    for k, (name, default, least) in enumerate(
+        (("friction", FRICTION, choose), ("restitution", RESTITUTION, choose), ("rolling", ROLLING, np.fmax))
+    ):
+        own = np.array([getattr(shape, name) for shape in shapes], dtype=np.float64)  # NaN of what states none
+        pairs = least.outer(own, own)
+        found[..., k] = np.where(np.isnan(pairs), default, pairs)
+    if world.contacts:
+        for i, a in enumerate(shapes):
+            for j, b in enumerate(shapes):
+                if stated_pair(world, a.prim, b.prim) is not None:
+                    law = pair_law(world, a, b)
+                    found[i, j] = law.friction, law.restitution, law.rolling
+    return found
 
 
 def stated_pair(world: World, a: str, b: str) -> Contact | None:

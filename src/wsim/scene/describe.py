@@ -54,7 +54,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         stage = _open(Path(stage))
     _check_units(stage)
     prims = list(stage.Traverse(Usd.TraverseInstanceProxies()))
-    default = stage.GetDefaultPrim()
+    ours, default = schema.ours(prims), stage.GetDefaultPrim()
     bodies, statics = _solids(prims, stage)
     joints, gears = list(read_joints(prims)), list(read_gears(prims))
     return World(
@@ -62,18 +62,18 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         **_run(prims),
         bodies=bodies,
         statics=statics,
-        containers=[_container(prim) for prim in prims if schema.has(prim, schema.CONTAINER)],
-        fluids=[_fluid(prim) for prim in prims if schema.has(prim, schema.FLUID)],
+        containers=[_container(prim) for prim in ours if schema.has(prim, schema.CONTAINER)],
+        fluids=[_fluid(prim) for prim in ours if schema.has(prim, schema.FLUID)],
         joints=joints,
         gears=gears,
         policies=list(read_policies(prims)),
         apart=[*_meshed(joints, gears), *_filtered(prims)],
-        springs=springs(prims),
-        ropes=ropes(prims),
-        contacts=read_contacts(prims),
+        springs=springs(ours),
+        ropes=ropes(ours),
+        contacts=read_contacts(ours),
         cameras=[_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
         lights=list(_lights(prims)),
-        parameters=[_parameter(prim) for prim in prims if schema.has(prim, schema.PARAMETER)],
+        parameters=[_parameter(prim) for prim in ours if schema.has(prim, schema.PARAMETER)],
     )
 
 

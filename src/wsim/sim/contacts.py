@@ -10,7 +10,7 @@ import newton
 import numpy as np
 
 from wsim.recording.contacts import shapes_of
-from wsim.scene.contact import curvature, pair_law, within
+from wsim.scene.contact import curvature, pair_laws, within
 from wsim.scene.world import Shape, World
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.surfaces import Surfaces
@@ -104,17 +104,12 @@ def _surfaces(labels: list[str], world: World) -> Surfaces:
     classes, bends = np.zeros(len(labels), dtype=np.int64), np.zeros(len(labels))
     for k, label in enumerate(labels):
         shape = _of_label(label, known)
-        owners = tuple(sorted(prim for prim in named if within(shape.prim, prim)))
+        owners = tuple(sorted(prim for prim in named if within(shape.prim, prim))) if named else ()
         key = (shape.friction, shape.restitution, shape.rolling, owners)
         kinds.setdefault(key, shape)
         classes[k] = index.setdefault(key, len(index))
         bends[k] = curvature(shape, moves=shape.prim in moving)
-    law = np.zeros((len(kinds), len(kinds), 3))
-    for i, a in enumerate(kinds.values()):
-        for j, b in enumerate(kinds.values()):
-            pair = pair_law(world, a, b)
-            law[i, j] = pair.friction, pair.restitution, pair.rolling
-    return Surfaces(classes[None], law[None], bends[None])
+    return Surfaces(classes[None], pair_laws(world, list(kinds.values()))[None], bends[None])
 
 
 def surface_velocities(model: Any, worlds: Sequence[World]) -> Array:

@@ -183,8 +183,7 @@ def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World], skele
         raise _UnstatedError("stages refer to other files")
     if len(texts_of) > 1:
         raise _UnstatedError("stages differ in what no description states")
-    for world in worlds:
-        _weigh_spins(world)
+    _weigh_spins(worlds)
     first = _import(stages[0], worlds[0], None)
     if not first.stated:
         raise _UnstatedError("Newton weighs a body otherwise than its description")
@@ -203,7 +202,7 @@ def _stated(builder: Any, stages: Sequence[Path], worlds: Sequence[World], skele
 
 
 def _import(stage: Path, world: World, config: Any | None) -> _One:
-    _weigh_spins(world)
+    _weigh_spins([world])
     single = _builder(world)
     newton.solvers.SolverMuJoCo.register_custom_attributes(single)
     SolverSPH.register_custom_attributes(single)
@@ -302,15 +301,16 @@ def _builder(world: World) -> Any:
     return builder
 
 
-def _weigh_spins(world: World) -> None:
+def _weigh_spins(worlds: Sequence[World]) -> None:
     """Refuse what is too light to turn."""
-    for body in world.bodies:
-        least = float(np.linalg.eigvalsh(np.reshape(body.inertia, (3, 3)))[0])
-        if not body.kinematic and least < LEAST_MOMENT:
-            raise UserError(
-                f"{body.prim}: its smallest moment of inertia is {least:.2g} kg m^2; make it larger or heavier, to "
-                f"{LEAST_MOMENT:.0e} kg m^2 or more: a grain of sand of half a millimetre"
-            )
+    bodies = [body for world in worlds for body in world.bodies if not body.kinematic]
+    moments = np.array([body.inertia for body in bodies], dtype=np.float64).reshape(-1, 3, 3)
+    least = np.linalg.eigvalsh(moments)[:, 0]
+    for k in np.flatnonzero(least < LEAST_MOMENT)[:1]:
+        raise UserError(
+            f"{bodies[k].prim}: its smallest moment of inertia is {least[k]:.2g} kg m^2; make it larger or heavier, to "
+            f"{LEAST_MOMENT:.0e} kg m^2 or more: a grain of sand of half a millimetre"
+        )
 
 
 def _ranges(ones: Sequence[_One], count: int) -> tuple[dict[str, slice], ...]:

@@ -45,8 +45,8 @@ def contact_capacity(model: Any) -> int:
     body has no room for more than about a dozen neighbours (the kissing number of equal spheres).
     """
     collides = (model.shape_flags.numpy() & int(ShapeFlags.COLLIDE_SHAPES)) != 0
-    worlds = max(1, model.world_count)
-    moving = int((collides & (model.shape_body.numpy() >= 0)).sum()) // worlds
+    collides &= model.shape_world.numpy() <= 0  # of the first world, and of all
+    moving = int((collides & (model.shape_body.numpy() >= 0)).sum())
     fixed = int((collides & (model.shape_body.numpy() < 0)).sum())
     pairs = moving * (moving - 1) // 2 + moving * fixed
     return max(SMALLEST_CONTACTS, CONTACTS_A_PAIR * min(pairs, 12 * moving))

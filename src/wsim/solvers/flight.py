@@ -55,8 +55,7 @@ class Flight:
         self.joints = len(place)
         ours = ~kinematic[model.joint_child.numpy()[: self.joints]] & (place >= 0)
         loose = _loose(mujoco, solver.mj_model, place[ours])
-        of_worlds = [_inertia(mujoco, host, loose) for host in hosts]
-        center, principal, moments, arm = (np.stack(each) for each in zip(*of_worlds, strict=True))
+        center, principal, moments, arm = _inertia(mujoco, hosts, loose)
         jnt = solver.mj_model.body_jntadr[loose]
         shape = self._qpos.shape[0], len(loose)
         self._bodies = loose
@@ -258,22 +257,29 @@ def _tied(mujoco: Any, model: Any, loose: Array) -> Array:
     return np.where(np.isin(loose, np.concatenate(bodies)), 1, np.where(carries, -1, 0)).astype(np.int32)
 
 
-def _inertia(mujoco: Any, model: Any, bodies: Array) -> tuple[Array, Array, Array, Array]:
+def _inertia(mujoco: Any, hosts: Iterable[Any], bodies: Array) -> tuple[Array, Array, Array, Array]:
     """Of each body with what is fixed to it, in its axes: centre of mass [m], principal axes and moments [kg m^2].
 
-    Moments rise; the axes are a turn xyzw. Last comes the greatest radius of gyration [m].
+    All are (worlds, bodies, …). Moments rise; the axes are a turn xyzw. Last comes the greatest radius of gyration [m].
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    mujoco.mj_crb(model, data)
-    axes = data.xmat[bodies].reshape(-1, 3, 3)
-    center = np.einsum("nji,nj->ni", axes, data.subtree_com[bodies] - data.xpos[bodies])
-    around = data.crb[bodies][:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
-    moments, principal = np.linalg.eigh(np.einsum("nji,njk,nkl->nil", axes, around, axes))
-    principal[:, :, 2] *= np.sign(np.linalg.det(principal))[:, None]
-    turns = np.zeros((len(bodies), 4))
-    for turn, matrix in zip(turns, principal, strict=True):
-        mujoco.mju_mat2Quat(turn, matrix.flatten())
-    arm = np.sqrt(moments[:, 2] / data.crb[bodies][:, 9])
-    return center, turns[:, [1, 2, 3, 0]], moments, arm
+    found: list[tuple[Array, Array, Array]] = []
+    data: Any = None
+    for host in hosts:
+        if data is None:
+            data = mujoco.MjData(host)
+        else:  # of the same object, with other numbers
+            mujoco.mj_resetData(host, data)
+        mujoco.mj_kinematics(host, data)
+        mujoco.mj_comPos(host, data)
+        mujoco.mj_crb(host, data)
+        axes, inertia = data.xmat[bodies].reshape(-1, 3, 3), data.crb[bodies]
+        center = np.einsum("nji,nj->ni", axes, data.subtree_com[bodies] - data.xpos[bodies])
+        around = inertia[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+        found.append((center, np.einsum("nji,njk,nkl->nil", axes, around, axes), inertia[:, 9]))
+    centers, around, masses = (np.stack(each) for each in zip(*found, strict=True))
+    moments, principal = np.linalg.eigh(around)
+    principal[..., 2] *= np.sign(np.linalg.det(principal))[..., None]
+    turns = np.zeros((*masses.shape, 4))
+    for turn, matrix in zip(turns.reshape(-1, 4), principal.reshape(-1, 9), strict=True):
+        mujoco.mju_mat2Quat(turn, matrix)
+    return centers, turns[..., [1, 2, 3, 0]], moments, np.sqrt(moments[..., 2] / masses)

@@ -27,10 +27,13 @@ def host_models(solver: Any, differ: bool) -> Iterator[Any]:
     model, own = copy.copy(solver.mj_model), _of_worlds(solver)
     for short_cut in SHORT_CUTS:  # that hold for the first world's frames
         getattr(model, short_cut)[:] = 0
+    targets = [(getattr(model, name), values) for name, values in own.items()]
+    targets = [(target, values.reshape(-1, *target.shape)) for target, values in targets]
     for k in range(solver.model.world_count):
-        for name, values in own.items():
-            target = getattr(model, name)
-            target[:] = values[k].reshape(target.shape)
+        for target, values in targets:
+            target[:] = values[k]
+        if k == 0:  # what all worlds have alike is there now
+            targets = [(target, values) for target, values in targets if (values != values[:1]).any()]
         yield model
 
 

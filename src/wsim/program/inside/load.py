@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import sys
 import traceback
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 _TEXT = 4000  # characters of a message that are reported
@@ -20,8 +21,13 @@ def load(program: str) -> ModuleType:
     module = ModuleType("program")
     module.__file__ = program
     sys.modules["program"] = module
-    exec(compile(Path(program).read_bytes(), program, "exec"), module.__dict__)
+    exec(_compiled(Path(program).read_bytes(), program), module.__dict__)
     return module
+
+
+@functools.lru_cache(maxsize=1)
+def _compiled(text: bytes, program: str) -> CodeType:
+    return compile(text, program, "exec")
 
 
 def function(module: ModuleType, name: str, arguments: str) -> Any:

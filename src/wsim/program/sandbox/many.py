@@ -18,9 +18,9 @@ from wsim.program.sandbox.limits import Limits
 from wsim.program.sandbox.process import SandboxProcess
 from wsim.program.sandbox.result import BuildResult, read_report
 
-A_PROCESS = 256  # builds at most: starting one process and the one that checks takes as long as some fifty
+A_PROCESS = 512  # builds at most: starting one process and the one that checks takes as long as some fifty
 A_LIMIT = 64  # builds for which a process has the time and the bytes of one
-JOB_BYTES = 64_000  # of all parameters of a process: what it is to do comes by its command line, of 128 KiB
+JOB_BYTES = 90_000  # of all parameters of a process: what it is to do comes by its command line, of 128 KiB
 
 
 def build_many(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from pxr import Plug, Sdf, Usd
@@ -42,6 +43,11 @@ def apply(prim: Usd.Prim, name: str, values: dict[str, tuple[Sdf.ValueTypeName, 
 def has(prim: Usd.Prim, name: str) -> bool:
     """Whether the API schema `name` is applied, whether or not USD knows it."""
     return name in applied(prim)
+
+
+def ours(prims: Iterable[Usd.Prim]) -> list[Usd.Prim]:
+    """The prims to which any schema of wsim's is applied: few of most stages."""
+    return [prim for prim in prims if any(name.startswith("Wsim") for name in applied(prim))]
 
 
 def applied(prim: Usd.Prim) -> list[str]:
