@@ -64,6 +64,11 @@ class Pool:
         """One for each process."""
         return self._places
 
+    @property
+    def shared(self) -> bool:
+        """Whether some have the same variables, of several that differ: they share what those name, as a GPU."""
+        return len(self._places) > len(self.environments) and any(self.environments)
+
     def now(self) -> float:
         """The clock of this machine [s]."""
         return time.monotonic()

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 A_SHARD = 16  # candidates that are built in one process: starting it takes as long as building them
 SHORTEST = 8  # times fewer in the last shards
+SHORTEST_SHARED = 2  # where workers share a GPU: what a batch takes beside its worlds is not shortened with it
 
 
 def sweep(
@@ -108,7 +109,8 @@ def run(
         doing = _on_cluster(folder, asked, ray) if ray else _here(spec, asked, len(candidates), Path(turns))
         alone = spec.device.startswith("cuda") and bool(ray or "," in spec.device)
         pack = packed(folder.path.resolve(), spec, _cores(spec, doing), alone)
-        for found in shards.run(dealer(spec, len(candidates)), candidates, pack, doing):
+        shared = isinstance(doing, Pool) and doing.shared
+        for found in shards.run(dealer(spec, len(candidates), shared), candidates, pack, doing):
             yield [_lost(candidate, came) if isinstance(came, Lost) else came for candidate, came in found]
 
 
@@ -138,10 +140,16 @@ def _cores(spec: Spec, doing: Pool | RayWorkers) -> int:
     return max(1, len(os.sched_getaffinity(0)) // min(shares, len(doing.places)))
 
 
-def dealer(spec: Spec, count: int) -> Dealer:
-    """Of so many candidates: shards of as many as are simulated at once, or of a few."""
+def dealer(spec: Spec, count: int, shared: bool = False) -> Dealer:
+    """Of so many candidates: shards of as many as are simulated at once, or of a few.
+
+    Args:
+        spec: The sweep's.
+        count: Candidates.
+        shared: Whether workers share a device.
+    """
     most = spec.together if spec.together > 1 else A_SHARD
-    return Dealer(count, most, spec.patience, max(1, most // SHORTEST))
+    return Dealer(count, most, spec.patience, max(1, most // (SHORTEST_SHARED if shared else SHORTEST)))
 
 
 def packed(folder: Path, spec: Spec, cores: int, alone: bool) -> Callable[[tuple[Candidate, ...]], Shard]:
