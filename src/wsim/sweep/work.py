@@ -156,7 +156,8 @@ def _set_draws(
             return str(error)
         return ""
 
-    for (candidate, _, built), why in zip(made, shared_out(put, made, forks(processes)), strict=True):
+    drawn = [each for each in made if each[0].draws]  # for none nobody is forked
+    for (candidate, _, built), why in zip(drawn, shared_out(put, drawn, forks(processes)), strict=True):
         if why:
             failed = Outcome(candidate=candidate, status="failed", reason=why, seconds=round(built.seconds, 3))
             yield candidate.number, failed
