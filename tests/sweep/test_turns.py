@@ -20,7 +20,7 @@ from wsim.sweep import shards
 from wsim.sweep.axis import Axis
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.pool import Found, Pool
-from wsim.sweep.run import _cores, _here, dealer, packed
+from wsim.sweep.run import _here, dealer, packed
 from wsim.sweep.shards import Dealer, Heard
 from wsim.sweep.spec import Spec
 from wsim.sweep.turns import TURNS, sharing, turn
@@ -163,4 +163,4 @@ def test_a_gpu_has_two_workers_if_there_is_more_than_a_batch_for_it(
     assert [each.get("CUDA_VISIBLE_DEVICES") for each in pool.environments] == seen
     assert len({each[TURNS] for each in pool.environments}) == len(device.split(","))
     assert pool.shared == (workers > len(device.split(",")))
-    assert _cores(spec, pool) == max(1, len(os.sched_getaffinity(0)) // len(device.split(",")))
+    assert pool.cores == max(1, len(os.sched_getaffinity(0)) // len(device.split(",")))
