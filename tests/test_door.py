@@ -1,8 +1,10 @@
 """The doors of packages: what is behind one is listed before it is loaded."""
 
 import gc
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -76,3 +78,49 @@ except SystemExit:
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert int(done.stdout.split()[-1]) > 10_000
+
+
+SLOW = """
+import sys, time
+told = sys.modules["__main__"].told
+told.append("begins")
+while "asked" not in told:
+    time.sleep(0.001)
+value = 3
+"""
+BESIDE = """
+import importlib, sys, time
+from wsim.door import load_beside
+told = []
+load_beside("slow")
+load_beside("wsim.nothing")
+while "begins" not in told:
+    time.sleep(0.001)
+told.append("asked")
+print(importlib.import_module("slow").value)
+try:
+    importlib.import_module("wsim.nothing")
+except ModuleNotFoundError as error:
+    print(error.name)
+"""
+
+
+def test_what_loads_beside_is_waited_for_by_who_needs_it(tmp_path: Path) -> None:
+    (tmp_path / "slow.py").write_text(SLOW)
+    done = subprocess.run(
+        [sys.executable, "-c", BESIDE],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120.0,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+    )
+    assert done.stdout.split() == ["3", "wsim.nothing"]
+    assert done.stderr == ""
+
+
+def test_a_world_is_planned_and_written_without_the_simulator() -> None:
+    """It loads while the stage is built; what confirms a run builds its own meanwhile, too."""
+    script = "import sys, wsim.cli.generate, wsim.loop.generate, wsim.runs.bare_run; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert not {"newton", "warp", "mujoco_warp", "wsim.sim.simulation"} & set(done.stdout.split())

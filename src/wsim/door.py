@@ -11,8 +11,9 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
+from threading import Thread
 from types import ModuleType
 from typing import Any
 
@@ -51,6 +52,19 @@ def load_module(name: str) -> ModuleType:
     """Import a module, unsearched."""
     with unsearched():
         return import_module(name)
+
+
+def load_beside(name: str) -> None:
+    """Load a module in a thread while this one goes on. Who imports it before it is there waits, and sees its errors.
+
+    What both load at a time must not import one another.
+    """
+
+    def load() -> None:
+        with suppress(Exception):
+            load_module(name)
+
+    Thread(target=load, name=f"loads {name}", daemon=True).start()
 
 
 def door(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -117,6 +118,20 @@ def test_control_that_fails_in_one_world_fails_that_one(tmp_path: Path) -> None:
     assert [outcome.status for outcome in found] == ["accepted", "accepted", "rejected"]
     assert "too low" in found[2].reason
     assert "run by itself, as 3 worlds could not be at once" in found[0].note
+
+
+def test_who_draws_nothing_is_not_shared_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    shared: list[str] = []
+
+    def put(call: Any, items: Any, processes: int) -> list[str]:
+        shared.extend(each[0].program for each in items)
+        return ["it cannot be"] * len(items)
+
+    monkeypatch.setattr(working, "shared_out", put)
+    plain, drawn = Candidate(number=0), Candidate(number=1, draws={"ball.mass": 2.0}, program="drawn.py")
+    built = SimpleNamespace(seconds=0.5)
+    ((number, failed),) = working._set_draws([(plain, None, built), (drawn, None, built)], 2)  # type: ignore[list-item]
+    assert (number, failed.reason, shared) == (1, "it cannot be", ["drawn.py"])
 
 
 def test_no_more_fluid_to_a_batch_than_memory_holds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

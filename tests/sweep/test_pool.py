@@ -10,8 +10,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 from tests.children import started
 from tests.processes import below, lives
+from wsim import helpers
 from wsim.sweep.pool import Pool, each
 from wsim.sweep.shards import Dealer, Lost, run
 
@@ -52,6 +55,25 @@ def test_what_a_worker_loads_is_kept_from_the_search_for_garbage() -> None:
     ((_, (kept, looked_at, collects)),) = each(searched, [0], 1, 60.0)
     assert kept > 20 * looked_at
     assert collects
+
+
+def waiting(_: object) -> Iterator[list[tuple[int, list[int]]]]:
+    """What processes a worker has, and that it can ask as many."""
+    there = helpers.free()
+    pids = list(below(os.getpid()))
+    assert len(pids) == (there.count if there else 0)
+    yield [(0, pids)]
+
+
+@pytest.mark.parametrize(("cores", "count"), [(1, 0), (3, 3)])
+def test_a_worker_of_several_cores_has_helpers_that_end_with_it(cores: int, count: int) -> None:
+    pool = Pool(waiting, 1, cores=cores)
+    ((_, pids),) = [each for came in run(Dealer(1, 1, 600.0), [0], lambda _: 0, pool) for each in came]
+    assert len(pids) == count
+    late = time.monotonic() + 60.0
+    while any(map(lives, pids)) and time.monotonic() < late:
+        time.sleep(0.01)
+    assert not any(map(lives, pids))
 
 
 def test_every_task_has_its_result() -> None:

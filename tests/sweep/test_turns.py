@@ -20,8 +20,8 @@ from wsim.sweep import shards
 from wsim.sweep.axis import Axis
 from wsim.sweep.folder import SweepFolder
 from wsim.sweep.pool import Found, Pool
-from wsim.sweep.run import _cores, _here, packed
-from wsim.sweep.shards import Dealer
+from wsim.sweep.run import _here, dealer, packed
+from wsim.sweep.shards import Dealer, Heard
 from wsim.sweep.spec import Spec
 from wsim.sweep.turns import TURNS, sharing, turn
 from wsim.sweep.work import Shard, work
@@ -86,8 +86,8 @@ def test_one_builds_while_the_other_steps(tmp_path: Path, monkeypatch: pytest.Mo
     pool = Pool(noted_work, 2, [sharing(tmp_path, "cuda:0")])
     candidates = folder.spec.candidates()
     pack = packed(folder.path.resolve(), folder.spec, 1, False)
-    dealer = Dealer(len(candidates), OF, 10.0 * PATIENCE, OF)
-    found = [each for came in shards.run(dealer, candidates, pack, pool) for each in came]
+    deals = Dealer(len(candidates), OF, 10.0 * PATIENCE, OF)
+    found = [each for came in shards.run(deals, candidates, pack, pool) for each in came]
     assert sorted(candidate.number for candidate, _ in found) == list(range(BATCHES * OF))
     assert all(outcome.together == OF and not outcome.note for _, outcome in found)
     stepping, building, meanwhile = set[int](), set[int](), set[tuple[int, int]]()
@@ -127,6 +127,16 @@ def test_a_turn_ends_with_its_process(tmp_path: Path, monkeypatch: pytest.Monkey
         pass
 
 
+def test_no_shard_of_workers_that_share_is_less_than_half_a_batch() -> None:
+    """What a batch takes beside its worlds, a second or more, is not shortened with it."""
+    spec, sizes = Spec(device="cuda:0,cuda:1", worlds=1024), []
+    of = dealer(spec, 4096, shared=True)
+    while given := of.assign([0], 4, 0.0)[0]:
+        sizes += [len(attempt.items) for attempt in given]
+        of.heard(Heard(given[0].ticket, [(k, None) for k in given[0].items], over=True), 1.0)
+    assert sizes == [512] * 8
+
+
 @pytest.mark.parametrize(
     ("device", "asked", "candidates", "workers", "seen"),
     [
@@ -152,4 +162,5 @@ def test_a_gpu_has_two_workers_if_there_is_more_than_a_batch_for_it(
     assert len(pool.places) == workers
     assert [each.get("CUDA_VISIBLE_DEVICES") for each in pool.environments] == seen
     assert len({each[TURNS] for each in pool.environments}) == len(device.split(","))
-    assert _cores(spec, pool) == max(1, len(os.sched_getaffinity(0)) // len(device.split(",")))
+    assert pool.shared == (workers > len(device.split(",")))
+    assert pool.cores == max(1, len(os.sched_getaffinity(0)) // len(device.split(",")))

@@ -34,6 +34,7 @@ from wsim.cli.options import (
     refuse_image,
 )
 from wsim.cli.show import ConsoleProgress, console, show_plan, show_usage, show_verdict
+from wsim.door import load_beside
 from wsim.errors import UserError
 from wsim.loop.options import Options
 from wsim.phases import since_start
@@ -143,7 +144,8 @@ def _generate(prompt: str, options: Options, runs: Path, path: Path | None, answ
     check_base(runs)
     with progress, _standby(options):
         began = time.perf_counter()
-        generate_world = loop.generate_world  # loads the simulator
+        generate_world = loop.generate_world
+        load_beside("wsim.sim.simulation")  # while the stage is built in its sandbox
         options.start_up += time.perf_counter() - began
         done = generate_world(said, runs, options, approve, chosen, progress)
     if done.verdict is None:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 
-from wsim.door import keep_what_loads, load_module
+from wsim.door import keep_what_loads, load_beside
 from wsim.judge.verdict import Verdict
 from wsim.program.bare import bare
 from wsim.progress import silent
@@ -80,7 +80,7 @@ class BareRun:
 def _main() -> None:
     """In the process: load what will be needed, run what comes, and end when nobody is there any more who wants it."""
     keep_what_loads()
-    load_module("wsim.sim.simulation")
+    load_beside("wsim.sim.simulation")  # until there is work, and while its stage is built
     try:
         iteration = pickle.load(sys.stdin.buffer)
     except EOFError:  # nothing came

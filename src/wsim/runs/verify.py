@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Sdf, Usd
 
-from wsim import recording
+from wsim import recording, sim
 from wsim.judge import judge
 from wsim.judge.convergence import CheckConverged, Rerun
 from wsim.judge.decide import conclude
@@ -23,7 +23,6 @@ from wsim.progress import Progress
 from wsim.runs.folder import write_whole
 from wsim.scene import schema
 from wsim.scene.describe import describe
-from wsim.sim.collect import collect
 
 if TYPE_CHECKING:
     from wsim.plan.schema import Plan
@@ -194,7 +193,7 @@ class Verification:
 
     def _judge(self, simulation: Simulation, variant: Variant, folder: Path, progress: Progress) -> list[Verdict]:
         if len(variant.seeds) > 1:
-            worlds = collect(simulation, progress)
+            worlds = sim.collected(simulation, progress)
             return [judge(worlds.recording(k), self.plan) for k in range(worlds.world_count)]
         simulation.run(folder / "recording.rrd", metadata={"variant": variant.name}, progress=progress)
         verdict = judge(recording.read(folder / "recording.rrd"), self.plan)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from wsim.door import door
 
 if TYPE_CHECKING:
+    from wsim.sim.collect import collect as collected
     from wsim.sim.devices import known_device, pick_device, start_warp
     from wsim.sim.result import SimulationResult
     from wsim.sim.simulation import Simulation
@@ -18,6 +19,7 @@ __all__ = [
     "SimulationResult",
     "Stills",
     "cameras_of",
+    "collected",
     "fill_cache",
     "known_device",
     "pick_device",
@@ -31,6 +33,7 @@ __getattr__ = door(
         "SimulationResult": "result",
         "Stills": "stills",
         "cameras_of": "stills",
+        "collected": "collect.collect",
         "fill_cache": "warmup.fill",
         "known_device": "devices",
         "pick_device": "devices",

@@ -76,13 +76,14 @@ class Actor:
 
     Args:
         files: The sweep's, by name.
+        cores: That it may keep busy.
     """
 
-    def __init__(self, files: Mapping[str, bytes]) -> None:
+    def __init__(self, files: Mapping[str, bytes], cores: int = 1) -> None:
         self._scratch = tempfile.TemporaryDirectory(prefix="wsim-sweep-")
         for name, content in files.items():
             (Path(self._scratch.name) / name).write_bytes(content)
-        self._pool = Pool(work, 1)
+        self._pool = Pool(work, 1, cores=cores)
 
     def hello(self) -> int:
         """Its process id: it has started."""
@@ -181,7 +182,7 @@ class RayWorkers:
             self._ray.kill(place.actor)
 
     def _start(self) -> _Place:
-        actor = self._class.remote(self._files)
+        actor = self._class.remote(self._files, self.cores)
         return _Place(actor, actor.hello.remote())
 
     def _read(self, k: int) -> Heard | None:

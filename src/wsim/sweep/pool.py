@@ -16,6 +16,7 @@ from functools import partial
 from multiprocessing.connection import Connection, wait
 from typing import Any, TypeVar
 
+from wsim import helpers
 from wsim.door import keep_what_loads, unsearched
 from wsim.scene import usd_threads
 from wsim.sweep.shards import Attempt, Dealer, Heard, Lost, run
@@ -44,9 +45,12 @@ class Pool:
         work: Called in a process with each task; a function of a module. Yields what it has found, some at a time.
         workers: How many processes.
         environments: Variables that differ, as which GPU is seen; taken in turn.
+        cores: That each process may keep busy; as many helpers wait in it (`wsim.helpers`) from its start, while it is
+            small and at no GPU.
 
     Attributes:
         environments: They.
+        cores: They.
     """
 
     def __init__(
@@ -54,8 +58,9 @@ class Pool:
         work: Callable[[Any], Iterable[Sequence[Found]]],
         workers: int,
         environments: Sequence[Mapping[str, str]] = ({},),
+        cores: int = 1,
     ) -> None:
-        self._work, self.environments = work, environments
+        self._work, self.environments, self.cores = work, environments, cores
         self._places = range(max(1, workers))
         self._workers: dict[int, _Worker] = {}
 
@@ -63,6 +68,11 @@ class Pool:
     def places(self) -> Collection[int]:
         """One for each process."""
         return self._places
+
+    @property
+    def shared(self) -> bool:
+        """Whether some have the same variables, of several that differ: they share what those name, as a GPU."""
+        return len(self._places) > len(self.environments) and any(self.environments)
 
     def now(self) -> float:
         """The clock of this machine [s]."""
@@ -76,7 +86,7 @@ class Pool:
         """Send a task to a place's process."""
         place = attempt.place
         if place not in self._workers:
-            self._workers[place] = _start(self._work, self.environments[place % len(self.environments)])
+            self._workers[place] = _start(self._work, self.environments[place % len(self.environments)], self.cores)
         self._workers[place].attempt = attempt
         with contextlib.suppress(OSError):  # it has died; what it was to do is found lost
             self._workers[place].pipe.send(task)
@@ -143,12 +153,12 @@ def _one(work: Callable[[Any], Any], task: Any) -> Iterator[list[Found]]:
     yield [(0, work(task))]
 
 
-def _start(work: Callable[[Any], Iterable[Sequence[Found]]], environment: Mapping[str, str]) -> _Worker:
+def _start(work: Callable[[Any], Iterable[Sequence[Found]]], environment: Mapping[str, str], cores: int) -> _Worker:
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     threads = {name: value for name, value in ONE_THREAD.items() if name not in os.environ}
     with _environment({**threads, **environment}):
-        process = context.Process(target=_serve, args=(theirs, pickle.dumps(work)), daemon=True)
+        process = context.Process(target=_serve, args=(theirs, pickle.dumps(work), cores), daemon=True)
         process.start()
     theirs.close()
     return _Worker(process, ours)
@@ -169,12 +179,13 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
                 os.environ[name] = value
 
 
-def _serve(pipe: Connection, packed: bytes) -> None:
+def _serve(pipe: Connection, packed: bytes, cores: int) -> None:
     """In a process: do what comes, until nobody is there to send it. It ends when who started it is killed.
 
     Args:
         pipe: Tasks come by it, and what is found goes.
         packed: The pickled `work`; what it needs, the simulator too, is loaded as it is unpacked.
+        cores: How many helpers it has.
     """
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     parent = multiprocessing.parent_process()
@@ -183,6 +194,7 @@ def _serve(pipe: Connection, packed: bytes) -> None:
     keep_what_loads()
     with unsearched():
         work: Callable[[Any], Iterable[Sequence[Found]]] = pickle.loads(packed)
+    helpers.start(cores)
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             task = pipe.recv()

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 A_SHARD = 16  # candidates that are built in one process: starting it takes as long as building them
 SHORTEST = 8  # times fewer in the last shards
+SHORTEST_SHARED = 2  # where workers share a GPU: what a batch takes beside its worlds is not shortened with it
 
 
 def sweep(
@@ -107,8 +108,9 @@ def run(
     with tempfile.TemporaryDirectory(prefix="wsim-turns-") as turns:
         doing = _on_cluster(folder, asked, ray) if ray else _here(spec, asked, len(candidates), Path(turns))
         alone = spec.device.startswith("cuda") and bool(ray or "," in spec.device)
-        pack = packed(folder.path.resolve(), spec, _cores(spec, doing), alone)
-        for found in shards.run(dealer(spec, len(candidates)), candidates, pack, doing):
+        pack = packed(folder.path.resolve(), spec, max(1, doing.cores), alone)
+        shared = isinstance(doing, Pool) and doing.shared
+        for found in shards.run(dealer(spec, len(candidates), shared), candidates, pack, doing):
             yield [_lost(candidate, came) if isinstance(came, Lost) else came for candidate, came in found]
 
 
@@ -120,28 +122,30 @@ def _on_cluster(folder: SweepFolder, count: int, ray: str) -> RayWorkers:
 
 
 def _here(spec: Spec, asked: int, candidates: int, turns: Path) -> Pool:
-    """Processes of this machine, as many as are asked for, or 0."""
+    """Processes of this machine, as many as are asked for, or 0.
+
+    Those that share a GPU have the same cores: one steps on it while the other needs them.
+    """
+    cores, devices = len(os.sched_getaffinity(0)), spec.device.split(",")
     if not spec.device.startswith("cuda"):
-        return Pool(work, asked or len(os.sched_getaffinity(0)))
-    devices = spec.device.split(",")
-    more = candidates > len(devices) * spec.together
+        count = asked or cores
+        return Pool(work, count, cores=max(1, cores // count))
+    count = asked or len(devices) * (SHARING if candidates > len(devices) * spec.together else 1)
     seen = [_seeing(device) if len(devices) > 1 else {} for device in devices]
     environments = [{**sees, **sharing(turns, device)} for sees, device in zip(seen, devices, strict=True)]
-    return Pool(work, asked or len(devices) * (SHARING if more else 1), environments)
+    return Pool(work, count, environments, max(1, cores // min(count, len(devices))))
 
 
-def _cores(spec: Spec, doing: Pool | RayWorkers) -> int:
-    """Of each worker. Those that share a GPU have the same: one steps on it while the other needs them."""
-    if isinstance(doing, RayWorkers):
-        return doing.cores
-    shares = len(spec.device.split(",")) if spec.device.startswith("cuda") else len(doing.places)
-    return max(1, len(os.sched_getaffinity(0)) // min(shares, len(doing.places)))
+def dealer(spec: Spec, count: int, shared: bool = False) -> Dealer:
+    """Of so many candidates: shards of as many as are simulated at once, or of a few.
 
-
-def dealer(spec: Spec, count: int) -> Dealer:
-    """Of so many candidates: shards of as many as are simulated at once, or of a few."""
+    Args:
+        spec: The sweep's.
+        count: Candidates.
+        shared: Whether workers share a device.
+    """
     most = spec.together if spec.together > 1 else A_SHARD
-    return Dealer(count, most, spec.patience, max(1, most // SHORTEST))
+    return Dealer(count, most, spec.patience, max(1, most // (SHORTEST_SHARED if shared else SHORTEST)))
 
 
 def packed(folder: Path, spec: Spec, cores: int, alone: bool) -> Callable[[tuple[Candidate, ...]], Shard]:

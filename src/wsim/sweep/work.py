@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from wsim import helpers
 from wsim.assets import asset_folders
 from wsim.errors import UserError
 from wsim.forks import shared_out
@@ -74,7 +73,6 @@ def settings(spec: Spec, candidate: Candidate, pictures: bool = False) -> Settin
 
 def work(shard: Shard) -> Iterator[list[tuple[int, Outcome]]]:
     """Build, simulate, judge: outcomes as they are known, each with its place in the shard. Nothing stays on disk."""
-    helpers.start(shard.cores)  # while this process is small, and at no GPU
     plan_file = shard.folder / "plan.json"
     plan = load(plan_file) if plan_file.is_file() else None
     places = {candidate.number: place for place, candidate in enumerate(shard.candidates)}
@@ -161,7 +159,8 @@ def _set_draws(
             return str(error)
         return ""
 
-    for (candidate, _, built), why in zip(made, shared_out(put, made, forks(processes)), strict=True):
+    drawn = [each for each in made if each[0].draws]  # for none nobody is forked
+    for (candidate, _, built), why in zip(drawn, shared_out(put, drawn, forks(processes)), strict=True):
         if why:
             failed = Outcome(candidate=candidate, status="failed", reason=why, seconds=round(built.seconds, 3))
             yield candidate.number, failed
