@@ -123,7 +123,8 @@ class Iteration:
             readable=asset_folders(),
         )
         self.progress("building the stage", 1, 1)
-        self._note({"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})
+        noted = {name: value for name, value in asdict(built).items() if name != "told"}
+        self._note({"build": noted, "seconds": {"build": round(built.seconds, 3)}})
         if built.ok:
             draws.apply(self.stage, self.settings.draws)
         return built
