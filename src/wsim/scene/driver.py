@@ -48,6 +48,10 @@ class _Profile:
     speed: Floats  # (N,) [m/s]
     gain: Floats  # (N,) of speed with time, from there to the next point [m/s^2]
 
+    def speed_at(self, way: Floats) -> Floats:
+        """Between points v² goes evenly."""
+        return np.sqrt(np.interp(way, self.along, self.speed**2))
+
 
 class Driver:
     """Steers, drives and brakes a vehicle along a line by its steering's targets and torques on its axles.
@@ -56,6 +60,12 @@ class Driver:
     engine at the speed there is, and by its brakes; a wheel that slips by more than 0.6 m/s and 12 % of the speed gets
     none until it grips.
     """
+
+    _way: Floats  # along the path in each world, (W,) [m]
+    _lack: Floats  # of speed, added up over time [m]
+    _angle: Floats  # of the bicycle [rad]
+    _fresh: bool
+    _last: float  # when it was asked last [s]
 
     def __init__(
         self,
@@ -121,12 +131,12 @@ class Driver:
 
     def speed_at(self, distance: float) -> float:
         """What it is asked for after so much of the path [m/s]."""
-        return float(np.interp(distance, self._profile.along, self._profile.speed))
+        return float(self._profile.speed_at(np.array([float(distance)]))[0])
 
     def _begin(self, worlds: int) -> None:
-        self._way: Floats = np.zeros(worlds)  # along the path [m]
-        self._lack: Floats = np.zeros(worlds)  # of speed, added up over time [m]
-        self._angle: Floats = np.zeros(worlds)  # of the bicycle [rad]
+        self._way = np.zeros(worlds)
+        self._lack = np.zeros(worlds)
+        self._angle = np.zeros(worlds)
         self._fresh, self._last = True, 0.0
 
     def _nearest(self, at: Floats) -> Floats:
@@ -171,11 +181,12 @@ class Driver:
     def _push(self, world: Any, forward: Floats, speed: Floats, step: float) -> None:
         """Torques on the axles: what speed, slope and rolling ask for, and what a lack of speed does, bounded."""
         spec, line = self.spec, self._profile
-        wanted = np.interp(self._way, line.along, line.speed)
+        wanted = line.speed_at(self._way)
         here = np.clip(np.searchsorted(line.along, self._way, side="right") - 1, 0, len(line.gain) - 1)
         gain = line.gain[here]
-        if self._stop:  # as the speed ends, so does what it loses
-            gain = np.where(wanted < 1.0, np.maximum(gain, gain * wanted), gain)
+        # To slow down from another speed within the same way takes (v / v_wanted)² of it.
+        faster = np.minimum(np.abs(speed) / np.maximum(wanted, 1e-6), 1.5) ** 2
+        gain = np.where(gain < 0.0, np.where(wanted > 0.0, gain * faster, 0.0), gain)
         lack = wanted - speed
         weight = spec.mass * GRAVITY
         known = spec.effective_mass * gain + weight * (forward[:, 2] + spec.rolling * np.tanh(speed / 0.1))
