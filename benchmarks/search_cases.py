@@ -143,7 +143,7 @@ API: Cases = {
     "pipe": _SCENE + "cylinder",
     "cilinder": _SCENE + "cylinder",
     "rod with round ends": _SCENE + "capsule",
-    "terrain": _SCENE + "ground",
+    "terrain": _SCENE + "terrain",
     "floor plane": _SCENE + "ground",
     "aquarium": _SCENE + "tank",
     "glass container for liquid": _SCENE + "tank",

@@ -18,7 +18,7 @@ import pytest
 
 from tests.assets import policies
 from wsim.assets.folders import VARIABLE
-from wsim.scene import Drive, Part, Scene, SceneError, VehicleSpec
+from wsim.scene import Area, Drive, Noise, Part, Road, Scene, SceneError, VehicleSpec
 from wsim.scene.authoring import Handle
 
 NAN, INF, HUGE = math.nan, math.inf, 1e300
@@ -111,6 +111,25 @@ KINDS: dict[str, tuple[object, ...]] = {
         object(),
         [["1", "2"], ["3", "4"]], {}, np.ones((2, 2, 2)), [[True, False], [True, True]],
     ),
+    "layers": (
+        None, "flat", 1.0, [], [1.0], ["flat"], [None], [Noise], [Noise(NAN, 1.0)], [Noise(1.0, 0.0)],
+        [lambda x, y: "high"], [lambda x, y: NAN], [lambda x: 0.0], [lambda x, y: 1.0 / 0.0], [[[0.0, 1.0], [0.0]]],
+        [[[0.0, NAN], [0.0, 0.0]]], [np.ones((2, 2, 2))], [[["1", "2"], ["3", "4"]]], {Noise(0.1, 1.0)}, object(),
+        [Road([(0.0, 0.0)])], [Road([(0.0, 0.0), (1.0, 0.0)], width=NAN)], [lambda x, y: 1e6],
+    ),
+    "areas": (
+        "ice", 1.0, ["ice"], [Area("ice")], [Area("ice", outline=[HERE])], [Area("ice", road=7)], [Area],
+        [Area("ice", outline=[(0.4, 0.4), (0.4001, 0.4), (0.4, 0.4001)])], object(), {1: 2},
+        [Area("ice", outline=[(-9, -9), (9, -9), (9, 9), (-9, 9)], friction=NAN)],
+        [Area("i c e", outline=[(-9, -9), (9, -9), (9, 9), (-9, 9)])],
+        [Area("ice", outline=[(-9, -9), (9, -9), (9, 9), (-9, 9)], material="wod")],
+        [Area("ice", outline=[(-9, -9), (9, -9), (9, 9), (-9, 9)], color=(2.0, 0.0, 0.0))],
+    ),
+    "terrain": (None, "land", 1.0, GONE, object(), []),
+    "what": ("unicorn", "", 7, None, [], ["rocks"], [7], ["conifer", "unicorn"], NAN, object(), "door"),
+    "lengths": ("wide", 1.0, None, (1.0,), (1.0, 2.0, 3.0), (0.0, 1.0), (1.0, 0.5), (NAN, 1.0), {0.1, 0.2}, ("1", 1)),
+    "clear": ("road", 1.0, [1.0], [(HERE, 1.0)], [((0.0, 0.0),)], [((0.0, 0.0), -1.0)], [((0.0, NAN), 1.0)],
+              [("road", 1.0)], [((0.0, 0.0), 100.0)], [(Road([(0.0, 0.0)]), 1.0)], object()),
     "edges": ("wide", 1.0, None, (1.0,), (1.0, 2.0, 3.0), (0.0, 1.0), (1.0, -1.0), (NAN, 1.0), ("1", 1.0), {1.0, 2.0}),
     "cells": ("wide", 5, (1,), (0, 5), (2.5, 5), (5, -1), (5, 10**6), (NAN, 5), ("5", 5), {5, 6}),
     "around": (
@@ -157,6 +176,7 @@ TIED = {"name": "new name", "parent": "object or the world", "child": "object", 
 STRENGTH = {"break_force": "number > 0", "break_torque": "number > 0"}
 ENDS = {"name": "new name", "a": "object or the world", "b": "object or the world",
         "anchor_a": "three numbers", "anchor_b": "three numbers", "color": "colour"}  # fmt: skip
+LAND = Scene().terrain("land", size=(9.0, 9.0), layers=[lambda x, y: 0.0])
 BETWEEN = {"name": "new", "a": "ball", "b": "lid"}
 
 # Of each call: arguments that it takes together, and what each argument is.
@@ -211,6 +231,21 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {
             "name": "new name", "heights": "heights", "size": "edges", "cells": "cells", "position": "three numbers",
             "thickness": "number > 0", "smooth_deg": "number >= 0", **SURFACE,
+        },
+    ),
+    "terrain": (
+        {"name": "new", "size": (2.0, 2.0), "layers": [lambda x, y: 0.0]},
+        {
+            "name": "new name", "size": "edges", "layers": "layers", "cell": "number > 0", "areas": "areas",
+            "position": "three numbers", "thickness": "number > 0", "smooth_deg": "number >= 0", **SURFACE,
+            "rolling_friction": "share",
+        },
+    ),
+    "scatter": (
+        {"name": "new", "on": LAND, "count": 1},
+        {
+            "name": "new name", "what": "what", "on": "terrain", "count": "whole number", "size": "lengths",
+            "clear": "clear", "seed": "seed", "material": "material", "friction": "coefficient", "color": "colour",
         },
     ),
     "fluid": (

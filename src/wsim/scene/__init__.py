@@ -16,29 +16,46 @@ from wsim.scene import schema
 # Before the first stage is made: that is when USD reads its schemas.
 schema.register()
 
+from wsim.scene.areas import Area  # noqa: E402
 from wsim.scene.authoring import Handle  # noqa: E402
 from wsim.scene.compounds import Part  # noqa: E402
+from wsim.scene.driver import Driver  # noqa: E402
 from wsim.scene.errors import SceneError  # noqa: E402
 from wsim.scene.fluids import Fluid  # noqa: E402
 from wsim.scene.joints import Drive  # noqa: E402
+from wsim.scene.layers import Hill, Image, Kerb, Level, Noise, Ramp, Step, Surface  # noqa: E402
 from wsim.scene.materials import Material  # noqa: E402
+from wsim.scene.roads import Road  # noqa: E402
 from wsim.scene.robots import Robot  # noqa: E402
 from wsim.scene.scene import Scene  # noqa: E402
 from wsim.scene.tanks import Tank  # noqa: E402
+from wsim.scene.terrain import Terrain  # noqa: E402
 from wsim.scene.tracks import Track  # noqa: E402
 from wsim.scene.vehicle_spec import VehicleSpec  # noqa: E402
 from wsim.scene.vehicles import Vehicle  # noqa: E402
 
 __all__ = [
+    "Area",
     "Drive",
+    "Driver",
     "Fluid",
     "Handle",
+    "Hill",
+    "Image",
+    "Kerb",
+    "Level",
     "Material",
+    "Noise",
     "Part",
+    "Ramp",
+    "Road",
     "Robot",
     "Scene",
     "SceneError",
+    "Step",
+    "Surface",
     "Tank",
+    "Terrain",
     "Track",
     "Vehicle",
     "VehicleSpec",

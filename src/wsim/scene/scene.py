@@ -14,13 +14,13 @@ from wsim.scene import schema
 from wsim.scene.articulation import joints_of, mark_articulations
 from wsim.scene.authoring import PARAMETERS, PHYSICS_SCENE, note_line
 from wsim.scene.cables import Cables
-from wsim.scene.catalogued import Catalogued
 from wsim.scene.check_joints import joint_problems
 from wsim.scene.contacts import Contacts
 from wsim.scene.errors import SceneError
 from wsim.scene.motions import Motions
 from wsim.scene.policies import Policies
 from wsim.scene.robots import Robots
+from wsim.scene.scattered import Scattered
 from wsim.scene.validate import Call, shown, suggestion
 from wsim.scene.vehicles import Vehicles
 from wsim.scene.views import Views
@@ -28,7 +28,7 @@ from wsim.scene.views import Views
 _MAX_SEED = 2**31 - 1
 
 
-class Scene(Cables, Vehicles, Contacts, Motions, Views, Catalogued, Robots, Policies):
+class Scene(Scattered, Cables, Vehicles, Contacts, Motions, Views, Robots, Policies):
     """A world to be: an OpenUSD stage and the calls that author it.
 
     SI units, Z up, +X forward, +Y left. Every call checks what it is given and raises `SceneError`, naming the call,

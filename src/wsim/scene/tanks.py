@@ -11,7 +11,7 @@ from wsim.scene import schema
 from wsim.scene.authoring import Handle, note_line, set_pose
 from wsim.scene.bodies import finish_collider
 from wsim.scene.materials import Look
-from wsim.scene.terrain import Terrain
+from wsim.scene.terrain import Terrains
 from wsim.scene.validate import Call, Vec3
 
 _GLASS: Vec3 = (0.75, 0.88, 0.9)
@@ -40,7 +40,7 @@ class Tank(Handle):
         )
 
 
-class Tanks(Terrain):
+class Tanks(Terrains):
     """The call that makes a tank."""
 
     def __init__(self) -> None:

@@ -1,156 +1,249 @@
-"""Height fields: ground that rises and falls, from an array or a function."""
+"""Terrain that is put together from layers, split by area into surfaces, and things that are scattered on it."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from pxr import Gf, Sdf, UsdGeom
+from pxr import UsdGeom
 
 from wsim.limits import MAX_SIZE
-from wsim.scene import schema
-from wsim.scene.authoring import Handle, note_line, set_pose
+from wsim.scene.areas import Area, closed, divided
+from wsim.scene.authoring import Handle, calling_folder, note_line, set_pose
 from wsim.scene.bodies import finish_collider
-from wsim.scene.compounds import Compounds
+from wsim.scene.height_fields import HeightFields, edges, top_of
+from wsim.scene.layers import Floats, Grid, Layer
+from wsim.scene.materials import Material
 from wsim.scene.static_mesh import define_mesh, smooth_normals
-from wsim.scene.validate import Call, shown
+from wsim.scene.validate import Call, Vec3, shown
 
-Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Height = Callable[[float, float], float]
 
-_MOST = 1000  # rows, or columns
+_MOST = 1000  # cells along x, or y
 
 
-class Terrain(Compounds):
-    """The call that makes a height field."""
+@dataclass(frozen=True)
+class Terrain(Handle):
+    """Terrain, and what it is like at a place (x, y) of the world [m]: by its triangles, which curves leave by R
+    cell² / 8 at most, R their curvature."""
 
-    def height_field(
+    _heights: Floats = field(repr=False, compare=False)  # (rows, columns), along +X and along +Y
+    _size: tuple[float, float] = field(repr=False, compare=False)
+    _middle: Vec3 = field(repr=False, compare=False)
+
+    def height(self, x: float, y: float) -> float:
+        """Of the ground there, in the world [m]; `SceneError` where there is none."""
+        return self._plane(x, y)[0]
+
+    def place(self, x: float, y: float, above: float = 0.0) -> Vec3:
+        """A point of the ground, or straight above it [m]."""
+        return float(x), float(y), self._plane(x, y)[0] + above
+
+    def normal(self, x: float, y: float) -> Vec3:
+        """Which way the ground faces there, of length 1."""
+        _, along, aside = self._plane(x, y)
+        length = math.sqrt(1.0 + along * along + aside * aside)
+        return -along / length, -aside / length, 1.0 / length
+
+    def slope_deg(self, x: float, y: float, heading_deg: float | None = None) -> float:
+        """How steep the ground is there [deg]: at the steepest, or towards a heading (from +X to +Y), up positive."""
+        _, along, aside = self._plane(x, y)
+        if heading_deg is None:
+            return math.degrees(math.atan(math.hypot(along, aside)))
+        way = math.radians(heading_deg)
+        return math.degrees(math.atan(along * math.cos(way) + aside * math.sin(way)))
+
+    def has(self, x: float, y: float, margin: float = 0.0) -> bool:
+        """Whether it is there, and for `margin` [m] all around."""
+        across, aside = (0.5 * edge - margin for edge in self._size)
+        return abs(x - self._middle[0]) <= across and abs(y - self._middle[1]) <= aside
+
+    def anywhere(self, random: np.random.Generator, margin: float) -> tuple[float, float]:
+        """A place on it by chance, `margin` or more from its edges [m]; its middle, where it is too small for that."""
+        reach = [max(0.0, 0.5 * edge - margin) for edge in self._size]
+        x, y = (float(random.uniform(-each, each)) + self._middle[k] for k, each in enumerate(reach))
+        return x, y
+
+    def _plane(self, x: float, y: float) -> tuple[float, float, float]:
+        """The triangle under a place: its height there [m], and how it rises along x and y."""
+        call = Call("terrain", self.name)
+        u, v = call.number("x", x, "m") - self._middle[0], call.number("y", y, "m") - self._middle[1]
+        if not self.has(x, y, -1e-9):
+            call.fail(f"({x:g}, {y:g}) m is not on it: it is {self._size[0]:g} x {self._size[1]:g} m about "
+                      f"({self._middle[0]:g}, {self._middle[1]:g})")  # fmt: skip
+        rows, columns = self._heights.shape
+        cell = self._size[0] / (columns - 1), self._size[1] / (rows - 1)
+        u, v = (u + 0.5 * self._size[0]) / cell[0], (v + 0.5 * self._size[1]) / cell[1]
+        i, j = min(max(int(u), 0), columns - 2), min(max(int(v), 0), rows - 2)
+        s, t = u - i, v - j
+        (a, b), (d, c) = self._heights[j : j + 2, i : i + 2]
+        if abs(a - c) <= abs(b - d):  # cut from a to c
+            along, aside = (b - a, c - b) if s >= t else (c - d, d - a)
+            here = a + s * along + t * aside
+        elif s + t <= 1.0:
+            along, aside = b - a, d - a
+            here = a + s * along + t * aside
+        else:
+            along, aside = c - d, c - b
+            here = c - (1.0 - s) * along - (1.0 - t) * aside
+        return self._middle[2] + float(here), float(along / cell[0]), float(aside / cell[1])
+
+
+class Terrains(HeightFields):
+    """The call that makes terrain of layers."""
+
+    def terrain(
         self,
         name: str,
         *,
-        heights: Sequence[Sequence[float]] | NDArray[np.float64] | Callable[[float, float], float],
         size: Sequence[float],
-        cells: Sequence[int] | None = None,
+        layers: Sequence[Layer | Height | Sequence[Sequence[float]] | Floats],
+        cell: float = 0.5,
+        areas: Sequence[Area] = (),
         position: Sequence[float] = (0.0, 0.0, 0.0),
-        thickness: float = 0.2,
+        thickness: float = 1.0,
         smooth_deg: float = 20.0,
         material: Handle | str | None = None,
         friction: float | None = None,
         restitution: float | None = None,
+        rolling_friction: float | None = None,
         color: Sequence[float] | None = None,
-    ) -> Handle:
-        """Make ground that rises and falls and never moves.
+    ) -> Terrain:
+        """Make ground from layers, one upon another, that never moves.
 
         Args:
             name: Name of the prim.
-            heights: Rows x columns of heights [m], columns along +X and rows along +Y, from the corner of least x
-                and y; or a function of x and y [m], counted from the field's middle, that is sampled.
-            size: (x, y) of the field [m].
-            cells: How many cells a function is sampled in, along x and y; (50, 50) if not given.
-            position: Of the field's middle at height 0 [m].
+            size: (x, y) of the terrain [m].
+            layers: From the lowest on. `Noise`, `Hill`, `Image`, `Surface` (a mesh), `Ramp`, `Step` and `Kerb` add to
+                what is there, as do a function of x and y and rows x columns of heights [m], which are stretched
+                over the field; `Level` and `Road` are laid into it. All count x and y from the terrain's middle [m].
+            cell: Edge of a cell at most [m]: half of what is to show.
+            areas: Parts with a surface of their own; a later one covers an earlier one.
+            position: Of the terrain's middle at height 0 [m].
             thickness: How far the ground goes on below its lowest point [m].
             smooth_deg: Where cells meet at a smaller angle they stand for a curve; 0: all are flat [deg].
             material: What `scene.material` returned, or its name.
             friction: Overrides the material's.
             restitution: Overrides the material's.
+            rolling_friction: Overrides the material's rolling.
             color: Linear RGB; overrides the material's.
 
+        Returns:
+            A handle that knows the ground's height, slope and normal at a place.
+
         Raises:
-            SceneError: If the heights are no field of 2 x 2 to 1000 x 1000 finite numbers, or a number is out of range.
+            SceneError: If a layer or a number is out of range, there are more than 1000 cells along x or y, or an
+                area holds no cell.
         """
-        call = Call("height_field", name)
+        call = Call("terrain", name)
         path = self._path(call)
-        across = _edges(call, size)
-        field = _field(call, heights, across, cells)
+        across = edges(call, size)
+        grid = _grid(call, across, call.size("cell", cell))
+        heights = _laid(call, layers, grid)
         place = call.position("position", position)
         depth = call.size("thickness", thickness)
         smooth = math.radians(call.within("smooth_deg", smooth_deg, 0.0, 90.0, "deg"))
-        surface = self._surface(call, material, friction, restitution, color)
-        points, triangles = _solid(field, across, depth)
-        normals = smooth_normals(points, triangles, smooth).reshape(-1, 3) if smooth > 0.0 else None
+        middles = (0.25 * (g[:-1, :-1] + g[:-1, 1:] + g[1:, :-1] + g[1:, 1:]) for g in (grid.x, grid.y))
+        listed, number = divided(call, areas, *middles)
+        for k, area in enumerate(listed):  # before anything is authored
+            self._named(Call(call.method, name, f"areas[{k}]."), area.material)
+        base = self._surface(call, material, friction, restitution, color, rolling=rolling_friction)
+        surfaces = [base, *(self._surface_of(call, k, area, base) for k, area in enumerate(listed))]
         prim = UsdGeom.Xform.Define(self._stage, path).GetPrim()
         note_line(prim)
         set_pose(prim, place)
-        mesh = define_mesh(self._stage, f"{path}/geometry", points, [triangles], normals).GetPrim()
+        points, cells = top_of(heights, across)
+        normals = smooth_normals(points, cells.reshape(-1, 3), smooth).reshape(-1, 2, 3, 3) if smooth > 0.0 else None
+        low = float(heights.min()) - depth
+        for k, surface in enumerate(surfaces):
+            part = np.flatnonzero(number.reshape(-1) == k)
+            if len(part):
+                called = listed[k - 1].name if k else "geometry"
+                self._part(f"{path}/{called}", points, cells[part], None if normals is None else normals[part], low,
+                           surface)  # fmt: skip
+        return Terrain(prim.GetName(), path, "static", heights, across, place)
+
+    def _surface_of(self, call: Call, k: int, area: Area, base: Material) -> Material:
+        one = Call(call.method, f"{call.name}_{area.name}", f"areas[{k}].")
+        return self._surface(one, base if area.material is None else area.material, area.friction, area.restitution,
+                             area.color, rolling=area.rolling_friction)  # fmt: skip
+
+    def _part(
+        self, path: str, points: Floats, cells: Integers, normals: Floats | None, low: float, surface: Material
+    ) -> None:  # fmt: skip
+        """One surface of the terrain, as a closed mesh whose upper side may stand for a curve."""
+        top = cells.reshape(-1, 3)
+        corners, faces, _ = closed(points, top, low)
+        written = None
+        if normals is not None:
+            rest = corners[faces[len(top) :]]
+            flat = np.cross(rest[:, 1] - rest[:, 0], rest[:, 2] - rest[:, 0])
+            flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-300)
+            written = np.concatenate([normals.reshape(-1, 3), np.repeat(flat, 3, axis=0)])
+        mesh = define_mesh(self._stage, path, corners, [faces], written).GetPrim()
         note_line(mesh)
-        rows, columns = field.shape
-        kinds = Sdf.ValueTypeNames
-        schema.apply(
-            mesh,
-            schema.HEIGHT_FIELD,
-            {
-                "rows": (kinds.Int, rows),
-                "columns": (kinds.Int, columns),
-                "fieldSize": (kinds.Float2, Gf.Vec2f(*across)),
-            },
-        )
         finish_collider(mesh, surface)
-        return Handle(name=prim.GetName(), path=path, kind="static")
 
 
-def _edges(call: Call, size: Sequence[float]) -> tuple[float, float]:
-    if isinstance(size, (str, bytes)) or not isinstance(size, (Sequence, np.ndarray)) or len(size) != 2:
-        call.fail(f"size = {shown(size)} must be 2 numbers (x, y) in m")
-    return call.size("size[0]", size[0]), call.size("size[1]", size[1])
+def _grid(call: Call, across: tuple[float, float], cell: float) -> Grid:
+    counts = [max(1, math.ceil(edge / cell - 1e-9)) for edge in across]
+    if max(counts) > _MOST:
+        call.fail(f"cell = {cell:g} m gives {max(counts)} cells along {max(across):g} m; at most {_MOST}: take "
+                  f"{max(across) / _MOST:.3g} m or more")  # fmt: skip
+    x, y = np.meshgrid(*(np.linspace(-0.5 * edge, 0.5 * edge, n + 1) for edge, n in zip(across, counts, strict=True)))
+    return Grid(x, y, (across[0] / counts[0], across[1] / counts[1]), calling_folder())
 
 
-def _field(call: Call, heights: object, across: tuple[float, float], cells: Sequence[int] | None) -> Floats:
-    if not callable(heights) and cells is not None:
-        call.fail(f"cells = {shown(cells)} beside heights that are listed; leave it out")
-    if callable(heights):
-        cells = (50, 50) if cells is None else cells
-        if isinstance(cells, (str, bytes)) or not isinstance(cells, (Sequence, np.ndarray)) or len(cells) != 2:
-            call.fail(f"cells = {shown(cells)} must be 2 whole numbers, along x and y")
-        nx, ny = (call.integer(f"cells[{k}]", n, 1, _MOST - 1) for k, n in enumerate(cells))
-        xs, ys = (np.linspace(-edge / 2, edge / 2, n + 1) for edge, n in zip(across, (nx, ny), strict=True))
-        heights = [[_height(call, heights, float(x), float(y)) for x in xs] for y in ys]
-    try:
-        given = np.array(heights)
-    except (TypeError, ValueError):  # rows of different lengths
-        given = np.array(None)
-    if given.dtype.kind not in "iuf":
-        call.fail(f"heights = {shown(heights)} must be rows x columns of numbers, all rows as long")
-    field = given.astype(np.float64)
-    if field.ndim != 2 or min(field.shape) < 2 or max(field.shape) > _MOST:
-        call.fail(f"heights has the shape {field.shape}; it must be 2 x 2 to {_MOST} x {_MOST}")
-    bad = ~(np.abs(field) <= MAX_SIZE)
+def _laid(call: Call, layers: object, grid: Grid) -> Floats:
+    listed = call.listed("layers", layers, "a list such as [Noise(0.3, 8.0), Hill((20, 0), 15, 3)]")
+    if not listed:
+        call.fail("layers = [] holds none; lambda x, y: 0.0 is level ground")
+    ground = np.zeros_like(grid.x)
+    for k, layer in enumerate(listed):
+        one = Call(call.method, call.name, f"layers[{k}].")
+        if hasattr(layer, "laid") and not isinstance(layer, type):
+            ground = layer.laid(one, grid, ground)
+        elif callable(layer) and not isinstance(layer, type):
+            ground = ground + _function(call, k, layer, grid)
+        else:
+            ground = ground + grid.bilinear(_listed(call, k, layer))
+    bad = ~(np.abs(ground) <= MAX_SIZE)
     if bad.any():
         row, column = np.argwhere(bad)[0]
-        call.fail(f"heights[{row}][{column}] = {field[row, column]:g} must be within {MAX_SIZE:g} m of 0")
-    return field
+        call.fail(f"layers are {ground[row, column]:g} m high at ({grid.x[row, column]:g}, {grid.y[row, column]:g}); "
+                  f"they must be within {MAX_SIZE:g} m of 0")  # fmt: skip
+    return ground
 
 
-def _height(call: Call, heights: Callable[[float, float], object], x: float, y: float) -> float:
+def _function(call: Call, k: int, height: Height, grid: Grid) -> Floats:
+    """A function of x and y, asked at each place."""
+
+    def asked(x: float, y: float) -> float:
+        try:
+            found = height(x, y)
+        except Exception as error:  # noqa: BLE001 - whatever a program's own function raises
+            call.fail(f"layers[{k}]({x:g}, {y:g}) raised {type(error).__name__}: {error}; give a function of x and y "
+                      "in m, within the terrain, that returns a height in m")  # fmt: skip
+        return call.number(f"layers[{k}](x, y)", found, "m")
+
+    return np.array([[asked(float(x), float(y)) for x, y in zip(*row, strict=True)] for row in
+                     zip(grid.x, grid.y, strict=True)])  # fmt: skip
+
+
+def _listed(call: Call, k: int, layer: object) -> Floats:
+    """Rows x columns of heights."""
     try:
-        height = heights(x, y)
-    except Exception as error:  # noqa: BLE001 - whatever a program's own function raises
-        call.fail(
-            f"heights({x:g}, {y:g}) raised {type(error).__name__}: {error}; "
-            "give a function of x and y in m, within the field, that returns a height in m"
-        )
-    return call.number("heights(x, y)", height, "m")
-
-
-def _solid(field: Floats, across: tuple[float, float], depth: float) -> tuple[Floats, NDArray[np.int64]]:
-    """The ground as a closed mesh: the field, four sides and a bottom."""
-    rows, columns = field.shape
-    x, y = np.meshgrid(np.linspace(-0.5, 0.5, columns) * across[0], np.linspace(-0.5, 0.5, rows) * across[1])
-    top = np.stack([x, y, field], axis=2).reshape(-1, 3)
-    index = np.arange(rows * columns).reshape(rows, columns)
-    a, b, c, d = (part.reshape(-1) for part in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]))
-    # Each cell is cut along the diagonal that is the more level.
-    z = field.reshape(-1)
-    along = np.abs(z[a] - z[c]) <= np.abs(z[b] - z[d])
-    one = np.where(along[:, None], np.stack([a, b, c], 1), np.stack([a, b, d], 1))
-    two = np.where(along[:, None], np.stack([a, c, d], 1), np.stack([b, c, d], 1))
-    rim = np.concatenate([index[0, :-1], index[:-1, -1], index[-1, :0:-1], index[:0:-1, 0]])
-    low = np.full(len(rim), float(field.min()) - depth)
-    under = np.column_stack([top[rim, :2], low])
-    below = rows * columns + np.arange(len(rim))
-    after, below_after = np.roll(rim, -1), np.roll(below, -1)
-    sides = np.concatenate([np.stack([rim, below, below_after], 1), np.stack([rim, below_after, after], 1)])
-    middle = rows * columns + len(rim)
-    floor = np.stack([np.full(len(rim), middle), below_after, below], 1)
-    points = np.concatenate([top, under, [[0.0, 0.0, low[0]]]])
-    return points, np.concatenate([one, two, sides, floor])
+        given = np.array(layer)
+    except (TypeError, ValueError):  # rows of different lengths
+        given = np.array(None)
+    if given.dtype.kind not in "iuf" or given.ndim != 2 or min(given.shape) < 2 or max(given.shape) > _MOST + 1:
+        call.fail(f"layers[{k}] = {shown(layer)} must be a layer such as Noise(0.3, 8.0), a function of x and y, or "
+                  f"rows x columns of 2 x 2 to {_MOST + 1} x {_MOST + 1} heights")  # fmt: skip
+    if not np.isfinite(given).all():
+        row, column = np.argwhere(~np.isfinite(given))[0]
+        call.fail(f"layers[{k}][{row}][{column}] = {given[row, column]} must be finite in m")
+    return given.astype(np.float64)

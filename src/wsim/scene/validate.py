@@ -227,7 +227,7 @@ def shown(value: object) -> str:
     """A value as an error shows it: short."""
     if isinstance(value, str):
         return '"' + (value if len(value) <= 60 else value[:57] + "...") + '"'
-    text = repr(value)
+    text = " ".join(repr(value).split())  # NumPy's arrays have lines
     return text if len(text) <= 80 else text[:77] + "..."
 
 

@@ -18,7 +18,7 @@ _SCENE = "wsim.scene.Scene"
 _SHOWN = ("wsim.scene", "wsim.assets", "wsim.program.control_world")
 _CONTROL = "wsim.program.control_world."
 _HANDLES = ("wsim.scene.Handle", "wsim.scene.Tank", "wsim.scene.Fluid", "wsim.scene.Material", "wsim.scene.Drive",
-            "wsim.scene.Track", "wsim.scene.Part", "wsim.scene.Vehicle")  # fmt: skip
+            "wsim.scene.Track", "wsim.scene.Part", "wsim.scene.Vehicle", "wsim.scene.Terrain")  # fmt: skip
 
 
 def attribute(reader: State, value: Value, name: str, node: ast.Attribute) -> Value:

@@ -10,10 +10,11 @@ from wsim.program.validator.problem import spelt
 from wsim.program.validator.scratch import World
 from wsim.program.validator.state import State
 from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, NotKnownError, Value, plain
-from wsim.scene import Drive, Part
+from wsim.scene import Area, Drive, Hill, Image, Kerb, Level, Noise, Part, Ramp, Road, Step, Surface
 
 # What says something to a call and makes no prim itself.
-PLAIN: dict[str, Any] = {"wsim.scene.Drive": Drive, "wsim.scene.Part": Part}
+_PLAIN = (Drive, Part, Area, Hill, Image, Kerb, Level, Noise, Ramp, Road, Step, Surface)
+PLAIN: dict[str, Any] = {f"wsim.scene.{each.__name__}": each for each in _PLAIN}
 
 
 def check(

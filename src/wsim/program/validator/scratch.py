@@ -40,19 +40,22 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "height_field": {"heights": _level, "size": (1.0, 1.0)},  # a function: cells go with no other
     "joint_fixed": _JOINT, "joint_revolute": _JOINT, "joint_prismatic": _JOINT, "joint_spherical": _JOINT,
     "spring": _CORD | {"stiffness": 1.0, "damping": 1.0}, "rope": _CORD, "cable": _CORD,
+    # cells as large as it may be: of a size or a cell tried alone there are not too many
+    "terrain": {"size": (0.2, 0.2), "cell": 1000.0, "layers": [_level]}, "scatter": {"count": 1},
     "gear": {"ratio": 1.0}, "robot": {"file_or_id": "desk_arm"}, "vehicle": {},
     "policy": {},
 }  # fmt: skip
-MANY = ("cable", "robot", "vehicle")  # whose bodies and joints have names of their own
+MANY = ("cable", "robot", "vehicle", "scatter")  # whose bodies and joints have names of their own
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
 ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
-OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "tank", "fluid")
+OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terrain", "scatter", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
-         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points")  # fmt: skip
+         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
+         "layers", "areas", "on", "count", "clear")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
@@ -114,8 +117,8 @@ class World:
                 return (None, *self._blame(method, arguments, _refusal(error)))
             self.note(method, name, certain=certain)
             self.open = self.open or method in ("robot", "vehicle")
-            for link in made if method == "cable" else ():
-                self.note("capsule", link.name, certain=certain)
+            for each in made if method in ("cable", "scatter") else ():
+                self.note("capsule" if method == "cable" else "mesh", each.name, certain=certain)
             return Const(made), "", ""
         self.open = self.open or method in MANY
         if certain and method in (*OBJECTS, *JOINTS, *CORDS, "gear", "policy", "camera", "light", "material", "param"):
@@ -126,7 +129,7 @@ class World:
 
     def note(self, method: str, name: object, *, certain: bool) -> None:
         """Remember the prim that a call makes."""
-        if method in ("simulation", "save", "contact", *ABOUT):
+        if method in ("simulation", "save", "contact", "scatter", *ABOUT):
             return
         if not isinstance(name, str):
             self.open = self.open or method not in ("material", "param")
@@ -246,6 +249,8 @@ def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
         return {"body": body("a", kinematic=True)}
     if method == "contact":
         return {end: body(end) for end in ("a", "b")}
+    if method == "scatter":
+        return {"on": scene.terrain(f"probe_land_{number}", size=(1.0, 1.0), layers=[_level])}
     if method in CORDS:
         return {"a": body("a")}
     if method.startswith("joint_"):

@@ -101,7 +101,7 @@ def _fits(value: Value, wanted: str, index: Index) -> bool:
         return mine[1] == theirs[1]
     if vector := _VECTOR.match(wanted):
         return _may_be_vector(value, kind, int(vector[1]))
-    if wanted in ("Handle", "Material", "Tank", "Fluid", "Track", "Drive", "Part", "Vehicle"):
+    if wanted in ("Handle", "Material", "Tank", "Fluid", "Track", "Drive", "Part", "Vehicle", "Terrain"):
         return _may_be_scene(kind, wanted, index)
     return True
 

@@ -1,0 +1,234 @@
+"""A driver for a program's `control`: follows a line by pure pursuit, at a speed that bends and brakes allow.
+
+    DRIVER = Driver("truck", "hmmwv", path=ROAD.line(), speed=8.0)
+
+    def build(scene):
+        scene.vehicle("truck", "hmmwv", ...)
+
+    def control(world, t):
+        DRIVER.drive(world, t)
+
+The geometry of the steering is that of Coulter (Implementation of the Pure Pursuit Path Tracking Algorithm, CMU 1992),
+seen from the rear axle's middle: a goal at a distance l that lies off the heading by alpha asks for the bicycle's angle
+atan(2 wheelbase sin(alpha) / l), which leads there along a circle. NumPy alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wsim.defaults import GRAVITY
+from wsim.scene.layers import polyline
+from wsim.scene.validate import Call, shown
+from wsim.scene.vehicle_spec import CORNERS, VehicleSpec, spec_of
+
+Floats = NDArray[np.float64]
+
+_PROPORTIONAL = 2.0  # [1/s]: acceleration asked for a lack of speed
+_INTEGRAL = 0.8  # [1/s^2]: damped by 1.1 with the above
+_LEAST_AHEAD = 1.2  # of the wheelbase, that the goal is ahead at least
+_AHEAD = 0.7  # [s] of way that the goal is ahead
+_BEFORE, _AFTER = 3.0, 8.0  # [m] of the line that are searched for the nearest place, behind and before the last one
+_SLIP = (0.6, 0.12)  # [m/s], of the speed: a wheel that slips by more gets no torque until it grips
+_TURNED = 60.0  # [deg/s] that the bicycle's angle changes by at most
+
+
+@dataclass(frozen=True)
+class _Profile:
+    """A line by arc length."""
+
+    points: Floats  # (N, 2) [m]
+    along: Floats  # (N,) [m]
+    speed: Floats  # (N,) [m/s]
+    gain: Floats  # (N,) of speed with time, from there to the next point [m/s^2]
+
+    def speed_at(self, way: Floats) -> Floats:
+        """Between points v² goes evenly."""
+        return np.sqrt(np.interp(way, self.along, self.speed**2))
+
+
+class Driver:
+    """Steers, drives and brakes a vehicle along a line by its steering's targets and torques on its axles.
+
+    Its `vehicle` is driven by nothing else: `drive` and `brake` of it are not called. Torques are bounded by the spec's
+    engine at the speed there is, and by its brakes; a wheel that slips by more than 0.6 m/s and 12 % of the speed gets
+    none until it grips.
+    """
+
+    _way: Floats  # along the path in each world, (W,) [m]
+    _lack: Floats  # of speed, added up over time [m]
+    _angle: Floats  # of the bicycle [rad]
+    _fresh: bool
+    _last: float  # when it was asked last [s]
+
+    def __init__(
+        self,
+        vehicle: str,
+        spec: VehicleSpec | str = "car",
+        *,
+        path: Sequence[Sequence[float]] | Floats,
+        speed: float,
+        start_speed: float = 0.0,
+        acceleration: float = 2.0,
+        braking: float = 3.0,
+        lateral: float = 3.0,
+        stop: bool = True,
+    ) -> None:
+        """Make a driver.
+
+        Args:
+            vehicle: The vehicle's name.
+            spec: As `scene.vehicle` was given.
+            path: Points (x, y) of the world that the rear axle's middle is to go through in turn [m], close enough to
+                stand for its bends; such as `Road.line()`.
+            speed: That is held where nothing asks for less [m/s].
+            start_speed: As `scene.vehicle` was given [m/s].
+            acceleration: At most, speeding up [m/s^2].
+            braking: At most, for bends and the end [m/s^2].
+            lateral: At most, in bends: the speed there is sqrt(lateral x radius) [m/s^2].
+            stop: Whether to stop at the end of the path, or to go on straight.
+
+        Raises:
+            SceneError: If the path is none, or a number is out of range.
+        """
+        call = Call("Driver", vehicle)
+        if not isinstance(vehicle, str) or not vehicle:
+            call.fail(f"vehicle = {shown(vehicle)} must be the name of a vehicle")
+        self.vehicle, self.spec = vehicle, spec_of(call, spec)
+        points = polyline(call, path, "path")
+        top = call.positive("speed", speed, 100.0, "m/s")
+        begins = call.within("start_speed", start_speed, 0.0, 100.0, "m/s")
+        self._stop = call.flag("stop", stop)
+        limits = [call.positive(name, value, 20.0, "m/s^2") for name, value in
+                  (("acceleration", acceleration), ("braking", braking), ("lateral", lateral))]  # fmt: skip
+        self._profile = _profile(points, top, begins, *limits, stop=self._stop)
+        self._begin(1)
+
+    def drive(self, world: Any, t: float) -> None:
+        """Set the steering's targets and the axles' torques in all worlds of a `control`'s `world`, at `t` [s]."""
+        if t <= 0.0 or len(self._way) != world.world_count:
+            self._begin(world.world_count)
+        step = min(max(t - self._last, 0.0), 0.1)
+        self._last = t
+        body = world.body(self.vehicle)
+        forward = _forward(np.asarray(body.rotation, dtype=np.float64))
+        rear = np.asarray(body.position, dtype=np.float64) - 0.5 * self.spec.wheelbase * forward
+        speed = np.einsum("wi,wi->w", np.asarray(body.velocity, dtype=np.float64), forward)
+        self._way = self._nearest(rear[:, :2])
+        self._steer(world, rear[:, :2], forward, speed, step)
+        self._push(world, forward, speed, step)
+
+    @property
+    def distance(self) -> Floats:
+        """How far along the path it is in each world, (W,) [m]."""
+        return self._way
+
+    def speed_at(self, distance: float) -> float:
+        """What it is asked for after so much of the path [m/s]."""
+        return float(self._profile.speed_at(np.array([float(distance)]))[0])
+
+    def _begin(self, worlds: int) -> None:
+        self._way = np.zeros(worlds)
+        self._lack = np.zeros(worlds)
+        self._angle = np.zeros(worlds)
+        self._fresh, self._last = True, 0.0
+
+    def _nearest(self, at: Floats) -> Floats:
+        """Along the path, the nearest place to each of (W, 2), near where it was; anywhere, at first."""
+        points, along = self._profile.points, self._profile.along
+        begin, way = points[:-1], np.diff(points, axis=0)
+        length = np.diff(along)
+        share = np.einsum("wni,ni->wn", at[:, None] - begin, way) / length**2
+        foot = np.clip(share, 0.0, 1.0)
+        away = np.linalg.norm(begin + foot[..., None] * way - at[:, None], axis=2)
+        place = along[:-1] + foot * length
+        if not self._fresh:
+            far = (place < self._way[:, None] - _BEFORE) | (place > self._way[:, None] + _AFTER)
+            away = np.where(far, away + 1e6, away)
+        self._fresh = False
+        row, best = np.arange(len(at)), away.argmin(axis=1)
+        beyond = np.maximum(share[:, -1] - 1.0, 0.0) * length[-1]  # past its end
+        found = place[row, best]
+        return np.asarray(np.where(found >= along[-1] - 1e-9, along[-1] + beyond, found))
+
+    def _steer(self, world: Any, rear: Floats, forward: Floats, speed: Floats, step: float) -> None:
+        """Towards a goal ahead, by Ackermann's geometry for each wheel."""
+        spec, line = self.spec, self._profile
+        ahead = self._way + np.maximum(_LEAST_AHEAD * spec.wheelbase, _AHEAD * np.abs(speed))
+        last = line.points[-1] - line.points[-2]
+        over = np.maximum(ahead - line.along[-1], 0.0)[:, None] * last / np.linalg.norm(last)
+        goal = np.stack([np.interp(ahead, line.along, line.points[:, k]) for k in (0, 1)], axis=1) + over
+        off = goal - rear
+        flat = forward[:, :2] / np.linalg.norm(forward[:, :2], axis=1, keepdims=True)
+        aside = flat[:, 0] * off[:, 1] - flat[:, 1] * off[:, 0]
+        asked = np.arctan(2.0 * spec.wheelbase * aside / np.maximum((off**2).sum(axis=1), 1e-6))
+        most, change = math.radians(spec.steer_limit_deg), math.radians(_TURNED) * step
+        if step > 0.0:
+            asked = np.clip(asked, self._angle - change, self._angle + change)
+        self._angle = np.clip(asked, -most, most)
+        bend = np.tan(self._angle)
+        for corner in CORNERS[:2]:
+            y = spec.place(corner)[1]
+            angle = np.arctan(spec.wheelbase * bend / (spec.wheelbase - y * bend))
+            world.joint(f"{self.vehicle}_steer_{corner}").target = angle
+
+    def _push(self, world: Any, forward: Floats, speed: Floats, step: float) -> None:
+        """Torques on the axles: what speed, slope and rolling ask for, and what a lack of speed does, bounded."""
+        spec, line = self.spec, self._profile
+        wanted = line.speed_at(self._way)
+        here = np.clip(np.searchsorted(line.along, self._way, side="right") - 1, 0, len(line.gain) - 1)
+        gain = line.gain[here]
+        # To slow down from another speed within the same way takes (v / v_wanted)² of it.
+        faster = np.minimum(np.abs(speed) / np.maximum(wanted, 1e-6), 1.5) ** 2
+        gain = np.where(gain < 0.0, np.where(wanted > 0.0, gain * faster, 0.0), gain)
+        lack = wanted - speed
+        weight = spec.mass * GRAVITY
+        known = spec.effective_mass * gain + weight * (forward[:, 2] + spec.rolling * np.tanh(speed / 0.1))
+        force = known + spec.effective_mass * (_PROPORTIONAL * lack + _INTEGRAL * self._lack)
+        turns = np.maximum(np.abs(speed), 1e-3) / spec.wheel_radius
+        engine = np.minimum(spec.engine_torque * spec.gear, spec.engine_power / turns) / spec.wheel_radius
+        brakes = 4.0 * spec.brake_torque / spec.wheel_radius
+        bounded = np.clip(force, -brakes, engine)
+        # The integral waits while a bound holds: else it would overshoot when that lets go.
+        # And what a way took is not what standing takes.
+        self._lack = np.where(bounded == force, self._lack + step * lack, self._lack)
+        self._lack = np.where((wanted <= 0.0) & self._stop, 0.0, self._lack)
+        for corner in CORNERS:
+            axle = world.joint(f"{self.vehicle}_axle_{corner}")
+            share = np.where(bounded >= 0.0, (corner in spec.driven_corners) / len(spec.driven_corners), 0.25)
+            slip = np.asarray(axle.velocity, dtype=np.float64) * spec.wheel_radius - speed
+            grips = slip * np.sign(bounded) < _SLIP[0] + _SLIP[1] * np.abs(speed)
+            axle.force = np.where(grips, share * bounded * spec.wheel_radius, 0.0)
+
+
+def _forward(rotation: Floats) -> Floats:
+    """The first axis of quaternions xyzw, (W, 3)."""
+    x, y, z, w = rotation.T
+    return np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)], axis=1)
+
+
+def _profile(
+    points: Floats, top: float, begins: float, acceleration: float, braking: float, lateral: float, *, stop: bool
+) -> _Profile:  # fmt: skip
+    """The fastest speeds along a line within bounds: of bends first, then forwards, then backwards."""
+    gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(gaps)])
+    heading = np.unwrap(np.arctan2(*np.diff(points, axis=0).T[::-1]))
+    bend = np.zeros(len(points))
+    bend[1:-1] = np.abs(np.diff(heading)) / (0.5 * (gaps[1:] + gaps[:-1]))
+    speed = np.minimum(top, np.sqrt(lateral / np.maximum(bend, 1e-9)))
+    speed[0] = min(speed[0], begins)
+    for k, gap in enumerate(gaps):
+        speed[k + 1] = min(speed[k + 1], math.sqrt(speed[k] ** 2 + 2.0 * acceleration * gap))
+    if stop:
+        speed[-1] = 0.0
+    for k in range(len(gaps) - 1, -1, -1):
+        speed[k] = min(speed[k], math.sqrt(speed[k + 1] ** 2 + 2.0 * braking * gaps[k]))
+    rise = np.diff(speed**2) / (2.0 * gaps)  # v dv/ds
+    return _Profile(points, along, speed, np.append(rise, 0.0))

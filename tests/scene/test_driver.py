@@ -1,0 +1,163 @@
+"""A driver on a bicycle of its own, without slip: speeds, steering and stopping against closed forms."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from wsim.scene import Driver, SceneError, VehicleSpec
+from wsim.scene.vehicle_spec import CORNERS, preset
+
+SPEC = preset("hmmwv")
+G = 9.81
+
+
+class Bicycle:
+    """The world that `control` sees, of one vehicle in two worlds: a rear axle that rolls, a front one that steers.
+
+    theta' = v tan(delta) / L, (m + 4 I / r²) v' = sum(T) / r - m g (sin(slope) + f).
+    """
+
+    def __init__(self, speed=0.0, slope=0.0):
+        self.world_count = 2
+        self.x, self.y, self.turn, self.speed, self.slope = (
+            np.zeros(2),
+            np.zeros(2),
+            np.zeros(2),
+            np.full(2, speed),
+            slope,
+        )
+        self.steering = {corner: SimpleNamespace(target=np.zeros(2)) for corner in CORNERS[:2]}
+        self.axles = {corner: SimpleNamespace(force=np.zeros(2), velocity=np.zeros(2)) for corner in CORNERS}
+
+    def body(self, name):
+        assert name == "truck"
+        yaw, nose = self.turn / 2.0, -self.slope / 2.0  # q = yaw * pitch
+        cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), math.cos(nose), math.sin(nose)
+        rotation = np.stack([-sy * sp, cy * sp, sy * cp, cy * cp], axis=1)
+        forward = np.stack([np.cos(self.turn), np.sin(self.turn)], axis=1) * math.cos(self.slope)
+        position = np.stack([self.x, self.y, 0.0 * self.x], axis=1)
+        position[:, :2] += 0.5 * SPEC.wheelbase * forward
+        velocity = np.concatenate([forward, np.full((2, 1), math.sin(self.slope))], axis=1) * self.speed[:, None]
+        return SimpleNamespace(position=position, rotation=rotation, velocity=velocity)
+
+    def joint(self, name):
+        kind, corner = name.removeprefix("truck_").split("_", 1)
+        return (self.steering if kind == "steer" else self.axles)[corner]
+
+    def step(self, h):
+        left, right = (np.tan(self.steering[corner].target) for corner in CORNERS[:2])
+        bend = (
+            2.0 * left * right / np.maximum(np.abs(left + right), 1e-12) * np.sign(left + right)
+        )  # Ackermann's middle
+        force = sum(axle.force for axle in self.axles.values()) / SPEC.wheel_radius
+        drag = SPEC.mass * G * (math.sin(self.slope) + SPEC.rolling * np.sign(np.round(self.speed, 3)))
+        self.speed = self.speed + h * (force - drag) / SPEC.effective_mass
+        self.turn = self.turn + h * self.speed * bend / SPEC.wheelbase
+        self.x = self.x + h * self.speed * math.cos(self.slope) * np.cos(self.turn)
+        self.y = self.y + h * self.speed * math.cos(self.slope) * np.sin(self.turn)
+        for axle in self.axles.values():
+            axle.velocity = self.speed / SPEC.wheel_radius
+
+
+def driven(driver, seconds, **start):
+    """(steps, 4): x, y of the rear axle [m], speed [m/s], time [s]; the same in both worlds."""
+    world, found = Bicycle(**start), []
+    for k in range(round(seconds / 0.01)):
+        driver.drive(world, 0.01 * k)
+        for _ in range(10):
+            world.step(0.001)
+        assert world.x[0] == world.x[1] and world.speed[0] == world.speed[1]
+        found.append([world.x[0], world.y[0], world.speed[0], 0.01 * (k + 1)])
+    return np.array(found)
+
+
+def straight(length):
+    return [(x, 0.0) for x in np.arange(0.0, length + 0.1, 0.5)]
+
+
+def ring(radius, turns, spacing=0.3):
+    angle = np.linspace(0.0, 2.0 * math.pi * turns, math.ceil(2.0 * math.pi * turns * radius / spacing))
+    return np.stack([radius * np.sin(angle), radius * (1.0 - np.cos(angle))], axis=1)
+
+
+def lane_change(x, begin=5.0, length=24.0, aside=3.5):
+    """A way from one lane to another by a quintic, which has no kink in its bend."""
+    s = np.clip((x - begin) / length, 0.0, 1.0)
+    return aside * s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+def test_its_speeds_are_what_bends_and_brakes_allow():
+    """sqrt(lateral R) in a bend; v² = 2 a s after a start and before the end."""
+    path = np.concatenate([straight(40.0), ring(9.0, 0.5)[1:] + np.array([40.0, 0.0])])
+    driver = Driver("truck", "hmmwv", path=path, speed=12.0, acceleration=1.5, braking=2.5, lateral=3.0)
+    for way in (0.2, 3.0):
+        assert driver.speed_at(way) == pytest.approx(math.sqrt(2.0 * 1.5 * way), rel=1e-6)
+    assert driver.speed_at(55.0) == pytest.approx(math.sqrt(3.0 * 9.0), rel=0.01)
+    bend = driver.speed_at(55.0)
+    assert driver.speed_at(38.0) == pytest.approx(math.sqrt(bend**2 + 2.0 * 2.5 * 2.0), rel=0.03)
+    end = 40.0 + math.pi * 9.0
+    assert driver.speed_at(end - 1.0) == pytest.approx(math.sqrt(2.0 * 2.5 * 1.0), rel=0.01)
+    assert driver.speed_at(end) == 0.0
+
+
+def test_on_a_circle_it_is_on_the_line():
+    """A goal on the circle that it is on asks for just that circle, but for what steering needs to come about."""
+    found = driven(
+        Driver("truck", "hmmwv", path=ring(15.0, 1.5), speed=5.0, start_speed=5.0, stop=False), 15.0, speed=5.0
+    )
+    off = np.abs(np.hypot(found[:, 0], found[:, 1] - 15.0) - 15.0)
+    assert off.max() < 0.06
+    assert off[-500:].max() < 0.01
+    assert found[:, 2] == pytest.approx(5.0 * np.ones(len(found)), rel=0.01)
+
+
+def test_it_changes_lanes_and_stops_at_the_end():
+    x = np.arange(0.0, 42.1, 0.5)
+    driver = Driver("truck", "hmmwv", path=np.stack([x, lane_change(x)], axis=1), speed=8.0, start_speed=8.0)
+    found = driven(driver, 10.0, speed=8.0)
+    assert np.abs(found[:, 1] - lane_change(found[:, 0])).max() < 0.2
+    assert found[:250, 2] == pytest.approx(8.0 * np.ones(250), rel=0.01)
+    assert found[-1, 0] == pytest.approx(42.0, abs=0.1)
+    assert np.abs(found[-200:, 2]).max() < 0.02
+
+
+@pytest.mark.parametrize("slope", [0.0, 12.0, -12.0])
+def test_it_speeds_up_as_asked_on_any_slope(slope):
+    """From rest v² = 2 a s, then the speed, within 2 %: it knows the slope."""
+    lean = math.radians(slope)
+    driver = Driver("truck", "hmmwv", path=straight(60.0), speed=5.0, acceleration=1.5, stop=False)
+    found = driven(driver, 6.0, slope=lean)
+    rising = (found[:, 0] > 0.2) & (found[:, 2] < 4.5)
+    assert found[rising, 2] == pytest.approx(np.sqrt(2.0 * 1.5 * found[rising, 0]), rel=0.03)
+    assert found[-100:, 2] == pytest.approx(5.0 * np.ones(100), rel=0.01)
+
+
+def test_the_engine_bounds_what_it_asks():
+    """Up 25 deg the engine's power gives v = P / (m g (sin + f)) at most, and the sum of what is lacking waits."""
+    lean = math.radians(25.0)
+    found = driven(Driver("truck", "hmmwv", path=straight(400.0), speed=20.0, stop=False), 40.0, slope=lean)
+    most = SPEC.engine_power / (SPEC.mass * G * (math.sin(lean) + SPEC.rolling))
+    assert found[-1, 2] == pytest.approx(most, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"path": [(0.0, 0.0)]}, "path has 1 points; it must be 2"),
+        ({"path": [(0.0, 0.0), (0.0, math.nan)]}, "path[1][1] = nan must be finite"),
+        ({"speed": 0.0}, "speed = 0 must be > 0"),
+        ({"speed": "fast"}, 'speed = "fast" must be a number'),
+        ({"spec": "hmwv"}, 'did you mean "hmmwv"?'),
+        ({"spec": VehicleSpec(mass=-1.0)}, "spec.mass = -1"),
+        ({"vehicle": 3}, "vehicle = 3 must be the name of a vehicle"),
+        ({"lateral": -1.0}, "lateral = -1 must be > 0"),
+        ({"stop": 1}, "stop = 1 must be True or False"),
+        ({"start_speed": -1.0}, "start_speed = -1 must be >= 0"),
+    ],
+)
+def test_a_bad_number_of_a_driver_is_named(wrong, says):
+    with pytest.raises(SceneError) as caught:
+        Driver(**({"vehicle": "truck", "spec": "hmmwv", "path": straight(10.0), "speed": 3.0} | wrong))
+    assert says in str(caught.value) and str(caught.value).startswith("Driver(")
