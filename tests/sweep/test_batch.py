@@ -55,6 +55,24 @@ def test_together_is_as_one_by_one(folder: Path) -> None:
     assert not any(outcome.note for outcome in together)
 
 
+HUNG = """
+def build(scene):
+    scene.simulation(duration=0.1)
+    scene.box("arm", size=(0.5, 0.1, 0.1), density=500.0, position=(0.25, 0, 2))
+    scene.joint_revolute("hinge", None, "arm", anchor=(0, 0, scene.param("height", 2.0, low=1.9, high=2.1)), axis="Y")
+"""
+
+
+def test_why_stages_are_read_one_by_one_is_noted(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(HUNG)
+    candidates = tuple(Candidate(number=k, params={"height": 1.98 + 0.02 * k}) for k in range(2))
+    found = work(Shard(candidates, tmp_path, Spec(worlds=4)))
+    assert [outcome.together for outcome in found] == [2, 2]
+    for outcome in found:
+        assert "one by one" in outcome.note
+        assert "no description states" in outcome.note
+
+
 WET = """
 def build(scene):
     scene.simulation(duration=0.4)
