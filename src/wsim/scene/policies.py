@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -11,7 +12,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 from wsim.assets.policies import Numbers, PolicySpec
 from wsim.limits import MAX_KEYS
 from wsim.scene import schema
-from wsim.scene.authoring import Author, Handle, note_line
+from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.robots import Robot
 from wsim.scene.validate import Call, Vec3, shown
 
@@ -30,6 +31,8 @@ class Policies(Author):
         command: Sequence[float] = (0.0, 0.0, 0.0),
         times: Sequence[float] | None = None,
         commands: Sequence[Sequence[float]] | None = None,
+        route: Sequence[Sequence[float]] | None = None,
+        speed: float = 0.5,
     ) -> Handle:
         """Let a policy set where a robot's servos go, by what it sees of the robot, to go as it is commanded.
 
@@ -44,6 +47,10 @@ class Policies(Author):
             command: From the start to the end.
             times: When commands change [s], rising, the first one 0; in place of `command`, with `commands`.
             commands: From each of those times on.
+            route: Way-points in the world, each (x, y) [m] or (x, y, heading_deg), gone to one after the other, in
+                place of commands. It turns to a point's heading on the way there, by default that of the way, and
+                stays at the last.
+            speed: Along the route [m/s].
 
         Raises:
             SceneError: If there is no such robot or policy, the robot lacks a joint of it or has a policy already, or
@@ -54,6 +61,9 @@ class Policies(Author):
         prim = self._robot(call, robot)
         spec, network, digest = _policy(call, name if policy is None else policy)
         when, what = _commands(call, command, times, commands)
+        way, fast = self._route(call, prim, route), call.positive("speed", speed, _LARGEST, "m/s")
+        if way and (times is not None or any(what[0])):
+            call.fail("route and a command are both given; give one")
         joints = [prim.GetPrimAtPath(f"joints/{joint}") for joint in spec.joints]
         for joint, each in zip(spec.joints, joints, strict=True):
             if not each:
@@ -66,11 +76,28 @@ class Policies(Author):
             "description": (names.String, spec.model_dump_json(exclude_defaults=True)),
             "times": (names.DoubleArray, Vt.DoubleArray(when)),
             "commands": (names.Vector3dArray, Vt.Vec3dArray([Gf.Vec3d(*each) for each in what])),
+            **({"route": (names.Vector3dArray, Vt.Vec3dArray(way)), "speed": (names.Double, fast)} if way else {}),
         })  # fmt: skip
         made.CreateRelationship("wsim:base", custom=False).SetTargets([_base(call, prim).GetPath()])
         made.CreateRelationship("wsim:joints", custom=False).SetTargets([each.GetPath() for each in joints])
         note_line(made)
         return Handle(made.GetName(), path, "policy")
+
+    def _route(self, call: Call, robot: Usd.Prim, route: Sequence[Sequence[float]] | None) -> list[Gf.Vec3d]:
+        """Way-points with a heading each [rad]."""
+        if route is None:
+            return []
+        place, _ = world_pose(_base(call, robot))
+        x, y, way = place[0], place[1], []
+        for k, given in enumerate(call.listed("route", route, "(x, y) or (x, y, heading_deg)")):
+            three = given if isinstance(given, (list, tuple)) and len(given) == 3 else None
+            to = call.position(f"route[{k}]", three or _level(call, k, given))
+            heading = math.radians(to[2]) if three else math.atan2(to[1] - y, to[0] - x)
+            way.append(Gf.Vec3d(to[0], to[1], heading))
+            x, y = to[0], to[1]
+        if not 1 <= len(way) <= MAX_KEYS:
+            call.fail(f"route has {len(way)} points; give 1 to {MAX_KEYS}")
+        return way
 
     def _robot(self, call: Call, robot: Robot | str) -> Usd.Prim:
         prim = self._find(call, "robot", robot)
@@ -96,6 +123,12 @@ def _policy(call: Call, id: object) -> tuple[PolicySpec, Path, str]:
         return policy(id)
     except UserError as error:
         call.fail(f"policy: {error}")
+
+
+def _level(call: Call, k: int, given: object) -> tuple[object, object, float]:
+    if not isinstance(given, (list, tuple)) or len(given) != 2:
+        call.fail(f"route[{k}] = {shown(given)} must be (x, y) [m] or (x, y, heading_deg)")
+    return given[0], given[1], 0.0
 
 
 def _commands(

@@ -22,7 +22,12 @@ Fields = dict[int, list[Any]]  # of a message: what each field number has, bytes
 
 _LARGEST = 256 << 20  # [B] of a file
 _FLOAT, _DOUBLE = 1, 11  # TensorProto.DataType
-_TYPES: dict[int, np.dtype[Any]] = {_FLOAT: np.dtype("<f4"), 6: np.dtype("<i4"), 7: np.dtype("<i8"), _DOUBLE: np.dtype("<f8")}
+_TYPES: dict[int, np.dtype[Any]] = {
+    _FLOAT: np.dtype("<f4"),
+    6: np.dtype("<i4"),
+    7: np.dtype("<i8"),
+    _DOUBLE: np.dtype("<f8"),
+}
 
 
 def _elu(x: Floats, alpha: float = 1.0) -> Floats:
