@@ -13,7 +13,7 @@ from tests.assets import policies
 from wsim.assets.folders import VARIABLE
 from wsim.assets.policies import PolicySpec
 from wsim.errors import UserError
-from wsim.scene import Scene
+from wsim.scene import Scene, SceneError
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
 from wsim.scene.world import Policy, World
@@ -183,6 +183,19 @@ def test_a_route_is_gone_point_by_point_and_ends_at_the_last() -> None:
     for point in ((1.0, 0.0), (1.0, 1.0), (0.0, 1.0)):
         assert np.linalg.norm(ends[:, :2] - point, axis=1).min() < 0.15
     np.testing.assert_allclose(ends[-1], [0.0, 1.0, -quarter], atol=0.01)
+
+
+def test_a_robot_that_is_held_has_no_policy(own: Path) -> None:
+    policies.write(own, "matrix", spec(), policies.linear(picked(9)))
+    scene = Scene()
+    arm = scene.robot("arm", "desk_arm")
+    with pytest.raises(SceneError, match="has no one base that is free to move"):
+        scene.policy("steer", arm, "matrix")
+    assert not scene.stage.GetPrimAtPath("/World/steer")
+    free = scene.robot("free", "desk_arm", position=(3.0, 0.0, 0.0), fixed=False)
+    scene.policy("one", free, "matrix")
+    with pytest.raises(SceneError, match='has the policy "one" already'):
+        scene.policy("two", free, "matrix")
 
 
 def test_headings_of_a_route_are_those_of_its_ways_unless_they_are_given(own: Path) -> None:

@@ -10,6 +10,8 @@ from pathlib import Path
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
 from wsim.assets.policies import Numbers, PolicySpec
+from wsim.assets.policies import policy as known
+from wsim.errors import UserError
 from wsim.limits import MAX_KEYS
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
@@ -59,9 +61,10 @@ class Policies(Author):
         call = Call("policy", name)
         path = self._path(call)
         prim = self._robot(call, robot)
+        base = _base(call, prim)
         spec, network, digest = _policy(call, name if policy is None else policy)
         when, what = _commands(call, command, times, commands)
-        way, fast = self._route(call, prim, route), call.positive("speed", speed, _LARGEST, "m/s")
+        way, fast = _route(call, base, route), call.positive("speed", speed, _LARGEST, "m/s")
         if way and (times is not None or any(what[0])):
             call.fail("route and a command are both given; give one")
         joints = [prim.GetPrimAtPath(f"joints/{joint}") for joint in spec.joints]
@@ -78,26 +81,10 @@ class Policies(Author):
             "commands": (names.Vector3dArray, Vt.Vec3dArray([Gf.Vec3d(*each) for each in what])),
             **({"route": (names.Vector3dArray, Vt.Vec3dArray(way)), "speed": (names.Double, fast)} if way else {}),
         })  # fmt: skip
-        made.CreateRelationship("wsim:base", custom=False).SetTargets([_base(call, prim).GetPath()])
+        made.CreateRelationship("wsim:base", custom=False).SetTargets([base.GetPath()])
         made.CreateRelationship("wsim:joints", custom=False).SetTargets([each.GetPath() for each in joints])
         note_line(made)
         return Handle(made.GetName(), path, "policy")
-
-    def _route(self, call: Call, robot: Usd.Prim, route: Sequence[Sequence[float]] | None) -> list[Gf.Vec3d]:
-        """Way-points with a heading each [rad]."""
-        if route is None:
-            return []
-        place, _ = world_pose(_base(call, robot))
-        x, y, way = place[0], place[1], []
-        for k, given in enumerate(call.listed("route", route, "(x, y) or (x, y, heading_deg)")):
-            three = given if isinstance(given, (list, tuple)) and len(given) == 3 else None
-            to = call.position(f"route[{k}]", three or _level(call, k, given))
-            heading = math.radians(to[2]) if three else math.atan2(to[1] - y, to[0] - x)
-            way.append(Gf.Vec3d(to[0], to[1], heading))
-            x, y = to[0], to[1]
-        if not 1 <= len(way) <= MAX_KEYS:
-            call.fail(f"route has {len(way)} points; give 1 to {MAX_KEYS}")
-        return way
 
     def _robot(self, call: Call, robot: Robot | str) -> Usd.Prim:
         prim = self._find(call, "robot", robot)
@@ -114,15 +101,29 @@ class Policies(Author):
 
 
 def _policy(call: Call, id: object) -> tuple[PolicySpec, Path, str]:
-    from wsim.assets.policies import policy  # few programs have one
-    from wsim.errors import UserError
-
     if not isinstance(id, str) or not id:
         call.fail(f"policy = {shown(id)} must be the id of a policy")
     try:
-        return policy(id)
+        return known(id)
     except UserError as error:
         call.fail(f"policy: {error}")
+
+
+def _route(call: Call, base: Usd.Prim, route: Sequence[Sequence[float]] | None) -> list[Gf.Vec3d]:
+    """Way-points with a heading each [rad]."""
+    if route is None:
+        return []
+    place, _ = world_pose(base)
+    x, y, way = place[0], place[1], []
+    for k, given in enumerate(call.listed("route", route, "(x, y) or (x, y, heading_deg)")):
+        three = given if isinstance(given, (list, tuple)) and len(given) == 3 else None
+        to = call.position(f"route[{k}]", three or _level(call, k, given))
+        heading = math.radians(to[2]) if three else math.atan2(to[1] - y, to[0] - x)
+        way.append(Gf.Vec3d(to[0], to[1], heading))
+        x, y = to[0], to[1]
+    if not 1 <= len(way) <= MAX_KEYS:
+        call.fail(f"route has {len(way)} points; give 1 to {MAX_KEYS}")
+    return way
 
 
 def _level(call: Call, k: int, given: object) -> tuple[object, object, float]:
