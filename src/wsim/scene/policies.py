@@ -6,17 +6,19 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
-from wsim.assets.policies import Numbers, PolicySpec
-from wsim.assets.policies import policy as known
 from wsim.errors import UserError
 from wsim.limits import MAX_KEYS
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.robots import Robot
 from wsim.scene.validate import Call, Vec3, shown
+
+if TYPE_CHECKING:
+    from wsim.assets.policies import Numbers, PolicySpec
 
 _LARGEST, _UNITS = 100.0, "m/s and rad/s"  # of a command
 
@@ -101,6 +103,8 @@ class Policies(Author):
 
 
 def _policy(call: Call, id: object) -> tuple[PolicySpec, Path, str]:
+    from wsim.assets.policies import policy as known  # with pydantic: few programs have a policy
+
     if not isinstance(id, str) or not id:
         call.fail(f"policy = {shown(id)} must be the id of a policy")
     try:
