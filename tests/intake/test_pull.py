@@ -23,6 +23,7 @@ from wsim.recording.reader import read
 from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
 from wsim.scene import Scene, SceneError
+from wsim.scene.describe import describe
 
 PROGRAM = """from wsim.scene import Scene
 
@@ -180,3 +181,11 @@ def test_the_go2_walks_as_fast_as_it_is_told(go2: TakenIn, tmp_path: Path) -> No
     assert (1.0 - 2.0 * (pose[:, 3] ** 2 + pose[:, 4] ** 2)).min() > 0.95  # how far its own z points up
     assert pose[late, 2] == pytest.approx(0.32, abs=0.03)
     assert (go2.path.parents[1] / "policies" / "go2_walk" / "LICENSE").read_text().count("Apache License") >= 1
+
+
+def test_the_example_of_a_route_builds(go2: TakenIn, tmp_path: Path) -> None:
+    program = Path(__file__).parents[2] / "examples" / "robots" / "go2_route.py"
+    iteration = Iteration.of(program, tmp_path)
+    assert iteration.build().ok
+    (policy,) = describe(iteration.stage).policies
+    assert [each[:2] for each in policy.route] == [(1.6, 0.0), (1.6, 1.6), (0.0, 1.6)]

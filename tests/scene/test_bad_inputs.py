@@ -159,6 +159,10 @@ KINDS: dict[str, tuple[object, ...]] = {
         "ahead", 1.0, [], [HERE], [HERE, (1.0,)], [HERE, (NAN, 0.0, 0.0)], [HERE, None], [HERE, (1e300, 0.0, 0.0)],
         {HERE, (1.0, 0.0, 0.0)},
     ),
+    "route": (
+        "ahead", 1.0, [], [1.0], [(1.0,)], [HERE, (1.0, 2.0, 3.0, 4.0)], [(NAN, 0.0)], [(0.0, 0.0, NAN)], [None],
+        [(1e300, 0.0)], [("1", 0.0)], {HERE, (1.0, 0.0)}, [{1.0, 2.0}],
+    ),
     "flag or none": ("no", "", 0, 1, NAN, [], np.ones(2), object()),
     "asset": ("unicorn", "", 7, None, NAN, [], object()),
     "overrides": ("wide", 7, [], ["p"], {"p": NAN}, {"p": "1"}, {"p": None}, {"p"}, True),
@@ -207,7 +211,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "policy": (
         {"name": "new", "robot": "arm", "policy": "steer", "times": (0.0, 1.0), "commands": (HERE, (1.0, 0.0, 0.0))},
         {"name": "new name", "robot": "robot there", "policy": "policy", "command": "command",
-         "times": "command times", "commands": "commands"},
+         "times": "command times", "commands": "commands", "route": "route", "speed": "number > 0"},
     ),
     "vehicle": (
         {"name": "new"},

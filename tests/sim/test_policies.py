@@ -13,13 +13,14 @@ from tests.assets import policies
 from wsim.assets.folders import VARIABLE
 from wsim.assets.policies import PolicySpec
 from wsim.errors import UserError
-from wsim.scene import Scene
+from wsim.scene import Scene, SceneError
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
 from wsim.scene.world import Policy, World
 from wsim.sim import Simulation
 from wsim.sim.alike import alike
-from wsim.sim.policies import Commands, axes
+from wsim.sim.commands import Commands
+from wsim.sim.policies import axes
 
 JOINTS = ["pan", "lift"]
 SEEN = [
@@ -129,10 +130,14 @@ def test_a_network_that_has_changed_is_refused(own: Path) -> None:
         Simulation(path, device="cpu")
 
 
-def commanded(**changed: Any) -> Commands:
+STILL = np.zeros((1, 3))
+
+
+def commanded(route: tuple = (), speed: float = 0.0, **changed: Any) -> Commands:
     given = {"times": [0.0, 1.0], "commands": [(2.0, 0.0, 0.0), (0.0, 0.0, 1.0)]}
     policy = Policy(
         prim="/World/p", base="/World/b", joints=["/World/j"] * 2, network="", sha256="",
+        route=list(route), speed=speed,
         spec=PolicySpec.model_validate(spec(**changed)), **given,
     )  # fmt: skip
     return Commands([policy])
@@ -140,16 +145,14 @@ def commanded(**changed: Any) -> Commands:
 
 def test_a_command_holds_from_its_time_on_within_its_limits() -> None:
     commands = commanded()
-    still = np.zeros((1, 3))
-    np.testing.assert_allclose(commands.at(0.0, still), [[1.0, 0.0, 0.0]])
-    np.testing.assert_allclose(commands.at(0.98, still), [[1.0, 0.0, 0.0]])
-    np.testing.assert_allclose(commands.at(1.0, still), [[0.0, 0.0, 1.0]])
+    np.testing.assert_allclose(commands.at(0.0, STILL, STILL), [[1.0, 0.0, 0.0]])
+    np.testing.assert_allclose(commands.at(0.98, STILL, STILL), [[1.0, 0.0, 0.0]])
+    np.testing.assert_allclose(commands.at(1.0, STILL, STILL), [[0.0, 0.0, 1.0]])
 
 
 def test_a_command_comes_on_as_quickly_as_it_may() -> None:
     commands = commanded(command_slew=[2.5, 2.0, 5.0])
-    still = np.zeros((1, 3))
-    speeds = [commands.at(0.02 * k, still)[0, 0] for k in range(25)]
+    speeds = [commands.at(0.02 * k, STILL, STILL)[0, 0] for k in range(25)]
     np.testing.assert_allclose(speeds[:3], [0.05, 0.10, 0.15])
     assert speeds[-1] == 1.0
 
@@ -158,11 +161,53 @@ def test_the_trim_adds_what_the_robot_lacks_up_to_its_limit() -> None:
     """It lacks 0.2 m/s: the sum grows by 1.5 x 0.2 a second once the smoothing has caught up."""
     commands = commanded(trim={"smoothing": 0.3, "gain": [1.5, 1.5, 2.0], "limit": [0.4, 0.3, 0.6]})
     measured = np.array([[0.8, 0.0, 0.0]])
-    told = np.array([commands.at(0.0, measured)[0, 0] for _ in range(300)])
+    told = np.array([commands.at(0.0, measured, STILL)[0, 0] for _ in range(300)])
     assert told[-1] == pytest.approx(1.4)
     slow = commanded(trim={"smoothing": 0.3, "gain": [1.5, 1.5, 2.0], "limit": [9.0, 0.3, 0.6]})
-    late = np.array([slow.at(0.0, measured)[0, 0] for _ in range(300)])
+    late = np.array([slow.at(0.0, measured, STILL)[0, 0] for _ in range(300)])
     assert (late[250] - late[200]) / 1.0 == pytest.approx(1.5 * 0.2, rel=0.01)
+
+
+def test_a_route_is_gone_point_by_point_and_ends_at_the_last() -> None:
+    """A robot that does what it is told at once: it never leaves the way by more than the nearness to a point."""
+    quarter = np.pi / 2.0
+    commands = commanded([(1.0, 0.0, 0.0), (1.0, 1.0, quarter), (0.0, 1.0, -quarter)], speed=0.4)
+    where, passed = np.array([[0.0, 0.0, 0.0]]), []
+    for _ in range(600):
+        told = commands.at(0.0, STILL, where)[0]
+        c, s = np.cos(where[0, 2]), np.sin(where[0, 2])
+        where += 0.02 * np.array([[c * told[0] - s * told[1], s * told[0] + c * told[1], told[2]]])
+        assert np.hypot(*told[:2]) <= 0.4 + 1e-9
+        passed.append(where[0].copy())
+    ends = np.array(passed)
+    for point in ((1.0, 0.0), (1.0, 1.0), (0.0, 1.0)):
+        assert np.linalg.norm(ends[:, :2] - point, axis=1).min() < 0.15
+    np.testing.assert_allclose(ends[-1], [0.0, 1.0, -quarter], atol=0.01)
+
+
+def test_a_robot_that_is_held_has_no_policy(own: Path) -> None:
+    policies.write(own, "matrix", spec(), policies.linear(picked(9)))
+    scene = Scene()
+    arm = scene.robot("arm", "desk_arm")
+    with pytest.raises(SceneError, match="has no one base that is free to move"):
+        scene.policy("steer", arm, "matrix")
+    assert not scene.stage.GetPrimAtPath("/World/steer")
+    free = scene.robot("free", "desk_arm", position=(3.0, 0.0, 0.0), fixed=False)
+    scene.policy("one", free, "matrix")
+    with pytest.raises(SceneError, match='has the policy "one" already'):
+        scene.policy("two", free, "matrix")
+
+
+def test_headings_of_a_route_are_those_of_its_ways_unless_they_are_given(own: Path) -> None:
+    policies.write(own, "matrix", spec(), policies.linear(picked(9)))
+    scene = Scene()
+    arm = scene.robot("arm", "desk_arm", position=(1.0, 1.0, 5.0), fixed=False)
+    scene.policy("steer", arm, "matrix", route=((3.0, 1.0), (3.0, 2.0), (3.0, 5.0, -30.0)), speed=0.3)
+    (policy,) = describe(scene.stage).policies
+    assert policy.speed == 0.3
+    np.testing.assert_allclose(
+        policy.route, [(3.0, 1.0, 0.0), (3.0, 2.0, np.pi / 2.0), (3.0, 5.0, -np.pi / 6.0)], atol=1e-6
+    )
 
 
 @pytest.mark.parametrize(

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
-from wsim.assets.policies import Numbers, PolicySpec
+from wsim.errors import UserError
 from wsim.limits import MAX_KEYS
 from wsim.scene import schema
-from wsim.scene.authoring import Author, Handle, note_line
+from wsim.scene.authoring import Author, Handle, note_line, world_pose
 from wsim.scene.robots import Robot
 from wsim.scene.validate import Call, Vec3, shown
+
+if TYPE_CHECKING:
+    from wsim.assets.policies import Numbers, PolicySpec
 
 _LARGEST, _UNITS = 100.0, "m/s and rad/s"  # of a command
 
@@ -30,6 +35,8 @@ class Policies(Author):
         command: Sequence[float] = (0.0, 0.0, 0.0),
         times: Sequence[float] | None = None,
         commands: Sequence[Sequence[float]] | None = None,
+        route: Sequence[Sequence[float]] | None = None,
+        speed: float = 0.5,
     ) -> Handle:
         """Let a policy set where a robot's servos go, by what it sees of the robot, to go as it is commanded.
 
@@ -44,6 +51,10 @@ class Policies(Author):
             command: From the start to the end.
             times: When commands change [s], rising, the first one 0; in place of `command`, with `commands`.
             commands: From each of those times on.
+            route: Way-points in the world, each (x, y) [m] or (x, y, heading_deg), gone to one after the other, in
+                place of commands. It turns to a point's heading on the way there, by default that of the way, and
+                stays at the last.
+            speed: Along the route [m/s].
 
         Raises:
             SceneError: If there is no such robot or policy, the robot lacks a joint of it or has a policy already, or
@@ -52,8 +63,12 @@ class Policies(Author):
         call = Call("policy", name)
         path = self._path(call)
         prim = self._robot(call, robot)
+        base = _base(call, prim)
         spec, network, digest = _policy(call, name if policy is None else policy)
         when, what = _commands(call, command, times, commands)
+        way, fast = _route(call, base, route), call.positive("speed", speed, _LARGEST, "m/s")
+        if way and (times is not None or any(what[0])):
+            call.fail("route and a command are both given; give one")
         joints = [prim.GetPrimAtPath(f"joints/{joint}") for joint in spec.joints]
         for joint, each in zip(spec.joints, joints, strict=True):
             if not each:
@@ -66,8 +81,9 @@ class Policies(Author):
             "description": (names.String, spec.model_dump_json(exclude_defaults=True)),
             "times": (names.DoubleArray, Vt.DoubleArray(when)),
             "commands": (names.Vector3dArray, Vt.Vec3dArray([Gf.Vec3d(*each) for each in what])),
+            **({"route": (names.Vector3dArray, Vt.Vec3dArray(way)), "speed": (names.Double, fast)} if way else {}),
         })  # fmt: skip
-        made.CreateRelationship("wsim:base", custom=False).SetTargets([_base(call, prim).GetPath()])
+        made.CreateRelationship("wsim:base", custom=False).SetTargets([base.GetPath()])
         made.CreateRelationship("wsim:joints", custom=False).SetTargets([each.GetPath() for each in joints])
         note_line(made)
         return Handle(made.GetName(), path, "policy")
@@ -87,15 +103,37 @@ class Policies(Author):
 
 
 def _policy(call: Call, id: object) -> tuple[PolicySpec, Path, str]:
-    from wsim.assets.policies import policy  # few programs have one
-    from wsim.errors import UserError
+    from wsim.assets.policies import policy as known  # with pydantic: few programs have a policy
 
     if not isinstance(id, str) or not id:
         call.fail(f"policy = {shown(id)} must be the id of a policy")
     try:
-        return policy(id)
+        return known(id)
     except UserError as error:
         call.fail(f"policy: {error}")
+
+
+def _route(call: Call, base: Usd.Prim, route: Sequence[Sequence[float]] | None) -> list[Gf.Vec3d]:
+    """Way-points with a heading each [rad]."""
+    if route is None:
+        return []
+    place, _ = world_pose(base)
+    x, y, way = place[0], place[1], []
+    for k, given in enumerate(call.listed("route", route, "(x, y) or (x, y, heading_deg)")):
+        three = given if isinstance(given, (list, tuple)) and len(given) == 3 else None
+        to = call.position(f"route[{k}]", three or _level(call, k, given))
+        heading = math.radians(to[2]) if three else math.atan2(to[1] - y, to[0] - x)
+        way.append(Gf.Vec3d(to[0], to[1], heading))
+        x, y = to[0], to[1]
+    if not 1 <= len(way) <= MAX_KEYS:
+        call.fail(f"route has {len(way)} points; give 1 to {MAX_KEYS}")
+    return way
+
+
+def _level(call: Call, k: int, given: object) -> tuple[object, object, float]:
+    if not isinstance(given, (list, tuple)) or len(given) != 2:
+        call.fail(f"route[{k}] = {shown(given)} must be (x, y) [m] or (x, y, heading_deg)")
+    return given[0], given[1], 0.0
 
 
 def _commands(

@@ -10,7 +10,7 @@ from pxr import Usd, UsdPhysics
 from pydantic import ValidationError
 
 from wsim.assets.policies import PolicySpec
-from wsim.limits import MAX_KEYS
+from wsim.limits import MAX_KEYS, MAX_POSITION
 from wsim.scene import schema
 from wsim.scene.usd_prims import line_of, value_of
 from wsim.scene.usd_shapes import to_vec3
@@ -34,6 +34,8 @@ def read_policies(prims: Iterable[Usd.Prim]) -> Iterator[Policy]:
             sha256=value_of(prim, "sha256", ""),
             times=list(value_of(prim, "times", None) or [0.0]),
             commands=[to_vec3(each) for each in value_of(prim, "commands", None) or [(0.0, 0.0, 0.0)]],
+            route=[to_vec3(each) for each in value_of(prim, "route", None) or ()],
+            speed=value_of(prim, "speed", 0.0),
             line=line_of(prim),
         )
 
@@ -76,6 +78,11 @@ def _problems(prim: Usd.Prim) -> Iterator[str]:
         yield "times: they must begin with 0 and rise"
     if not all(abs(x) <= _LARGEST for each in commands for x in each):
         yield f"commands: each must be at most {_LARGEST:g} in size"
+    route, speed = list(value_of(prim, "route", ())), value_of(prim, "speed", 0.0)
+    if len(route) > MAX_KEYS or not all(abs(x) <= MAX_POSITION for each in route for x in each):
+        yield f"route: at most {MAX_KEYS} points, each at most {MAX_POSITION:g} m away"
+    if route and not 0.0 < speed <= _LARGEST:
+        yield f"speed: {speed:g} must be above 0 and at most {_LARGEST:g} m/s"
 
 
 def _targets(prim: Usd.Prim, name: str) -> list[Usd.Prim]:

@@ -197,6 +197,8 @@ class Policy(_Model):
     sha256: str  # of that file
     times: list[float] = [0.0]  # [s], from 0 on, rising: when each command begins
     commands: list[Vec3] = [(0.0, 0.0, 0.0)]  # forward, to the left [m/s], turning to the left [rad/s]
+    route: list[Vec3] = Field(default_factory=list)  # x, y [m], heading [rad]: gone along instead of the commands
+    speed: float = 0.0  # [m/s] along the route
     line: str | None = None
 
 

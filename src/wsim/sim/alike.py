@@ -23,7 +23,7 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     Motor: frozenset({"position", "velocity"}),
     Gear: frozenset({"ratio", "offset"}),
     Contact: frozenset({"friction", "restitution"}),
-    Policy: frozenset({"times", "commands"}),
+    Policy: frozenset({"times", "commands", "speed"}),
     Guide: frozenset({"position", "axis", "side"}),
     Spring: frozenset({"stiffness", "damping", "rest_length"}),
     Rope: frozenset({"length"}),

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wsim.assets.policies import AXES, PolicySpec, Trim
+from wsim.assets.policies import PolicySpec
 from wsim.errors import UserError
 from wsim.scene.world import Policy, World
+from wsim.sim.commands import Commands
 from wsim.sim.joint_arrays import in_every_world, joint_indices
 from wsim.sim.networks import Network, read_network
 
@@ -35,46 +36,6 @@ def load(policy: Policy) -> Network:
     if hashlib.sha256(path.read_bytes()).hexdigest() != policy.sha256:
         raise UserError(f"{policy.prim}: {path} has changed since the stage was made; build it again")
     return read_network(path, policy.spec.size, len(policy.spec.joints))
-
-
-class Commands:
-    """What each of W worlds is told, brought on slowly and trimmed.
-
-    Args:
-        policies: The policy as each world states it.
-    """
-
-    def __init__(self, policies: Sequence[Policy]) -> None:
-        spec = policies[0].spec
-        self._times = [np.array(each.times) for each in policies]
-        self._commands = [np.array(each.commands) for each in policies]
-        self._limit = np.array(spec.command_limit)
-        self._most = None if spec.command_slew is None else np.array(spec.command_slew) / spec.rate
-        self._now = np.zeros((len(policies), AXES))
-        self._trim = _Trimmed(spec.trim, 1.0 / spec.rate, len(policies)) if spec.trim else None
-
-    def at(self, t: float, measured: Floats) -> Floats:
-        """(W, 3) at a time [s], where the robots go as `measured` (W, 3) along their headings."""
-        rows = [max(0, int(np.searchsorted(times, t + 1e-9, side="right")) - 1) for times in self._times]
-        wanted = np.stack([commands[row] for commands, row in zip(self._commands, rows, strict=True)])
-        change = np.clip(wanted, -self._limit, self._limit) - self._now
-        self._now += change if self._most is None else np.clip(change, -self._most, self._most)
-        return self._now + self._trim.of(self._now, measured) if self._trim else self._now
-
-
-class _Trimmed:
-    """The integral of how far the measured, smoothed, is from what is wanted."""
-
-    def __init__(self, trim: Trim, dt: float, worlds: int) -> None:
-        self._dt, self._share = dt, dt / (trim.smoothing + dt)
-        self._gain, self._limit = np.array(trim.gain), np.array(trim.limit)
-        self._measured, self._sum = np.zeros((worlds, AXES)), np.zeros((worlds, AXES))
-
-    def of(self, wanted: Floats, measured: Floats) -> Floats:
-        self._measured += self._share * (measured - self._measured)
-        more = self._gain * (wanted - self._measured) * self._dt
-        self._sum = np.clip(self._sum + more, -self._limit, self._limit)
-        return self._sum
 
 
 class PolicyController:
@@ -112,7 +73,7 @@ class PolicyController:
         spec: PolicySpec = self._policy.spec
         coordinate, dof, target = self._joints
         seen = self._motion(simulation.state)
-        seen["command"] = self._commands.at(t, seen.pop("measured"))
+        seen["command"] = self._commands.at(t, seen.pop("measured"), seen.pop("where"))
         seen["joint_position"] = simulation.state.joint_q.numpy()[coordinate].astype(np.float64)
         seen["joint_velocity"] = simulation.state.joint_qd.numpy()[dof].astype(np.float64)
         seen["last_action"] = self._action
@@ -131,7 +92,7 @@ class PolicyController:
         simulation.control.joint_target_q.assign(targets)
 
     def _motion(self, state: Any) -> dict[str, Floats]:
-        """The base's motion in its own frame, and along its heading, (W, 3) each."""
+        """The base's motion in its own frame, and along its heading; x, y and heading; (W, 3) each."""
         pose = state.body_q.numpy()[self._base].astype(np.float64)
         motion = state.body_qd.numpy()[self._base].astype(np.float64)
         own = axes(pose[:, 3:])  # rows of each are the frame's axes in the world
@@ -139,12 +100,14 @@ class PolicyController:
         velocity = motion[:, :3] - np.cross(spin, np.einsum("wij,wi->wj", own, self._com))  # of its origin
         heading = own[:, 0, :2] / np.maximum(np.linalg.norm(own[:, 0, :2], axis=1, keepdims=True), 1e-9)
         ahead, left = heading, np.stack([-heading[:, 1], heading[:, 0]], axis=1)
+        yaw = np.arctan2(heading[:, 1], heading[:, 0])
         along = [np.einsum("wi,wi->w", velocity[:, :2], way) for way in (ahead, left)]
         return {
             "linear_velocity": np.einsum("wij,wj->wi", own, velocity),
             "angular_velocity": np.einsum("wij,wj->wi", own, spin),
             "gravity": -own[:, :, 2],
             "measured": np.stack([*along, spin[:, 2]], axis=1),
+            "where": np.stack([pose[:, 0], pose[:, 1], yaw], axis=1),
         }
 
 
