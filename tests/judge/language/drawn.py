@@ -4,12 +4,15 @@ Each draws its numbers and says how bodies go, as functions of time, and what is
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from tests.judge.language.truths import NONE, Motion, about, between, least, most, still, turn
-from tests.judge.theory import RADIUS, G, ball, box, ground, slab
+from tests.judge.theory import RADIUS, G, ball, box, ground, record, slab
+from wsim.recording.recording import FluidTrack, Recording
+from wsim.scene.world import Container, Fluid
 
 X = np.eye(3)[0]
 
@@ -317,6 +320,43 @@ def carousel(draw: np.random.Generator) -> Motion:
     ]  # fmt: skip
     bodies = [box("frame"), box("wheel"), box("load")]
     return Motion(bodies, at, seconds, claims, statics=[], gravity=False)
+
+
+# ---- fluids
+def vessel(draw: np.random.Generator) -> tuple[Recording, list[tuple[str, bool]]]:
+    """Water that turns as one about the middle of a tank; a part of it is beside, and balls are in and out of it."""
+    rate, beside, tall = draw.uniform(-4.0, 4.0), int(draw.integers(2, 8)), int(draw.integers(4, 8))
+    t = np.arange(49) / 24.0
+    ticks = (np.arange(20) + 0.5) / 20 - 0.5
+    heights = 0.05 * (np.arange(tall) + 0.5)
+    points = np.stack(np.meshgrid(ticks, ticks, heights, indexing="ij"), axis=-1).reshape(-1, 3)
+    out = np.arange(len(points)) % 10 < beside
+    turned = np.repeat(points[None], len(t), axis=0)
+    velocity = np.cross([0.0, 0.0, rate], turned)
+    moved = turned + np.where(out, 10.0, 0.0)[None, :, None] * np.array([1.0, 0.0, 0.0])
+    level, share = 0.05 * tall * (1 - beside / 10), 1 - beside / 10
+    water = Fluid(prim="/World/water", density=1000.0, viscosity=0.001, spacing=0.05, size=(1.0, 1.0, 0.05 * tall),
+                  center=(0.0, 0.0, 0.025 * tall), container="/World/tank")  # fmt: skip
+    tank = Container(prim="/World/tank", inner_size=(1.0, 1.0, 0.6), inner_center=(0.0, 0.0, 0.3))
+    inside = int(draw.integers(1, 3))
+    names = ["one", "two", "three"]
+    places = [[0.25 * k if k < inside else 5.0, 0.0, 0.3] for k in range(3)]
+    place, v, _, _ = still(t, *places)
+    case = record([ball(name) for name in names], place, v, t)
+    tracks = {}
+    for name, at in (("whirl", turned), ("water", moved)):
+        density = np.full(at.shape[:2], 1000.0, np.float32)
+        tracks[f"/World/{name}"] = FluidTrack(t, at.astype(np.float32), velocity.astype(np.float32), density)
+    whirl = water.model_copy(update={"prim": "/World/whirl"})
+    world = case.world.model_copy(update={"fluids": [water, whirl], "containers": [tank]})
+    claims = [
+        *between("swirls_between(whirl, z, {})", math.degrees(rate), "deg/s", size=200.0),
+        *between("swirls_between(whirl, x, {})", 0.0, "deg/s", size=200.0),
+        *least("fills(water, tank, {})", share), *about("level_in(water, tank, {}, within {within})", level, "m"),
+        (f"counts(tank, {inside}, one, two, three)", True), (f"counts(tank, {inside + 1}, one, two, three)", False),
+        ("contained_in(one, tank)", True), ("contained_in(three, tank)", False),
+    ]  # fmt: skip
+    return replace(case, world=world, fluids=tracks), claims
 
 
 MOTIONS = (bounce, throw, graze, strike, slide, shove, roll, pendulum, rock, carousel)

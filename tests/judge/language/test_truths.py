@@ -5,8 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-from tests.judge.language.drawn import MOTIONS
-from wsim.judge.language import evaluate, parse
+from tests.judge.language.drawn import MOTIONS, vessel
+from wsim.judge.evidence.evidence import Evidence
+from wsim.judge.language import Signals, evaluate, parse
 
 RATES = (24.0, 30.0, 60.0)
 
@@ -26,3 +27,10 @@ def test_what_is_true_holds_and_what_is_off_fails(motion, seed):
             if found.satisfied[0] != holds or (found.margin[0] >= 0.0) != holds:
                 wrong.append((rate, own, contacts, said, holds, float(found.margin[0]), found.units[0]))
     assert wrong == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_true_of_a_fluid_holds_and_what_is_off_fails(seed):
+    recording, claims = vessel(np.random.default_rng(seed))
+    signals = Signals.of(Evidence(recording))
+    assert [said for said, holds in claims if evaluate(parse(said), signals).satisfied[0] != holds] == []

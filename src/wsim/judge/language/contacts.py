@@ -148,15 +148,16 @@ def about(values: Floats) -> Floats:
 def touch_limit(signals: Signals, one: str, other: str) -> tuple[Floats, str]:
     """The gap up to which two objects are taken to touch (W, T) [m], and why.
 
-    Where it is recorded what presses on what, what does not press does not touch, however near it is; but for two that
-    are both led, or fixed, between which no contacts are looked for.
+    Where it is recorded what presses on what, what does not press does not touch, however near it is; but for two
+    between which no contacts are looked for, as both are led or fixed, or a joint ties them.
     """
     free = [name for name in (one, other) if signals.moves(name) and not signals.body(name).kinematic]
-    if signals.evidence is None or signals.evidence.recording.contacts is None or not free:
+    both = {signals.prim(one), signals.prim(other)}
+    tied = any({joint.parent or joint.fixture, joint.child} == both for joint in signals.world.joints)
+    if signals.evidence is None or signals.evidence.recording.contacts is None or not free or tied:
         return touch_reach(signals, one, other)
-    return np.full(
-        (1, 1), SLOP * moving_size(signals, one, other)
-    ), f"{SLOP:g} L, as no contact is recorded farther off"
+    limit = np.full((1, 1), SLOP * moving_size(signals, one, other))
+    return limit, f"{SLOP:g} L: where contacts are recorded, what does not press does not touch"
 
 
 def touch_reach(signals: Signals, one: str, other: str) -> tuple[Floats, str]:
