@@ -3,6 +3,8 @@
 What is run is as stated; then one number of one body is told otherwise, and the check must say so.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -124,3 +126,21 @@ def test_ends_that_land_one_after_the_other_are_no_single_blow(rods):
         assert found[name].parting == pytest.approx(0.5 * found[name].approach, rel=0.005)
         for share in (0.9, 1.1):
             assert not ask(CheckRestitution(), told(rods, name, restitution=share * 0.5))[0].passed
+
+
+@pytest.mark.parametrize("start", [-2.0, -1.995, -1.985])
+def test_what_goes_farther_in_a_step_than_contacts_reach_is_pushed_out(tmp_path, start):
+    """At 20 m/s and 1.25 ms a ball goes 25 mm: it may be 15 mm in the wall, and fades out of it by 0.5 m/s at most."""
+    scene = Scene()
+    scene.simulation(duration=0.2, frame_rate=60.0, gravity=(0.0, 0.0, 0.0))
+    scene.sphere("ball", radius=0.03, position=(start, 0, 0), mass=0.1, velocity=(20, 0, 0), friction=0, restitution=0)
+    scene.box("wall", size=(0.004, 1, 1), position=(0, 0, 0), static=True)
+    Simulation(scene.save(tmp_path / "stage.usda"), device="cpu").run(tmp_path / "r.rrd")
+    recording = read(tmp_path / "r.rrd")
+    (finding,) = ask(CheckRestitution(), recording)
+    assert finding.passed, finding.message
+    after = recording.body_qd[:, 0, 0] <= 0.0
+    assert after.any()
+    faster = recording.body_qd.copy()
+    faster[after, 0, 0] = -1.0  # 5 % of the approach
+    assert not ask(CheckRestitution(), replace(recording, body_qd=faster, contacts=None))[0].passed

@@ -39,6 +39,8 @@ SHOWS = 0.1  # of an approach: where it is less sure than that the frames say no
 ACROSS = 0.2  # cosine between the normals of two contacts that do not share a blow
 STAYS = 0.05  # of the approach: what was to bounce and parts by less may have done so more than once
 SLOW = 2 * 9.81  # [m/s^2]: an approach slower than this times the step is no blow (docs/rigid.md)
+REACH = 0.01  # [m]: gap at which wsim's contacts act; what goes farther in a step may be found in what it hits
+FADES, FADING = 0.02, 0.5  # [s], [m/s]: time in which such overlap fades, at this speed at most (docs/rigid.md)
 SURE = 0.02  # of a step: points that come to touch within it do so together
 
 
@@ -104,6 +106,17 @@ def tells(evidence: Evidence) -> bool:
     if world.combine != "smaller" or recording.metadata.get("velocities") == "differences":
         return False
     return not (world.fluids or recording.metadata.get("controlled"))
+
+
+def pushed_out(approach: float, restitution: float, step: float) -> float:
+    """How fast a stated time step may leave what does not bounce on its way out of what it hit [m/s].
+
+    What is farther away than `REACH` as a step begins is found by the next in the other surface, by up to v dt - REACH.
+    Nothing of a step that nobody states, 0.
+    What bounces is brought back to the surface by its own law.
+    """
+    deep = approach * step - REACH if restitution == 0.0 else 0.0
+    return min(max(deep, 0.0) / FADES, FADING)
 
 
 def blows(copies: Sequence[Evidence]) -> list[list[Blow]]:
@@ -196,7 +209,8 @@ def _blow(courses: Courses, touching: Touching, point: Point, faster: float, aft
     there = float(np.sqrt(max(back**2 - 2.0 * faster / dt * point.lowest, 0.0)))
     # Gravity's pull over the step of the blow is on either side of it, whatever else changes by as much the other way.
     either = max(faster, _fallen(motion, dt, point.met, pair), after)
-    unsure = 2.0 * either + abs(there - back) + sum(_off(courses, point, side) for side in (0, 1))
+    unsure = 2.0 * either + abs(there - back) + pushed_out(speed, law.restitution, motion.step)
+    unsure += sum(_off(courses, point, side) for side in (0, 1))
     parts, slips = point.parting, point.slips
     others = contacts.only(_others(contacts, pair) & (contacts.gap <= point.approach * dt + rounding))
     if len(others):

@@ -19,7 +19,7 @@ from wsim.geometry.rotations import conjugate, cross, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.books.followed import Course, Followed, Pose
 from wsim.judge.books.forces import ONE_WAY, STILL
-from wsim.judge.books.impacts import ACROSS, APART, SHOWS, SLOW, STAYS, Blow, Rub
+from wsim.judge.books.impacts import ACROSS, APART, SHOWS, SLOW, STAYS, Blow, Rub, pushed_out
 from wsim.judge.books.pressed import answers
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.touching import Contacts, Touching, together
@@ -126,6 +126,7 @@ class RecordedBlows:
         pull = self._followed.pull(one, two, when, point, normal)
         deep = max(0.5 * approach * self._followed.dt, self._depth(row, poses[0], point))
         unsure = _step_leaves(approach, law.restitution, pull / self._followed.dt, deep) + pull
+        unsure += pushed_out(approach, law.restitution, motion.step)
         unsure += one.off(when, point) + two.off(when, point)
         unsure += max(self._followed.turned(each, point, 2) for each in poses)
         if law.restitution <= STAYS:
