@@ -121,7 +121,7 @@ class Iteration:
             readable=asset_folders(),
         )
         self.progress("building the stage", 1, 1)
-        self._note({"build": asdict(built), "seconds": {"build": round(built.seconds, 3)}})
+        self._note({"build": built.facts(), "seconds": {"build": round(built.seconds, 3)}})
         if built.ok:
             draws.apply(self.stage, self.settings.draws)
         return built
