@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 from pathlib import Path
@@ -64,6 +65,7 @@ def test_what_is_told_of_each_is_what_its_stage_says(tmp_path: Path, isolation: 
     for stage, result in zip(stages, built, strict=True):
         if result.ok:
             assert repr(Reading.model_validate_json(result.told)) == repr(read(stage))
+        assert json.dumps(result.facts())
     assert not any(result.told for result in build_many(program, stages, params, isolation=isolation))
 
 

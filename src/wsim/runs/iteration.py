@@ -123,8 +123,7 @@ class Iteration:
             readable=asset_folders(),
         )
         self.progress("building the stage", 1, 1)
-        noted = {name: value for name, value in asdict(built).items() if name != "told"}
-        self._note({"build": noted, "seconds": {"build": round(built.seconds, 3)}})
+        self._note({"build": built.facts(), "seconds": {"build": round(built.seconds, 3)}})
         if built.ok:
             draws.apply(self.stage, self.settings.draws)
         return built

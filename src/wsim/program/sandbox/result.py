@@ -40,6 +40,10 @@ class BuildResult:
     problems: tuple[str, ...] = ()
     told: bytes = b""
 
+    def facts(self) -> dict[str, Any]:
+        """All but what is told of the stage, as plain data."""
+        return {name: value for name, value in vars(self).items() if name != "told"}
+
     def finding(self) -> dict[str, Any]:
         """The fields of a `wsim.judge.verdict.Finding`, as plain data."""
         return {
