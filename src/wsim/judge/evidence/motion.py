@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 OURS = "loose_order"  # what wsim's simulator says of itself: another engine's model may start anywhere
-LEADS = 0.15  # half a change of an acceleration in a step, that a lead may account for [m/s^2]: of 40 rad/s by g
+LEADS = 0.15  # half a change of an acceleration in a step, that a lead may account for [m/s^2]
 CHUNK = 64  # frames whose distances between all bodies are held at once
 OF_FRAMES = (
     "com", "speed", "rate", "surface_speed", "acceleration", "touched", "spin", "angular_momentum", "torque", "kinetic",
