@@ -233,18 +233,16 @@ def calm_for(
 ) -> int:
     """Count the steps since the last jolt, where what half a step gives went on otherwise than in the step before.
 
-    In a start nothing is one, and after it none was before.
+    Before a start nothing is known; what goes on evenly at its end was calm before.
     """
     own, calm = world % loose.moments.shape[0], int(noted.calm[world, k])
     turning = wp.quat_rotate_inv(q, noted.gain[world, k, 1] + noted.trend[world, k, 1])
     spin = spin_of(loose.principal[own, k], loose.moments[own, k], turning)
     off = wp.length(gained - noted.gain[world, k, 0] - noted.trend[world, k, 0])
-    if calm < 0:
-        calm = wp.where(calm == -1, ALWAYS, calm + 1)
-    elif off + loose.arm[own, k] * wp.length(spun_up - spin) > most:
+    if off + loose.arm[own, k] * wp.length(spun_up - spin) > most:
         calm = 0
     else:
-        calm = wp.min(calm + 1, ALWAYS)
+        calm = wp.where(calm == -1, ALWAYS, wp.min(calm + 1, ALWAYS))
     noted.calm[world, k] = calm
     return calm
 
@@ -355,14 +353,14 @@ def fly(
     kick = twist - change[world, k]
     pull = push + wp.quat_rotate(q, wp.cross(twist, c) + wp.cross(w, wp.cross(w, c)))
     free, alone = no_force(held, world, f), weighs_only(pushed, bias, world, f)
-    late = wp.float64(0.0)
+    half, late = wp.float64(0.5) * h, wp.float64(0.0)
     if goes_evenly(world, k, pull, wp.quat_rotate(q, kick), free, alone, even, loose, noted):
-        late = wp.float64(0.5) * h
-    gained, spun_up = wp.float64(0.5) * h * pull, wp.float64(0.5) * h * kick
+        late = half
+    gained, spun_up = half * pull, half * kick
     if not free:
         gained = gained_along(gained, v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull)
         spun_up = gained_along(spun_up, w + h * kick)
-    calm = calm_for(world, k, gained, spun_up, q, wp.float64(0.5) * h * rough, loose, noted)
+    calm = calm_for(world, k, gained, spun_up, q, half * rough, loose, noted)
     lags = late == wp.float64(0.0) and alone and loose.tied[k] == 0 and wp.float64(calm) * h >= patience
     before = wp.vec3d(noted.gain[world, k, 0])
     spun_before = spin_of(axes, inertia, wp.quat_rotate_inv(q, noted.gain[world, k, 1]))

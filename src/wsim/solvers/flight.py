@@ -31,7 +31,7 @@ NEVER = 2**30  # steps
 SETTLING = 3  # steps that a start takes
 EVEN = 0.1  # change of an acceleration that is none [m/s^2]: five times what a gap of 3e-8 m, rounding, makes of it
 PATIENCE = 0.02  # without a jolt, for which it must have been even [s]
-ROUGH = 0.3  # by which an acceleration changes otherwise than in the step before, where it jolts [m/s^2]
+ROUGH = 0.1  # by which an acceleration changes otherwise than in the step before, where it jolts [m/s^2]
 
 
 class Flight:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 OURS = "loose_order"  # what wsim's simulator says of itself: another engine's model may start anywhere
-LEADS = 0.15  # half a change of an acceleration in a step, from which on it is a jolt to the simulator [m/s^2]
+LEADS = 0.15  # half a change of an acceleration in a step, that a lead may account for [m/s^2]
 CHUNK = 64  # frames whose distances between all bodies are held at once
 OF_FRAMES = (
     "com", "speed", "rate", "surface_speed", "acceleration", "touched", "spin", "angular_momentum", "torque", "kinetic",
@@ -152,8 +152,8 @@ class Motion:
         """Momentum and angular momentum that velocities gained in each interval beside all impulses, (T - 1, B, 6).
 
         Where a body goes by steps of the first order, its velocity is told half a step after that which impulses have
-        given it. This is what that grew by, where it is recorded, and no more than it can: in a step such a body's
-        acceleration changes by less than 2 `LEADS`, or its velocity is told as it is.
+        given it. This is what that grew by, where it is recorded, but no more than what an acceleration makes of it that
+        changes by 2 `LEADS` in a step.
         """
         recorded = self._recorded.recording.lead
         if recorded is None:
