@@ -89,7 +89,7 @@ def test_it_changes_lanes_and_stops_at_the_end(tmp_path):
 
 
 def test_it_holds_its_speed_up_a_hill(tmp_path):
-    """From rest up 10 deg to 3 m/s: v² = 2 a s, once its springs have taken up the start, then the speed, within 5 %."""
+    """From rest up 10 deg to 3 m/s: v² = 2 a s, once its springs are pressed in, then the speed, within 5 %."""
     driver = Driver("truck", "hmmwv", path=[(x, 0.0) for x in np.arange(0.0, 60.0, 0.5)], speed=3.0,
                     acceleration=2.0, stop=False)  # fmt: skip
     found = driven(driver, tmp_path, 3.5, slope=10.0)

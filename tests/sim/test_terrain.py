@@ -113,3 +113,18 @@ def test_a_ball_follows_the_road_that_is_cut_into_a_slope(bench):
     end = track.position("ball")[-1]
     assert end[0] == pytest.approx(2.0, rel=1e-3)
     assert abs(end[1]) < 2e-3
+
+
+def test_among_many_rocks_terrain_is_no_convex_hull(tmp_path):
+    """Newton's masks of what does not touch have 32 colours; a truck, its ground and 40 rocks are more than that."""
+    scene = Scene()
+    scene.simulation(frame_rate=100.0)
+    land = scene.terrain("land", size=(40.0, 24.0), cell=1.0, layers=[lambda x, y: 0.02 * (x * x + y * y)])
+    vehicle = scene.vehicle("v", "hmmwv", position=land.place(0.0, 0.0, above=0.06))
+    scene.scatter("rock", on=land, count=40, clear=[((0.0, 0.0), 5.0)])
+    simulation = Simulation(scene.save(tmp_path / "v.usda"), device="cpu")
+    body = [body.prim for body in simulation.world.bodies].index(vehicle.path)
+    begin = float(simulation.state.body_q.numpy()[body, 2])
+    for _ in range(3):
+        simulation.advance_frame()
+    assert float(simulation.state.body_q.numpy()[body, 2]) == pytest.approx(begin, abs=0.005)  # it was lifted out of it
