@@ -103,14 +103,14 @@ class Laws:
 
         What its stiffness and its damping give may be large, and their sum small: a share of the sum does not bound it.
         """
-        found = self.mean_of_drive(joint)
-        if found is None or joint.drive is None:
+        struck, smooth = self.mean_of_drive(joint), self.mean_of_drive(joint, late=False)  # `given` has that it is late
+        if struck is None or smooth is None or joint.drive is None:
             return
-        mean, may, fits = found
         effort, most = self.effort(joint), joint.drive.max_effort
-        below = fits if most is None else np.maximum(np.abs(effort[1:]), np.abs(effort[:-1])) < most
+        below = struck[2] if most is None else np.maximum(np.abs(effort[1:]), np.abs(effort[:-1])) < most
         hit = self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
-        refined = law.known & np.where(hit, fits, below)
+        mean, may, refined = (np.where(hit, *pair) for pair in zip(struck, (*smooth[:2], below), strict=True))
+        refined &= law.known
         extent = np.pi if joint.kind == "revolute" else float(np.abs(self._motion.com).max(initial=0.0))
         may = may + 8.0 * FLOAT32 * joint.drive.damping * extent / self._motion.h  # positions are rounded
         more, unsure = (np.where(refined, of, 0.0) for of in (mean - 0.5 * (effort[1:] + effort[:-1]), may))
@@ -128,15 +128,18 @@ class Laws:
         assert drive is not None and track is not None
         return _effort(drive, track.position, self.rate(joint))
 
-    def mean_of_drive(self, joint: Joint) -> tuple[Floats, Floats, Bools] | None:
+    def mean_of_drive(self, joint: Joint, *, late: bool = True) -> tuple[Floats, Floats, Bools] | None:
         """What a drive gives in the mean of each interval, blow or none, by how much that may be off, and where it is
         sure to have been below its full strength, (T - 1,) each [N or N m]; None of what moves unseen.
+
+        With `late` it may be what it is at steps' starts, else it is its mean over time.
         """
         drive, track = joint.drive, self._evidence.joint(joint)
         if drive is None or track is None:
             return None
         h, left, rate = self._motion.h, track.position - drive.position, self.rate(joint)
-        mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, self._motion.step)
+        step = self._motion.step if late else 0.0
+        mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, step)
         most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - drive.velocity)
         below = (
             np.full(len(h), True) if drive.max_effort is None else np.maximum(most[1:], most[:-1]) < drive.max_effort
