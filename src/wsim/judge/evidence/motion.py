@@ -152,8 +152,8 @@ class Motion:
         """Momentum and angular momentum that velocities gained in each interval beside all impulses, (T - 1, B, 6).
 
         Where a body goes by steps of the first order, its velocity is told half a step after that which impulses have
-        given it. This is what that grew by, where it is recorded, but no more than what an acceleration makes of it
-        that changes by 2 `LEADS` in a step.
+        given it. This is what that grew by, where it is recorded, but no more than an acceleration makes of it that
+        changes by 2 `LEADS` in a step.
         """
         recorded = self._recorded.recording.lead
         if recorded is None:
