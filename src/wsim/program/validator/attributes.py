@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+from dataclasses import fields, is_dataclass
 from importlib import import_module
 
 import numpy as np
@@ -106,6 +107,8 @@ def _of_const(reader: State, value: Const, name: str, node: ast.Attribute) -> Va
             _missing(reader, node, kind, name)
             return UNKNOWN
         return wrapped(getattr(value.value, name))
+    if is_dataclass(value.value) and name in {field.name for field in fields(value.value)}:
+        return wrapped(getattr(value.value, name))  # a field without a default is none of the class
     if not hasattr(type(value.value), name):
         _missing(reader, node, kind, name)
         return UNKNOWN
