@@ -8,6 +8,7 @@ from wsim.kernels.free_turns import free_turn, in_axes, spin_after, spin_of
 
 NO_FORCE = wp.constant(wp.float64(2.0**-126))  # [N] or [N m]: below single precision, where GPUs flush what is left
 ALWAYS = wp.constant(2**30)  # steps, of what has been even since the start
+SOON = wp.constant(2)  # steps, within which what ends came of its own beginning
 
 
 @wp.struct
@@ -32,22 +33,25 @@ class Noted:
     gain: wp.array3d(dtype=wp.vec3d)  # of velocity and angular momentum in half of the last step
     trend: wp.array3d(dtype=wp.vec3d)  # by which that has grown since the step before
     calm: wp.array2d(dtype=int)  # steps since the last jolt, or up to where a start is over
-    behind: wp.array2d(dtype=int)  # whether velocities lack that gain
+    behind: wp.array2d(dtype=int)  # for how many steps velocities lack that gain, -1 where they are not to
     shift: wp.array3d(dtype=wp.vec3d)  # what they were given so far without an impulse
     since: wp.array2d(dtype=int)  # the last exact step: steps of the first order
     ahead: wp.array(dtype=wp.spatial_vector)  # of Newton's bodies: what the step that comes adds to told velocities
 
 
 @wp.func
-def gained_along(gain: wp.vec3d, way: wp.vec3d) -> wp.vec3d:
+def gained_along(gain: wp.vec3d, way: wp.vec3d, least: wp.float64) -> wp.vec3d:
     """What half a step gains along the velocity that it ends with: across it a contact turns that by itself.
 
-    Where the body turns back within the step, all of it: a velocity that is nearly gone has no direction.
+    Where the body turns back within the step, all of it: a velocity that is nearly gone has no direction. Below `least`
+    it does not turn back, but rests, and what it gains and loses is rounding of its contacts' forces.
     """
-    square = wp.dot(way, way)
-    if square > wp.float64(4.0) * wp.dot(gain, gain):
+    square, gains = wp.dot(way, way), wp.dot(gain, gain)
+    if square <= wp.float64(4.0) * gains and gains > least * least:
+        return gain
+    if square > wp.float64(0.0):
         return wp.dot(gain, way) / square * way
-    return gain
+    return wp.vec3d()
 
 
 @wp.func
@@ -85,7 +89,7 @@ def turn_of(true_q: wp.array2d(dtype=wp.float64), world: int, p: int) -> wp.quat
 @wp.func
 def catch_up(world: int, k: int, noted: Noted) -> bool:
     """Count what the velocities of a body lack as theirs; whether they do lack it."""
-    if noted.behind[world, k] == 0:
+    if noted.behind[world, k] <= 0:
         return False
     noted.behind[world, k] = 0
     for i in range(2):
@@ -248,13 +252,23 @@ def calm_for(
 
 
 @wp.func
-def change_order(world: int, k: int, lags: bool, gained: wp.vec3d, turning: wp.vec3d, noted: Noted) -> int:
-    """Note what half a step gains, and whether velocities lack it from now on; 1 where no longer, -1 where anew."""
-    changes = int(0)
+def change_order(world: int, k: int, lags: bool, free: bool, gained: wp.vec3d, turning: wp.vec3d, noted: Noted) -> int:
+    """Note what half a step gains, and whether velocities lack it from now on; 1 where no longer, -1 where anew.
+
+    What a body touches may go on by steps of another order, as a ram on its rail does. That they part then by a h / 2
+    is a jolt itself, which ends it at once; until the body is free again it is not tried another time.
+    """
+    changes, steps = int(0), int(noted.behind[world, k])
     if not lags:
         if catch_up(world, k, noted):
             changes = 1
-    elif noted.behind[world, k] == 0:
+            if steps <= SOON:
+                noted.behind[world, k] = -1
+        if free:
+            noted.behind[world, k] = 0
+    elif steps > 0:
+        noted.behind[world, k] = wp.min(steps + 1, SOON + 1)
+    elif steps == 0:
         changes = -1
         noted.behind[world, k] = 1
         noted.shift[world, k, 0] = noted.shift[world, k, 0] - gained
@@ -358,13 +372,14 @@ def fly(
         late = half
     gained, spun_up = half * pull, half * kick
     if not free:
-        gained = gained_along(gained, v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull)
-        spun_up = gained_along(spun_up, w + h * kick)
+        jolt = half * rough
+        gained = gained_along(gained, v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull, jolt)
+        spun_up = gained_along(spun_up, w + h * kick, jolt / wp.max(loose.arm[own, k], wp.float64(1e-12)))
     calm = calm_for(world, k, gained, spun_up, q, half * rough, loose, noted)
     lags = late == wp.float64(0.0) and alone and loose.tied[k] == 0 and wp.float64(calm) * h >= patience
     before = wp.vec3d(noted.gain[world, k, 0])
     spun_before = spin_of(axes, inertia, wp.quat_rotate_inv(q, noted.gain[world, k, 1]))
-    changes = change_order(world, k, lags, gained, wp.quat_rotate(q, in_axes(axes, inertia, spun_up)), noted)
+    changes = change_order(world, k, lags, free, gained, wp.quat_rotate(q, in_axes(axes, inertia, spun_up)), noted)
     way = v + wp.quat_rotate(q, wp.cross(w, c)) + h * pull
     if changes > 0:
         way += before

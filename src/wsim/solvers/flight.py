@@ -116,7 +116,7 @@ class Flight:
 
     def say(self, *, centred: bool) -> None:
         """Give MuJoCo the velocities that loose bodies have where they are, or those that their steps go on from."""
-        if self._shared and not self._behind_c.any():
+        if self._shared and not (self._behind_c > 0).any():
             return
         self._packed.launch(
             say,
