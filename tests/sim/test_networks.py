@@ -63,6 +63,9 @@ def test_each_function(tmp_path: Path, operator: str, attributes: dict, law) -> 
         (linear(np.ones((5, 3))), r"makes \(1, 3\) of 1 rows of 5; \(1, 2\) is needed"),
         (field(7, field(5, tensor("w", W2) + field(14, 1))), "another file"),
         (field(7, field(12, field(1, "actions"))), "has 0 inputs and 1 outputs"),
+        (field(7, field(11, field(1, 1)) + field(12, field(1, "actions"))), "is no ONNX file"),
+        (linear(np.where(np.arange(10).reshape(5, 2) == 3, np.nan, W2)), "its weights .* are not finite"),
+        (onnx([("Add", {}, [np.ones((3_000_000, 1))]), ("Add", {}, [np.ones((1, 3_000_000))])]), "does not take 5"),
     ],
 )
 def test_what_is_no_such_network_is_told_in_a_line(tmp_path: Path, data: bytes, said: str) -> None:

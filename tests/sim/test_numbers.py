@@ -35,7 +35,7 @@ def _stages(folder: Path, build: Build, count: int) -> list[Path]:
 def test_a_batch_of_sent_numbers_is_the_batch(tmp_path: Path, build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
     stages = _stages(tmp_path, build, 4)
     worlds = [describe(stage) for stage in stages]
-    monkeypatch.setattr(model, "_stated", lambda *given: None)  # which needs no import
+    monkeypatch.setattr(model, "_stated", _nothing_stated)  # which needs no import
     made = _added(stages, worlds)
     assert _arrays(build_batch(stages, worlds, "cpu").model) == _arrays(made)
     sent = []
@@ -53,6 +53,10 @@ def test_a_batch_of_sent_numbers_is_the_batch(tmp_path: Path, build: Build, monk
     assert _arrays(again.model) == _arrays(made)
     assert again.worlds == tuple(worlds)
     assert again.breakable == [model._import(*each, None).breakable for each in zip(stages, worlds, strict=True)]
+
+
+def _nothing_stated(*given: Any) -> Any:
+    raise model._UnstatedError("this is of what is not")
 
 
 def _added(stages: Sequence[Path], worlds: Sequence[World]) -> newton.Model:

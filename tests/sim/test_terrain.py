@@ -115,14 +115,15 @@ def test_a_ball_follows_the_road_that_is_cut_into_a_slope(bench):
     assert abs(end[1]) < 2e-3
 
 
-def test_among_many_rocks_terrain_is_no_convex_hull(tmp_path):
+@pytest.mark.parametrize("worlds", [1, 2])
+def test_among_many_rocks_terrain_is_no_convex_hull(tmp_path, worlds):
     """Newton's masks of what does not touch have 32 colours; a truck, its ground and 40 rocks are more than that."""
     scene = Scene()
     scene.simulation(frame_rate=100.0)
     land = scene.terrain("land", size=(40.0, 24.0), cell=1.0, layers=[lambda x, y: 0.02 * (x * x + y * y)])
     vehicle = scene.vehicle("v", "hmmwv", position=land.place(0.0, 0.0, above=0.06))
     scene.scatter("rock", on=land, count=40, clear=[((0.0, 0.0), 5.0)])
-    simulation = Simulation(scene.save(tmp_path / "v.usda"), device="cpu")
+    simulation = Simulation(scene.save(tmp_path / "v.usda"), device="cpu", world_count=worlds)
     body = [body.prim for body in simulation.world.bodies].index(vehicle.path)
     begin = float(simulation.state.body_q.numpy()[body, 2])
     for _ in range(3):

@@ -133,7 +133,11 @@ def policy(id: str) -> tuple[PolicySpec, Path, str]:
     known = policies()
     if id in known:
         network = known[id] / NETWORK
-        return read_spec(known[id] / SPEC), network, hashlib.sha256(network.read_bytes()).hexdigest()
+        try:
+            digest = hashlib.sha256(network.read_bytes()).hexdigest()
+        except OSError as error:
+            raise AssetError(f"{id}: {network} cannot be read ({error.strerror}); take the policy in again") from None
+        return read_spec(known[id] / SPEC), network, digest
     pulled = source_of_policy(id)
     if pulled:
         raise AssetError(f"{id!r} is not on this machine yet; `wsim assets pull {pulled}` gets it")

@@ -112,7 +112,7 @@ def read_network(path: Path, inputs: int, outputs: int) -> Network:
         network = _graph(path.read_bytes(), path.name)
     except OSError as error:
         raise UserError(f"{path} cannot be read: {error.strerror}") from None
-    except (ValueError, IndexError, KeyError, TypeError, struct.error, UnicodeDecodeError):
+    except (ValueError, IndexError, KeyError, TypeError, AttributeError, OverflowError, struct.error):
         raise UserError(f"{path.name} is no ONNX file of a network that wsim knows") from None
     made = {network.input, *network.constants}
     for node in network.nodes:
@@ -124,7 +124,7 @@ def read_network(path: Path, inputs: int, outputs: int) -> Network:
     for rows in (1, 2):  # several worlds are as many rows
         try:
             found = network(np.zeros((rows, inputs), dtype=np.float32)).shape
-        except (ValueError, TypeError, KeyError) as error:
+        except (ValueError, TypeError, KeyError, AttributeError, MemoryError) as error:
             raise UserError(f"{path.name} does not take {inputs} numbers: {error}") from None
         if found != (rows, outputs):
             raise UserError(f"{path.name} makes {found} of {rows} rows of {inputs}; ({rows}, {outputs}) is needed")
@@ -168,6 +168,8 @@ def _tensor(data: bytes) -> tuple[str, Floats]:
     else:
         raise ValueError(f"a tensor of type {kind}")
     name = found[8][0].decode() if 8 in found else ""
+    if not np.isfinite(values).all():
+        raise UserError(f"its weights {name[:60]!r} are not finite; train or export it anew")
     return name, values.reshape(shape).astype(np.float32)
 
 

@@ -92,10 +92,6 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._touching = touching
         if touching:
             touching.bind_geoms(self.mjc_geom_to_newton_shape.numpy())
-            # Newton says which pairs do not touch in 32 colours, and a vehicle among forty rocks takes more: what is
-            # left over would be met a second time, as a convex hull.
-            self.mj_model.geom_contype[touching.part_geoms] = 0
-            self.mj_model.geom_conaffinity[touching.part_geoms] = 0
         if cylinders:
             cylinders.bind(self.mjc_geom_to_newton_shape.numpy()[0])
         mujoco = self.import_mujoco()[0]
