@@ -12,6 +12,7 @@ from mujoco_warp import OverflowType
 
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.solvers.breaking import Breakable, BreakingC, BreakingWarp
+from wsim.solvers.collision_masks import compiled_by_kinds
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.contact_impulses import ContactImpulsesC, ContactImpulsesWarp
 from wsim.solvers.contact_law import ContactLawC
@@ -137,6 +138,12 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             )
         else:  # Runge and Kutta's stages take drives as MuJoCo does
             self.mjw_model.opt.disableflags |= int(self._mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS)
+
+    @staticmethod
+    def _compile_newton_collision_masks(model: Any, selected_shapes: Array) -> Any:
+        """Which shapes may touch, as masks: as Newton finds them or, where it does not, by kinds."""
+        found = newton.solvers.SolverMuJoCo._compile_newton_collision_masks(model, selected_shapes)
+        return found if found.exact else compiled_by_kinds(model, selected_shapes, found)
 
     def _hosts(self) -> Iterator[Any]:
         return host_models(self, self._differ)
