@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 
+BEFORE = 4  # intervals in which what came apart broke: g t^2 / 2 is 2 % of a body of 25 cm after 2 frames of 1/60 s
+
+
 @dataclass(frozen=True)
 class Load:
     """What a joint passed on as the mean of each interval."""
@@ -36,6 +39,12 @@ class Load:
         """Of the joint's strength, (T - 1,)."""
         limits = [np.inf if limit is None else limit for limit in (joint.break_force, joint.break_torque)]
         return np.asarray(np.maximum(self.force / limits[0], self.torque / limits[1]))
+
+    def before(self, gone: Bools) -> slice | None:
+        """The intervals in which a joint broke that is seen `gone` (T,); None if it never is, or bore unknown loads."""
+        end = int(np.argmax(gone))
+        last = slice(end - BEFORE, end)
+        return last if gone.any() and end >= BEFORE and self.known[last].all() else None
 
 
 def load_of(evidence: Evidence, joint: Joint) -> Load | None:
