@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from tests.judge.theory import RADIUS, UPRIGHT, G, ask, ball, record, slab, times
+from tests.judge.theory import RADIUS, UPRIGHT, G, ask, ball, box, only, record, slab, times
 from wsim.importers.trajectory import from_arrays
 from wsim.judge import judge
 from wsim.judge.checks.joint import CheckBreakage, CheckJoints
@@ -86,3 +86,23 @@ def test_a_break_whose_load_cannot_be_told_excuses_nothing(untold: str) -> None:
     finding = ask(CheckJoints(), recording)[0]
     assert not finding.passed and "cannot be told" in finding.message
     assert judge(recording).status == "rejected"
+
+
+@pytest.mark.parametrize("gap", [0.0, 1.0])
+def test_what_stands_on_a_joints_parent_is_not_borne_by_the_joint(gap: float) -> None:
+    """A box of 4 kg, welded to what the joint holds, stands on the joint's parent, or hangs high above that."""
+    time = times(0.5, 60.0)
+    place = np.tile([[0.0, 0.0, 0.0], [0.5, 0.0, 0.1], [0.5, 0.0, 0.25 + gap]], (len(time), 1, 1))
+    ends = (("weak", "base", "ball", 10.0), ("weld", "ball", "box", None))
+    rows = {"base": 0, "ball": 1, "box": 2}
+    joints = [
+        Joint(
+            prim=f"/World/{name}", kind="fixed", parent=f"/World/{parent}", child=f"/World/{child}",
+            parent_anchor=tuple(place[0, rows[child]] - place[0, rows[parent]]), child_anchor=(0.0, 0.0, 0.0),
+            break_force=strength,
+        )
+        for name, parent, child, strength in ends
+    ]  # fmt: skip
+    base = box("base", (2.0, 1.0, 0.3), kinematic=True)
+    recording = record([base, ball(mass=0.5), box()], place, 0.0 * place, time, joints=joints)
+    assert only(ask(CheckBreakage(), recording)).passed == (gap == 0.0)

@@ -58,11 +58,12 @@ def load_of(evidence: Evidence, joint: Joint) -> Load | None:
     arm = motion.com[:, held] - anchor
     turn = motion.torque[:, held] + np.cross(0.5 * (arm[1:] + arm[:-1]), pull)
     force, torque = (np.linalg.norm(each.sum(axis=1), axis=1) for each in (pull, turn))
-    own = {*held} if joint.parent is None else {*held, evidence.index(joint.parent)}
     every, near = np.arange(len(motion.h)), np.zeros(len(motion.h), dtype=bool)
+    child, holder = evidence.index(joint.child), joint.parent or joint.fixture
     for shape in evidence.placed:
-        if shape.body not in own:
-            near |= np.any([motion.approaches(shape, i, every) for i in held], axis=0)
+        if shape.body not in held:  # the joint's own two ends never touch
+            others = [i for i in held if not (i == child and shape.owner == holder)]
+            near |= np.any([motion.approaches(shape, i, every) for i in others], axis=0)
     return Load(force, torque, ~near)
 
 
