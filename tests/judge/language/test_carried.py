@@ -113,6 +113,19 @@ def test_what_weighs_on_another_is_carried_by_that(recorded):
         assert found(f"supported_by({text})", stack).satisfied[0] == holds
 
 
+@pytest.mark.parametrize(("x", "z", "bears"), [(0.8, 0.3, True), (1.1005, 0.35, False), (0.8, 0.29, False)])
+def test_a_plank_is_borne_by_trestles_near_its_ends(x, z, bears):
+    """One that ends beside it, or stands lower, bears nothing of it."""
+    t = times(1.0)
+    plank = box("plank", (2.0, 0.2, 0.05), 8.0)
+    stands = [slab("left", (0.2, 0.2, 0.6), (-0.8, 0.0, 0.3)), slab("right", (0.2, 0.2, 0.6), (x, 0.0, z))]
+    place = np.tile([0.0, 0.0, 0.625], (len(t), 1))
+    lies = record([plank], place, 0.0 * place, t, force=np.tile([0.0, 0.0, 8.0 * G], (len(t), 1)), statics=stands)
+    signals = Signals.of_recording(lies)
+    assert found("supported_by(plank, left)", signals).satisfied[0]
+    assert found("supported_by(plank, right)", signals).satisfied[0] == bears
+
+
 @pytest.mark.parametrize(("leans", "holds"), [(0.03, False), (0.07, True), (0.5, True)])
 def test_what_is_borne_by_several_weighs_on_each_that_bears_of_it(leans, holds):
     """A part of it is borne by the wall's friction; what is less than a twentieth is no more than a touch."""

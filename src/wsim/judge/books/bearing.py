@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 
+BEFORE = 4  # intervals in which what came apart broke: g t^2 / 2 is 2 % of a body of 25 cm after 2 frames of 1/60 s
+
+
 @dataclass(frozen=True)
 class Load:
     """What a joint passed on as the mean of each interval."""
@@ -37,6 +40,12 @@ class Load:
         limits = [np.inf if limit is None else limit for limit in (joint.break_force, joint.break_torque)]
         return np.asarray(np.maximum(self.force / limits[0], self.torque / limits[1]))
 
+    def before(self, gone: Bools) -> slice | None:
+        """The intervals in which a joint broke that is seen `gone` (T,); None if it never is, or bore unknown loads."""
+        end = int(np.argmax(gone))
+        last = slice(end - BEFORE, end)
+        return last if gone.any() and end >= BEFORE and self.known[last].all() else None
+
 
 def load_of(evidence: Evidence, joint: Joint) -> Load | None:
     """What a joint bore; None where more holds its child than the joint, or velocities are differences of poses."""
@@ -49,11 +58,12 @@ def load_of(evidence: Evidence, joint: Joint) -> Load | None:
     arm = motion.com[:, held] - anchor
     turn = motion.torque[:, held] + np.cross(0.5 * (arm[1:] + arm[:-1]), pull)
     force, torque = (np.linalg.norm(each.sum(axis=1), axis=1) for each in (pull, turn))
-    own = {*held} if joint.parent is None else {*held, evidence.index(joint.parent)}
     every, near = np.arange(len(motion.h)), np.zeros(len(motion.h), dtype=bool)
+    child, holder = evidence.index(joint.child), joint.parent or joint.fixture
     for shape in evidence.placed:
-        if shape.body not in own:
-            near |= np.any([motion.approaches(shape, i, every) for i in held], axis=0)
+        if shape.body not in held:  # the joint's own two ends never touch
+            others = [i for i in held if not (i == child and shape.owner == holder)]
+            near |= np.any([motion.approaches(shape, i, every) for i in others], axis=0)
     return Load(force, torque, ~near)
 
 

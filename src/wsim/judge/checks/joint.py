@@ -9,7 +9,7 @@ import numpy as np
 
 from wsim.judge.books.bearing import load_of
 from wsim.judge.checks.check import Check, Checks
-from wsim.judge.evidence.joints import HELD, LEANS, broken
+from wsim.judge.evidence.joints import HELD, LEANS, broken, said_broken, unbroken_track_of
 from wsim.judge.repair.drive import stronger
 from wsim.judge.verdict import RepairTarget
 
@@ -23,12 +23,16 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-BEFORE = 4  # intervals in which what came apart broke: g t^2 / 2 is 2 % of a body of 25 cm after 2 frames of 1/60 s
+UNTOLD = ", and what it bore before, at which it may have broken, cannot be told"
 
 
 @dataclass
 class CheckJoints(Check):
-    """A joint holds: its anchors stay together, and its ends turn only as it lets them."""
+    """A joint holds: its anchors stay together, and its ends turn only as it lets them.
+
+    That one may break excuses it from when it is recorded as broken. Where nobody recorded that, it does so only if its
+    load just before can be told, which `CheckBreakage` then compares with its strength.
+    """
 
     share: float = HELD  # of the child's smallest extent
     lean: float = LEANS  # [rad]
@@ -37,12 +41,13 @@ class CheckJoints(Check):
         """The joint whose anchors are farthest apart, and the one that is turned most, by their limits."""
         found = []
         for joint in evidence.world.joints:
-            track = evidence.joint(joint)
+            excused = not joint.may_break or said_broken(evidence, joint) is not None or _load_is_told(evidence, joint)
+            track = evidence.joint(joint) if excused else unbroken_track_of(evidence, joint)
             if track is not None:
-                found.append(self._held(evidence, joint, track))
+                found.append(self._held(evidence, joint, track, "" if excused else UNTOLD))
         return sorted(found, key=lambda finding: finding.passed)[: max(1, sum(not f.passed for f in found))]
 
-    def _held(self, evidence: Evidence, joint: Joint, track: JointTrack) -> Finding:
+    def _held(self, evidence: Evidence, joint: Joint, track: JointTrack, besides: str) -> Finding:
         size = evidence.solid(evidence.index(joint.child)).smallest
         leans = track.turned.max() / self.lean > track.apart.max() / (self.share * size)
         error, limit = (track.turned, self.lean) if leans else (track.apart, self.share * size)
@@ -52,7 +57,7 @@ class CheckJoints(Check):
         value = float(error[at])
         what = f"turns by {value:.3g} rad against what it allows" if leans else f"is {value * 1e3:.3g} mm apart"
         return self.measured(
-            f"{joint.prim} {what}",
+            f"{joint.prim} {what}{besides}",
             value, limit, "rad" if leans else "m", fine=f"{joint.prim} holds", prim=joint.prim, time=since,
             span=(since, float(evidence.time[len(wrong) - 1 - np.argmax(wrong[::-1])])) if wrong.any() else None,
             expected=0.0,
@@ -61,6 +66,13 @@ class CheckJoints(Check):
             else f"{self.share:g} of {joint.child}'s smallest extent, {size:.3g} m",
             target=RepairTarget(kind="joint", prim=joint.prim, why="its ends come apart"),
         )  # fmt: skip
+
+
+def _load_is_told(evidence: Evidence, joint: Joint) -> bool:
+    """Whether a joint never came apart, or what it bore as it did can be told."""
+    gone = broken(evidence, joint)
+    load = load_of(evidence, joint) if gone.any() else None
+    return not gone.any() or (load is not None and load.before(gone) is not None)
 
 
 @dataclass
@@ -150,8 +162,9 @@ class CheckBreakage(Check):
     """A joint that may break does so under the load that it is to break at, and under no less.
 
     Where its load is not recorded, it is what the motion of all that it holds tells, as the mean of each interval. It
-    then broke in one of the `BEFORE` intervals before its anchors are seen apart, in which the load went on to rise as
-    it did from the mean of one interval to that of the next, for one and a half of them: by so much it may miss.
+    then broke in one of the few intervals (`Load.before`) before its anchors are seen apart, in which the load went on
+    to rise as it did from the mean of one interval to that of the next, for one and a half of them: by so much it may
+    miss.
     """
 
     share: float = 0.01  # of its strength
@@ -183,8 +196,8 @@ class CheckBreakage(Check):
         held = np.where(known, share[:end], 0.0)
         at = int(np.argmax(held)) if end else 0
         found = held.max(initial=0.0) - 1.0, f"bears {held.max(initial=0.0):.4g}"
-        before = slice(max(end - BEFORE, 0), end)
-        if gone.any() and end >= BEFORE and known[before].all():
+        before = load.before(gone)
+        if before is not None:
             last = before.start + int(np.argmax(share[before]))
             rises = 1.5 * np.abs(np.diff(share[max(last - 2, 0) : last + 1])).max(initial=0.0)
             early = 1.0 - share[last] - rises

@@ -10,6 +10,7 @@ import numpy as np
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.repair.rule import longer_run, unstable
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.contact import within
 
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
@@ -220,9 +221,10 @@ class CheckPlanControl(Check):
             for item in plan.objects
             for each in item.registration.actuation
             if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
+            if controlled or not _by_policy(evidence, item.name, each.joint)
         ]
         asked += [step.title for step in plan.steps if step.asks_for_control]
-        if bool(asked) == controlled or (asked and evidence.world.policies):
+        if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
         message = (
             "The program's control acts on the world, and the plan asks for none: what happens may be its doing"
@@ -238,6 +240,18 @@ class CheckPlanControl(Check):
                 ),
             )
         ]
+
+
+def _by_policy(evidence: Evidence, name: str, joint: str | None) -> bool:
+    """Whether a policy sets a joint of the plan; without a joint, whether it has the object, or a part of it."""
+    world = evidence.world
+    if joint is not None:
+        return any(evidence.prim(joint) in policy.joints for policy in world.policies)
+    parts = {policy.base for policy in world.policies}
+    for each in world.joints:
+        if any(each.prim in policy.joints for policy in world.policies):
+            parts |= {each.child} if each.parent is None else {each.parent, each.child}
+    return any(within(part, evidence.prim(name)) for part in parts)
 
 
 CHECKS: Checks = (CheckFinite, CheckComplete, CheckLog, CheckPlanObjects, CheckPlanControl)

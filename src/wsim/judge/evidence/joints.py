@@ -34,14 +34,14 @@ class JointTrack:
 
 def track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
     """A joint's track; None where the recording does not say where its anchors are."""
-    track, gone = _as_it_is(evidence, joint), broken(evidence, joint)
+    track, gone = unbroken_track_of(evidence, joint), broken(evidence, joint)
     if track is None or not gone.any():
         return track
     return replace(track, apart=np.where(gone, 0.0, track.apart), turned=np.where(gone, 0.0, track.turned))
 
 
-def _as_it_is(evidence: Recorded, joint: Joint) -> JointTrack | None:
-    """A joint's track, broken or not."""
+def unbroken_track_of(evidence: Recorded, joint: Joint) -> JointTrack | None:
+    """A joint's track as of one that never breaks."""
     if joint.parent_anchor is None or joint.child_anchor is None:
         return None
     above, above_turn = _anchor(evidence, joint.parent, joint.parent_anchor, joint.parent_turn)
@@ -83,14 +83,19 @@ def broken(evidence: Recorded, joint: Joint) -> NDArray[np.bool_]:
 
     Where it does not say, one that may break is broken once it does not hold.
     """
-    said = evidence.recording.scalars.get("broken" + joint.prim.removeprefix("/World"))
+    said = said_broken(evidence, joint)
     if said is not None:
         return np.asarray(np.nan_to_num(said) > 0.0)
-    track = _as_it_is(evidence, joint) if joint.may_break else None
+    track = unbroken_track_of(evidence, joint) if joint.may_break else None
     if track is None:
         return np.zeros(len(evidence.time), dtype=bool)
     far = track.apart > HELD * evidence.solid(evidence.index(joint.child)).smallest
     return np.asarray(np.logical_or.accumulate(far | (track.turned > LEANS)))
+
+
+def said_broken(evidence: Recorded, joint: Joint) -> Floats | None:
+    """Whether a joint is broken, (T,), 1 or 0; None where nobody recorded it."""
+    return evidence.recording.scalars.get("broken" + joint.prim.removeprefix("/World"))
 
 
 def _anchor(evidence: Recorded, prim: str | None, position: Vec3, turn: Quat) -> tuple[Floats, Floats]:

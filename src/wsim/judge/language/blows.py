@@ -58,7 +58,7 @@ def blows(signals: Signals, one: str, other: str) -> Blows:
     met = apart <= np.maximum(reach[w, first], reach[w, last])
     step = signals.world.time_step or FINE * signals.step
     fastest = np.maximum(lengths(before), lengths(after))
-    unsure = np.linalg.norm(course.pull) * step + 8.0 * FLOAT32 * fastest
+    unsure = np.abs(normal @ course.pull) * step + 8.0 * FLOAT32 * fastest
     return Blows(w[met], first[met], last[met], -speeds[0][met], speeds[1][met], unsure[met])
 
 

@@ -11,11 +11,13 @@ from wsim.geometry.shapes import kind_of
 from wsim.judge.evidence.contact import distance
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.between import Course, turned
+from wsim.scene.contact import within
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.language.signals import Signals
+    from wsim.scene.world import World
 
     Floats = NDArray[np.float64]
     Indices = NDArray[np.intp]
@@ -149,15 +151,24 @@ def touch_limit(signals: Signals, one: str, other: str) -> tuple[Floats, str]:
     """The gap up to which two objects are taken to touch (W, T) [m], and why.
 
     Where it is recorded what presses on what, what does not press does not touch, however near it is; but for two
-    between which no contacts are looked for, as both are led or fixed, or a joint ties them.
+    between which no contacts are looked for, as both are led or fixed, a joint ties them, a gear meshes them, or they
+    are made to pass.
     """
     free = [name for name in (one, other) if signals.moves(name) and not signals.body(name).kinematic]
-    both = {signals.prim(one), signals.prim(other)}
-    tied = any({joint.parent or joint.fixture, joint.child} == both for joint in signals.world.joints)
-    if signals.evidence is None or signals.evidence.recording.contacts is None or not free or tied:
+    spared = _spared(signals.world, signals.prim(one), signals.prim(other))
+    if signals.evidence is None or signals.evidence.recording.contacts is None or not free or spared:
         return touch_reach(signals, one, other)
     limit = np.full((1, 1), SLOP * moving_size(signals, one, other))
     return limit, f"{SLOP:g} L: where contacts are recorded, what does not press does not touch"
+
+
+def _spared(world: World, a: str, b: str) -> bool:
+    """Whether the simulator looks for no contact between two objects, or between some of their shapes."""
+    tied = [(joint.parent or joint.fixture, joint.child) for joint in world.joints]
+    turns = {joint.prim: joint.child for joint in world.joints}
+    tied += [(turns.get(gear.first), turns[gear.second]) for gear in world.gears if gear.second in turns]
+    apart = ((p, q) for pair in world.apart for p, q in (pair, pair[::-1]))
+    return any({*pair} == {a, b} for pair in tied) or any(within(p, a) and within(q, b) for p, q in apart)
 
 
 def touch_reach(signals: Signals, one: str, other: str) -> tuple[Floats, str]:

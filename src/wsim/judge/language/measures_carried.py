@@ -11,6 +11,7 @@ from wsim.geometry.rotations import conjugate, level, rotate
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.evidence.support import Support, height_over, support_of
 from wsim.judge.evidence.welded import welded
+from wsim.judge.language.contacts import gap, normals, touch_reach
 from wsim.judge.language.measure import Measure, measures, mends
 from wsim.judge.repair.lasting import settled
 from wsim.judge.repair.matter import LEVEL, NEAR, friction, heavier, slope
@@ -27,10 +28,12 @@ if TYPE_CHECKING:
     from wsim.scene.world import Fluid
 
     Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
 
 STILL = 0.05  # of sqrt(g L): what rests bobs by 5 % of L, as in the checks
 RESTS, STAYS = 0.05, 0.1  # of its height, that what rests on something, or stays on it, may be off it
 SPACINGS = 0.25  # particle spacings, that what lies under fluid may be off the floor
+UPWARDS = 0.1  # of a contact's normal, that is up where it bears: a face within 6 degrees of a wall's does not
 LITTLE = 0.05  # of a body's weight: what bears less of it does not carry it
 THIN = 0.05  # of a spacing: half of the slab that a section is measured by
 
@@ -121,7 +124,7 @@ def borne(signals: Signals, name: str, ref: str) -> Floats:
     """The net force of contacts upwards on a body, and on what is fixed to it, where another object bears of it (W, T).
 
     Where it bears little of their weight, that alone [N]: they touch it, and something else carries them. Where
-    contacts are not recorded it bears them if they lie on it.
+    contacts are not recorded it bears them if they lie on it, or touch it from above.
     """
     ours, theirs = signals.together(name), signals.together(ref)
     rows = sorted(signals.row(prim) for prim in ours)
@@ -138,7 +141,23 @@ def borne(signals: Signals, name: str, ref: str) -> Floats:
             off, support = _off(signals, one, other)
             spacing = SPACINGS * support.fluid.spacing if support.fluid is not None else 0.0
             lies |= np.abs(off) <= max(STAYS * _height(signals, one), spacing)
+            lies |= _from_above(signals, one, other)
     return np.where(lies | ~np.isfinite(net), net, 0.0)
+
+
+def _from_above(signals: Signals, one: str, other: str) -> Bools:
+    """Where a body touches another object such that it would have to go up to part from it, (W, T).
+
+    It need not be over that with its own origin: a plank is borne by trestles near its ends.
+    """
+    try:
+        near = gap(signals, one, other) <= touch_reach(signals, one, other)[0]
+    except MissingError:  # what has no distance is told by how it lies alone
+        return np.zeros((signals.count, len(signals.time)), dtype=bool)
+    w, t = np.nonzero(near)
+    if len(w):
+        near[w, t] = normals(signals, one, other, w, t) @ signals.up >= UPWARDS
+    return near
 
 
 def _by_fluid(signals: Signals, name: str, fluid: Fluid) -> tuple[float, float]:

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 STILL, QUIET = 0.05, 0.02  # of sqrt(g L): what rests bobs by 5 % of L, what has settled by 2 %, as in the checks
 CHANGE = 0.05  # of the speed of approach, that a collision changes at least
-SURE = 0.5  # of what a restitution may be off: a blow that is less sure shows none
+SURE = 0.5  # of what a restitution may be off: a blow that is less sure shows none where another is
 
 
 @measures(Touches)
@@ -186,21 +186,32 @@ def _collides_with(asked: CollidesWith, signals: Signals) -> list[Measure]:
 
 
 def _restitution(asked: CollidesWith, signals: Signals, least: float) -> Measure:
-    """At the frames of each blow that can be told apart what the first of them shows; it is the surfaces' own."""
+    """At the frames of each blow that can be told apart what the first of them shows; it is the surfaces' own.
+
+    Where none is told as well as is asked, the surest shows it, to as much more as it may be off: twice that at most.
+    """
     found = blows(signals, asked.object, asked.ref)
     came = np.maximum(found.approach, 1e-30)
     ratio = found.parting / came
-    clear = (found.approach > least) & ((1.0 + np.abs(ratio)) * found.unsure <= SURE * asked.within * came)
-    # What has no clear blow has no restitution: as far from the one asked as one can be.
+    off = (1.0 + np.abs(ratio)) * found.unsure / came
+    fast = (found.approach > least) & np.isfinite(off)
+    shown = fast & (off <= SURE * asked.within)
+    # What has no blow has no restitution: as far from the one asked as one can be.
     value = np.full((signals.count, len(signals.time)), -1.0)
-    for n in np.flatnonzero(clear)[::-1]:
+    within = np.full((signals.count, 1), asked.within)
+    for w in np.setdiff1d(found.world[fast], found.world[shown]):
+        unclear = np.flatnonzero(fast & (found.world == w))
+        n = unclear[np.argmin(off[unclear])]
+        shown[n], within[w] = True, asked.within + min(off[n], asked.within)
+    for n in np.flatnonzero(shown)[::-1]:
         w = found.world[n]
         value[w, value[w] > -1.0] = np.clip(ratio[n], -1.0, 2.0)
         value[w, found.first[n] : found.last[n] + 1] = np.clip(ratio[n], -1.0, 2.0)
     finite = np.isfinite(signals.velocity(asked.object) - signals.velocity(asked.ref)).all(axis=-1)
-    source = f"{asked.within:g} about the objective's; of the first blow that frames tell to {SURE:g} of that"
+    source = f"{asked.within:g} about the objective's; of the first blow that frames tell to {SURE:g} of that; if none"
+    source += " is, of the surest, and what a step may change of it"
     return Measure.about(
-        np.where(finite, value, np.nan), asked.restitution or 0.0, asked.within, what="restitution",
+        np.where(finite, value, np.nan), asked.restitution or 0.0, within, what="restitution",
         prim=signals.prim(asked.object), unit="1", limit_from=source,
     )  # fmt: skip
 

@@ -1,0 +1,48 @@
+"""What a policy moves needs no `control`, and nothing else is excused by it."""
+
+import pytest
+
+from tests.judge.checks.test_plan import a_plan, a_world
+from tests.judge.theory import ask, with_world
+from wsim.assets.policies import Observation, PolicySpec
+from wsim.judge.checks.run import CheckPlanControl
+from wsim.plan.schema import Step
+from wsim.plan.schema.objects import Actuation
+from wsim.scene.world import Joint, Policy
+
+SPEC = PolicySpec(joints=["hip"], rate=50.0, observations=[Observation(of="command")])
+STEP = Step(title="push", shows="control pushes the ball", controls=True)
+
+
+def judged(actuated, joint=None, steps=(), policy=True, base="/World/robot/base", controlled=False):
+    """Whether a world's control is as its plan asks, whose `actuated` is moved, by a joint of the box or otherwise."""
+    plan = a_plan(name="hip", kind="hinge", child="box")
+    objects = [
+        item.model_copy(update={"registration": item.registration.model_copy(
+            update={"actuation": [Actuation(kind="policy", joint=joint)]})}) if item.name in actuated else item
+        for item in plan.objects
+    ]  # fmt: skip
+    hip = Joint(prim="/World/hip", kind="revolute", parent=None, child="/World/box")
+    walks = Policy(
+        prim="/World/walk", base=base, joints=["/World/hip"], spec=SPEC, network="",
+        sha256="",
+    )  # fmt: skip
+    world = with_world(a_world(), joints=[hip], policies=[walks] if policy else [])
+    world.metadata["controlled"] = controlled
+    found = ask(CheckPlanControl(), world, plan.model_copy(update={"objects": objects, "steps": list(steps)}))
+    return all(finding.passed for finding in found)
+
+
+@pytest.mark.parametrize(
+    ("joint", "base"), [("hip", "/World/robot/base"), (None, "/World/box/base"), (None, "/World/x")]
+)
+def test_a_policy_moves_its_joints_and_what_it_has(joint, base):
+    assert judged(["box"], joint, base=base)
+    assert not judged(["box"], joint, policy=False)
+
+
+def test_a_policy_excuses_nothing_that_it_does_not_move():
+    assert not judged(["ball"])
+    assert not judged(["box"], "knee")
+    assert not judged(["box", "ball"])
+    assert not judged(["box"], "hip", [STEP]) and judged(["box"], "hip", [STEP], controlled=True)
