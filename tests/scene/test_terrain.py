@@ -141,6 +141,28 @@ def test_areas_have_their_surface_and_share_the_ground(tmp_path):
     assert tops == pytest.approx(240.0, rel=1e-5)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_narrow_area_is_joined_whichever_way_it_runs(way, tmp_path):
+    """Along a diagonal of 9 cells it takes in one more at each of their 8 corners, and the ground none."""
+    scene = Scene()
+    ice = Area("ice", outline=[(-4.6, -4.4 * way), (4.4, 4.6 * way), (4.6, 4.4 * way), (-4.4, -4.6 * way)])
+    scene.terrain("land", size=(11.0, 11.0), cell=1.0, layers=[lambda x, y: 0.0], areas=[ice])
+    shapes = {shape.prim.rsplit("/", 1)[1]: shape for shape in statics(scene, tmp_path)["/World/land"]}
+    for name, cells in (("ice", 17), ("geometry", 121 - 17)):
+        mesh = solid(shapes[name])
+        assert mesh.is_watertight
+        assert mesh.volume == pytest.approx(cells)
+
+
+def test_an_area_that_joining_takes_is_named():
+    """Of four cells two on a diagonal are joined through one of the others, all that an area has."""
+    one = Area("one", outline=[(0.0, -1.0), (1.0, -1.0), (1.0, 0.0), (0.0, 0.0)])
+    two = Area("two", outline=[(-1.0, 0.0), (0.0, 0.0), (0.0, 1.0), (-1.0, 1.0)])
+    three = Area("three", outline=[(-0.8, -0.6), (0.6, 0.8), (0.8, 0.6), (-0.6, -0.8)])
+    with pytest.raises(SceneError, match=r'areas\[0\]: "one" holds the middle of no cell'):
+        land(lambda x, y: 0.0, size=(2.0, 2.0), cell=1.0, areas=[one, two, three])
+
+
 def test_rocks_lie_in_the_ground_apart_from_each_other_and_from_the_road(tmp_path):
     road = Road([(-18.0, 0.0), (18.0, 2.0)], width=4.0)
     found = []
