@@ -252,3 +252,21 @@ def test_where_there_is_no_room_or_no_ground_it_says_so():
         made.height(3.0, 0.0)
     with pytest.raises(SceneError, match=r"must be what scene\.terrain returned"):
         scene.scatter("rock", on="land", count=1)
+
+
+@pytest.mark.parametrize(
+    ("what", "size", "says"),
+    [
+        ("rocks", (6.0, 6.0), 'size = (6, 6) m: one of 6 m is too wide for on = "land", which must be 6 m or more'),
+        ("conifer", (0.3, 1.0), 'what = "conifer": one of '),
+    ],
+)
+def test_what_is_wider_than_the_terrain_is_named(what, size, says):
+    scene = Scene()
+    made = scene.terrain("land", size=(9.0, 0.5), cell=0.25, layers=[lambda x, y: 0.0])
+    with pytest.raises(SceneError) as caught:
+        scene.scatter("thing", what, on=made, count=1, size=size)
+    assert says in str(caught.value) and str(caught.value).startswith('scatter("thing")')
+    assert "and is 0.5; take a smaller one, or larger terrain" in str(caught.value)
+    assert not scene.stage.GetPrimAtPath("/World/thing_0")
+    assert len(scene.scatter("stone", on=made, count=2, size=(0.4, 0.4))) == 2

@@ -62,6 +62,11 @@ class Terrain(Handle):
         across, aside = (0.5 * edge - margin for edge in self._size)
         return abs(x - self._middle[0]) <= across and abs(y - self._middle[1]) <= aside
 
+    @property
+    def reach(self) -> float:
+        """From its middle to its nearest edge [m]."""
+        return 0.5 * min(self._size)
+
     def anywhere(self, random: np.random.Generator, margin: float) -> tuple[float, float]:
         """A place on it by chance, `margin` or more from its edges [m]; its middle, where it is too small for that."""
         reach = [max(0.0, 0.5 * edge - margin) for edge in self._size]
