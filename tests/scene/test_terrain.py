@@ -270,3 +270,22 @@ def test_what_is_wider_than_the_terrain_is_named(what, size, says):
     assert "and is 0.5; take a smaller one, or larger terrain" in str(caught.value)
     assert not scene.stage.GetPrimAtPath("/World/thing_0")
     assert len(scene.scatter("stone", on=made, count=2, size=(0.4, 0.4))) == 2
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        (lambda made: made.slope_deg(0.0, 0.0, "x"), 'heading_deg = "x" must be a number in deg'),
+        (lambda made: made.slope_deg(0.0, 0.0, math.inf), "heading_deg = inf must be finite in deg"),
+        (lambda made: made.place(0.0, 0.0, math.nan), "above = nan must be finite in m"),
+        (lambda made: made.place(0.0, 0.0, None), "above = None must be a number in m"),
+        (lambda made: made.place("x", 0.0), 'x = "x" must be a number in m'),
+        (lambda made: made.has(None, 0.0), "x = None must be a number in m"),
+        (lambda made: made.has(0.0, math.nan), "y = nan must be finite in m"),
+        (lambda made: made.has(0.0, 0.0, "x"), 'margin = "x" must be a number in m'),
+    ],
+)
+def test_a_bad_number_that_a_terrain_is_asked_is_named(asked, says):
+    with pytest.raises(SceneError) as caught:
+        asked(land(lambda x, y: 0.0))
+    assert says in str(caught.value) and str(caught.value).startswith('terrain("land")')
