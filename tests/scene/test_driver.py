@@ -142,6 +142,36 @@ def test_the_engine_bounds_what_it_asks():
     assert found[-1, 2] == pytest.approx(most, rel=0.01)
 
 
+def test_a_lap_begins_at_its_start_and_ends_at_its_end():
+    """Behind the start by a hair, where the last piece is as near as the first; it stops after the lap."""
+    lap = ring(10.0, 1.0)
+    world, driver = Bicycle(), Driver("truck", "hmmwv", path=lap, speed=6.0)
+    world.x -= 0.02
+    across = 0.0
+    for k in range(2000):
+        driver.drive(world, 0.01 * k)
+        across = max(across, world.y[0])
+        for _ in range(10):
+            world.step(0.001)
+    assert driver.distance == pytest.approx(2.0 * math.pi * 10.0, abs=0.15)
+    assert np.abs(world.speed).max() < 0.02
+    assert across == pytest.approx(20.0, abs=0.2)
+
+
+def test_after_a_lap_it_goes_straight_on():
+    """Along the last piece, whatever of the lap is near."""
+    side = np.arange(0.0, 20.0, 0.5)
+    there, back = np.stack([side, 0.0 * side], axis=1), np.stack([20.0 - side, 0.0 * side + 12.0], axis=1)
+    bend = ring(6.0, 0.5)
+    lap = np.concatenate([there, bend[:-1] + np.array([20.0, 0.0]), back, np.array([0.0, 12.0]) - bend])
+    driver = Driver("truck", "hmmwv", path=lap, speed=5.0, stop=False)
+    length = 40.0 + 12.0 * math.pi
+    driver._fresh, driver._way = False, np.array([length - 1.0])
+    for x in np.arange(-1.0, 19.0, 0.5):
+        driver._way = driver._nearest(np.array([[x, 0.1]]))
+    assert driver._way[0] == pytest.approx(length + 18.5, abs=0.2)
+
+
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [

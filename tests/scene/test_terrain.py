@@ -141,6 +141,28 @@ def test_areas_have_their_surface_and_share_the_ground(tmp_path):
     assert tops == pytest.approx(240.0, rel=1e-5)
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_narrow_area_is_joined_whichever_way_it_runs(way, tmp_path):
+    """Along a diagonal of 9 cells it takes in one more at each of their 8 corners, and the ground none."""
+    scene = Scene()
+    ice = Area("ice", outline=[(-4.6, -4.4 * way), (4.4, 4.6 * way), (4.6, 4.4 * way), (-4.4, -4.6 * way)])
+    scene.terrain("land", size=(11.0, 11.0), cell=1.0, layers=[lambda x, y: 0.0], areas=[ice])
+    shapes = {shape.prim.rsplit("/", 1)[1]: shape for shape in statics(scene, tmp_path)["/World/land"]}
+    for name, cells in (("ice", 17), ("geometry", 121 - 17)):
+        mesh = solid(shapes[name])
+        assert mesh.is_watertight
+        assert mesh.volume == pytest.approx(cells)
+
+
+def test_an_area_that_joining_takes_is_named():
+    """Of four cells two on a diagonal are joined through one of the others, all that an area has."""
+    one = Area("one", outline=[(0.0, -1.0), (1.0, -1.0), (1.0, 0.0), (0.0, 0.0)])
+    two = Area("two", outline=[(-1.0, 0.0), (0.0, 0.0), (0.0, 1.0), (-1.0, 1.0)])
+    three = Area("three", outline=[(-0.8, -0.6), (0.6, 0.8), (0.8, 0.6), (-0.6, -0.8)])
+    with pytest.raises(SceneError, match=r'areas\[0\]: "one" holds the middle of no cell'):
+        land(lambda x, y: 0.0, size=(2.0, 2.0), cell=1.0, areas=[one, two, three])
+
+
 def test_rocks_lie_in_the_ground_apart_from_each_other_and_from_the_road(tmp_path):
     road = Road([(-18.0, 0.0), (18.0, 2.0)], width=4.0)
     found = []
@@ -230,3 +252,40 @@ def test_where_there_is_no_room_or_no_ground_it_says_so():
         made.height(3.0, 0.0)
     with pytest.raises(SceneError, match=r"must be what scene\.terrain returned"):
         scene.scatter("rock", on="land", count=1)
+
+
+@pytest.mark.parametrize(
+    ("what", "size", "says"),
+    [
+        ("rocks", (6.0, 6.0), 'size = (6, 6) m: one of 6 m is too wide for on = "land", which must be 6 m or more'),
+        ("conifer", (0.3, 1.0), 'what = "conifer": one of '),
+    ],
+)
+def test_what_is_wider_than_the_terrain_is_named(what, size, says):
+    scene = Scene()
+    made = scene.terrain("land", size=(9.0, 0.5), cell=0.25, layers=[lambda x, y: 0.0])
+    with pytest.raises(SceneError) as caught:
+        scene.scatter("thing", what, on=made, count=1, size=size)
+    assert says in str(caught.value) and str(caught.value).startswith('scatter("thing")')
+    assert "and is 0.5; take a smaller one, or larger terrain" in str(caught.value)
+    assert not scene.stage.GetPrimAtPath("/World/thing_0")
+    assert len(scene.scatter("stone", on=made, count=2, size=(0.4, 0.4))) == 2
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        (lambda made: made.slope_deg(0.0, 0.0, "x"), 'heading_deg = "x" must be a number in deg'),
+        (lambda made: made.slope_deg(0.0, 0.0, math.inf), "heading_deg = inf must be finite in deg"),
+        (lambda made: made.place(0.0, 0.0, math.nan), "above = nan must be finite in m"),
+        (lambda made: made.place(0.0, 0.0, None), "above = None must be a number in m"),
+        (lambda made: made.place("x", 0.0), 'x = "x" must be a number in m'),
+        (lambda made: made.has(None, 0.0), "x = None must be a number in m"),
+        (lambda made: made.has(0.0, math.nan), "y = nan must be finite in m"),
+        (lambda made: made.has(0.0, 0.0, "x"), 'margin = "x" must be a number in m'),
+    ],
+)
+def test_a_bad_number_that_a_terrain_is_asked_is_named(asked, says):
+    with pytest.raises(SceneError) as caught:
+        asked(land(lambda x, y: 0.0))
+    assert says in str(caught.value) and str(caught.value).startswith('terrain("land")')

@@ -210,6 +210,17 @@ def test_headings_of_a_route_are_those_of_its_ways_unless_they_are_given(own: Pa
     )
 
 
+def test_where_there_is_no_way_to_go_the_last_heading_is_kept(own: Path) -> None:
+    """At first the base's own."""
+    policies.write(own, "matrix", spec(), policies.linear(picked(9)))
+    scene = Scene()
+    arm = scene.robot("arm", "desk_arm", position=(1.0, 1.0, 5.0), yaw_deg=120.0, fixed=False)
+    scene.policy("steer", arm, "matrix", route=((1.0, 1.0), (1.0, 3.0), (1.0, 3.0), (2.0, 3.0, -30.0), (2.0, 3.0)))
+    (policy,) = describe(scene.stage).policies
+    headings = np.degrees([point[2] for point in policy.route])
+    np.testing.assert_allclose(headings, [120.0, 90.0, 90.0, -30.0, -30.0], atol=1e-4)
+
+
 @pytest.mark.parametrize(
     ("changed", "said"),
     [

@@ -73,23 +73,34 @@ def divided(call: Call, areas: object, x: Floats, y: Floats) -> tuple[list[Area]
         Call(call.method, area.name, f"areas[{k}].").identifier(("geometry", *(each.name for each in listed[:k])))
         area.check(one)
         number[area.holds(one, x, y)] = k + 1
+    number = _joined(number)
     for k, area in enumerate(listed):
         if not (number == k + 1).any():
             call.fail(f"areas[{k}]: {shown(area.name)} holds the middle of no cell; make it larger, the cells finer, "
                       "or leave it out")  # fmt: skip
-    return listed, _joined(number)
+    return listed, number
 
 
 def _joined(number: Integers) -> Integers:
-    """No two parts touch in a corner only: a mesh that did would not be closed."""
-    for _ in range(number.size):
-        a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
-        across = ((a == c) & (b != a) & (d != a)) | ((b == d) & (a != b) & (c != b))
-        if not across.any():
-            break
-        row, column = np.argwhere(across)[0]
-        number[row : row + 2, column : column + 2] = number[row, column]
+    """No two parts touch in a corner only: a mesh that did would not be closed.
+
+    Where some do, the highest of the four cells takes in a neighbour, of the two the lower: areas go over ground, and
+    later ones over earlier ones, whichever way they run. Numbers rise only, so it ends.
+    """
+    while len(found := _touching(number)):
+        for row, column in found:
+            square = number[row : row + 2, column : column + 2]
+            if len(_touching(square)):  # still, after its neighbours
+                (top, aside), *_ = np.argwhere(square == square.max())
+                lower = min([(top, 1 - aside), (1 - top, aside)], key=lambda at: int(square[at]))
+                square[lower] = square[top, aside]
     return number
+
+
+def _touching(number: Integers) -> Integers:
+    """Squares of 2 x 2 cells, by their first (row, column), across which like ones touch in the middle only."""
+    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    return np.argwhere(((a == c) & (b != a) & (d != a)) | ((b == d) & (a != b) & (c != b)))
 
 
 def closed(points: Floats, top: Integers, low: float) -> tuple[Floats, Integers, Integers]:

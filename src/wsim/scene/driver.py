@@ -35,6 +35,7 @@ _INTEGRAL = 0.8  # [1/s^2]: damped by 1.1 with the above
 _LEAST_AHEAD = 1.2  # of the wheelbase, that the goal is ahead at least
 _AHEAD = 0.7  # [s] of way that the goal is ahead
 _BEFORE, _AFTER = 3.0, 8.0  # [m] of the line that are searched for the nearest place, behind and before the last one
+_AS_CLOSE = 0.5  # [m] more than the nearest place, that a place where it sets out is away at most
 _SLIP = (0.6, 0.12)  # [m/s], of the speed: a wheel that slips by more gets no torque until it grips
 _TURNED = 60.0  # [deg/s] that the bicycle's angle changes by at most
 
@@ -140,7 +141,10 @@ class Driver:
         self._fresh, self._last = True, 0.0
 
     def _nearest(self, at: Floats) -> Floats:
-        """Along the path, the nearest place to each of (W, 2), near where it was; anywhere, at first."""
+        """Along the path, the nearest place to each of (W, 2), near where it was; at first, the earliest close one.
+
+        A lap's end lies at its start: the earliest of places that are as close is where it sets out.
+        """
         points, along = self._profile.points, self._profile.along
         begin, way = points[:-1], np.diff(points, axis=0)
         length = np.diff(along)
@@ -148,11 +152,13 @@ class Driver:
         foot = np.clip(share, 0.0, 1.0)
         away = np.linalg.norm(begin + foot[..., None] * way - at[:, None], axis=2)
         place = along[:-1] + foot * length
-        if not self._fresh:
-            far = (place < self._way[:, None] - _BEFORE) | (place > self._way[:, None] + _AFTER)
-            away = np.where(far, away + 1e6, away)
+        row = np.arange(len(at))
+        if self._fresh:
+            self._way = place[row, (away <= away.min(axis=1, keepdims=True) + _AS_CLOSE).argmax(axis=1)]
         self._fresh = False
-        row, best = np.arange(len(at)), away.argmin(axis=1)
+        far = (place < self._way[:, None] - _BEFORE) | (place > self._way[:, None] + _AFTER)
+        far[:, -1] &= self._way < along[-1]  # which goes on past its end
+        best = np.where(far, away + 1e6, away).argmin(axis=1)
         beyond = np.maximum(share[:, -1] - 1.0, 0.0) * length[-1]  # past its end
         found = place[row, best]
         return np.asarray(np.where(found >= along[-1] - 1e-9, along[-1] + beyond, found))

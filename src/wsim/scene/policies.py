@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from wsim.assets.policies import Numbers, PolicySpec
 
 _LARGEST, _UNITS = 100.0, "m/s and rad/s"  # of a command
+_SAME = 1e-6  # [m]: a way as short as this has no heading
 
 
 class Policies(Author):
@@ -52,8 +53,8 @@ class Policies(Author):
             times: When commands change [s], rising, the first one 0; in place of `command`, with `commands`.
             commands: From each of those times on.
             route: Way-points in the world, each (x, y) [m] or (x, y, heading_deg), gone to one after the other, in
-                place of commands. It turns to a point's heading on the way there, by default that of the way, and
-                stays at the last.
+                place of commands. It turns to a point's heading on the way there, by default that of the way, or the
+                last one where there is none to go, and stays at the last.
             speed: Along the route [m/s].
 
         Raises:
@@ -117,12 +118,17 @@ def _route(call: Call, base: Usd.Prim, route: Sequence[Sequence[float]] | None) 
     """Way-points with a heading each [rad]."""
     if route is None:
         return []
-    place, _ = world_pose(base)
+    place, turn = world_pose(base)
+    ahead = turn.Transform(Gf.Vec3d(1.0, 0.0, 0.0))
+    heading = math.atan2(ahead[1], ahead[0])
     x, y, way = place[0], place[1], []
     for k, given in enumerate(call.listed("route", route, "(x, y) or (x, y, heading_deg)")):
         three = given if isinstance(given, (list, tuple)) and len(given) == 3 else None
         to = call.position(f"route[{k}]", three or _level(call, k, given))
-        heading = math.radians(to[2]) if three else math.atan2(to[1] - y, to[0] - x)
+        if three:
+            heading = math.radians(to[2])
+        elif math.hypot(to[0] - x, to[1] - y) > _SAME:
+            heading = math.atan2(to[1] - y, to[0] - x)
         way.append(Gf.Vec3d(to[0], to[1], heading))
         x, y = to[0], to[1]
     if not 1 <= len(way) <= MAX_KEYS:

@@ -78,6 +78,7 @@ class Scattered(Catalogued, Bodies):
         if what == ROCKS:
             low, high = lengths
             long = low * (high / low) ** random.random(many) ** 2
+            _fits(call, on, f"size = ({low:g}, {high:g}) m", float(long.max()), 0.5 * float(long.max()))
             places = _places(call, on, many, 0.5 * long, away, random)
             surface = self._surface(
                 call, material, friction, None, _STONE if color is None and material is None else color
@@ -88,6 +89,9 @@ class Scattered(Catalogued, Bodies):
             if given is not None:
                 call.fail(f"{field} = {shown(given)}: things of the catalogue have their own; leave it out")
         entries = self._entries(call, what)
+        for entry in entries:
+            across = max(entry.size[:2])
+            _fits(call, on, f"what = {shown(entry.id)}", across, max(0.5 * across, _STANDS))
         chosen = [entries[k] for k in random.integers(0, len(entries), many)]
         wide = np.array([0.5 * max(entry.size[:2]) for entry in chosen])
         made = []
@@ -157,6 +161,14 @@ def _kept(call: Call, k: int, given: object) -> tuple[Floats, float]:
     if items and isinstance(items[0], (Sequence, np.ndarray)):
         return polyline(call, items, f"{field}[0]"), margin
     return np.array([point(call, f"{field}[0]", items)]), margin
+
+
+def _fits(call: Call, on: Terrain, given: str, across: float, margin: float) -> None:
+    """SceneError if a thing that stays `margin` [m] within a terrain's edges is too wide for it."""
+    if margin > on.reach:
+        call.fail(f"{given}: one of {across:.3g} m is too wide for on = {shown(on.name)}, which must be "
+                  f"{2.0 * margin:.3g} m or more in x and y and is {2.0 * on.reach:.3g}; take a smaller one, or larger "
+                  "terrain")  # fmt: skip
 
 
 def _places(

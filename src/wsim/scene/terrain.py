@@ -41,7 +41,8 @@ class Terrain(Handle):
 
     def place(self, x: float, y: float, above: float = 0.0) -> Vec3:
         """A point of the ground, or straight above it [m]."""
-        return float(x), float(y), self._plane(x, y)[0] + above
+        ground, rise = self._plane(x, y)[0], self._call().number("above", above, "m")
+        return float(x), float(y), ground + rise
 
     def normal(self, x: float, y: float) -> Vec3:
         """Which way the ground faces there, of length 1."""
@@ -54,13 +55,20 @@ class Terrain(Handle):
         _, along, aside = self._plane(x, y)
         if heading_deg is None:
             return math.degrees(math.atan(math.hypot(along, aside)))
-        way = math.radians(heading_deg)
+        way = math.radians(self._call().number("heading_deg", heading_deg, "deg"))
         return math.degrees(math.atan(along * math.cos(way) + aside * math.sin(way)))
 
     def has(self, x: float, y: float, margin: float = 0.0) -> bool:
         """Whether it is there, and for `margin` [m] all around."""
-        across, aside = (0.5 * edge - margin for edge in self._size)
-        return abs(x - self._middle[0]) <= across and abs(y - self._middle[1]) <= aside
+        call = self._call()
+        kept = call.number("margin", margin, "m")
+        off = call.number("x", x, "m") - self._middle[0], call.number("y", y, "m") - self._middle[1]
+        return all(abs(each) <= 0.5 * edge - kept for each, edge in zip(off, self._size, strict=True))
+
+    @property
+    def reach(self) -> float:
+        """From its middle to its nearest edge [m]."""
+        return 0.5 * min(self._size)
 
     def anywhere(self, random: np.random.Generator, margin: float) -> tuple[float, float]:
         """A place on it by chance, `margin` or more from its edges [m]; its middle, where it is too small for that."""
@@ -68,9 +76,12 @@ class Terrain(Handle):
         x, y = (float(random.uniform(-each, each)) + self._middle[k] for k, each in enumerate(reach))
         return x, y
 
+    def _call(self) -> Call:
+        return Call("terrain", self.name)
+
     def _plane(self, x: float, y: float) -> tuple[float, float, float]:
         """The triangle under a place: its height there [m], and how it rises along x and y."""
-        call = Call("terrain", self.name)
+        call = self._call()
         u, v = call.number("x", x, "m") - self._middle[0], call.number("y", y, "m") - self._middle[1]
         if not self.has(x, y, -1e-9):
             call.fail(f"({x:g}, {y:g}) m is not on it: it is {self._size[0]:g} x {self._size[1]:g} m about "
