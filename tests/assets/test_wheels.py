@@ -96,3 +96,15 @@ def test_the_sources_are_pinned_and_keep_their_licences() -> None:
 )
 def test_what_a_program_names_is_read_from_its_text(program: str, found: list[str]) -> None:
     assert named(program) == found
+
+
+def test_what_lies_in_the_current_folder_is_not_run(
+    shelf: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    chosen = pinned(wheels.write(shelf))
+    for name in ("pip.py", "optparse.py"):
+        (tmp_path / name).write_text("open('ran', 'w').close()\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PIP_FIND_LINKS", "shelf")  # is relative to it, still
+    assert fetch(chosen).is_dir()
+    assert not (tmp_path / "ran").exists()

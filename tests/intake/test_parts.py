@@ -47,6 +47,13 @@ def test_a_broken_cache_is_made_again(own: Path) -> None:
     assert len(decompose(box, 0.02)) == 1
 
 
+def test_what_lies_in_the_current_folder_is_not_run(own: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "wsim.py").write_text("open('ran', 'w').close()\n")
+    monkeypatch.chdir(tmp_path)
+    assert len(decompose(mesh_of(models.box()), 0.02)) == 1
+    assert not (tmp_path / "ran").exists()
+
+
 def test_the_lattice_counts_a_ball_and_its_shell() -> None:
     ball, inner = trimesh.creation.icosphere(4, radius=1.0), trimesh.creation.icosphere(4, radius=0.7)
     lattice = Lattice.around(np.asarray(ball.vertices))

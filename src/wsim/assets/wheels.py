@@ -56,10 +56,13 @@ def fetch(source: Source) -> Path:
 
 
 def _download(source: Source, folder: Path) -> Path:
-    """The wheel, without what it depends on."""
+    """The wheel, without what it depends on.
+
+    -P: what lies in the current folder is data of whoever it is from, not pip; a folder of wheels may be named from it.
+    """
     command = [
-        sys.executable, "-m", "pip", "download", "--quiet", "--no-input", "--disable-pip-version-check", "--no-deps",
-        "--only-binary=:all:", "--ignore-requires-python", "--dest", str(folder),
+        sys.executable, "-P", "-m", "pip", "download", "--quiet", "--no-input", "--disable-pip-version-check",
+        "--no-deps", "--only-binary=:all:", "--ignore-requires-python", "--dest", str(folder),
         f"{source.package}=={source.version}",
     ]  # fmt: skip
     way_out = "it needs pip and a package index, or PIP_FIND_LINKS that names a folder with the wheel"

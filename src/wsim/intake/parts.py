@@ -71,7 +71,7 @@ def decompose(
 def _run(folder: Path, seconds: float) -> str:
     """Run the process; why it made nothing, or an empty text."""
     files = [str(folder / name) for name in ("mesh.npz", "settings.json", "parts.npz")]
-    command = [sys.executable, "-m", "wsim.intake.decompose", *files]
+    command = [sys.executable, "-P", "-m", "wsim.intake.decompose", *files]
     source = str(Path(__file__).parents[2])
     paths = os.pathsep.join([source, *filter(None, [os.environ.get("PYTHONPATH")])])
     environment = {**os.environ, "PYTHONPATH": paths}

@@ -23,7 +23,7 @@ class Standby:
     def __init__(self) -> None:
         threads = {"WSIM_THREADS": str(max(1, len(os.sched_getaffinity(0)) // 2))}
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "wsim.runs.bare_run"],
+            [sys.executable, "-P", "-m", "wsim.runs.bare_run"],
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

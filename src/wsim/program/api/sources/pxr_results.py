@@ -36,7 +36,7 @@ def results() -> dict[str, str]:
     """
     try:
         done = subprocess.run(
-            [sys.executable, "-c", "from wsim.program.api.sources.pxr_results import _main; _main()"],
+            [sys.executable, "-P", "-c", "from wsim.program.api.sources.pxr_results import _main; _main()"],
             capture_output=True,
             timeout=_SECONDS,
             check=True,

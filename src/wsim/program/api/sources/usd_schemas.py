@@ -25,7 +25,7 @@ INSTANCE = "__INSTANCE_NAME__"
 
 def entries() -> Iterator[Entry]:
     """Each schema by its name, `PhysicsMassAPI`, and its own attributes by theirs, `PhysicsMassAPI.physics:mass`."""
-    command = [sys.executable, "-c", "from wsim.program.api.sources.usd_schemas import _main; _main()"]
+    command = [sys.executable, "-P", "-c", "from wsim.program.api.sources.usd_schemas import _main; _main()"]
     done = subprocess.run(command, capture_output=True, check=True, text=True)
     yield from (Entry.from_data(each) for each in json.loads(done.stdout.splitlines()[-1]))
 
