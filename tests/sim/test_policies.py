@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pxr import Usd, UsdPhysics
 from scipy.spatial.transform import Rotation
 
 from tests.assets import policies
 from wsim.assets.folders import VARIABLE
 from wsim.assets.policies import PolicySpec
 from wsim.errors import UserError
-from wsim.scene import Scene, SceneError
+from wsim.scene import Scene, SceneError, schema
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
 from wsim.scene.world import Policy, World
@@ -74,6 +75,33 @@ def test_a_stage_says_its_policy(own: Path) -> None:
     assert check_stage(path, [own / "elsewhere"]) == [
         f"stage.usda: @{own}/policies/matrix/policy.onnx@ lies outside the folders that a stage may read"
     ]
+
+
+def test_a_policy_of_an_instance_is_checked_as_it_is_read(own: Path) -> None:
+    path = stage(own, picked(6))
+    changed = Usd.Stage.Open(str(path))
+    changed.CreateClassPrim("/kept")
+    changed.DefinePrim("/kept/second", "Scope").AddAppliedSchema(schema.POLICY)
+    held = changed.DefinePrim("/World/held", "Scope")
+    held.GetReferences().AddInternalReference("/kept")
+    held.SetInstanceable(True)
+    changed.Save()
+    said = check_stage(path, [own])
+    assert len(said) == 1
+    assert said[0].startswith("/World/held/second.wsim:description: Invalid JSON")
+
+
+@pytest.mark.parametrize("kind", ["Scope", "PhysicsSphericalJoint"])
+def test_a_policy_sets_joints_of_one_freedom_alone(own: Path, kind: str) -> None:
+    path = stage(own, picked(6))
+    changed = Usd.Stage.Open(str(path))
+    other = changed.DefinePrim("/World/other", kind)
+    UsdPhysics.DriveAPI.Apply(other, "linear")
+    other.CreateRelationship("physics:body1").SetTargets(["/World/arm/base"])
+    relation = changed.GetPrimAtPath("/World/steer").GetRelationship("wsim:joints")
+    relation.SetTargets(["/World/other", *relation.GetTargets()[1:]])
+    changed.Save()
+    assert "/World/steer.wsim:joints: </World/other> is no revolute or prismatic joint" in check_stage(path, [own])
 
 
 @pytest.mark.parametrize(

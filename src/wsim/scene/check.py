@@ -144,7 +144,7 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
             if prim in ours:
                 yield from cord_problems(prim)
         yield from joint_problems(stage)
-        yield from policy_problems(stage)
+        yield from policy_problems(prims)
         yield from contact_problems(prims)
         wrong = list(motion_problems(stage))
         yield from wrong

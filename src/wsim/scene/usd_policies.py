@@ -40,10 +40,10 @@ def read_policies(prims: Iterable[Usd.Prim]) -> Iterator[Policy]:
         )
 
 
-def policy_problems(stage: Usd.Stage) -> Iterator[str]:
-    """Problems of the policies of a stage."""
+def policy_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
+    """Problems of the policies among a stage's prims: those that `read_policies` gets, in instances, too."""
     set_by: dict[str, str] = {}
-    for prim in stage.Traverse():
+    for prim in prims:
         if not schema.has(prim, schema.POLICY):
             continue
         for problem in _problems(prim):
@@ -66,6 +66,9 @@ def _problems(prim: Usd.Prim) -> Iterator[str]:
     if len(joints) != len(spec.joints):
         yield f"joints: {len(joints)} are there, and the description has {len(spec.joints)}"
     for joint in joints:
+        if not any(joint.IsA(kind) for kind in (UsdPhysics.RevoluteJoint, UsdPhysics.PrismaticJoint)):
+            yield f"joints: <{joint.GetPath()}> is no revolute or prismatic joint"
+            continue
         freedom = "angular" if joint.IsA(UsdPhysics.RevoluteJoint) else "linear"
         if not joint.HasAPI(UsdPhysics.DriveAPI, freedom):
             yield f"joints: <{joint.GetPath()}> has no drive, whose target it would set"
