@@ -38,6 +38,10 @@ def refuses_three(k: int) -> int:
     return k
 
 
+def misses_a_file(k: int) -> int:
+    raise FileNotFoundError(f"no file {k}")
+
+
 def dies_at_four(k: int) -> int:
     if k == 4:
         os.kill(os.getpid(), signal.SIGKILL)
@@ -71,6 +75,11 @@ def test_what_is_raised_there_is_raised_here_and_they_are_started_again() -> Non
         list(shared_out(refuses_three, range(6), 3))
     helpers.start(3)
     assert list(shared_out(refuses_three, range(3), 3)) == [0, 1, 2]
+
+
+def test_an_error_of_the_system_that_a_call_raises_is_not_taken_for_a_lost_helper() -> None:
+    with pytest.raises(FileNotFoundError, match="no file"):
+        list(shared_out(misses_a_file, range(6), 3))
 
 
 def test_who_is_killed_is_told_of_and_nobody_is_left() -> None:

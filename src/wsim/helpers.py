@@ -76,7 +76,7 @@ class Helpers:
                     while k not in found:
                         while free and given < len(items):
                             pipe = free.pop()
-                            pipe.send((call, items[given]))
+                            _send(pipe, (call, items[given]))
                             at[pipe] = given
                             given += 1
                         ready = wait(list(at))
@@ -85,8 +85,6 @@ class Helpers:
                             free.append(pipe)
                     yield found.pop(k)
                 whole = True
-            except OSError as error:
-                raise LostForkError("a helper ended before its work was done") from error
             finally:
                 if not whole:
                     self.end()
@@ -167,6 +165,13 @@ def answered(call: Callable[[Any], Any], item: Any) -> Answer:
         return True, call(item)
     except Exception as error:  # noqa: BLE001 - raised again where it was asked for
         return False, error
+
+
+def _send(pipe: Connection, what: Any) -> None:
+    try:
+        pipe.send(what)
+    except OSError as error:
+        raise LostForkError("a helper ended before its work was done") from error
 
 
 def taken(pipe: Connection) -> Any:

@@ -87,14 +87,19 @@ def test_the_sources_are_pinned_and_keep_their_licences() -> None:
 @pytest.mark.parametrize(
     ("program", "found"),
     [
-        ('dog = scene.robot("go2")', ["go2"]),
-        ('scene.robot("dog", "go2", yaw_deg=2.0)', ["go2"]),
-        ('scene.robot("dog", file_or_id="go2")', ["go2"]),
-        ('scene.box("go2")', []),
-        ("scene.robot(", []),
+        ('dog = scene.robot("go2")', ({"go2"}, set())),
+        ('scene.robot("dog", "go2", yaw_deg=2.0)', ({"go2"}, set())),
+        ('scene.robot("dog", file_or_id="go2")', ({"go2"}, set())),
+        ('scene.robot("go2", "desk_arm")', ({"desk_arm"}, set())),
+        ('scene.robot(name="go2")', ({"go2"}, set())),
+        ('scene.policy("walk", dog, "go2_walk")', (set(), {"go2_walk"})),
+        ('scene.policy("go2_walk", "dog", policy="trot")', (set(), {"trot"})),
+        ('scene.policy("go2_walk", "dog")', (set(), {"go2_walk"})),
+        ('scene.box("go2")', (set(), set())),
+        ("scene.robot(", (set(), set())),
     ],
 )
-def test_what_a_program_names_is_read_from_its_text(program: str, found: list[str]) -> None:
+def test_what_a_program_names_is_read_from_its_text(program: str, found: tuple[set[str], set[str]]) -> None:
     assert named(program) == found
 
 

@@ -17,7 +17,8 @@ from wsim.assets.folders import VARIABLE
 from wsim.assets.robots import missing, robots
 from wsim.assets.sources import source
 from wsim.assets.wheels import fetch
-from wsim.intake.pull import pull
+from wsim.intake.model import IntakeError
+from wsim.intake.pull import complete, pull
 from wsim.intake.robots import TakenIn
 from wsim.recording.reader import read
 from wsim.runs.iteration import Iteration
@@ -96,6 +97,18 @@ def test_a_program_that_names_it_pulls_it_and_says_so(stand_in: None, tmp_path: 
     assert made.build().ok
     assert said[0] == "pulling stand_in (stand-in-robot 1.2, MIT)"
     assert missing(PROGRAM) == []
+
+
+def test_a_robot_of_ones_own_of_that_name_is_kept(stand_in: None, tmp_path: Path) -> None:
+    """No run takes its place, nor `wsim assets pull` where nobody says so."""
+    own = pull("stand_in").path
+    own.write_bytes(own.read_bytes() + b"my own")
+    assert missing(PROGRAM) == []
+    complete("stand_in")
+    with pytest.raises(IntakeError, match="'stand_in' is there already; --replace takes its place"):
+        pull("stand_in")
+    assert own.read_bytes().endswith(b"my own")
+    assert not pull("stand_in", replace=True).path.read_bytes().endswith(b"my own")
 
 
 def test_without_a_wheel_a_run_ends_in_one_line(

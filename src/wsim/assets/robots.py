@@ -44,6 +44,10 @@ def robot_path(id: str) -> Path:
 
 
 def missing(program: str) -> list[str]:
-    """What a program's text names of robots and their policies, is not here whole, and can be pulled."""
-    here, walking = robots(), policies()
-    return [id for id in named(program) if id not in here or not walking.keys() >= sources()[id].policies.keys()]
+    """The ids of what can be pulled to have all robots and policies that a program's text names, and are not here."""
+    here, walking, (asked, policed) = robots(), policies(), named(program)
+    return [
+        id
+        for id, source in sources().items()
+        if (id in asked and id not in here) or (policed & source.policies.keys()) - walking.keys()
+    ]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import ast
 import tomllib
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -16,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from wsim.assets.folders import AssetError
 
 _FILE = Path(__file__).with_name("sources.toml")
-_CALLS = ("robot", "policy")
+_CALLS = {"robot": (1, "file_or_id"), "policy": (2, "policy")}
 
 
 class _Model(BaseModel):
@@ -92,18 +91,24 @@ def description(policy: str) -> Path:
     return _FILE.with_name("described") / f"{policy}.json"
 
 
-def named(program: str) -> list[str]:
-    """What a program's text names of what can be pulled, robots and policies; nothing where it cannot be read."""
+def named(program: str) -> tuple[set[str], set[str]]:
+    """The ids of robots and of policies that a program's text names; none where it cannot be read."""
     try:
         tree = ast.parse(program)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return []
+        return set(), set()
     calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    given = {text for call in calls if getattr(call.func, "attr", "") in _CALLS for text in _texts(call)}
-    return [id for id, what in sources().items() if given & {id, *what.policies}]
+    robots, policies = (
+        {id for call in calls if getattr(call.func, "attr", "") == method and (id := _id(call, *where))}
+        for method, where in _CALLS.items()
+    )
+    return robots, policies
 
 
-def _texts(call: ast.Call) -> Iterator[str]:
-    for value in (*call.args, *(word.value for word in call.keywords)):
-        if isinstance(value, ast.Constant) and isinstance(value.value, str):
-            yield value.value
+def _id(call: ast.Call, place: int, keyword: str) -> str | None:
+    """What a call names by its argument at a place, or by keyword; without that its first, the prim's name, is it."""
+    given = {word.arg: word.value for word in call.keywords}
+    whole = call.args[place] if len(call.args) > place else given.get(keyword)
+    if whole is None or (isinstance(whole, ast.Constant) and whole.value is None):
+        whole = call.args[0] if call.args else given.get("name")
+    return whole.value if isinstance(whole, ast.Constant) and isinstance(whole.value, str) else None

@@ -97,7 +97,9 @@ def robot(
 @assets.command("pull")
 def pull(
     id: Annotated[str | None, typer.Argument(metavar="ID", help="Of the robot; without one they are listed.")] = None,
-    replace: Annotated[bool, typer.Option("--replace", help="Take the place of the robot of that name.")] = False,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Take the place of what has its and its policies' names.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Get a robot that wsim does not ship: its files are fetched by pip, held against a hash, and taken in."""

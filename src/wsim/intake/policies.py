@@ -51,7 +51,10 @@ def take_in_policy(description: Path, network: Path, name: str, *, replace: bool
         side.mkdir()
         shutil.copyfile(description, side / SPEC)
         shutil.copyfile(network, side / NETWORK)
-        if target.exists():
+        if replace and target.exists():
             target.replace(Path(folder) / "old")
-        side.replace(target)
+        try:
+            side.replace(target)
+        except OSError:
+            raise IntakeError(f"name = {name!r} is there by now; --replace takes its place") from None
     return id, spec

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from wsim.assets.policies import policies_folder
-from wsim.assets.robots import robots_folder
+from wsim.assets.policies import policies, policies_folder
+from wsim.assets.robots import robots, robots_folder
 from wsim.assets.sources import Source, description, source
 from wsim.assets.wheels import fetch
 from wsim.intake.model import IntakeError
@@ -20,22 +22,62 @@ def pull(id: str, *, replace: bool = False) -> TakenIn:
 
     Args:
         id: As `wsim.assets.sources` has it.
-        replace: Take the place of the robot of that name.
+        replace: Take the place of the robot of that name, and of its policies.
 
     Raises:
         AssetError: If nothing of that id can be pulled, or pip does not get it.
-        IntakeError: If a robot of that name is there, or its file cannot be read.
+        IntakeError: If a robot or a policy of that name is there, or its file cannot be read.
     """
     chosen = source(id)
-    folder = fetch(chosen)
-    for policy, file in chosen.policies.items():
-        take_in_policy(description(policy), folder / file.network, policy, replace=True)
-        _keep(policies_folder() / policy / "LICENSE", chosen, file.license, file.licenses)
-    made = take_in(
-        folder / chosen.robot, id, replace=replace, adapt=lambda robot: fit(robot, chosen), source=chosen.wheel
-    )
+    there = [name for name in (id, *chosen.policies) if name in (robots() if name == id else policies())]
+    if there and not replace:
+        raise IntakeError(f"name = {there[0]!r} is there already; --replace takes its place")
+    fetch(chosen)
+    made = _robot(id, chosen, replace)
+    for policy in chosen.policies:
+        _policy(policy, chosen, replace)
+    return made
+
+
+def complete(id: str) -> None:
+    """Pull of a robot and its policies what is not here; what is stays as it is, whoever it is from.
+
+    Raises:
+        AssetError: If nothing of that id can be pulled, or pip does not get it.
+        IntakeError: If a file cannot be read.
+    """
+    chosen = source(id)
+    fetch(chosen)
+    for policy in chosen.policies:
+        if policy not in policies():
+            with _unless(lambda policy=policy: policy in policies()):  # type: ignore[misc]
+                _policy(policy, chosen)
+    if id not in robots():
+        with _unless(lambda: id in robots()):
+            _robot(id, chosen)
+
+
+@contextmanager
+def _unless(there: Callable[[], bool]) -> Iterator[None]:
+    """What cannot be taken in is there by now: another run was faster."""
+    try:
+        yield
+    except IntakeError:
+        if not there():
+            raise
+
+
+def _robot(id: str, chosen: Source, replace: bool = False) -> TakenIn:
+    file = fetch(chosen) / chosen.robot
+    made = take_in(file, id, replace=replace, adapt=lambda robot: fit(robot, chosen), source=chosen.wheel)
     _keep(robots_folder() / f"{id}.license.txt", chosen, chosen.license, chosen.licenses)
     return made
+
+
+def _policy(id: str, chosen: Source, replace: bool = False) -> None:
+    file = chosen.policies[id]
+    take_in_policy(description(id), fetch(chosen) / file.network, id, replace=replace)
+    _keep(policies_folder() / id / "LICENSE", chosen, file.license, file.licenses)
 
 
 def fit(robot: Robot, chosen: Source) -> None:

@@ -18,10 +18,10 @@ def pull_missing(program: str, progress: Progress = silent) -> list[str]:
     """
     wanted = missing(program)
     for id in wanted:
-        from wsim.intake.pull import pull  # with MuJoCo and readers of meshes: few programs need it
+        from wsim.intake.pull import complete  # with MuJoCo and readers of meshes: few programs need it
 
         told = f"pulling {id} ({source(id).wheel}, {source(id).license})"
         progress(told, 0, 1)
-        pull(id, replace=True)  # another run may be at it, too
+        complete(id)
         progress(told, 1, 1)
     return wanted
