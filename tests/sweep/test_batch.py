@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from wsim.scene import Scene
 from wsim.sweep import Axis, Spec, SweepFolder, sweep
 from wsim.sweep import batch as batched
 from wsim.sweep import work as working
@@ -207,3 +208,15 @@ def test_a_whole_sweep_of_batches(folder: Path) -> None:
     found = sweep(made, workers=1)
     assert sorted(outcome.candidate.number for outcome in found) == list(range(4))
     assert {outcome.status for outcome in found} == {"accepted"}
+
+
+def test_a_stage_that_cannot_be_described_goes_alone(folder: Path) -> None:
+    """There it is said why; it had taken all candidates of its shard with it."""
+    stages = []
+    for name in ("one", "other"):
+        scene = Scene()
+        scene.box("box", size=(0.2, 0.2, 0.2), mass=1.0)
+        stages.append(scene.save(folder / f"{name}.usda"))
+    made = [SimpleNamespace(stage=stage, program=folder / "program.py") for stage in (stages[0], folder, stages[1])]
+    built: Any = [(Candidate(number=k), iteration, b"") for k, iteration in enumerate(made)]
+    assert [[member.candidate.number for member in batch] for batch in batched.batches(built, 8)] == [[0, 2]]

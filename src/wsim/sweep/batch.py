@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -61,7 +62,9 @@ def batches(built: Sequence[tuple[Candidate, Iteration, bytes]], most: int, proc
     given = [(iteration.stage, told) for _, iteration, told in built]
     with uncollected():
         said = list(shared_out(_described, given, forks(processes)))
-    members = [Member(candidate, iteration, *of) for (candidate, iteration, _), of in zip(built, said, strict=True)]
+    members = [
+        Member(candidate, iteration, *of) for (candidate, iteration, _), of in zip(built, said, strict=True) if of
+    ]
     moving = [member for member in members if member.world.fluids or member.world.bodies]
     found, room = [], free_memory() / 2
     for kind in _by_control(moving):
@@ -72,13 +75,19 @@ def batches(built: Sequence[tuple[Candidate, Iteration, bytes]], most: int, proc
     return [batch for batch in found if len(batch) > 1]
 
 
-def _described(given: tuple[Path, bytes]) -> tuple[World, str, str]:
-    """A world, its topology and its skeleton, from what is told or, where that is nothing, from the stage."""
+def _described(given: tuple[Path, bytes]) -> tuple[World, str, str] | None:
+    """A world, its topology and its skeleton, from what is told or, where that is nothing, from the stage.
+
+    None of a stage that cannot be described: alone it says why.
+    """
     stage, told = given
+    found = None
+    with contextlib.suppress(ValidationError):  # the sandbox's word
+        found = Reading.model_validate_json(told) if told else None
     try:
-        found = Reading.model_validate_json(told) if told else read(stage)
-    except ValidationError:  # the sandbox's word
-        found = read(stage)
+        found = found or read(stage)
+    except Exception:  # noqa: BLE001 - it is told where it goes alone, and the others of the shard go on
+        return None
     return found.world, topology(found.world), found.skeleton
 
 
