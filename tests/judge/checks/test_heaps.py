@@ -36,19 +36,11 @@ def failed(recording):
     return [f"{finding.check}: {finding.message}" for finding in judge(recording).failures]
 
 
-@pytest.fixture
-def accepted(request):
-    """Marks what is rejected though it is sound: a capsule whose one contact goes 18 mm between two frames."""
-    if "struck pile 26129" in request.node.name:
-        reason = "CheckForces: 0.898 N m of 0.859, an arm of 6 mm, are left of a touch that wanders between frames"
-        request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
-
-
-def test_what_is_struck_is_accepted(recording, accepted):
+def test_what_is_struck_is_accepted(recording):
     assert failed(recording) == []
 
 
-def test_it_is_accepted_without_the_contacts_recorded(recording, accepted):
+def test_it_is_accepted_without_the_contacts_recorded(recording):
     assert failed(replace(recording, contacts=None, ties=None)) == []
 
 
