@@ -250,7 +250,7 @@ def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
     if method == "contact":
         return {end: body(end) for end in ("a", "b")}
     if method == "scatter":
-        return {"on": scene.terrain(f"probe_land_{number}", size=(1.0, 1.0), layers=[_level])}
+        return {"on": scene.terrain(f"probe_land_{number}", size=(100.0, 100.0), cell=100.0, layers=[_level])}
     if method in CORDS:
         return {"a": body("a")}
     if method.startswith("joint_"):
