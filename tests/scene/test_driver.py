@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.ways import lane_change, ring
 from wsim.scene import Driver, SceneError, VehicleSpec
 from wsim.scene.vehicle_spec import CORNERS, preset
 
@@ -75,17 +76,6 @@ def driven(driver, seconds, **start):
 
 def straight(length):
     return [(x, 0.0) for x in np.arange(0.0, length + 0.1, 0.5)]
-
-
-def ring(radius, turns, spacing=0.3):
-    angle = np.linspace(0.0, 2.0 * math.pi * turns, math.ceil(2.0 * math.pi * turns * radius / spacing))
-    return np.stack([radius * np.sin(angle), radius * (1.0 - np.cos(angle))], axis=1)
-
-
-def lane_change(x, begin=5.0, length=24.0, aside=3.5):
-    """A way from one lane to another by a quintic, which has no kink in its bend."""
-    s = np.clip((x - begin) / length, 0.0, 1.0)
-    return aside * s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
 
 
 def test_its_speeds_are_what_bends_and_brakes_allow():

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from tests.ways import lane_change, ring
 from wsim.program.control_world import INPUTS, OUTPUTS, ControlLayout
 from wsim.scene import Driver, Scene
 from wsim.scene.vehicle_spec import preset
@@ -12,17 +13,6 @@ from wsim.sim import Simulation
 from wsim.sim.control import ArrayController, driven_joints
 
 SPEC = preset("hmmwv")
-
-
-def ring(radius, turns, spacing=0.3):
-    angle = np.linspace(0.0, 2.0 * math.pi * turns, math.ceil(2.0 * math.pi * turns * radius / spacing))
-    return np.stack([radius * np.sin(angle), radius * (1.0 - np.cos(angle))], axis=1)
-
-
-def lane_change(x, begin=5.0, length=24.0, aside=3.5):
-    """A way from one lane to another by a quintic, which has no kink in its bend."""
-    s = np.clip((x - begin) / length, 0.0, 1.0)
-    return aside * s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
 
 
 def driven(driver, tmp_path, seconds, *, speed=0.0, pitch=0.0, slope=0.0, rate=20.0):

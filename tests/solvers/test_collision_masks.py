@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from wsim.errors import UserError
 from wsim.scene import Scene
 from wsim.sim import Simulation
 from wsim.solvers.collision_masks import by_kinds
@@ -40,6 +41,28 @@ def test_more_kinds_than_bits_are_none() -> None:
     body = np.array([-1] * 40 + list(range(40)))
     assert by_kinds(body, np.ones(80, dtype=int), np.array([(k, 40 + k) for k in range(40)])) is None
     assert by_kinds(body, np.full(80, 2), np.empty((0, 2), dtype=int)) is None
+
+
+def doors(folder: Path, count: int) -> Path:
+    """So many doors, each in a static post of its own."""
+    scene = Scene()
+    for k in range(count):
+        scene.box(f"post_{k}", size=(0.1, 0.4, 1.0), position=(0, 2.0 * k, 2.0), static=True)
+        scene.box(f"door_{k}", size=(0.8, 0.04, 0.04), position=(0.4, 2.0 * k, 2.0), mass=1.0)
+        scene.joint_revolute(f"hinge_{k}", f"post_{k}", f"door_{k}", axis="Y", anchor=(0, 2.0 * k, 2.0))
+    return scene.save(folder / "doors.usda")
+
+
+def test_as_many_doors_as_there_are_colours_are_kept_from_their_posts_and_more_are_refused(tmp_path: Path) -> None:
+    """A door and its post are of one colour, and Newton has 32."""
+    simulation = Simulation(doors(tmp_path, 30), device="cpu")
+    while simulation.time < 0.1:
+        simulation.advance_frame()
+    rows = [k for k, body in enumerate(simulation.world.bodies) if "door" in body.prim]
+    turned = 2 * np.arcsin(abs(simulation.state.body_q.numpy()[rows, 4]))
+    assert turned.min() == pytest.approx(turned.max(), rel=1e-3) and turned.min() > 0.15
+    with pytest.raises(UserError, match=r"door_.* not to touch, nor are .* kinematic=True in place of static=True"):
+        Simulation(doors(tmp_path, 40), device="cpu")
 
 
 @pytest.mark.parametrize("worlds", [1, 2])
