@@ -58,6 +58,36 @@ def test_what_is_rehearsed_is_compiled_once_and_then_found(cache):
     assert compiled(cache) == before
 
 
+def test_what_asks_for_the_size_of_blocks_goes_on_in_a_rehearsal():
+    kernels, sizes = [adder(amount) for amount in (2.0, 20.0)], []
+    x = wp.zeros(3, dtype=float, device="cpu")
+
+    def work():
+        sizes.append(wp.get_suggested_block_size(kernels[0], "cpu"))
+        wp.launch(kernels[1], dim=3, inputs=[x], device="cpu")
+
+    assert [module for module, _ in rehearse(work)] == [kernel.module for kernel in kernels]
+    assert sizes == [(1, 1)]
+
+
+@pytest.mark.parametrize("device", ["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
+def test_a_step_is_rehearsed_to_its_end(tmp_path, device):
+    """Of bodies that nothing touches as well: what a step of theirs needs at a blow is known before it comes."""
+    scene = Scene()
+    scene.ground()
+    scene.sphere("ball", radius=0.1, position=(0.0, 0.0, 2.0))
+    scene.sphere("bob", radius=0.05, mass=1.0, position=(1.0, 0.0, 0.8))
+    scene.rope("rope", None, "bob", anchor_a=(1.0, 0.0, 1.0), length=0.5)
+    simulation, ended = Simulation(scene.save(tmp_path / "stage.usda"), device, 2), []
+
+    def step():
+        simulation._push_and_move()
+        ended.append(True)
+
+    assert rehearse(step)
+    assert ended == [True]
+
+
 def test_a_module_that_does_not_compile_says_so_when_it_is_launched(cache):
     @wp.kernel(module="unique")
     def wrong(x: wp.array(dtype=float)):

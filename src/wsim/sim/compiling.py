@@ -76,8 +76,9 @@ def modules_named(names: Iterable[str], device: Any) -> list[Needed]:
 def rehearse(work: Callable[[], object]) -> list[Needed]:
     """What some work would launch, in order. Nothing is launched: all that it writes is to be thrown away.
 
-    Of a loop on the device one round is gone through, and of a choice both ways. Work that fails on numbers that nobody
-    has computed tells what it would have launched until then.
+    Of a loop on the device one round is gone through, and of a choice both ways. What asks how large a kernel's blocks
+    had best be is told the least, as the kernel is not there yet. Work that fails on numbers that nobody has computed
+    tells what it would have launched until then.
     """
     found: dict[Needed, None] = {}
 
@@ -91,9 +92,17 @@ def rehearse(work: Callable[[], object]) -> list[Needed]:
         for way in filter(None, (on_true, on_false)):
             way(**given)
 
+    def least(kernel: wp.Kernel, device: Any = None) -> tuple[int, int]:
+        note(kernel.module, device)
+        return 1, 1
+
+    instead = (
+        (wp.Module, "load", note), (wp, "capture_while", once), (wp, "capture_if", both),
+        (wp, "get_suggested_block_size", least),
+    )  # fmt: skip
     with contextlib.ExitStack() as stack:
         stack.enter_context(contextlib.suppress(Exception))  # it fails again, and is told of, where it is truly done
-        for owner, name, other in ((wp.Module, "load", note), (wp, "capture_while", once), (wp, "capture_if", both)):
+        for owner, name, other in instead:
             stack.enter_context(_instead(owner, name, other))
         work()
     return list(found)

@@ -14,6 +14,7 @@ import numpy as np
 import warp as wp
 
 from wsim.errors import UserError
+from wsim.forks import uncollected
 from wsim.phases import Phases
 from wsim.progress import Progress, silent
 from wsim.recording import RecordingWriter
@@ -238,7 +239,7 @@ class Simulation:
             self._graphs.clear()
             self._asked = asked
         if steps not in self._graphs:
-            with wp.ScopedCapture(self.device) as capture:
+            with uncollected(), wp.ScopedCapture(self.device) as capture:  # garbage of another graph gives memory back
                 for _ in range(steps):
                     self._push_and_move()
             self._graphs[steps] = capture.graph

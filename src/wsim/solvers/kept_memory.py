@@ -32,6 +32,8 @@ class KeptMemory:
         if unused:
             return unused.pop()
         start = self._source.allocate(size_in_bytes)
+        if self._device.is_capturing:  # a graph's own, which is gone with it
+            return start
         self._blocks[start] = wp.array(
             ptr=start, dtype=wp.uint8, shape=size_in_bytes, device=self._device, deleter=self._source.deallocate
         )
@@ -39,7 +41,10 @@ class KeptMemory:
 
     def deallocate(self, ptr: int, size_in_bytes: int) -> None:
         """Keep a block for the next of its size."""
-        self._unused[size_in_bytes].append(ptr)
+        if ptr in self._blocks:
+            self._unused[size_in_bytes].append(ptr)
+        else:
+            self._source.deallocate(ptr, size_in_bytes)
 
     def used(self) -> AbstractContextManager[Any]:
         """Where Warp's arrays are of this memory, on CUDA."""
