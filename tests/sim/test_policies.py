@@ -22,6 +22,7 @@ from wsim.sim import Simulation
 from wsim.sim.alike import alike
 from wsim.sim.commands import Commands
 from wsim.sim.policies import axes
+from wsim.sim.time_step import choose_time_step
 
 JOINTS = ["pan", "lift"]
 SEEN = [
@@ -261,6 +262,30 @@ def test_where_there_is_no_way_to_go_the_last_heading_is_kept(own: Path) -> None
 def test_a_description_that_does_not_fit_is_told(changed: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError, match=said):
         PolicySpec.model_validate(spec(**changed))
+
+
+@pytest.mark.parametrize(
+    ("frames", "rate", "steps"),
+    [
+        (50.0, 50.0, 16),  # a frame is an interval
+        (30.0, 50.0, 30),  # 3/5 of a frame; 27 steps would make it 50.6 times a second
+        (24.0, 50.0, 50),  # 12/25
+        (60.0, 50.0, 15),  # 6/5
+        (30.0, 200.0, 40),  # 3/20
+        (30.0, 10.0, 27),  # three frames
+        (29.97, 50.0, 30),  # 3/5 but for a thousandth
+        (7.0, 59.0, 118),  # 7/59, of 115 steps
+        (40.0, 59.0, 20),  # 40/59: of 59 steps where 20 do it would be kept
+    ],
+)
+def test_steps_are_such_that_policies_keep_their_rate(own: Path, frames: float, rate: float, steps: int) -> None:
+    policies.write(own, "matrix", spec(rate=rate), policies.linear(np.zeros((SIZE, 2))))
+    scene = Scene()
+    scene.simulation(duration=1.0, frame_rate=frames, gravity=(0.0, 0.0, 0.0))
+    arm = scene.robot("arm", "desk_arm", position=(0.0, 0.0, 5.0), fixed=False)
+    scene.policy("steer", arm, "matrix")
+    chosen = choose_time_step(describe(scene.save(own / "stage.usda")), None)
+    assert (chosen.substeps, chosen.reason) == (steps, "rigid bodies")
 
 
 def test_a_world_without_a_policy_has_none() -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
@@ -19,6 +21,8 @@ from wsim.sim.spring_steps import DRIVE_SHARE, spring_limits
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
 DAMPED_SHARE = 0.5  # of a speed, lost in a step
 SHARE_OF_SIZE = 0.25  # a body may cross this share of the thinnest thing in a step
+MOST_PARTS = 60  # of a frame, that rates are brought to
+DEARER = 2.0  # by which steps may be shorter for rates to be kept
 
 
 @dataclass(frozen=True)
@@ -56,8 +60,24 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
     reason = min(limits, key=limits.__getitem__)
     limit = limits[reason]
     frame = 1.0 / world.frame_rate
-    substeps = max(1, math.ceil(frame / limit - 1e-9))
+    least = max(1, math.ceil(frame / limit - 1e-9))
+    substeps = _in_step(least, (world.frame_rate / policy.spec.rate for policy in world.policies))
     return TimeStep(frame / substeps, substeps, reason)
+
+
+def _in_step(least: int, intervals: Iterable[float]) -> int:
+    """Steps a frame of which intervals are whole numbers: those for which that is not too dear.
+
+    Args:
+        least: That the limits ask for.
+        intervals: After which something takes its turn [frames].
+    """
+    parts = 1
+    for interval in intervals:
+        more = math.lcm(parts, Fraction(interval).limit_denominator(MOST_PARTS).denominator)
+        if more * math.ceil(least / more) <= DEARER * least:
+            parts = more
+    return parts * math.ceil(least / parts)
 
 
 def _drive_limits(world: World) -> dict[str, float]:
