@@ -20,6 +20,7 @@ from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.rest import CheckJitter
 from wsim.judge.decide import judge_copies
 from wsim.judge.evidence.alike import alike
+from wsim.judge.evidence.contact import _overlaps
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.worlds import judge_worlds, verdicts_of, weigh
 from wsim.plan.schema import Plan
@@ -247,11 +248,22 @@ def differing() -> Trajectories:
 
 
 def test_worlds_of_other_sizes_and_frictions_are_worked_out_at_once(monkeypatch) -> None:
-    """Their books are one call, and each has its own shapes and laws in it."""
-    worlds, calls, every = differing(), [], Balance.every
-    monkeypatch.setattr(Balance, "every", lambda self: calls.append(len(self._copies)) or every(self))
+    """Their books are one call, and so are distances, courses and trembling; each has its own shapes and laws in it."""
+    worlds, calls = differing(), Counter()
+
+    def counted(function):
+        def called(*given, **named):
+            calls[function.__qualname__] += 1
+            return function(*given, **named)
+
+        return called
+
+    named = (Balance, "every"), (CheckContinuity, "_asked"), (CheckSupport, "_asked"), (CheckJitter, "_tremble")
+    for owner, name in named:
+        monkeypatch.setattr(owner, name, counted(getattr(owner, name)))
+    monkeypatch.setattr("wsim.judge.evidence.contact._overlaps", counted(_overlaps))
     verdicts = verdicts_of(worlds)
-    assert calls == [6]
+    assert calls == {**{f"{owner.__name__}.{name}": 1 for owner, name in named}, "_overlaps": 1}
     assert [verdict.status for verdict in verdicts] == ["rejected" if k in (2, 4) else "accepted" for k in range(6)]
     for k, verdict in enumerate(verdicts):
         alone = judge(worlds.recording(k))

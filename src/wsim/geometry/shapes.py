@@ -9,7 +9,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from wsim.geometry.kinds import KINDS, Kind, mesh
+from wsim.geometry.kinds import KINDS, Kind, mesh, varying
 from wsim.geometry.rotations import UP, conjugate, multiply, rotate
 from wsim.geometry.surfaces import Surface
 
@@ -39,6 +39,8 @@ def kind_of(shape: Described) -> Kind:
     """The shape in its own frame."""
     if shape.kind == "mesh":
         return mesh(shape.size, shape.vertices, shape.triangles)
+    if any(isinstance(number, np.ndarray) for number in shape.size):
+        return varying(shape.kind, *np.asarray(shape.size))
     return KINDS[shape.kind](*shape.size)
 
 

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from wsim.forks import uncollected
 from wsim.judge.books.copies import similar
 from wsim.judge.books.copies import work_out as books_of
 from wsim.judge.checks.registry import physics_checks, run_checks
-from wsim.judge.evidence.alike import groups, same_geometry
+from wsim.judge.evidence.alike import groups, same_form
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.objective import ObjectiveCheck
@@ -40,6 +41,7 @@ class Answers:
                 self.crashes.append(Crash.of(error, check.name, check.asks))
 
 
+@uncollected()
 def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
     """Judge what happened.
 
@@ -77,7 +79,7 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
 def work_out(copies: Sequence[Evidence]) -> None:
     """At once what the checks ask of all copies of like worlds. What cannot be is left to each by itself, and told."""
     joined: list[tuple[Evidence, list[Evidence]]] = []
-    for group in (group for group in groups(copies, _like) if len(group) > 1):
+    for group in (group for group in groups(copies, _of_one_form) if len(group) > 1):
         with _left_to_each(group, "motion"):
             whole = Evidence.join(group)
             joined += [(whole, group)] if whole is not None else []
@@ -94,8 +96,8 @@ def work_out(copies: Sequence[Evidence]) -> None:
                 check.prepare(whole, group)
 
 
-def _like(one: Evidence, other: Evidence) -> bool:
-    return same_geometry(one.world, other.world)
+def _of_one_form(one: Evidence, other: Evidence) -> bool:
+    return same_form(one.world, other.world)
 
 
 @contextlib.contextmanager

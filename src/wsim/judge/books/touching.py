@@ -84,6 +84,7 @@ class Touching:
 
         self.world = world
         self.worlds = [world]
+        self.parts: list[Touching] = []  # those that were joined
         self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
         self._laws: dict[tuple[int, int], Pair] = {}
         self._meshes: dict[int, Triangles] = {}
@@ -112,6 +113,7 @@ class Touching:
         Shapes are counted on from world to world, S in each.
         """
         joined = copy(parts[0])
+        joined.parts = list(parts)
         joined._meet, joined._flat = parts[0]._meet, parts[0]._flat  # of the kinds alone
         joined.worlds = [world for part in parts for world in part.worlds]
         joined.shapes = [shape for part in parts for shape in part.shapes]
@@ -367,7 +369,12 @@ class Touching:
 def touching_of(copies: Sequence[Evidence]) -> Touching:
     """The shapes of several recordings' worlds: those of one world, or joined."""
     every = [Touching.of(evidence) for evidence in copies]
-    return every[0] if all(each is every[0] for each in every) else Touching.join(every)
+    if all(each is every[0] for each in every):
+        return every[0]
+    joined = copies[0].kept.get(touching_of)
+    if not isinstance(joined, Touching) or joined.parts != every:
+        joined = copies[0].kept[touching_of] = Touching.join(every)
+    return joined
 
 
 def _tied(world: World) -> set[frozenset[str]]:

@@ -196,12 +196,13 @@ def _nearest(evidence: Recorded, i: int, frames: Indices, limit: Floats) -> Floa
     In each frame the shapes are asked in the order in which the balls about them are near.
     """
     nearest, shapes = np.full(len(frames), np.inf), evidence.placed
-    radius = np.array([shape.radius for shape in shapes])
+    radius = np.stack([shape.radii[frames] for shape in shapes], axis=1)
     other = [k for k, shape in enumerate(shapes) if shape.body != i]
     if not other:
         return nearest
-    for own in (shape for shape in shapes if shape.body == i):
-        apart = lengths(own.position[frames][:, None] - evidence.places[frames][:, other]) - own.radius - radius[other]
+    for k, own in ((k, shape) for k, shape in enumerate(shapes) if shape.body == i):
+        apart = lengths(own.position[frames][:, None] - evidence.places[frames][:, other])
+        apart -= radius[:, k, None] + radius[:, other]
         order = np.argsort(apart, axis=1, kind="stable")
         for rank in order.T:
             bound = apart[np.arange(len(frames)), rank]

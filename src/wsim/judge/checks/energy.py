@@ -200,7 +200,7 @@ class CheckEnergy(Check):
         """
         motion, recording = evidence.motion, evidence.recording
         deepest = recording.scalars.get("contact/penetration")
-        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        size = motion.smallest
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
         push = np.asarray(recording.contact_force, dtype=np.float64)
         force = lengths(push)
@@ -304,7 +304,7 @@ class CheckEnergy(Check):
         motion, weight = evidence.motion, evidence.motion.mass * evidence.gravity
         kinetic, potential, elastic = (each @ of for each in (motion.kinetic, motion.potential, motion.elastic))
         scale = np.max([kinetic.max(axis=0), np.ptp(potential, axis=0), np.ptp(elastic, axis=0)], axis=0)
-        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        size = motion.smallest
         height = (np.abs(motion.com) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
         settles = self._give(evidence, size) * (motion.touched.any(axis=0) | ~motion.jointed)
