@@ -16,6 +16,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.flats import flats
 from wsim.judge.books.meshes import Triangles, colliding, radius_about, touching
+from wsim.judge.books.searching import Search
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Joint, Shape, World
+    from wsim.scene.world import Body, Joint, Shape, Static, World
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -80,31 +81,27 @@ class Touching:
         return kept
 
     def __init__(self, world: World) -> None:
-        import mujoco  # heavy, and wanted where there are bodies alone
-
         self.world = world
         self.worlds = [world]
-        self.parts: list[Touching] = []  # those that were joined
+        self.parts: list[Touching] = []  # one of each world, where they are joined
         self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
         self._laws: dict[tuple[int, int], Pair] = {}
         self._meshes: dict[int, Triangles] = {}
-        spec = mujoco.MjSpec()
-        # Of what is round MuJoCo's further points are those of surfaces blown up by the reach: at 2 cm their normal was
-        # 9 degrees off, and the nearest point was none of them. What is flat has its own (`flats`).
-        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
-        for row, body in enumerate(world.bodies):
-            item = spec.worldbody.add_body(name=f"b{row}", mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
-            item.add_freejoint()
-            for shape in body.shapes:
-                self._add(mujoco, spec, item, row, body.prim, shape)
-        for static in world.statics:
-            for shape in static.shapes:
-                self._add(mujoco, spec, spec.worldbody, WORLD, static.prim, shape)
-        self._mujoco = mujoco
-        self._models = [spec.compile()]
-        self._data = [mujoco.MjData(self._models[0])]
-        names = [self._models[0].geom(k).name for k in range(self._models[0].ngeom)]
-        self._shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
+        items: list[tuple[int, Body | Static]] = [*enumerate(world.bodies), *((WORLD, each) for each in world.statics)]
+        for row, item in items:
+            for shape in item.shapes:
+                self._add(row, item.prim, shape)
+
+    @cached_property
+    def _searches(self) -> list[Search]:
+        """For contacts in each world: one of its own, or that of another, of other sizes."""
+        first, others = (self.parts or [self])[0]._search, self.parts[1:]
+        return [first, *(first.resized(part.shapes) or part._search for part in others)]
+
+    @cached_property
+    def _search(self) -> Search:
+        """For contacts in the one world that this is of."""
+        return Search(len(self.world.bodies), self.shapes, self._meshes)
 
     @staticmethod
     def join(parts: Sequence[Touching]) -> Touching:
@@ -113,14 +110,12 @@ class Touching:
         Shapes are counted on from world to world, S in each.
         """
         joined = copy(parts[0])
-        joined.parts = list(parts)
         joined._meet, joined._flat = parts[0]._meet, parts[0]._flat  # of the kinds alone
+        joined.parts = list(parts)
         joined.worlds = [world for part in parts for world in part.worlds]
         joined.shapes = [shape for part in parts for shape in part.shapes]
-        joined._models = [model for part in parts for model in part._models]
-        joined._data = [data for part in parts for data in part._data]
         joined._laws = {}
-        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity"):
+        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity", "_searches"):
             joined.__dict__.pop(name, None)
         return joined
 
@@ -151,28 +146,13 @@ class Touching:
         """Where each shape is on its body, (shapes, 7)."""
         return np.array([(*shape.position, *shape.rotation) for _, _, shape in self.shapes]).reshape(-1, 7)
 
-    def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
+    def _add(self, row: int, owner: str, shape: Shape) -> None:
         if not shape.collides:
             return
-        if shape.kind == "mesh":
-            for piece in colliding(shape):
+        for piece in colliding(shape) if shape.kind == "mesh" else [shape]:
+            if shape.kind == "mesh":
                 self._meshes[len(self.shapes)] = Triangles(piece)
-                self.shapes.append((row, owner, piece))
-            return
-        kinds = mujoco.mjtGeom
-        x, y, z, w = shape.rotation
-        fields: dict[str, Any] = {"pos": shape.position, "quat": (w, x, y, z), "name": f"s{len(self.shapes)}"}
-        if shape.kind == "box":
-            fields |= {"type": kinds.mjGEOM_BOX, "size": [0.5 * edge for edge in shape.size]}
-        elif shape.kind == "sphere":
-            fields |= {"type": kinds.mjGEOM_SPHERE, "size": [shape.size[0], 0, 0]}
-        elif shape.kind in ("cylinder", "capsule"):
-            kind = kinds.mjGEOM_CYLINDER if shape.kind == "cylinder" else kinds.mjGEOM_CAPSULE
-            fields |= {"type": kind, "size": [shape.size[0], 0.5 * shape.size[1], 0]}
-        else:
-            fields |= {"type": kinds.mjGEOM_PLANE, "size": [0, 0, 1]}
-        item.add_geom(**fields)
-        self.shapes.append((row, owner, shape))
+            self.shapes.append((row, owner, piece))
 
     def at(self, poses: Floats, reach: float, about: Sequence[int] | None = None) -> Contacts:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]; those of the bodies `about` alone."""
@@ -222,26 +202,20 @@ class Touching:
         """What MuJoCo finds at poses (K, B, 7): shapes (n, 2), points and normals (n, 3), gaps, and at which pose."""
         qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
         margins = self._margin.reshape(len(self.worlds), -1)
-        body = self._row_of_shape[self._shape_of_geom]  # of each geom; the world's is the last
+        of_geom = self._searches[0].shape_of_geom
+        body = self._row_of_shape[of_geom]  # of each geom; the world's is the last
         asked = np.pad(np.ones(poses.shape[:2], dtype=bool) if about is None else about, ((0, 0), (0, 1)))
-        by_geom = reach[:, body] + margins[worlds][:, self._shape_of_geom], asked[:, body]
+        by_geom = reach[:, body] + margins[worlds][:, of_geom], asked[:, body]
         by_body = np.roll(reach, 1, axis=1) + margins.max(axis=1, initial=0.0)[worlds, None], np.roll(asked, 1, axis=1)
         geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
-        for pose, world, far, ours, far_body, ours_body in zip(qpos, worlds, *by_geom, *by_body, strict=True):
-            model, data = self._models[world], self._data[world]
-            model.geom_margin[:], model.body_margin[:] = far, far_body
-            model.geom_conaffinity[:], model.body_conaffinity[:] = ours, ours_body  # others pass over each other
-            data.qpos[:] = pose
-            self._mujoco.mj_kinematics(model, data)
-            self._mujoco.mj_comPos(model, data)
-            self._mujoco.mj_collision(model, data)
-            found = data.contact
+        for pose, world, *each in zip(qpos, worlds, *by_geom, *by_body, strict=True):
+            found = self._searches[world].at(pose, *each)
             geoms.append(np.array(found.geom).reshape(-1, 2))
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
         at = np.repeat(np.arange(len(poses)), [len(gap) for gap in gaps[1:]])
-        shapes = self._shape_of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
+        shapes = of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
     def near(self, poses: Floats, worlds: Rows) -> Bools:

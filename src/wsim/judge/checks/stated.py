@@ -25,6 +25,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class Off:
+    """How a body starts unlike what is stated."""
+
+    body: Body
+    how: str
+    value: float
+    limit: float
+    unit: str
+
+
 @dataclass
 class CheckStart(Check):
     """Each body starts where, turned and moving as the stage states."""
@@ -38,41 +49,43 @@ class CheckStart(Check):
         """What starts most unlike what is stated, of places, turns and speeds."""
         if OURS not in evidence.recording.metadata or not len(evidence.motion.mass):
             return []
-        found, free = [], _free(evidence)
+        off, free = [], _free(evidence)
         for k, body in enumerate(evidence.world.bodies):
             if not body.kinematic:
-                found += self._of(evidence, k, body, bool(free[k]))
-        return worst(found)
+                off += self._of(evidence, k, body, bool(free[k]))
+        if off and all(each.value <= each.limit for each in off):  # one is told of, as they are many
+            off = [min(off, key=lambda each: each.limit - each.value)]
+        return worst([self._measured(each) for each in off])
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
         """The start that was taken."""
         return start_taken(evidence, finding)
 
-    def _of(self, evidence: Evidence, k: int, body: Body, free: bool) -> list[Finding]:
+    def _of(self, evidence: Evidence, k: int, body: Body, free: bool) -> list[Off]:
         motion = evidence.motion
         start, radius = motion.q[0, k], float(motion.radius[k])
         rounding = 8.0 * FLOAT32 * float(np.linalg.norm(body.position))
         aside = float(np.linalg.norm(start[:3] - body.position))
         turned = _angle(start[3:], np.array(body.rotation))
         found = [
-            self._measured(body, f"{body.prim} starts {aside:.3g} m from where it stands", aside,
-                           self.place * radius + rounding, "m"),
-            self._measured(body, f"{body.prim} starts turned by {np.degrees(turned):.3g}°", turned, self.turn, "rad"),
-        ]  # fmt: skip
+            Off(body, f"starts {aside:.3g} m from where it stands", aside, self.place * radius + rounding, "m"),
+            Off(body, f"starts turned by {math.degrees(turned):.3g}°", turned, self.turn, "rad"),
+        ]
         for name, unit, has, stated in (
             ("moves", "m/s", motion.v[0, k], np.array(body.velocity)),
             ("turns", "rad/s", motion.w[0, k], np.array(body.angular_velocity)),
         ):
             if stated.any() or free:  # what joints make of a speed that nobody states is theirs
                 off = float(np.linalg.norm(has - stated))
-                message = f"{body.prim} {name} at the start by {off:.3g} {unit} otherwise than stated"
+                message = f"{name} at the start by {off:.3g} {unit} otherwise than stated"
                 limit = self.share * float(np.linalg.norm(stated)) + self.still
-                found.append(self._measured(body, message, off, limit, unit))
+                found.append(Off(body, message, off, limit, unit))
         return found
 
-    def _measured(self, body: Body, message: str, value: float, limit: float, unit: str) -> Finding:
+    def _measured(self, off: Off) -> Finding:
+        prim = off.body.prim
         return self.measured(
-            message, value, limit, unit, expected=0.0, prim=body.prim, time=0.0,
+            f"{prim} {off.how}", off.value, off.limit, off.unit, expected=0.0, prim=prim, time=0.0,
             limit_from="what a seed and the joints' closing change", fine="All starts as it is stated to",
         )  # fmt: skip
 
