@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -35,13 +35,18 @@ class Described(Protocol):
 S = TypeVar("S", bound=Described)
 
 
+@lru_cache(maxsize=4096)
+def _kind(kind: str, size: tuple[float, ...]) -> Kind:
+    return KINDS[kind](*size)
+
+
 def kind_of(shape: Described) -> Kind:
     """The shape in its own frame."""
     if shape.kind == "mesh":
         return mesh(shape.size, shape.vertices, shape.triangles)
     if any(isinstance(number, np.ndarray) for number in shape.size):
         return varying(shape.kind, *np.asarray(shape.size))
-    return KINDS[shape.kind](*shape.size)
+    return _kind(shape.kind, tuple(shape.size))
 
 
 def surface_of(shape: Described) -> Surface:

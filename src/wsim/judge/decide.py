@@ -67,13 +67,14 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         return [_nothing() for _ in copies]
     if copies[0].world.foreign:
         return [_cannot_judge(evidence) for evidence in copies]
-    runs = [Answers() for _ in copies]
+    runs, first = [Answers() for _ in copies], run_checks()
     for answers, evidence in zip(runs, copies, strict=True):
-        answers.ask(run_checks(), evidence)
+        answers.ask(first, evidence)
     broken = [next((f for f in run.findings if f.check == "CheckFinite" and not f.passed), None) for run in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
     work_out(sound)
-    return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
+    checks = physics_checks()
+    return [_conclusion(checks, *each) for each in zip(copies, runs, broken, strict=True)]
 
 
 def work_out(copies: Sequence[Evidence]) -> None:
@@ -110,11 +111,11 @@ def _left_to_each(copies: Sequence[Evidence], what: str) -> Iterator[None]:
         warnings.warn(f"{told}: {type(error).__name__}: {error}", RuntimeWarning, stacklevel=2)
 
 
-def _conclusion(evidence: Evidence, answers: Answers, broken: Finding | None) -> Verdict:
+def _conclusion(checks: Sequence[Check], evidence: Evidence, answers: Answers, broken: Finding | None) -> Verdict:
     """The verdict on what moved, unless the numbers are broken."""
     asked = [ObjectiveCheck(each) for each in (evidence.plan.objectives if evidence.plan is not None else [])]
     if broken is None:
-        answers.ask([*physics_checks(), *asked], evidence)
+        answers.ask([*checks, *asked], evidence)
     else:
         answers.findings += [_unmeasured(check, evidence, broken) for check in asked]
     return conclude(answers.findings, evidence, answers.crashes)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import cross
 from wsim.judge.books.courses import Courses
 from wsim.judge.books.encounters import APART, Met, about, jumps, meets, near
 from wsim.judge.books.pressed import pushed_back
@@ -296,7 +297,7 @@ def _off(courses: Courses, point: Point, side: int) -> float:
     off, com = courses.off(of.k, side, of.when), (of.before, of.after)[side].com
     for row, sign, end in ((int(contact.one[0]), -1.0, 0), (int(contact.two[0]), 1.0, 1)):
         if row >= 0:
-            total += sign * (off[row, :3] + np.cross(off[row, 3:], contact.surface(end)[0] - com[row]))
+            total += sign * (off[row, :3] + cross(off[row, 3:], contact.surface(end)[0] - com[row]))
     return abs(float(total @ contact.normal[0]))
 
 

@@ -59,6 +59,7 @@ class Contacts:
 
 
 _ROWS, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+_NO_PAIRS = np.full(1, -1), np.zeros((1, 3))  # but one that is none
 NONE = Contacts(_ROWS, _ROWS, _ROWS.reshape(0, 2), _POINTS, _POINTS, np.zeros(0))
 
 
@@ -85,7 +86,7 @@ class Touching:
         self.worlds = [world]
         self.parts: list[Touching] = []  # one of each world, where they are joined
         self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
-        self._laws: dict[tuple[int, int], Pair] = {}
+        self._pairs, self._numbers = _NO_PAIRS  # of shapes that were asked for, in order, and their laws
         self._meshes: dict[int, Triangles] = {}
         items: list[tuple[int, Body | Static]] = [*enumerate(world.bodies), *((WORLD, each) for each in world.statics)]
         for row, item in items:
@@ -114,7 +115,7 @@ class Touching:
         joined.parts = list(parts)
         joined.worlds = [world for part in parts for world in part.worlds]
         joined.shapes = [shape for part in parts for shape in part.shapes]
-        joined._laws = {}
+        joined._pairs, joined._numbers = _NO_PAIRS
         for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity", "_searches"):
             joined.__dict__.pop(name, None)
         return joined
@@ -178,7 +179,8 @@ class Touching:
         one, two = self._row_of_shape[shapes].T
         contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
-            others = [self._on_meshes(each, 2.0 * float(far.max())) for each, far in zip(poses, reach, strict=True)]
+            both = zip(poses, reach, strict=True) if self._meshes else ()
+            others = [self._on_meshes(each, 2.0 * float(far.max())) for each, far in both]
             further, of = self._flats(shapes, normal, at, poses)
             near = further.gap <= reach[of, further.one] + reach[of, further.two]
             at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
@@ -208,13 +210,17 @@ class Touching:
         by_geom = reach[:, body] + margins[worlds][:, of_geom], asked[:, body]
         by_body = np.roll(reach, 1, axis=1) + margins.max(axis=1, initial=0.0)[worlds, None], np.roll(asked, 1, axis=1)
         geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
-        for pose, world, *each in zip(qpos, worlds, *by_geom, *by_body, strict=True):
-            found = self._searches[world].at(pose, *each)
+        counts, searches = np.zeros(len(poses), dtype=np.intp), self._searches
+        for k, (pose, world, *each) in enumerate(zip(qpos, worlds.tolist(), *by_geom, *by_body, strict=True)):
+            found = searches[world].at(pose, *each)
+            counts[k] = len(found)
+            if not counts[k]:
+                continue
             geoms.append(np.array(found.geom).reshape(-1, 2))
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
-        at = np.repeat(np.arange(len(poses)), [len(gap) for gap in gaps[1:]])
+        at = np.repeat(np.arange(len(poses)), counts)
         shapes = of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
@@ -315,23 +321,33 @@ class Touching:
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""
-        count = max(len(self.shapes), 1)
-        pairs, which = np.unique(shapes @ [count, 1], return_inverse=True)
-        laws = [self._law(int(pair) // count, int(pair) % count) for pair in pairs]
-        both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which]
-        return both[:, 0], both[:, 1]
+        found = self._of_pairs(shapes)
+        return found[:, 0], found[:, 1]
 
     def bounces(self, shapes: Rows) -> Floats:
         """Restitution of pairs of shapes (n, 2), (n,)."""
-        pairs, which = np.unique(shapes, axis=0, return_inverse=True)
-        found = np.array([self._law(one, two).restitution for one, two in pairs.tolist()], dtype=np.float64)
-        return found[which.ravel()]
+        return self._of_pairs(shapes)[:, 2]
+
+    def _of_pairs(self, shapes: Rows) -> Floats:
+        """Friction, rolling resistance and restitution of pairs (n, 2), (n, 3): each pair's looked up once."""
+        count = max(len(self.shapes), 1)
+        asked = shapes @ [count, 1]
+        at = np.searchsorted(self._pairs, asked)
+        if len(asked) and not np.array_equal(self._pairs.take(at, mode="clip"), asked):
+            new = np.setdiff1d(asked, self._pairs)
+            laws = [self._law(int(pair) // count, int(pair) % count) for pair in new]
+            own = np.array([(law.friction, law.rolling, law.restitution) for law in laws])
+            where = np.searchsorted(self._pairs, new)
+            self._pairs, self._numbers = (
+                np.insert(self._pairs, where, new),
+                np.insert(self._numbers, where, own, axis=0),
+            )
+            at = np.searchsorted(self._pairs, asked)
+        return self._numbers[at]
 
     def _law(self, one: int, two: int) -> Pair:
-        if (one, two) not in self._laws:
-            world = self.worlds[one // max(len(self.shapes) // len(self.worlds), 1)]
-            self._laws[one, two] = pair_law(world, self.shapes[one][2], self.shapes[two][2])
-        return self._laws[one, two]
+        world = self.worlds[one // max(len(self.shapes) // len(self.worlds), 1)]
+        return pair_law(world, self.shapes[one][2], self.shapes[two][2])
 
     @cached_property
     def surface_velocity(self) -> Floats:

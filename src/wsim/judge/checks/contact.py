@@ -43,11 +43,17 @@ class CheckTunnelling(Check):
             return []
         jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
         passes = passing(evidence.world)
-        moved = np.linalg.norm(np.diff(motion.com, axis=0), axis=2)
+        moved = lengths(np.diff(motion.com, axis=0))
+        most = moved.max(axis=0)
         found: dict[tuple[str, str], Finding] = {}
         for shape in evidence.placed:
             if shape.shape.kind in ("plane", "mesh"):
                 continue  # a plane has no other side, and a mesh no known thickness
+            if (
+                most.max(initial=0.0) + (most[shape.body] if shape.body >= 0 else 0.0)
+                <= self.travel * shape.kind.thinnest
+            ):
+                continue
             far = moved + (moved[:, [shape.body]] if shape.body >= 0 else 0.0)
             k, bodies = np.nonzero(far > self.travel * shape.kind.thinnest)
             apart = np.linalg.norm(motion.com[k, bodies] - shape.position[k], axis=1)

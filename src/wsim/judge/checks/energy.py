@@ -219,9 +219,7 @@ class CheckEnergy(Check):
     def _balls(evidence: Evidence) -> NDArray[np.bool_]:
         """Which bodies are balls about their centre of mass, (B,)."""
         bodies = evidence.world.bodies
-        return np.array(
-            [all(s.kind == "sphere" and np.allclose(s.position, body.com) for s in body.shapes) for body in bodies]
-        )
+        return np.array([all(s.kind == "sphere" and _at(s.position, body.com) for s in body.shapes) for body in bodies])
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
@@ -333,6 +331,10 @@ class CheckEnergy(Check):
         return late
 
 
+def _at(place: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    return place == other or bool(np.allclose(place, other))
+
+
 def _had(balance: Floats, unseen: tuple[Floats, Floats], verb: str) -> Floats:
     """What may have been there at each moment, of what contacts and stops give and a phase hides."""
     gives, phase = unseen
@@ -363,7 +365,9 @@ def _deep_in_meshes(evidence: Evidence) -> Floats:
 
 def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:
     """These of so many bodies, as a group, (count, 1)."""
-    return np.asarray(np.isin(np.arange(count), rows)[:, None])
+    found = np.zeros((count, 1), dtype=bool)
+    found[rows] = True
+    return found
 
 
 def _summed(energy: Floats, of: NDArray[np.bool_]) -> Floats:

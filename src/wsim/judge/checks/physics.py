@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import UP, rotate
+from wsim.geometry.rotations import UP, lengths, rotate
 from wsim.geometry.shapes import reach
 from wsim.judge.books.driven import given_within
 from wsim.judge.checks.check import Check, Checks
@@ -68,19 +68,17 @@ class CheckExplosion(Check):
         lows += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
         # What spins may hand on the speed of its rim: a joint there, or the ground, makes it another's.
-        speeds = [(np.linalg.norm(body.velocity), np.linalg.norm(body.angular_velocity)) for body in world.bodies]
+        speeds = [(math.hypot(*body.velocity), math.hypot(*body.angular_velocity)) for body in world.bodies]
         rims = zip(speeds, evidence.motion.radius, strict=True)
         start = max((float(speed + spin * radius) for (speed, spin), radius in rims), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:
-        reported = np.linalg.norm(evidence.body_qd[:, :, :3], axis=2)
+        motion, reported = evidence.motion, evidence.motion.speed
         moved = np.zeros_like(reported)
-        step = np.maximum(np.diff(evidence.time), 1e-9)[:, None]
-        moved[1:] = np.linalg.norm(np.diff(evidence.body_q[:, :, :3], axis=0), axis=2) / step
+        moved[1:] = lengths(np.diff(motion.q[..., :3], axis=0)) / motion.h[:, None]
         # Where the origin is not the centre of mass, it also turns about it: that is not speed of the body.
-        arms = [float(np.linalg.norm(body.com)) for body in evidence.world.bodies]
-        moved -= np.linalg.norm(evidence.body_qd[:, :, 3:], axis=2) * np.array(arms)
+        moved -= motion.rate * lengths(motion.arms)
         fastest = np.maximum(reported, moved)
         factor = self._handed_on(evidence)
         bound = np.sqrt(max(factor * free, self.least) ** 2 + self._driven(evidence))

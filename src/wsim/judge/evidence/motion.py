@@ -6,6 +6,7 @@ the same times, arrays have an axis of copies before that of time: (W, T, B, ...
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -107,7 +108,7 @@ class Motion:
         found = []
         for i, body in enumerate(self._recorded.world.bodies):
             reaches = [
-                float(np.linalg.norm(np.subtract(shape.position, body.com))) + kind_of(shape).radius_about
+                math.dist(shape.position, body.com) + kind_of(shape).radius_about
                 for shape in self._recorded.solid(i).shapes
             ]
             found.append(max(reaches, default=0.0))
