@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from wsim.geometry.kinds import KINDS
+from wsim.geometry.kinds import KINDS, PRIMITIVES, varying
 from wsim.geometry.rotations import multiply, rotate
 from wsim.geometry.shapes import Solid, kind_of
 from wsim.scene.world import Shape
@@ -22,6 +22,27 @@ def about_x(degrees: float) -> np.ndarray:
 def solid(kind: str, size: tuple[float, ...], **fields) -> Solid:
     shape = Shape(prim="/World/a/geometry", kind=kind, size=size, **fields)
     return Solid([shape])
+
+
+@pytest.mark.parametrize(("kind", "count"), [("box", 3), ("sphere", 1), ("cylinder", 2), ("capsule", 2)])
+def test_a_primitive_of_another_size_in_each_row_is_each_of_them(kind, count):
+    """Depths, ends, heights, balls about them and probes."""
+    random = np.random.default_rng(0)
+    sizes, points = random.uniform(0.1, 0.4, (5, count)), random.uniform(-0.3, 0.3, (5, 7, 3))
+    ways = points / np.linalg.norm(points, axis=2, keepdims=True)
+    every = varying(kind, *sizes.T[:, :, None])
+    (low, high), (bottom, top) = every.ends(ways), every.heights(ways[:, 0])
+    probes, margin = every.probes()
+    for n, size in enumerate(sizes.tolist()):
+        one = PRIMITIVES[kind](*size)
+        assert every.depth(points)[n] == pytest.approx(one.depth(points[n]), abs=1e-15)
+        assert np.array([low[n], high[n]]) == pytest.approx(np.array(one.ends(ways[n])), abs=1e-15)
+        assert (bottom[n], top[n]) == pytest.approx([float(end[0]) for end in one.heights(ways[n, :1])], abs=1e-15)
+        assert float(every.radius_about[n, 0]) == pytest.approx(one.radius_about, rel=1e-15)
+        assert float(every.thinnest[n, 0]) == pytest.approx(one.thinnest, rel=1e-15)
+        own, deep = one.probes()
+        assert np.broadcast_to(probes, (5, *own.shape))[n] == pytest.approx(own, abs=1e-15)
+        assert float(np.broadcast_to(margin, (5, 1))[n, 0]) == deep
 
 
 @pytest.mark.parametrize(

@@ -20,11 +20,12 @@ from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.rest import CheckJitter
 from wsim.judge.decide import judge_copies
 from wsim.judge.evidence.alike import alike
+from wsim.judge.evidence.contact import _overlaps
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.worlds import judge_worlds, verdicts_of, weigh
 from wsim.plan.schema import Plan
 from wsim.recording.trajectories import Trajectories
-from wsim.scene import Scene
+from wsim.scene import Part, Scene
 from wsim.scene.world import Body, Shape, Static, World
 
 WORLDS, G = 8, 9.81
@@ -247,11 +248,22 @@ def differing() -> Trajectories:
 
 
 def test_worlds_of_other_sizes_and_frictions_are_worked_out_at_once(monkeypatch) -> None:
-    """Their books are one call, and each has its own shapes and laws in it."""
-    worlds, calls, every = differing(), [], Balance.every
-    monkeypatch.setattr(Balance, "every", lambda self: calls.append(len(self._copies)) or every(self))
+    """Their books are one call, and so are distances, courses and trembling; each has its own shapes and laws in it."""
+    worlds, calls = differing(), Counter()
+
+    def counted(function):
+        def called(*given, **named):
+            calls[function.__qualname__] += 1
+            return function(*given, **named)
+
+        return called
+
+    named = (Balance, "every"), (CheckContinuity, "_asked"), (CheckSupport, "_asked"), (CheckJitter, "_tremble")
+    for owner, name in named:
+        monkeypatch.setattr(owner, name, counted(getattr(owner, name)))
+    monkeypatch.setattr("wsim.judge.evidence.contact._overlaps", counted(_overlaps))
     verdicts = verdicts_of(worlds)
-    assert calls == [6]
+    assert calls == {**{f"{owner.__name__}.{name}": 1 for owner, name in named}, "_overlaps": 1}
     assert [verdict.status for verdict in verdicts] == ["rejected" if k in (2, 4) else "accepted" for k in range(6)]
     for k, verdict in enumerate(verdicts):
         alone = judge(worlds.recording(k))
@@ -260,6 +272,34 @@ def test_worlds_of_other_sizes_and_frictions_are_worked_out_at_once(monkeypatch)
         ]
         values, own = ([f.value for f in each.findings if f.value is not None] for each in (verdict, alone))
         assert values == pytest.approx(own, abs=1e-12, nan_ok=True)
+
+
+def test_bodies_of_several_shapes_and_slopes_are_each_worlds_own(tmp_path) -> None:
+    """Hammers whose heads differ, and cylinders on ramps of other slopes and thicknesses, are judged as each alone."""
+    from wsim.sim import Simulation
+    from wsim.sim.collect import collect
+
+    stages = []
+    for k in range(3):
+        scene, edge = Scene(), 0.1 + 0.03 * k
+        scene.simulation(duration=0.4, frame_rate=30.0)
+        scene.ground(friction=0.5)
+        head, handle = Part("box", size=(edge,) * 3), Part("box", size=(0.4, 0.05, 0.05), position=(0.25, 0.0, 0.0))
+        scene.compound("hammer", parts=[head, handle], position=(0.0, 0.0, 0.3 + edge))
+        thick = 0.1 + 0.01 * k
+        scene.box("ramp", size=(1, 1, thick), position=(-2, 0, 0.3), rotation_deg=(0, 15 + k, 0), static=True)
+        scene.cylinder("log", radius=edge / 2, height=0.2, position=(-2.0, 0.0, 0.6), density=400.0)
+        stages.append(scene.save(tmp_path / f"stage_{k}.usda"))
+    worlds = collect(Simulation(stages, device="cpu"))
+    body_q = worlds.body_q.copy()
+    body_q[1, :, 0, 2] += 0.03  # a hammer that hangs over where it falls
+    verdicts = verdicts_of(replace(worlds, body_q=body_q))
+    assert [verdict.status for verdict in verdicts] == ["accepted", "rejected", "accepted"]
+    for k, verdict in enumerate(verdicts):
+        alone = judge(replace(worlds, body_q=body_q).recording(k))
+        assert [(f.check, f.passed, f.message) for f in verdict.findings] == [
+            (f.check, f.passed, f.message) for f in alone.findings
+        ]
 
 
 def test_what_cannot_be_worked_out_at_once_is_told(monkeypatch) -> None:

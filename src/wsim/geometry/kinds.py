@@ -1,6 +1,7 @@
 """The kinds of shape: what each is in its own frame, centred on its origin, round ones about Z.
 
-A kind is one function of the numbers of `wsim.scene.world.Shape.size` [m], and a line in `KINDS`.
+A kind is one function of the numbers of `wsim.scene.world.Shape.size` [m], and a line in `KINDS`. Of a primitive these
+may also be arrays (F, 1): it is of another size then for each of F rows of points, (F, P, 3).
 """
 
 from __future__ import annotations
@@ -65,6 +66,22 @@ def _both(half: Floats) -> Ends:
     return -half, half
 
 
+def _about(*lengths: float) -> float:
+    """The length of a diagonal."""
+    if isinstance(lengths[0], np.ndarray):
+        return np.sqrt(sum(np.square(length) for length in lengths))
+    return math.hypot(*lengths)
+
+
+def _least(*lengths: float) -> float:
+    return functools.reduce(np.minimum, lengths) if isinstance(lengths[0], np.ndarray) else min(lengths)
+
+
+def _scaled(points: Floats, *lengths: float) -> Floats:
+    """Points (P, 3), each coordinate by its length: (F, P, 3) where these are arrays."""
+    return points * np.stack(lengths, axis=-1)
+
+
 def box(*edges: float) -> Kind:
     """By its full edges."""
 
@@ -75,12 +92,12 @@ def box(*edges: float) -> Kind:
     def probes() -> tuple[Floats, float]:
         ticks = (-0.5, 0.0, 0.5)
         grid = np.array([[x, y, z] for x in ticks for y in ticks for z in ticks if (x, y, z) != (0.0, 0.0, 0.0)])
-        return grid * np.array(edges), 0.0
+        return _scaled(grid, *edges), 0.0
 
     return Kind(
         edges=edges,
-        radius_about=math.hypot(*edges) / 2,
-        thinnest=min(edges),
+        radius_about=_about(*edges) / 2,
+        thinnest=_least(*edges),
         beyond=lambda points: [np.abs(points[..., k]) - edge / 2 for k, edge in enumerate(edges)],
         ends=ends,
         heights=lambda up: _both(np.abs(up) @ (np.array(edges) / 2)),
@@ -96,7 +113,7 @@ def sphere(radius: float) -> Kind:
     volume = 4 / 3 * math.pi * radius**3
 
     def ends(axes: Floats) -> Ends:
-        return _both(np.full(axes.shape[:-1], radius))
+        return _both(np.broadcast_to(radius, axes.shape[:-1]))
 
     return Kind(
         edges=(2 * radius,) * 3,
@@ -125,20 +142,22 @@ def cylinder(radius: float, height: float) -> Kind:
 
     def probes() -> tuple[Floats, float]:
         angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-        ring = np.column_stack([np.cos(angle), np.sin(angle)]) * radius
-        rings = [np.column_stack([ring, np.full(len(ring), z * height)]) for z in (-0.5, 0.0, 0.5)]
-        return np.concatenate([*rings, [[0.0, 0.0, -0.5 * height], [0.0, 0.0, 0.5 * height]]]), 0.0
+        rings = [np.column_stack([np.cos(angle), np.sin(angle), np.full(24, z)]) for z in (-0.5, 0.0, 0.5)]
+        return _scaled(np.concatenate([*rings, [[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]]), radius, radius, height), 0.0
 
-    profile = (np.array([0.0, radius, radius, 0.0]), np.array([-1.0, -1.0, 1.0, 1.0]) * height / 2)
+    def surface() -> Surface:
+        profile = (np.array([0.0, radius, radius, 0.0]), np.array([-1.0, -1.0, 1.0, 1.0]) * height / 2)
+        return revolved(*profile, volume=volume, radial=True)
+
     return Kind(
         edges=(2 * radius, 2 * radius, height),
-        radius_about=math.hypot(radius, height / 2),
-        thinnest=min(2 * radius, height),
+        radius_about=_about(radius, height / 2),
+        thinnest=_least(2 * radius, height),
         beyond=lambda p: [np.hypot(p[..., 0], p[..., 1]) - radius, np.abs(p[..., 2]) - height / 2],
         ends=ends,
         heights=heights,
         leaves=lambda p, way: leaves(within(p[:, :2], way[:2], radius), between(p[:, 2], way[2], height / 2)),
-        surface=lambda: revolved(*profile, volume=volume, radial=True),
+        surface=surface,
         probes=probes,
         volume=volume,
     )
@@ -169,7 +188,10 @@ def capsule(radius: float, height: float) -> Kind:
         heights=ends,
         leaves=last,
         surface=lambda: revolved(*arc(radius, height), volume=volume),
-        probes=lambda: (np.column_stack([np.zeros((9, 2)), np.linspace(-0.5, 0.5, 9) * height]), radius),
+        probes=lambda: (
+            _scaled(np.column_stack([np.zeros((9, 2)), np.linspace(-0.5, 0.5, 9)]), radius, radius, height),
+            radius,
+        ),
         volume=volume,
     )
 
@@ -224,3 +246,14 @@ def mesh(edges: tuple[float, ...], points: Sequence[Sequence[float]], faces: Seq
 PRIMITIVES: dict[str, Callable[..., Kind]] = {"box": box, "sphere": sphere, "cylinder": cylinder, "capsule": capsule}
 KINDS: dict[str, Callable[..., Kind]] = {**PRIMITIVES, "plane": plane, "mesh": mesh}
 ROUND = frozenset({"sphere", "cylinder", "capsule"})
+
+
+def varying(kind: str, *sizes: Floats) -> Kind:
+    """A primitive of another size at each of F rows of points, by its numbers (F, 1) each; one way (F, 3) at each."""
+    found = PRIMITIVES[kind](*sizes) if sizes else KINDS[kind]()
+
+    def heights(up: Floats) -> Ends:
+        low, high = found.ends(up[:, None])
+        return low[:, 0], high[:, 0]
+
+    return replace(found, heights=heights)

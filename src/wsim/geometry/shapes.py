@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wsim.geometry.kinds import KINDS, Kind, mesh
+from wsim.geometry.kinds import KINDS, Kind, mesh, varying
 from wsim.geometry.rotations import UP, conjugate, multiply, rotate
 from wsim.geometry.surfaces import Surface
 
@@ -35,11 +35,18 @@ class Described(Protocol):
 S = TypeVar("S", bound=Described)
 
 
+@lru_cache(maxsize=4096)
+def _kind(kind: str, size: tuple[float, ...]) -> Kind:
+    return KINDS[kind](*size)
+
+
 def kind_of(shape: Described) -> Kind:
     """The shape in its own frame."""
     if shape.kind == "mesh":
         return mesh(shape.size, shape.vertices, shape.triangles)
-    return KINDS[shape.kind](*shape.size)
+    if any(isinstance(number, np.ndarray) for number in shape.size):
+        return varying(shape.kind, *np.asarray(shape.size))
+    return _kind(shape.kind, tuple(shape.size))
 
 
 def surface_of(shape: Described) -> Surface:

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from wsim.forks import uncollected
 from wsim.judge.books.copies import similar
 from wsim.judge.books.copies import work_out as books_of
 from wsim.judge.checks.registry import physics_checks, run_checks
-from wsim.judge.evidence.alike import groups, same_geometry
+from wsim.judge.evidence.alike import groups, same_form
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.objective import ObjectiveCheck
@@ -40,6 +41,7 @@ class Answers:
                 self.crashes.append(Crash.of(error, check.name, check.asks))
 
 
+@uncollected()
 def judge(recording: Recording, plan: Plan | None = None) -> Verdict:
     """Judge what happened.
 
@@ -65,19 +67,20 @@ def judge_copies(copies: Sequence[Evidence]) -> list[Verdict]:
         return [_nothing() for _ in copies]
     if copies[0].world.foreign:
         return [_cannot_judge(evidence) for evidence in copies]
-    runs = [Answers() for _ in copies]
+    runs, first = [Answers() for _ in copies], run_checks()
     for answers, evidence in zip(runs, copies, strict=True):
-        answers.ask(run_checks(), evidence)
+        answers.ask(first, evidence)
     broken = [next((f for f in run.findings if f.check == "CheckFinite" and not f.passed), None) for run in runs]
     sound = [evidence for evidence, wrong in zip(copies, broken, strict=True) if wrong is None]
     work_out(sound)
-    return [_conclusion(*each) for each in zip(copies, runs, broken, strict=True)]
+    checks = physics_checks()
+    return [_conclusion(checks, *each) for each in zip(copies, runs, broken, strict=True)]
 
 
 def work_out(copies: Sequence[Evidence]) -> None:
     """At once what the checks ask of all copies of like worlds. What cannot be is left to each by itself, and told."""
     joined: list[tuple[Evidence, list[Evidence]]] = []
-    for group in (group for group in groups(copies, _like) if len(group) > 1):
+    for group in (group for group in groups(copies, _of_one_form) if len(group) > 1):
         with _left_to_each(group, "motion"):
             whole = Evidence.join(group)
             joined += [(whole, group)] if whole is not None else []
@@ -94,8 +97,8 @@ def work_out(copies: Sequence[Evidence]) -> None:
                 check.prepare(whole, group)
 
 
-def _like(one: Evidence, other: Evidence) -> bool:
-    return same_geometry(one.world, other.world)
+def _of_one_form(one: Evidence, other: Evidence) -> bool:
+    return same_form(one.world, other.world)
 
 
 @contextlib.contextmanager
@@ -108,11 +111,11 @@ def _left_to_each(copies: Sequence[Evidence], what: str) -> Iterator[None]:
         warnings.warn(f"{told}: {type(error).__name__}: {error}", RuntimeWarning, stacklevel=2)
 
 
-def _conclusion(evidence: Evidence, answers: Answers, broken: Finding | None) -> Verdict:
+def _conclusion(checks: Sequence[Check], evidence: Evidence, answers: Answers, broken: Finding | None) -> Verdict:
     """The verdict on what moved, unless the numbers are broken."""
     asked = [ObjectiveCheck(each) for each in (evidence.plan.objectives if evidence.plan is not None else [])]
     if broken is None:
-        answers.ask([*physics_checks(), *asked], evidence)
+        answers.ask([*checks, *asked], evidence)
     else:
         answers.findings += [_unmeasured(check, evidence, broken) for check in asked]
     return conclude(answers.findings, evidence, answers.crashes)

@@ -120,14 +120,14 @@ def _solve(
     bent: Floats | None, *, wholly: bool = False,
 ) -> None:  # fmt: skip
     """Take from what is left what the columns of some problems explain; of use may be `wholly` alone."""
-    hard = _easy(columns, problems, rest, scale, enough)
-    for bodies, chosen in ((problems.bodies[k], problems.columns[k]) for k in hard):
+    for k, made in _easy(columns, problems, rest, scale, enough):
+        bodies, chosen = problems.bodies[k], problems.columns[k]
         if len(bodies) > SMALL and not columns.both[chosen].any():
             sparse = _sparse(columns, bodies, chosen, scale)
             strength = pushing(sparse, rest[bodies].ravel(), enough, wholly=wholly)
             rest[bodies] -= (sparse @ strength).reshape(-1, 6)
             continue
-        matrix = _matrices(columns, bodies[None], [chosen], scale)[0]
+        matrix = _matrices(columns, bodies[None], [chosen], scale)[0] if made is None else made
         new = ~columns.goes_on[chosen]
         ties = columns.both[chosen][new]
         strength = least(matrix, rest[bodies].ravel(), ties, columns.most[chosen][new])
@@ -179,14 +179,16 @@ def _unbounded(matrix: Floats, wanted: Floats, both: Bools) -> Floats:
     return found
 
 
-def _easy(columns: Columns, problems: Problems, rest: Floats, scale: Floats, enough: float) -> list[int]:
-    """Take from the rest what projections explain, where they explain all; the problems that are left."""
+def _easy(
+    columns: Columns, problems: Problems, rest: Floats, scale: Floats, enough: float
+) -> list[tuple[int, Floats | None]]:
+    """Take from the rest what projections explain, where they explain all; what is left, with its matrix if made."""
     tied = [bool(columns.both[chosen].any()) or len(chosen) == 0 for chosen in problems.columns]
-    hard = []
+    hard: list[tuple[int, Floats | None]] = []
     alike: dict[tuple[int, int], list[int]] = {}
     for k, (bodies, chosen) in enumerate(zip(problems.bodies, problems.columns, strict=True)):
         if tied[k] or len(bodies) > LARGE:
-            hard.append(k)
+            hard.append((k, None))
         else:
             alike.setdefault((len(bodies), -(-len(chosen) // ALIKE)), []).append(k)
     for group in alike.values():
@@ -195,8 +197,10 @@ def _easy(columns: Columns, problems: Problems, rest: Floats, scale: Floats, eno
         left = _projected(matrices, rest[at].reshape(len(group), -1)).reshape(*at.shape, 6)
         small = np.linalg.norm(left, axis=2).max(axis=1) <= enough
         rest[at[small]] = left[small]
-        hard += [k for k, done in zip(group, small, strict=True) if not done]
-    return sorted(hard)
+        for n in np.flatnonzero(~small):
+            count = int((~columns.goes_on[problems.columns[group[n]]]).sum())
+            hard.append((group[n], matrices[n, :, :count]))
+    return sorted(hard, key=lambda each: each[0])
 
 
 def _projected(matrices: Floats, wanted: Floats) -> Floats:

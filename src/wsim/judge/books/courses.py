@@ -46,7 +46,7 @@ class Courses:
     def __init__(self, copies: Sequence[Evidence], changed: Bools) -> None:
         """Of W copies; `changed` says of each interval whether a body has a blow in it, (N, B)."""
         self.copies, motions = copies, [evidence.motion for evidence in copies]
-        self._met: dict[tuple[int, ...], float | None] = {}
+        self._met: dict[tuple[int, tuple[int, ...]], float | None] = {}
         self.count = len(motions[0].h)  # intervals of each copy
         self.dt = np.array([step_of(evidence) for evidence in copies])  # (W,)
         self._h = motions[0].h
@@ -72,22 +72,22 @@ class Courses:
         # How what speeds bodies up changes from one interval to the next, where neither has a blow, (W, T - 2, B, 6).
         self._changes = np.where((blow[:, 1:] | blow[:, :-1])[..., None], 0.0, np.diff(known, axis=1))
 
-    def at(self, k: int | Rows, side: int, when: float | Floats, rows: list[int] | None = None) -> Poses:
+    def at(self, k: int | Rows, side: int, when: float | Floats, rows: Rows | None = None) -> Poses:
         """Bodies `when` [s] after the frame before interval k, as they went before a blow in it (0), or after it (1).
 
-        All of them, or those of some rows: (B, ...), or (K, B, ...) of K intervals and moments.
+        All of them, or those of some rows, (R,), or of each interval (K, R): (R, ...), or (K, R, ...) of K intervals
+        and moments.
         """
         copy, interval = np.divmod(k, self.count)
-        some, by = slice(None) if rows is None else rows, self._since(interval, side, when)
-        here = copy, interval + side
-        v, com = self._going(k, side, when, some)
-        rate = self._w[here][..., some, :]
-        w = rate + (self.after if side else self.before)[copy, interval][..., some, 3:] * by
+        by, frame = self._since(interval, side, when), interval + side
+        v, com = self._going(k, side, when, rows)
+        rate = _of(self._w, copy, frame, rows)
+        w = rate + _of(self.after if side else self.before, copy, interval, rows)[..., 3:] * by
         angle = 0.5 * (rate + w) * by
         size = lengths(angle)[..., None]
         turn = np.concatenate([angle / np.maximum(size, 1e-12) * np.sin(0.5 * size), np.cos(0.5 * size)], axis=-1)
-        q = self._q[here][..., some, :]
-        place = com + rotate(turn, q[..., :3] - self._com[here][..., some, :])
+        q = _of(self._q, copy, frame, rows)
+        place = com + rotate(turn, q[..., :3] - _of(self._com, copy, frame, rows))
         return Poses(np.concatenate([place, multiply(turn, q[..., 3:])], axis=-1), com, v, w)
 
     def off(self, k: int, side: int, when: float) -> Floats:
@@ -103,42 +103,56 @@ class Courses:
         found: Floats = self._changes[copy, at] / h[interval] * 0.5 * (h[interval] + by) * by
         return found
 
-    def _going(self, k: int | Rows, side: int, when: float | Floats, rows: list[int] | slice) -> tuple[Floats, Floats]:
+    def _going(self, k: int | Rows, side: int, when: float | Floats, rows: Rows | None) -> tuple[Floats, Floats]:
         """Velocities and centres of mass, as `at`."""
         copy, interval = np.divmod(k, self.count)
-        by, before = self._since(interval, side, when), self._v[copy, interval + side][..., rows, :]
-        v = before + (self.after if side else self.before)[copy, interval][..., rows, :3] * by
-        return v, self._com[copy, interval + side][..., rows, :] + 0.5 * (before + v) * by
+        by, before = self._since(interval, side, when), _of(self._v, copy, interval + side, rows)
+        v = before + _of(self.after if side else self.before, copy, interval, rows)[..., :3] * by
+        return v, _of(self._com, copy, interval + side, rows) + 0.5 * (before + v) * by
 
     def _since(self, interval: int | Rows, side: int, when: float | Floats) -> Floats:
         """How long after the frame that a course is told from [s]: of one moment, or (K, 1, 1)."""
         by = np.asarray(when - side * self._h[interval])
         return by if by.ndim == 0 else by[:, None, None]
 
-    def meet(self, k: int, rows: list[int]) -> float | None:
-        """When [s] after its first frame some bodies' courses before and after one blow in interval k meet, or None."""
-        key = k, *rows
-        if key not in self._met:
-            self._met[key] = self._meet(k, rows)
-        return self._met[key]
+    def meet(self, asked: Sequence[tuple[int, tuple[int, ...]]]) -> list[float | None]:
+        """When [s] after its first frame some bodies' courses before and after one blow meet, or None.
 
-    def _meet(self, k: int, rows: list[int]) -> float | None:
-        copy, interval = divmod(k, self.count)
-        h, dt = float(self._h[interval]), self.dt[copy]
-        ends = [[self._going(k, side, when, rows)[1] for side in (0, 1)] for when in (0.0, h)]
+        Args:
+            asked: Of each blow its interval, and the rows of its bodies.
+        """
+        new = [key for key in dict.fromkeys(asked) if key not in self._met]
+        for count in sorted({len(rows) for _, rows in new}):
+            alike = [key for key in new if len(key[1]) == count]
+            found = self._meet(*(np.array(each, dtype=np.intp) for each in zip(*alike, strict=True)))
+            self._met.update(zip(alike, found, strict=True))
+        return [self._met[key] for key in asked]
+
+    def _meet(self, ks: Rows, rows: Rows) -> list[float | None]:
+        """Of some intervals (K,) and bodies in each, (K, R)."""
+        copy, interval = np.divmod(ks, self.count)
+        h, dt = self._h[interval], self.dt[copy][:, None]
+        ends = [[self._going(ks, side, when, rows)[1] for side in (0, 1)] for when in (np.zeros_like(h), h)]
         first, last = (before - after for before, after in ends)
-        apart, gone = first, (last - first) / h  # but for what speeds up differently, a line
-        when = float(-np.sum(apart * gone) / max(np.sum(gone * gone), 1e-12))
-        when = min(max(when, 0.0), h)
-        before, after = (self.at(k, side, when, rows) for side in (0, 1))
-        far = lengths(before.com - after.com)
-        jump = lengths(after.v - before.v)
-        rounding = 4.0 * FLOAT32 * lengths(self._com[copy, interval, rows])
-        if np.any(far > WITHIN * jump * dt + 2.0 * self.strays[copy, interval, rows] + rounding):
-            return None
-        turn = multiply(after.q[:, 3:], conjugate(before.q[:, 3:]))
-        angle = 2.0 * lengths(turn[:, :3])
+        apart, gone = first, (last - first) / h[:, None, None]  # but for what speeds up differently, a line
+        when = -np.sum(apart * gone, axis=(1, 2)) / np.maximum(np.sum(gone * gone, axis=(1, 2)), 1e-12)
+        when = np.minimum(np.maximum(when, 0.0), h)
+        before, after = (self.at(ks, side, when, rows) for side in (0, 1))
+        far, jump = lengths(before.com - after.com), lengths(after.v - before.v)
+        rounding = 4.0 * FLOAT32 * lengths(_of(self._com, copy, interval, rows))
+        strays = _of(self.strays[..., None], copy, interval, rows)[..., 0]
+        apart_then = np.any(far > WITHIN * jump * dt + 2.0 * strays + rounding, axis=1)
+        turn = multiply(after.q[..., 3:], conjugate(before.q[..., 3:]))
+        angle = 2.0 * lengths(turn[..., :3])
         rate, spun = np.maximum(lengths(before.w), lengths(after.w)), lengths(after.w - before.w)
-        if np.any(angle > spun * dt + 0.1 * (rate * h) ** 2 + 8.0 * FLOAT32):
-            return None
-        return when
+        turned = np.any(angle > spun * dt + 0.1 * (rate * h[:, None]) ** 2 + 8.0 * FLOAT32, axis=1)
+        return [None if off else float(at) for at, off in zip(when, apart_then | turned, strict=True)]
+
+
+def _of(values: Floats, copy: int | Rows, at: int | Rows, rows: Rows | None) -> Floats:
+    """Of values (W, T, B, n) those of some copies and frames, of all bodies, or of rows (R,), or (K, R) of each."""
+    if rows is None:
+        return np.asarray(values[copy, at])
+    if rows.ndim == 1:
+        return np.asarray(values[copy, at][..., rows, :])
+    return np.asarray(values[np.asarray(copy)[:, None], np.asarray(at)[:, None], rows])

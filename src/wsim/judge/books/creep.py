@@ -51,11 +51,36 @@ class Lacking:
 
 def creeps(copies: Sequence[Evidence]) -> list[list[Lacking]]:
     """All of some recordings of similar worlds, in spans that overlap by a half."""
-    spans = [(n, first, calm) for n, evidence in enumerate(copies) for first, calm in _spans(evidence)]
+    spans = [Span(n, first, calm) for n, evidence in enumerate(copies) for first, calm in _spans(evidence)]
     found: list[list[Lacking]] = [[] for _ in copies]
-    for (n, first, calm), contacts in zip(spans, _contacts(copies, spans), strict=True):
-        found[n] += _of_span(copies[n], contacts, calm, first, first + INTERVALS)
+    if not spans:
+        return found
+    touching = touching_of(copies)
+    contacts, at = _contacts(copies, touching, spans)
+    drift = _drifts(copies, touching, contacts, at, spans)
+    own = replace(contacts, shapes=contacts.shapes % max(len(touching.shapes) // len(touching.worlds), 1))
+    for k in np.unique(at[np.any(drift != 0.0, axis=1)]):
+        found[spans[k].copy] += _of_span(copies[spans[k].copy], own.only(at == k), spans[k], drift[at == k])
     return found
+
+
+@dataclass(frozen=True)
+class Span:
+    """Some intervals of one of several recordings."""
+
+    copy: int
+    first: int  # frame
+    calm: NDArray[np.bool_]  # (B,), what nothing hits in it
+
+    @property
+    def last(self) -> int:
+        """Its last frame."""
+        return self.first + INTERVALS
+
+    @property
+    def middle(self) -> int:
+        """The frame in its middle."""
+        return self.first + INTERVALS // 2
 
 
 def _spans(evidence: Evidence) -> list[tuple[int, NDArray[np.bool_]]]:
@@ -70,28 +95,24 @@ def _spans(evidence: Evidence) -> list[tuple[int, NDArray[np.bool_]]]:
     return [(int(firsts[span]), calm[span]) for span in spans]
 
 
-def _contacts(copies: Sequence[Evidence], spans: Sequence[tuple[int, int, NDArray[np.bool_]]]) -> list[Contacts]:
-    """Those in the middle of each span, as each recording by itself counts bodies and shapes."""
-    if not spans:
-        return []
-    touching, every = touching_of(copies), np.arange(len(spans))
-    poses = np.stack([copies[n].body_q[first + INTERVALS // 2] for n, first, _ in spans])
-    which = np.array([n for n, *_ in spans])
+def _contacts(
+    copies: Sequence[Evidence], touching: Touching, spans: Sequence[Span]
+) -> tuple[Contacts, NDArray[np.intp]]:
+    """Those in the middle of all spans, as each recording by itself counts bodies, and the span of each, (n,)."""
+    every, poses = np.arange(len(spans)), np.stack([copies[span.copy].body_q[span.middle] for span in spans])
+    which = np.array([span.copy for span in spans])
     contacts = touching.of_many(poses, np.full(len(spans), NEAR), every, which)
-    bodies, shapes = poses.shape[1], len(touching.shapes) // len(touching.worlds)
-    at = np.maximum(contacts.one, contacts.two) // max(bodies, 1)
+    bodies = max(poses.shape[1], 1)
+    at = np.maximum(contacts.one, contacts.two) // bodies
     one, two = (np.where(rows >= 0, rows - at * bodies, rows) for rows in (contacts.one, contacts.two))
-    own = replace(contacts, one=one, two=two, shapes=contacts.shapes % max(shapes, 1))
-    return [own.only(at == k) for k in every]
+    return replace(contacts, one=one, two=two), at
 
 
-def _of_span(evidence: Evidence, contacts: Contacts, calm: NDArray[np.bool_], first: int, last: int) -> list[Lacking]:
-    books, middle = Books.of(evidence), (first + last) // 2
+def _of_span(evidence: Evidence, contacts: Contacts, span: Span, drift: Floats) -> list[Lacking]:
+    """What its bodies lack to go on, that creep by these drifts (n, 3) at their contacts."""
+    books, middle, calm, first, last = Books.of(evidence), span.middle, span.calm, span.first, span.last
     motion, touching, size = evidence.motion, Touching.of(evidence), books.size
     poses = Poses(evidence.body_q[middle], motion.com[middle], motion.v[middle], motion.w[middle])
-    if not len(contacts):
-        return []
-    drift = _drifts(evidence, touching, contacts, first, last)
     slips = np.any(drift != 0.0, axis=1)
     rows = {int(row) for one, two in zip(contacts.one[slips], contacts.two[slips], strict=True) for row in (one, two)}
     creeping = [row for row in sorted(rows) if row >= 0 and calm[row]]
@@ -114,63 +135,79 @@ def _of_span(evidence: Evidence, contacts: Contacts, calm: NDArray[np.bool_], fi
     return found
 
 
-def _drifts(evidence: Evidence, touching: Touching, contacts: Contacts, first: int, last: int) -> Floats:
-    """How far each contact's second body goes over the first in a span, (n, 3) [m]; 0 if not steadily."""
-    time = evidence.time[first : last + 1]
-    frames = np.arange(first, last + 1)
-    paths = [_path(evidence, touching, contacts, side, frames) for side in (0, 1)]
+def _drifts(
+    copies: Sequence[Evidence], touching: Touching, contacts: Contacts, at: NDArray[np.intp], spans: Sequence[Span]
+) -> Floats:
+    """How far each contact's second body goes over the first in its span, (n, 3) [m]; 0 if not steadily."""
+    copy, firsts = (np.array([getattr(span, name) for span in spans]) for name in ("copy", "first"))
+    time, frames = copies[0].time, firsts[:, None] + np.arange(INTERVALS + 1)
+    q = np.stack([copies[span.copy].body_q[span.first : span.last + 1] for span in spans])  # (spans, F, B, 7)
+    paths = [_path(touching, contacts, side, at, q, time[frames]) for side in (0, 1)]
     apart = paths[1] - paths[0]  # (n, F, 3)
     apart = apart - np.einsum("nfi,ni->nf", apart, contacts.normal)[..., None] * contacts.normal[:, None]
     drift = apart[:, -1] - apart[:, 0]
     length = np.linalg.norm(drift, axis=1)
     gone = np.einsum("nfi,ni->nf", np.diff(apart, axis=1), drift / np.maximum(length, 1e-300)[:, None])
-    rounding = 2.0 * FLOAT32 * float(np.abs(evidence.body_q[frames, :, :3]).max(initial=0.0))  # of both ends
-    rate = length / (time[-1] - time[0])
+    rounding = 2.0 * FLOAT32 * np.abs(q[..., :3]).max(axis=(1, 2, 3), initial=0.0)[at]  # of both ends
+    rate = length / (time[frames[:, -1]] - time[firsts])[at]
     steady = gone.min(axis=1) > EACH * length / INTERVALS
-    steady &= (rate > np.maximum(CREEP, _soft(evidence, touching, contacts))) & (rate < 2.0 * STILL)
+    steady &= (rate > np.maximum(CREEP, _soft(copies, touching, contacts, copy[at], at))) & (rate < 2.0 * STILL)
     steady &= length > INTERVALS * rounding
-    relative, absolute = _turned(evidence, contacts, first, last)
+    relative, absolute = _turned(contacts, at, q)
     steady &= (relative < TURN) & (absolute < ROUND)
     # Resisted rolling shares the cone with the slip, and goes with one: friction is then inside it.
     friction, rolling = touching.laws(contacts.shapes)
-    arm = Books.of(evidence).size[np.where(contacts.two >= 0, contacts.two, contacts.one)]
+    sizes = np.stack([Books.of(evidence).size for evidence in copies])
+    arm = sizes[copy[at], np.where(contacts.two >= 0, contacts.two, contacts.one)]
     steady &= np.maximum(rolling, np.pi * friction * rolling) * arm * relative <= SHARED * friction * length
     return np.where(steady[:, None], drift, 0.0)
 
 
-def _soft(evidence: Evidence, touching: Touching, contacts: Contacts) -> Floats:
+def _soft(
+    copies: Sequence[Evidence], touching: Touching, contacts: Contacts, copy: NDArray[np.intp], at: NDArray[np.intp]
+) -> Floats:
     """The slip that another engine's soft friction leaves to what is pressed by all that is there, (n,) [m/s]."""
-    motion, friction = evidence.motion, touching.laws(contacts.shapes)[0]
-    lightest = min(motion.mass[rows[rows >= 0]].min(initial=np.inf) for rows in (contacts.one, contacts.two))
-    loads = motion.mass[~motion.kinematic].sum() / lightest
-    found: Floats = evidence.world.give.creep * friction * evidence.gravity * loads
+    give = copies[0].world.give
+    if give.creep == 0.0 or not len(at):
+        return np.zeros(len(at))
+    mass = np.stack([evidence.motion.mass for evidence in copies])
+    lightest = np.full(int(at.max()) + 1, np.inf)
+    for rows in (contacts.one, contacts.two):
+        np.minimum.at(lightest, at[rows >= 0], mass[copy, rows][rows >= 0])
+    loads = (mass @ ~copies[0].motion.kinematic)[copy] / lightest[at]
+    found: Floats = give.creep * touching.laws(contacts.shapes)[0] * copies[0].gravity * loads
     return found
 
 
-def _path(evidence: Evidence, touching: Touching, contacts: Contacts, side: int, frames: NDArray[np.intp]) -> Floats:
-    """Where the material point that is at a contact in the middle frame is in each frame, (n, F, 3) [m]."""
-    rows, middle = (contacts.two if side else contacts.one), frames[len(frames) // 2]
+def _path(touching: Touching, contacts: Contacts, side: int, at: NDArray[np.intp], q: Floats, time: Floats) -> Floats:
+    """Where the material point that is at a contact in its span's middle frame is in each frame, (n, F, 3) [m].
+
+    Args:
+        touching: The shapes.
+        contacts: n of them.
+        side: Of the first or the second body (1).
+        at: Their spans, (n,).
+        q: Poses in these, (spans, F, B, 7).
+        time: Likewise, (spans, F) [s].
+    """
+    rows, middle = (contacts.two if side else contacts.one), INTERVALS // 2
     belt = touching.surface_velocity[contacts.shapes[:, side]]
-    since = evidence.time[frames] - evidence.time[middle]
-    at = np.maximum(rows, 0)
-    if not evidence.body_q.shape[1]:
-        return contacts.point[:, None] + since[:, None] * belt[:, None]
-    q = evidence.body_q[frames][:, at].transpose(1, 0, 2)  # (n, F, 7)
-    own = rotate(conjugate(evidence.body_q[middle, at, 3:]), contacts.point - evidence.body_q[middle, at, :3])
-    moving = q[..., :3] + rotate(q[..., 3:], own[:, None] + since[:, None] * belt[:, None])
-    found: Floats = np.where(
-        (rows >= 0)[:, None, None], moving, contacts.point[:, None] + since[:, None] * belt[:, None]
-    )
+    gone = (time - time[:, [middle]])[at][..., None] * belt[:, None]
+    if not q.shape[2]:
+        return contacts.point[:, None] + gone
+    poses = q[at, :, np.maximum(rows, 0)]  # (n, F, 7)
+    own = rotate(conjugate(poses[:, middle, 3:]), contacts.point - poses[:, middle, :3])
+    moving = poses[..., :3] + rotate(poses[..., 3:], own[:, None] + gone)
+    found: Floats = np.where((rows >= 0)[:, None, None], moving, contacts.point[:, None] + gone)
     return found
 
 
-def _turned(evidence: Evidence, contacts: Contacts, first: int, last: int) -> tuple[Floats, Floats]:
+def _turned(contacts: Contacts, at: NDArray[np.intp], q: Floats) -> tuple[Floats, Floats]:
     """By how much the bodies of each contact turn in a span, against each other and at most, (n,) each [rad]."""
     turns = []
     for rows in (contacts.one, contacts.two):
-        q = evidence.body_q[[first, last]][:, np.maximum(rows, 0), 3:]
-        turn = multiply(q[1], conjugate(q[0]))
-        turns.append(np.where((rows >= 0)[:, None], turn, (0.0, 0.0, 0.0, 1.0)))
+        first, last = (q[at, frame, np.maximum(rows, 0), 3:] for frame in (0, -1))
+        turns.append(np.where((rows >= 0)[:, None], multiply(last, conjugate(first)), (0.0, 0.0, 0.0, 1.0)))
     relative = multiply(turns[1], conjugate(turns[0]))
     apart: Floats = 2.0 * np.linalg.norm(relative[:, :3], axis=1)
     most: Floats = 2.0 * np.maximum(*(np.linalg.norm(turn[:, :3], axis=1) for turn in turns))

@@ -86,9 +86,10 @@ def _surface(touching: Touching, contacts: Contacts, poses: Poses, side: int) ->
     if not len(poses.v):
         return np.zeros((len(rows), 3))
     velocity = poses.v[at] + cross(poses.w[at], contacts.surface(side) - poses.com[at])
-    belts = touching.surface_velocity[contacts.shapes[:, side]]
-    turn = np.where(moving[:, None], poses.q[at, 3:], (0.0, 0.0, 0.0, 1.0))
-    found: Floats = np.where(moving[:, None], velocity, 0.0) + rotate(turn, belts)
+    found: Floats = np.where(moving[:, None], velocity, 0.0)
+    if touching.surface_velocity.any():
+        turn = np.where(moving[:, None], poses.q[at, 3:], (0.0, 0.0, 0.0, 1.0))
+        found += rotate(turn, touching.surface_velocity[contacts.shapes[:, side]])
     return found
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import cross
 from wsim.judge.books.courses import Courses
 from wsim.judge.books.encounters import APART, Met, about, jumps, meets, near
 from wsim.judge.books.pressed import pushed_back
@@ -127,11 +128,11 @@ def blows(copies: Sequence[Evidence]) -> list[list[Blow]]:
     if not changed.any():
         return found
     touching, courses = touching_of(copies), Courses(copies, changed)
-    flat, met = changed.reshape(-1, changed.shape[2]), []
-    for k, one, two in near(copies, touching, changed).tolist():
-        pair = [row for row in (one, two) if row >= 0]
-        when = None if motion.jointed[pair].any() else courses.meet(k, [row for row in pair if flat[k, row]])
-        met += [] if when is None else [(k, (one, two), when)]
+    flat = changed.reshape(-1, changed.shape[2])
+    pairs = [(k, (one, two)) for k, one, two in near(copies, touching, changed).tolist()]
+    pairs = [(k, pair) for k, pair in pairs if not any(row >= 0 and motion.jointed[row] for row in pair)]
+    whens = courses.meet([(k, tuple(row for row in pair if row >= 0 and flat[k, row])) for k, pair in pairs])
+    met = [(*each, when) for each, when in zip(pairs, whens, strict=True) if when is not None]
     points = [point for each in meets(courses, touching, met) if (point := _point(courses, touching, each))]
     faster = _changing(courses, touching, points, 0)
     staying = [point for point in points if point.stays]
@@ -296,7 +297,7 @@ def _off(courses: Courses, point: Point, side: int) -> float:
     off, com = courses.off(of.k, side, of.when), (of.before, of.after)[side].com
     for row, sign, end in ((int(contact.one[0]), -1.0, 0), (int(contact.two[0]), 1.0, 1)):
         if row >= 0:
-            total += sign * (off[row, :3] + np.cross(off[row, 3:], contact.surface(end)[0] - com[row]))
+            total += sign * (off[row, :3] + cross(off[row, 3:], contact.surface(end)[0] - com[row]))
     return abs(float(total @ contact.normal[0]))
 
 

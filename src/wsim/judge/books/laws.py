@@ -9,6 +9,7 @@ the world runs, the force is unknown, and any along its line may act.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,9 +72,13 @@ class Laws:
         self._evidence, self._motion = evidence, evidence.motion
         self._row = {body.prim: i for i, body in enumerate(evidence.world.bodies)}
         self._set = bool(evidence.recording.metadata.get("controlled"))
-        self._steps, self._coarse = steps_at_most(evidence)
         self.springs = [self._spring(spring) for spring in evidence.world.springs]
         self.joints = {joint.prim: self._joint(joint) for joint in evidence.world.joints}
+
+    @cached_property
+    def _steps(self) -> tuple[Floats, Floats]:
+        """How long steps may be, and how coarse (`steps_at_most`): asked where anything has a law."""
+        return steps_at_most(self._evidence)
 
     def given(self) -> tuple[Floats, Floats]:
         """What is known, (T - 1, B, 6) [N, N m], and how much of forces and torques may be wrong, (T - 1, B, 2)."""
@@ -174,7 +179,7 @@ class Laws:
 
     def _step(self, law: Law) -> float:
         """The engine's time step for what a law acts on, or the longest that it may be [s]."""
-        return float(max((self._steps[row] for row in (law.one, law.two) if row >= 0), default=self._motion.dt))
+        return float(max((self._steps[0][row] for row in (law.one, law.two) if row >= 0), default=self._motion.dt))
 
     def _may_be_hit(self, rows: list[int]) -> Bools:
         """Whether anything may touch what some bodies hang together with, (T - 1,)."""
@@ -195,7 +200,7 @@ class Laws:
         force = -(track.pull[:, None] * track.along)
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
         law = self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
-        coarse = max((self._coarse[row] for row in rows if row >= 0), default=1.0)
+        coarse = max((self._steps[1][row] for row in rows if row >= 0), default=1.0)
         return replace(law, error=coarse * law.error + law.error**2 / 5.0)  # p^4 / 720 (`_refine`)
 
     def end(self, guide: Guide) -> Floats:

@@ -16,6 +16,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.judge.books.flats import flats
 from wsim.judge.books.meshes import Triangles, colliding, radius_about, touching
+from wsim.judge.books.searching import Search
 from wsim.scene.contact import Pair, pair_law, passing
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Joint, Shape, World
+    from wsim.scene.world import Body, Joint, Shape, Static, World
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -58,6 +59,7 @@ class Contacts:
 
 
 _ROWS, _POINTS = np.zeros(0, dtype=np.intp), np.zeros((0, 3))
+_NO_PAIRS = np.full(1, -1), np.zeros((1, 3))  # but one that is none
 NONE = Contacts(_ROWS, _ROWS, _ROWS.reshape(0, 2), _POINTS, _POINTS, np.zeros(0))
 
 
@@ -80,30 +82,27 @@ class Touching:
         return kept
 
     def __init__(self, world: World) -> None:
-        import mujoco  # heavy, and wanted where there are bodies alone
-
         self.world = world
         self.worlds = [world]
+        self.parts: list[Touching] = []  # one of each world, where they are joined
         self.shapes: list[tuple[int, str, Shape]] = []  # row of the body, prim of the owner, shape
-        self._laws: dict[tuple[int, int], Pair] = {}
+        self._pairs, self._numbers = _NO_PAIRS  # of shapes that were asked for, in order, and their laws
         self._meshes: dict[int, Triangles] = {}
-        spec = mujoco.MjSpec()
-        # Of what is round MuJoCo's further points are those of surfaces blown up by the reach: at 2 cm their normal was
-        # 9 degrees off, and the nearest point was none of them. What is flat has its own (`flats`).
-        spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_MULTICCD
-        for row, body in enumerate(world.bodies):
-            item = spec.worldbody.add_body(name=f"b{row}", mass=1.0, inertia=[1.0, 1.0, 1.0], explicitinertial=True)
-            item.add_freejoint()
-            for shape in body.shapes:
-                self._add(mujoco, spec, item, row, body.prim, shape)
-        for static in world.statics:
-            for shape in static.shapes:
-                self._add(mujoco, spec, spec.worldbody, WORLD, static.prim, shape)
-        self._mujoco = mujoco
-        self._models = [spec.compile()]
-        self._data = [mujoco.MjData(self._models[0])]
-        names = [self._models[0].geom(k).name for k in range(self._models[0].ngeom)]
-        self._shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
+        items: list[tuple[int, Body | Static]] = [*enumerate(world.bodies), *((WORLD, each) for each in world.statics)]
+        for row, item in items:
+            for shape in item.shapes:
+                self._add(row, item.prim, shape)
+
+    @cached_property
+    def _searches(self) -> list[Search]:
+        """For contacts in each world: one of its own, or that of another, of other sizes."""
+        first, others = (self.parts or [self])[0]._search, self.parts[1:]
+        return [first, *(first.resized(part.shapes) or part._search for part in others)]
+
+    @cached_property
+    def _search(self) -> Search:
+        """For contacts in the one world that this is of."""
+        return Search(len(self.world.bodies), self.shapes, self._meshes)
 
     @staticmethod
     def join(parts: Sequence[Touching]) -> Touching:
@@ -113,12 +112,11 @@ class Touching:
         """
         joined = copy(parts[0])
         joined._meet, joined._flat = parts[0]._meet, parts[0]._flat  # of the kinds alone
+        joined.parts = list(parts)
         joined.worlds = [world for part in parts for world in part.worlds]
         joined.shapes = [shape for part in parts for shape in part.shapes]
-        joined._models = [model for part in parts for model in part._models]
-        joined._data = [data for part in parts for data in part._data]
-        joined._laws = {}
-        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity"):
+        joined._pairs, joined._numbers = _NO_PAIRS
+        for name in ("_margin", "_row_of_shape", "_radii", "_own", "surface_velocity", "_searches"):
             joined.__dict__.pop(name, None)
         return joined
 
@@ -149,28 +147,13 @@ class Touching:
         """Where each shape is on its body, (shapes, 7)."""
         return np.array([(*shape.position, *shape.rotation) for _, _, shape in self.shapes]).reshape(-1, 7)
 
-    def _add(self, mujoco: Any, spec: Any, item: Any, row: int, owner: str, shape: Shape) -> None:
+    def _add(self, row: int, owner: str, shape: Shape) -> None:
         if not shape.collides:
             return
-        if shape.kind == "mesh":
-            for piece in colliding(shape):
+        for piece in colliding(shape) if shape.kind == "mesh" else [shape]:
+            if shape.kind == "mesh":
                 self._meshes[len(self.shapes)] = Triangles(piece)
-                self.shapes.append((row, owner, piece))
-            return
-        kinds = mujoco.mjtGeom
-        x, y, z, w = shape.rotation
-        fields: dict[str, Any] = {"pos": shape.position, "quat": (w, x, y, z), "name": f"s{len(self.shapes)}"}
-        if shape.kind == "box":
-            fields |= {"type": kinds.mjGEOM_BOX, "size": [0.5 * edge for edge in shape.size]}
-        elif shape.kind == "sphere":
-            fields |= {"type": kinds.mjGEOM_SPHERE, "size": [shape.size[0], 0, 0]}
-        elif shape.kind in ("cylinder", "capsule"):
-            kind = kinds.mjGEOM_CYLINDER if shape.kind == "cylinder" else kinds.mjGEOM_CAPSULE
-            fields |= {"type": kind, "size": [shape.size[0], 0.5 * shape.size[1], 0]}
-        else:
-            fields |= {"type": kinds.mjGEOM_PLANE, "size": [0, 0, 1]}
-        item.add_geom(**fields)
-        self.shapes.append((row, owner, shape))
+            self.shapes.append((row, owner, piece))
 
     def at(self, poses: Floats, reach: float, about: Sequence[int] | None = None) -> Contacts:
         """Contacts at poses (B, 7) [m; xyzw] whose gap is at most `reach` [m]; those of the bodies `about` alone."""
@@ -196,7 +179,8 @@ class Touching:
         one, two = self._row_of_shape[shapes].T
         contacts = Contacts(one, two, shapes, place, normal, gap - self._margin[shapes].sum(axis=1))
         if self._meshes or self._flat:
-            others = [self._on_meshes(each, 2.0 * float(far.max())) for each, far in zip(poses, reach, strict=True)]
+            both = zip(poses, reach, strict=True) if self._meshes else ()
+            others = [self._on_meshes(each, 2.0 * float(far.max())) for each, far in both]
             further, of = self._flats(shapes, normal, at, poses)
             near = further.gap <= reach[of, further.one] + reach[of, further.two]
             at = np.concatenate([at, np.repeat(np.arange(len(others)), [len(other) for other in others]), of[near]])
@@ -220,26 +204,24 @@ class Touching:
         """What MuJoCo finds at poses (K, B, 7): shapes (n, 2), points and normals (n, 3), gaps, and at which pose."""
         qpos = poses[..., [0, 1, 2, 6, 3, 4, 5]].reshape(len(poses), -1)
         margins = self._margin.reshape(len(self.worlds), -1)
-        body = self._row_of_shape[self._shape_of_geom]  # of each geom; the world's is the last
+        of_geom = self._searches[0].shape_of_geom
+        body = self._row_of_shape[of_geom]  # of each geom; the world's is the last
         asked = np.pad(np.ones(poses.shape[:2], dtype=bool) if about is None else about, ((0, 0), (0, 1)))
-        by_geom = reach[:, body] + margins[worlds][:, self._shape_of_geom], asked[:, body]
+        by_geom = reach[:, body] + margins[worlds][:, of_geom], asked[:, body]
         by_body = np.roll(reach, 1, axis=1) + margins.max(axis=1, initial=0.0)[worlds, None], np.roll(asked, 1, axis=1)
         geoms, places, frames, gaps = [NONE.shapes], [_POINTS], [np.zeros((0, 9))], [NONE.gap]
-        for pose, world, far, ours, far_body, ours_body in zip(qpos, worlds, *by_geom, *by_body, strict=True):
-            model, data = self._models[world], self._data[world]
-            model.geom_margin[:], model.body_margin[:] = far, far_body
-            model.geom_conaffinity[:], model.body_conaffinity[:] = ours, ours_body  # others pass over each other
-            data.qpos[:] = pose
-            self._mujoco.mj_kinematics(model, data)
-            self._mujoco.mj_comPos(model, data)
-            self._mujoco.mj_collision(model, data)
-            found = data.contact
+        counts, searches = np.zeros(len(poses), dtype=np.intp), self._searches
+        for k, (pose, world, *each) in enumerate(zip(qpos, worlds.tolist(), *by_geom, *by_body, strict=True)):
+            found = searches[world].at(pose, *each)
+            counts[k] = len(found)
+            if not counts[k]:
+                continue
             geoms.append(np.array(found.geom).reshape(-1, 2))
             places.append(np.array(found.pos).reshape(-1, 3))
             frames.append(np.array(found.frame).reshape(-1, 9))
             gaps.append(np.array(found.dist).reshape(-1))
-        at = np.repeat(np.arange(len(poses)), [len(gap) for gap in gaps[1:]])
-        shapes = self._shape_of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
+        at = np.repeat(np.arange(len(poses)), counts)
+        shapes = of_geom[np.concatenate(geoms)] + (worlds[at] * margins.shape[1])[:, None]
         return shapes, np.concatenate(places), np.concatenate(frames)[:, :3], np.concatenate(gaps), at
 
     def near(self, poses: Floats, worlds: Rows) -> Bools:
@@ -339,23 +321,33 @@ class Touching:
 
     def laws(self, shapes: Rows) -> tuple[Floats, Floats]:
         """Friction and rolling resistance of pairs of shapes (n, 2), (n,) each."""
-        count = max(len(self.shapes), 1)
-        pairs, which = np.unique(shapes @ [count, 1], return_inverse=True)
-        laws = [self._law(int(pair) // count, int(pair) % count) for pair in pairs]
-        both = np.array([(law.friction, law.rolling) for law in laws]).reshape(-1, 2)[which]
-        return both[:, 0], both[:, 1]
+        found = self._of_pairs(shapes)
+        return found[:, 0], found[:, 1]
 
     def bounces(self, shapes: Rows) -> Floats:
         """Restitution of pairs of shapes (n, 2), (n,)."""
-        pairs, which = np.unique(shapes, axis=0, return_inverse=True)
-        found = np.array([self._law(one, two).restitution for one, two in pairs.tolist()], dtype=np.float64)
-        return found[which.ravel()]
+        return self._of_pairs(shapes)[:, 2]
+
+    def _of_pairs(self, shapes: Rows) -> Floats:
+        """Friction, rolling resistance and restitution of pairs (n, 2), (n, 3): each pair's looked up once."""
+        count = max(len(self.shapes), 1)
+        asked = shapes @ [count, 1]
+        at = np.searchsorted(self._pairs, asked)
+        if len(asked) and not np.array_equal(self._pairs.take(at, mode="clip"), asked):
+            new = np.setdiff1d(asked, self._pairs)
+            laws = [self._law(int(pair) // count, int(pair) % count) for pair in new]
+            own = np.array([(law.friction, law.rolling, law.restitution) for law in laws])
+            where = np.searchsorted(self._pairs, new)
+            self._pairs, self._numbers = (
+                np.insert(self._pairs, where, new),
+                np.insert(self._numbers, where, own, axis=0),
+            )
+            at = np.searchsorted(self._pairs, asked)
+        return self._numbers[at]
 
     def _law(self, one: int, two: int) -> Pair:
-        if (one, two) not in self._laws:
-            world = self.worlds[one // max(len(self.shapes) // len(self.worlds), 1)]
-            self._laws[one, two] = pair_law(world, self.shapes[one][2], self.shapes[two][2])
-        return self._laws[one, two]
+        world = self.worlds[one // max(len(self.shapes) // len(self.worlds), 1)]
+        return pair_law(world, self.shapes[one][2], self.shapes[two][2])
 
     @cached_property
     def surface_velocity(self) -> Floats:
@@ -367,7 +359,12 @@ class Touching:
 def touching_of(copies: Sequence[Evidence]) -> Touching:
     """The shapes of several recordings' worlds: those of one world, or joined."""
     every = [Touching.of(evidence) for evidence in copies]
-    return every[0] if all(each is every[0] for each in every) else Touching.join(every)
+    if all(each is every[0] for each in every):
+        return every[0]
+    joined = copies[0].kept.get(touching_of)
+    if not isinstance(joined, Touching) or joined.parts != every:
+        joined = copies[0].kept[touching_of] = Touching.join(every)
+    return joined
 
 
 def _tied(world: World) -> set[frozenset[str]]:

@@ -43,11 +43,17 @@ class CheckTunnelling(Check):
             return []
         jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
         passes = passing(evidence.world)
-        moved = np.linalg.norm(np.diff(motion.com, axis=0), axis=2)
+        moved = lengths(np.diff(motion.com, axis=0))
+        most = moved.max(axis=0)
         found: dict[tuple[str, str], Finding] = {}
         for shape in evidence.placed:
             if shape.shape.kind in ("plane", "mesh"):
                 continue  # a plane has no other side, and a mesh no known thickness
+            if (
+                most.max(initial=0.0) + (most[shape.body] if shape.body >= 0 else 0.0)
+                <= self.travel * shape.kind.thinnest
+            ):
+                continue
             far = moved + (moved[:, [shape.body]] if shape.body >= 0 else 0.0)
             k, bodies = np.nonzero(far > self.travel * shape.kind.thinnest)
             apart = np.linalg.norm(motion.com[k, bodies] - shape.position[k], axis=1)
@@ -196,12 +202,13 @@ def _nearest(evidence: Recorded, i: int, frames: Indices, limit: Floats) -> Floa
     In each frame the shapes are asked in the order in which the balls about them are near.
     """
     nearest, shapes = np.full(len(frames), np.inf), evidence.placed
-    radius = np.array([shape.radius for shape in shapes])
+    radius = np.stack([shape.radii[frames] for shape in shapes], axis=1)
     other = [k for k, shape in enumerate(shapes) if shape.body != i]
     if not other:
         return nearest
-    for own in (shape for shape in shapes if shape.body == i):
-        apart = lengths(own.position[frames][:, None] - evidence.places[frames][:, other]) - own.radius - radius[other]
+    for k, own in ((k, shape) for k, shape in enumerate(shapes) if shape.body == i):
+        apart = lengths(own.position[frames][:, None] - evidence.places[frames][:, other])
+        apart -= radius[:, k, None] + radius[:, other]
         order = np.argsort(apart, axis=1, kind="stable")
         for rank in order.T:
             bound = apart[np.arange(len(frames)), rank]

@@ -105,9 +105,8 @@ class CheckContinuity(Check):
         cosine = np.abs(np.einsum("...i,...i->...", q[..., 1:, :, :], q[..., :-1, :, :]))
         turned = 2.0 * np.arccos(np.clip(cosine, 0.0, 1.0))
         fastest = np.maximum(motion.rate[..., 1:, :], motion.rate[..., :-1, :])
-        half = np.array([evidence.solid(i).smallest / 2 for i in range(len(evidence.world.bodies))])
         # A body that tips over an edge turns at most as g pulls its centre about it.
-        pushed = (evidence.gravity * h + handed) / half + driven
+        pushed = (evidence.gravity * h + handed) / (motion.smallest / 2) + driven
         limit = h * (fastest + 0.5 * _around(motion.w) + np.where(motion.kinematic, 0.0, pushed)) + 1e-3
         return np.where(fastest * h > self.alias, 0.0, turned), limit
 

@@ -200,7 +200,7 @@ class CheckEnergy(Check):
         """
         motion, recording = evidence.motion, evidence.recording
         deepest = recording.scalars.get("contact/penetration")
-        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        size = motion.smallest
         give = self.settling * size[None] if deepest is None else np.nan_to_num(deepest)[:, None]
         push = np.asarray(recording.contact_force, dtype=np.float64)
         force = lengths(push)
@@ -219,9 +219,7 @@ class CheckEnergy(Check):
     def _balls(evidence: Evidence) -> NDArray[np.bool_]:
         """Which bodies are balls about their centre of mass, (B,)."""
         bodies = evidence.world.bodies
-        return np.array(
-            [all(s.kind == "sphere" and np.allclose(s.position, body.com) for s in body.shapes) for body in bodies]
-        )
+        return np.array([all(s.kind == "sphere" and _at(s.position, body.com) for s in body.shapes) for body in bodies])
 
     @staticmethod
     def _pressed_in(evidence: Evidence) -> Floats:
@@ -304,7 +302,7 @@ class CheckEnergy(Check):
         motion, weight = evidence.motion, evidence.motion.mass * evidence.gravity
         kinetic, potential, elastic = (each @ of for each in (motion.kinetic, motion.potential, motion.elastic))
         scale = np.max([kinetic.max(axis=0), np.ptp(potential, axis=0), np.ptp(elastic, axis=0)], axis=0)
-        size = np.array([evidence.solid(i).smallest for i in range(len(motion.mass))])
+        size = motion.smallest
         height = (np.abs(motion.com) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
         settles = self._give(evidence, size) * (motion.touched.any(axis=0) | ~motion.jointed)
@@ -331,6 +329,10 @@ class CheckEnergy(Check):
         motion = evidence.motion
         late: Floats = motion.mass * evidence.gravity * motion.speed.max(axis=0) * latest(evidence)
         return late
+
+
+def _at(place: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    return place == other or bool(np.allclose(place, other))
 
 
 def _had(balance: Floats, unseen: tuple[Floats, Floats], verb: str) -> Floats:
@@ -363,7 +365,9 @@ def _deep_in_meshes(evidence: Evidence) -> Floats:
 
 def _only(rows: NDArray[np.intp], count: int) -> NDArray[np.bool_]:
     """These of so many bodies, as a group, (count, 1)."""
-    return np.asarray(np.isin(np.arange(count), rows)[:, None])
+    found = np.zeros((count, 1), dtype=bool)
+    found[rows] = True
+    return found
 
 
 def _summed(energy: Floats, of: NDArray[np.bool_]) -> Floats:

@@ -12,6 +12,8 @@ from wsim.judge.verdict import RepairTarget
 from wsim.scene.solids import together
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
     from wsim.scene.world import Body
@@ -35,9 +37,11 @@ class CheckMass(Check):
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each body whose mass or inertia is out of bounds, or one for none."""
         found = []
+        every = np.linalg.eigvalsh(evidence.motion.inertia)
         for i, body in enumerate(evidence.world.bodies):
             if not body.kinematic:
-                found += self._mass(evidence, body) + self._inertia(evidence, i, body, _stated_elsewhere(evidence))
+                found += self._mass(evidence, body)
+                found += self._inertia(evidence, i, body, every[i], _stated_elsewhere(evidence))
                 found += self._as_its_shapes(evidence, i, body)
         wrong = [finding for finding in found if not finding.passed]
         return wrong or ([self.passed("Bodies weigh what their sizes and materials give")] if found else [])
@@ -71,9 +75,10 @@ class CheckMass(Check):
             )
         ]  # fmt: skip
 
-    def _inertia(self, evidence: Evidence, i: int, body: Body, only_spread: bool) -> list[Finding]:
-        """Whether the moments can be those of a body of its size; `only_spread`: of any body."""
-        moments = np.linalg.eigvalsh(np.array(body.inertia).reshape(3, 3))
+    def _inertia(
+        self, evidence: Evidence, i: int, body: Body, moments: NDArray[np.float64], only_spread: bool
+    ) -> list[Finding]:
+        """Whether the moments (3,) can be those of a body of its size; `only_spread`: of any body."""
         bound = body.mass * float(evidence.motion.radius[i]) ** 2
         if bound <= 0.0 or not np.isfinite(bound):
             return []

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.judge.checks.check import Check, Checks, share_about
 from wsim.judge.checks.strangest import strangest
 from wsim.judge.evidence.motion import FLOAT32
@@ -40,7 +41,7 @@ class CheckFreeFlight(Check):
         unknown = evidence.recording.metadata.get("controlled") and evidence.recording.applied_impulse is None
         if len(motion.h) == 0 or unknown:
             return []
-        strange = np.linalg.norm(motion.acceleration - motion.gravity, axis=2)
+        strange = lengths(motion.acceleration - motion.gravity)
         rounding = 4.0 * FLOAT32 * np.maximum(motion.speed[1:], motion.speed[:-1]) / motion.h[:, None]
         limit = self.share * max(evidence.gravity, 1.0) + rounding
         free = ~(motion.touched[1:] | motion.touched[:-1]) & ~motion.kinematic & ~motion.jointed
@@ -84,11 +85,8 @@ class CheckFreeTurning(Check):
         motion, recording = evidence.motion, evidence.recording
         if len(motion.h) == 0 or (recording.metadata.get("controlled") and recording.applied_turn is None):
             return []
-        momentum = motion.angular_momentum
-        torque = np.linalg.norm(motion.torque, axis=2)
-        most = np.linalg.norm(momentum, axis=2)
+        torque, most, rate = lengths(motion.torque), lengths(motion.angular_momentum), motion.rate
         most = np.maximum(most[1:], most[:-1])
-        rate = np.linalg.norm(motion.w, axis=2)
         # A first-order step of length dt turns what tumbles by w dt too far or too late in each 1 / w.
         numerical = most * (
             np.maximum(rate[1:], rate[:-1]) ** 2 * motion.late + self.roundings * FLOAT32 / motion.h[:, None]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wsim.geometry.rotations import UP, rotate
+from wsim.geometry.rotations import UP, lengths, rotate
 from wsim.geometry.shapes import reach
 from wsim.judge.books.driven import given_within
 from wsim.judge.checks.check import Check, Checks
@@ -22,6 +23,7 @@ from wsim.judge.repair.rule import faster_sound, finer, shorter_step, sound_spee
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.contact import Overlap
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding, RepairTarget
     from wsim.scene.world import Fluid, Shape
@@ -66,19 +68,17 @@ class CheckExplosion(Check):
         lows += [float(evidence.ends(i)[0].min()) for i in range(len(world.bodies))]
         fall = max(0.0, max(tops, default=0.0) - min(lows, default=0.0))
         # What spins may hand on the speed of its rim: a joint there, or the ground, makes it another's.
-        speeds = [(np.linalg.norm(body.velocity), np.linalg.norm(body.angular_velocity)) for body in world.bodies]
+        speeds = [(math.hypot(*body.velocity), math.hypot(*body.angular_velocity)) for body in world.bodies]
         rims = zip(speeds, evidence.motion.radius, strict=True)
         start = max((float(speed + spin * radius) for (speed, spin), radius in rims), default=0.0)
         return math.sqrt(max(start, surface_speed(evidence)) ** 2 + 2 * evidence.gravity * fall)
 
     def _bodies(self, evidence: Evidence, free: float) -> Finding:
-        reported = np.linalg.norm(evidence.body_qd[:, :, :3], axis=2)
+        motion, reported = evidence.motion, evidence.motion.speed
         moved = np.zeros_like(reported)
-        step = np.maximum(np.diff(evidence.time), 1e-9)[:, None]
-        moved[1:] = np.linalg.norm(np.diff(evidence.body_q[:, :, :3], axis=0), axis=2) / step
+        moved[1:] = lengths(np.diff(motion.q[..., :3], axis=0)) / motion.h[:, None]
         # Where the origin is not the centre of mass, it also turns about it: that is not speed of the body.
-        arms = [float(np.linalg.norm(body.com)) for body in evidence.world.bodies]
-        moved -= np.linalg.norm(evidence.body_qd[:, :, 3:], axis=2) * np.array(arms)
+        moved -= motion.rate * lengths(motion.arms)
         fastest = np.maximum(reported, moved)
         factor = self._handed_on(evidence)
         bound = np.sqrt(max(factor * free, self.least) ** 2 + self._driven(evidence))
@@ -183,6 +183,23 @@ def _lowest(shape: Shape, up: Floats) -> float:
     return float(low[0])
 
 
+@dataclass(frozen=True)
+class Deepest:
+    """Where two shapes are deepest in each other, by the limit of that."""
+
+    value: float  # [m]
+    limit: float
+    time: float  # [s]
+    lasts: bool
+    size: float  # smallest extent [m]
+    soft: float  # that contacts yield [m]
+
+    @property
+    def share(self) -> float:
+        """Of the limit."""
+        return self.value / self.limit if self.limit else math.inf
+
+
 @dataclass
 class CheckPenetration(Check):
     """Solids are not in each other: not deeply at any time, not slightly for long."""
@@ -195,46 +212,43 @@ class CheckPenetration(Check):
         """The worst pair by its poses, and the solver's own deepest contact if it is recorded."""
         if not evidence.world.bodies:
             return []
-        worst: Finding | None = None
-        for pair in overlaps(evidence):
-            size = min(p.kind.thinnest for p in (pair.a, pair.b) if p.body >= 0)
-            what, give = f"{pair.a.owner} in {pair.b.owner}", given_way(evidence, [pair.a.body, pair.b.body])
-            finding = self._judge(evidence, pair.depth, size, what, pair.a.owner, give)
-            if worst is None or _share(finding) > _share(worst):
-                worst = finding
-        found = [worst or self.passed("No body is in another, or in a static object")]
+        deep = [(self._deepest(evidence, pair.depth, *_of_pair(evidence, pair)), pair) for pair in overlaps(evidence)]
+        found = [self.passed("No body is in another, or in a static object")]
+        if deep:
+            worst, pair = max(deep, key=lambda each: each[0].share)
+            found = [self._finding(worst, f"{pair.a.owner} in {pair.b.owner}", pair.a.owner)]
         depth = evidence.recording.scalars.get("contact/penetration")
         if depth is not None:
             # Of the bodies that ever had a contact: the solver does not say whose is the deepest.
             touched = np.flatnonzero(evidence.motion.touched.any(axis=0))
             rows = touched if len(touched) else range(len(evidence.world.bodies))
             smallest = min(evidence.solid(int(i)).smallest for i in rows)
-            found.append(self._judge(evidence, np.nan_to_num(depth, nan=0.0), smallest, "the solver's contacts", None))
+            deepest = self._deepest(evidence, np.nan_to_num(depth, nan=0.0), smallest, np.zeros(len(depth)))
+            found.append(self._finding(deepest, "the solver's contacts", None))
         return found
 
-    def _judge(
-        self, evidence: Evidence, depth: Floats, size: float, what: str, prim: str | None, give: Floats | float = 0.0
-    ) -> Finding:
-        """By how much a depth (T,) is more than `give`, which soft contacts yield."""
-        give = np.broadcast_to(np.asarray(give, dtype=np.float64), depth.shape)
+    def _deepest(self, evidence: Evidence, depth: Floats, size: float, give: Floats) -> Deepest:
+        """By how much a depth (T,) is most, for long or for a moment, beside what soft contacts `give` (T,)."""
         depth = depth - give
-        step = evidence.motion.dt_frames
-        frames = min(len(depth), max(1, math.ceil(self.seconds / step)) + 1)
-        held = np.lib.stride_tricks.sliding_window_view(depth, frames).min(axis=1)
-        lasting, brief = float(held.max()), float(depth.max())
-        if lasting / self.lasting > brief / self.brief:
-            value, limit, at = lasting, self.lasting * size, int(np.argmax(held))
-            span, source = f"for {self.seconds:g} s or longer", f"{self.lasting:g} of the smallest extent, {size:.3g} m"
+        frames = min(len(depth), max(1, math.ceil(self.seconds / evidence.motion.dt_frames)) + 1)
+        held = functools.reduce(np.minimum, (depth[k : len(depth) - frames + 1 + k] for k in range(frames)))
+        lasting, brief = (float(each.max()) for each in (held, depth))
+        lasts = lasting / self.lasting > brief / self.brief
+        at = int(np.argmax(held if lasts else depth))
+        (value, most), soft = (lasting, self.lasting) if lasts else (brief, self.brief), float(give[at])
+        return Deepest(value + soft, most * size + soft, float(evidence.time[at]), lasts, size, soft)
+
+    def _finding(self, of: Deepest, what: str, prim: str | None) -> Finding:
+        if of.lasts:
+            span, source = f"for {self.seconds:g} s or longer", f"{self.lasting:g} of the smallest extent"
         else:
-            value, limit, at = brief, self.brief * size, int(np.argmax(depth))
-            span, source = "for a moment", f"{self.brief:g} of the smallest extent, {size:.3g} m, at any time"
-        time, soft = float(evidence.time[at]), float(give[at])
-        value, limit = value + soft, limit + soft
-        if soft:
-            source += f", and {soft:.2g} m that soft contacts yield"
+            span, source = "for a moment", f"{self.brief:g} of the smallest extent"
+        source += f", {of.size:.3g} m{'' if of.lasts else ', at any time'}"
+        if of.soft:
+            source += f", and {of.soft:.2g} m that soft contacts yield"
         return self.measured(
-            f"Deepest penetration, {what}: {max(value, 0.0) * 1e3:.2g} mm {span}, at {time:.3f} s",
-            value, limit, "m", prim=prim, time=time, limit_from=source,
+            f"Deepest penetration, {what}: {max(of.value, 0.0) * 1e3:.2g} mm {span}, at {of.time:.3f} s",
+            of.value, of.limit, "m", prim=prim, time=of.time, limit_from=source,
         )  # fmt: skip
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
@@ -249,8 +263,10 @@ class CheckPenetration(Check):
         )
 
 
-def _share(finding: Finding) -> float:
-    return (finding.value or 0.0) / finding.limit if finding.limit else math.inf
+def _of_pair(evidence: Evidence, pair: Overlap) -> tuple[float, Floats]:
+    """The smallest extent of two shapes, of those that move [m], and how deep soft contacts let them in, (T,) [m]."""
+    size = min(shape.kind.thinnest for shape in (pair.a, pair.b) if shape.body >= 0)
+    return size, given_way(evidence, [pair.a.body, pair.b.body])
 
 
 @dataclass

@@ -50,12 +50,11 @@ class CheckRestForce(Check):
         shown = (motion.com[-1] - motion.com[evidence.window][0]) / span
         flips = 2.0 * np.linalg.norm(motion.v[evidence.window].mean(axis=0) - shown, axis=1)
         hidden = motion.mass * flips / motion.dt
-        found = [
-            self._finding(evidence, int(i), lacking[i], force[i], float(hidden[i]))
-            for i in np.flatnonzero(~motion.jointed & ~motion.kinematic)
-            if self._rests(evidence, int(i))
-        ]
-        return worst(found)
+        rows = [int(i) for i in np.flatnonzero(~motion.jointed & ~motion.kinematic) if self._rests(evidence, int(i))]
+        margin = self.share * motion.mass * evidence.gravity + hidden - lengths(lacking)
+        if rows and np.all(margin[rows] > 0.0):  # one is told of, as they are many
+            rows = [rows[int(np.argmin(margin[rows]))]]
+        return worst([self._finding(evidence, i, lacking[i], force[i], float(hidden[i])) for i in rows])
 
     def _rests(self, evidence: Evidence, i: int) -> bool:
         limit = self.still * evidence.velocity_scale(evidence.solid(i).smallest)

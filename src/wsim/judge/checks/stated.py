@@ -38,41 +38,45 @@ class CheckStart(Check):
         """What starts most unlike what is stated, of places, turns and speeds."""
         if OURS not in evidence.recording.metadata or not len(evidence.motion.mass):
             return []
-        found, free = [], _free(evidence)
-        for k, body in enumerate(evidence.world.bodies):
-            if not body.kinematic:
-                found += self._of(evidence, k, body, bool(free[k]))
-        return worst(found)
+        value, limit = self._asked(evidence)
+        margin = np.where(np.isnan(value), np.inf, limit - value)
+        if not np.any(margin < 0.0):  # one is told of, as they are many
+            margin = np.where(np.arange(margin.size).reshape(margin.shape) == np.argmin(margin), margin, np.inf)
+        asked = zip(*np.nonzero(np.isfinite(margin)), strict=True)
+        return worst(
+            [self._finding(evidence, int(k), int(n), float(value[k, n]), float(limit[k, n])) for k, n in asked]
+        )
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
         """The start that was taken."""
         return start_taken(evidence, finding)
 
-    def _of(self, evidence: Evidence, k: int, body: Body, free: bool) -> list[Finding]:
-        motion = evidence.motion
-        start, radius = motion.q[0, k], float(motion.radius[k])
-        rounding = 8.0 * FLOAT32 * float(np.linalg.norm(body.position))
-        aside = float(np.linalg.norm(start[:3] - body.position))
-        turned = _angle(start[3:], np.array(body.rotation))
-        found = [
-            self._measured(body, f"{body.prim} starts {aside:.3g} m from where it stands", aside,
-                           self.place * radius + rounding, "m"),
-            self._measured(body, f"{body.prim} starts turned by {np.degrees(turned):.3g}°", turned, self.turn, "rad"),
-        ]  # fmt: skip
-        for name, unit, has, stated in (
-            ("moves", "m/s", motion.v[0, k], np.array(body.velocity)),
-            ("turns", "rad/s", motion.w[0, k], np.array(body.angular_velocity)),
-        ):
-            if stated.any() or free:  # what joints make of a speed that nobody states is theirs
-                off = float(np.linalg.norm(has - stated))
-                message = f"{body.prim} {name} at the start by {off:.3g} {unit} otherwise than stated"
-                limit = self.share * float(np.linalg.norm(stated)) + self.still
-                found.append(self._measured(body, message, off, limit, unit))
-        return found
+    def _asked(self, evidence: Evidence) -> tuple[Floats, Floats]:
+        """Of each body how far off place, turn, velocity and rate are, and may be, (B, 4) each; NaN: not asked."""
+        motion, bodies = evidence.motion, evidence.world.bodies
+        names = "position", "rotation", "velocity", "angular_velocity"
+        place, turn, *rates = (np.array([getattr(body, name) for body in bodies]) for name in names)
+        free, rounding = _free(evidence), 8.0 * FLOAT32 * lengths(place)
+        value = [lengths(motion.q[0, :, :3] - place), _angles(motion.q[0, :, 3:], turn)]
+        limit = [self.place * motion.radius + rounding, np.full(len(bodies), self.turn)]
+        for has, stated in zip((motion.v[0], motion.w[0]), rates, strict=True):
+            # What joints make of a speed that nobody states is theirs.
+            value.append(np.where(stated.any(axis=1) | free, lengths(has - stated), np.nan))
+            limit.append(self.share * lengths(stated) + self.still)
+        asked = np.where(motion.kinematic[:, None], np.nan, np.stack(value, axis=1))
+        return asked, np.stack(limit, axis=1)
 
-    def _measured(self, body: Body, message: str, value: float, limit: float, unit: str) -> Finding:
+    def _finding(self, evidence: Evidence, k: int, n: int, value: float, limit: float) -> Finding:
+        """Of body k: its place, turn, velocity or rate."""
+        prim, unit = evidence.world.bodies[k].prim, ("m", "rad", "m/s", "rad/s")[n]
+        how = (
+            f"starts {value:.3g} m from where it stands",
+            f"starts turned by {math.degrees(value):.3g}°",
+            f"moves at the start by {value:.3g} m/s otherwise than stated",
+            f"turns at the start by {value:.3g} rad/s otherwise than stated",
+        )[n]
         return self.measured(
-            message, value, limit, unit, expected=0.0, prim=body.prim, time=0.0,
+            f"{prim} {how}", value, limit, unit, expected=0.0, prim=prim, time=0.0,
             limit_from="what a seed and the joints' closing change", fine="All starts as it is stated to",
         )  # fmt: skip
 
@@ -113,7 +117,7 @@ class CheckPath(Check):
         far = lengths(motion.q[:, k, :3] - places)
         way = np.concatenate([[0.0], np.cumsum(lengths(np.diff(places, axis=0)))])
         rounding = 8.0 * FLOAT32 * lengths(places)
-        turned = np.array([_angle(has, own) for has, own in zip(motion.q[:, k, 3:], turns, strict=True)])
+        turned = _angles(motion.q[:, k, 3:], turns)
         round_ = float(np.linalg.norm(body.angular_velocity)) * (time - time[0])
         return [
             self._worst(body, time, far, self.place * motion.radius[k] + share * way + rounding, "m", "is"),
@@ -168,12 +172,12 @@ def _free(evidence: Evidence) -> NDArray[np.bool_]:
     return free
 
 
-def _angle(a: Floats, b: Floats) -> float:
-    """Between two rotations, xyzw [rad]."""
+def _angles(a: Floats, b: Floats) -> Floats:
+    """Between rotations (n, 4), xyzw, (n,) [rad]."""
     # The chord, not the cosine, which loses small angles to rounding.
-    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
-    chord = min(float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b)))
-    return 4.0 * math.asin(min(1.0, 0.5 * chord))
+    a, b = a / lengths(a)[:, None], b / lengths(b)[:, None]
+    chord = np.minimum(lengths(a - b), lengths(a + b))
+    return np.asarray(4.0 * np.arcsin(np.minimum(1.0, 0.5 * chord)))
 
 
 CHECKS: Checks = (CheckStart, CheckPath)

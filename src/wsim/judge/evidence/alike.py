@@ -21,6 +21,10 @@ OF_ROOM = tuple(set(OF_WORLD) - {"statics", "contacts"})
 OF_FORM = tuple(set(OF_BODY) - {"shapes", "position", "rotation", "velocity", "angular_velocity"})
 OF_STATIC = tuple(set(Static.model_fields) - {"shapes"})
 OF_SHAPE = tuple(set(Shape.model_fields) - {"friction", "restitution", "rolling", "color", "opacity"})
+# And where their geometry is taken at once, each of its own sizes (`wsim.judge.evidence.stacked`).
+OF_SCENE = tuple(set(OF_ROOM) - {"cameras"})
+OF_KIND = tuple(set(OF_FORM) - {"com", "volume"})
+OF_PRIMITIVE = tuple(set(OF_SHAPE) - {"size", "position", "rotation"})
 
 
 def alike(one: World, other: World) -> bool:
@@ -40,10 +44,30 @@ def same_geometry(one: World, other: World) -> bool:
         and _each(one.statics, other.statics, OF_STATIC)
     ):
         return False
-    own, its = (
-        [each.shapes for each in world.bodies] + [each.shapes for each in world.statics] for world in (one, other)
+    return all(_each(*pair, OF_SHAPE) for pair in zip(_shapes(one), _shapes(other), strict=True))
+
+
+def same_form(one: World, other: World) -> bool:
+    """Whether two worlds have the same bodies, joints and gravity, of shapes that differ in size and place alone."""
+    if one is other:
+        return True
+    if not (
+        _same(one, other, OF_SCENE)
+        and _each(one.bodies, other.bodies, OF_KIND)
+        and _each(one.statics, other.statics, OF_STATIC)
+    ):
+        return False
+    pairs = list(zip(_shapes(one), _shapes(other), strict=True))
+    return all(len(own) == len(its) for own, its in pairs) and all(
+        _same(a, b, OF_SHAPE if a.kind == "mesh" else OF_PRIMITIVE)
+        for own, its in pairs
+        for a, b in zip(own, its, strict=True)
     )
-    return all(_each(a, b, OF_SHAPE) for a, b in zip(own, its, strict=True))
+
+
+def _shapes(world: World) -> list[list[Shape]]:
+    """Of each body and of all that stands still."""
+    return [body.shapes for body in world.bodies] + [static.shapes for static in world.statics]
 
 
 def groups(copies: Sequence[Evidence], together: Callable[[Evidence, Evidence], bool]) -> list[list[Evidence]]:

@@ -7,6 +7,7 @@ contacts. Where the carrier is all that a body may touch, J is what changed the 
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,7 +43,7 @@ def carriers(evidence: Evidence) -> list[Placed]:
 
 def surface_speed(evidence: Evidence) -> float:
     """Of the fastest belt [m/s]."""
-    speeds = [float(np.linalg.norm(shape.shape.surface_velocity)) for shape in evidence.placed]
+    speeds = [math.hypot(*shape.shape.surface_velocity) for shape in evidence.placed]
     return max(speeds, default=0.0)
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.evidence.placed import Placed
-    from wsim.judge.evidence.recorded import Recorded
+    from wsim.judge.evidence.recorded import Part, Recorded
 
     Floats = NDArray[np.float64]
 
@@ -31,6 +31,7 @@ class Overlap:
     a: Placed
     b: Placed
     depth: Floats  # (T,) [m]; not positive when apart
+    rows: tuple[int, int]  # in `Recorded.placed`
 
 
 def overlaps(evidence: Recorded) -> list[Overlap]:
@@ -39,13 +40,20 @@ def overlaps(evidence: Recorded) -> list[Overlap]:
     A shape is probed with points on its surface against the other's distance function, both ways round. Two boxes whose
     edges cross with no corner inside are missed: the solver's own penetration, where recorded, covers them.
     """
-    if evidence.part is not None:
-        frames = evidence.part.frames
-        parts = [(pair, pair.depth[frames]) for pair in overlaps(evidence.part.whole)]
-        return [Overlap(p.a.during(frames), p.b.during(frames), depth) for p, depth in parts if depth.max() > 0.0]
     if Overlap not in evidence.kept:
-        evidence.kept[Overlap] = _overlaps(evidence)
+        part = evidence.part
+        evidence.kept[Overlap] = _overlaps(evidence) if part is None else _of_part(evidence, part)
     return cast("list[Overlap]", evidence.kept[Overlap])
+
+
+def _of_part(evidence: Recorded, part: Part) -> list[Overlap]:
+    found, shapes = [], evidence.placed
+    for pair in overlaps(part.whole):
+        depth = pair.depth[part.frames]
+        if depth.max() > 0.0:
+            a, b = pair.rows
+            found.append(Overlap(shapes[a], shapes[b], depth, pair.rows))
+    return found
 
 
 def _overlaps(evidence: Recorded) -> list[Overlap]:
@@ -53,22 +61,22 @@ def _overlaps(evidence: Recorded) -> list[Overlap]:
     jointed = {frozenset((joint.parent or joint.fixture, joint.child)) for joint in evidence.world.joints}
     passes = passing(evidence.world)
     # Two can only meet if the boxes about all the places that each is ever in do.
-    low = np.array([shape.position.min(axis=0) - shape.radius for shape in shapes]).reshape(-1, 3)
-    high = np.array([shape.position.max(axis=0) + shape.radius for shape in shapes]).reshape(-1, 3)
+    low, high = (np.array([shape.room[end] for shape in shapes]).reshape(-1, 3) for end in (0, 1))
     found = []
     for index, a in enumerate(shapes):
         if a.body < 0:
             break
         later = slice(index + 1, None)
         may_meet = np.all((low[index] <= high[later]) & (low[later] <= high[index]), axis=1)
-        for b in (shapes[index + 1 + k] for k in np.flatnonzero(may_meet)):
+        for other in index + 1 + np.flatnonzero(may_meet):
+            b = shapes[other]
             if a.owner == b.owner or frozenset((a.owner, b.owner)) in jointed:
                 continue
             if passes((a.owner, a.shape.prim), (b.owner, b.shape.prim)):
                 continue
             depth = _depth(a, b)
             if depth is not None and depth.max() > 0.0:
-                found.append(Overlap(a, b, depth))
+                found.append(Overlap(a, b, depth, (index, int(other))))
     return found
 
 
@@ -107,8 +115,8 @@ def given_way(evidence: Evidence, rows: list[int]) -> Floats:
 
 def _depth(a: Placed, b: Placed) -> Floats | None:
     near = np.ones(len(a.position), dtype=bool)
-    if np.isfinite(b.radius):
-        near = lengths(a.position - b.position) < a.radius + b.radius
+    if np.isfinite(b.radii).all():
+        near = lengths(a.position - b.position) < a.radii + b.radii
     if not near.any():
         return None
     depth = np.full(len(near), -np.inf)
@@ -120,14 +128,15 @@ def _probe(a: Placed, b: Placed, near: NDArray[np.bool_]) -> Floats:
     """How deep the points of a are in b, (n,) [m]."""
     if a.shape.kind == "plane":
         return np.full(int(near.sum()), -np.inf)
-    points, margin = a.kind.probes()
     frames = np.flatnonzero(near)
     depth = np.empty(len(frames))
     for start in range(0, len(frames), CHUNK):  # so many frames at once as the processor's cache holds
         part = frames[start : start + CHUNK]
+        points, margin = a.at(part).probes()
         back = conjugate(b.rotation[part])
         local = rotate(back, a.position[part] - b.position[part])[:, :, None]
         if points.any():  # else it is the middle of a ball, however turned
-            local = local + matrices(multiply(back, a.rotation[part])) @ points.T
-        depth[start : start + CHUNK] = b.kind.depth(np.moveaxis(local, 1, -1)).max(axis=1)
-    return depth + margin
+            local = local + matrices(multiply(back, a.rotation[part])) @ points.swapaxes(-1, -2)
+        inside = b.at(part).depth(np.moveaxis(local, 1, -1)).max(axis=1)
+        depth[start : start + CHUNK] = inside + (margin[:, 0] if isinstance(margin, np.ndarray) else margin)
+    return depth

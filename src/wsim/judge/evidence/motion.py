@@ -1,11 +1,12 @@
 """What bodies do between recorded frames: speeds, energies, what they hang on and whom they come near.
 
 T frames, T - 1 intervals between them, B bodies in the order of `world.bodies`. SI units. Of W copies of a world, over
-the same times, arrays have an axis of copies before that of time: (W, T, B, ...), and masses are (W, 1, B).
+the same times, arrays have an axis of copies before that of time: (W, T, B, ...); masses and sizes are (W, 1, B).
 """
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -60,6 +61,9 @@ class Motion:
         joined.mass, joined.inertia = (
             np.stack([getattr(each, name) for each in copies])[:, None] for name in ("mass", "inertia")
         )
+        joined.radius, joined.smallest, joined.arms = (
+            np.stack([getattr(each, name) for each in copies])[:, None] for name in ("radius", "smallest", "arms")
+        )
         joined.q, joined.v, joined.w, joined.contact_force = (
             np.stack([getattr(each, name) for each in copies]) for name in ("q", "v", "w", "contact_force")
         )
@@ -74,10 +78,19 @@ class Motion:
     @cached_property
     def com(self) -> Floats:
         """Centres of mass, (T, B, 3) [m]."""
-        own = np.array([body.com for body in self._recorded.world.bodies]).reshape(-1, 3)
         q = self.q
-        moved: Floats = q[..., :3] if not own.any() else q[..., :3] + rotate(q[..., 3:], own)
+        moved: Floats = q[..., :3] if not self.arms.any() else q[..., :3] + rotate(q[..., 3:], self.arms)
         return moved
+
+    @cached_property
+    def arms(self) -> Floats:
+        """Centres of mass in the bodies' frames, (B, 3) [m]."""
+        return np.array([body.com for body in self._recorded.world.bodies]).reshape(-1, 3)
+
+    @cached_property
+    def smallest(self) -> Floats:
+        """Smallest extent of the largest shape of each body, (B,) [m]."""
+        return np.array([self._recorded.solid(i).smallest for i in range(len(self.mass))])
 
     @cached_property
     def speed(self) -> Floats:
@@ -95,7 +108,7 @@ class Motion:
         found = []
         for i, body in enumerate(self._recorded.world.bodies):
             reaches = [
-                float(np.linalg.norm(np.subtract(shape.position, body.com))) + kind_of(shape).radius_about
+                math.dist(shape.position, body.com) + kind_of(shape).radius_about
                 for shape in self._recorded.solid(i).shapes
             ]
             found.append(max(reaches, default=0.0))

@@ -13,7 +13,8 @@ import numpy as np
 from wsim.geometry.rotations import mean_rotation, upwards
 from wsim.geometry.shapes import Solid
 from wsim.judge.evidence.containment import Containment, local
-from wsim.judge.evidence.placed import placed_shapes
+from wsim.judge.evidence.placed import as_parts, placed_shapes, placed_together
+from wsim.judge.evidence.stacked import Stacked, stacked
 from wsim.scene.world import Shape
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from wsim.judge.evidence.placed import Placed
     from wsim.plan.schema import Plan, PlanObject
     from wsim.recording.recording import FluidTrack, Recording
-    from wsim.scene.world import Body, Container, Fluid, Static
+    from wsim.scene.world import Body, Container, Fluid, Static, World
 
     Floats = NDArray[np.float64]
 
@@ -39,8 +40,12 @@ class MissingError(LookupError):
 class Part:
     """Some frames of many copies' frames, which stand one after another."""
 
-    whole: Recorded
+    whole: Whole
     frames: slice
+
+
+def _solid(body: Body) -> Solid[Shape]:
+    return Solid(body.shapes or [_stand_in(body)])
 
 
 def _stand_in(body: Body) -> Shape:
@@ -170,11 +175,9 @@ class Recorded:
     # ---- bodies
     def solid(self, i: int) -> Solid[Shape]:
         """A body's shapes; of one without any, as between two joints of a robot, a ball that nothing touches."""
-        if self.part is not None:
-            return self.part.whole.solid(i)
         if i not in self._solids:
-            body = self.world.bodies[i]
-            self._solids[i] = Solid(body.shapes or [_stand_in(body)])
+            alike = self.part is not None and not self.part.whole.varies(i)
+            self._solids[i] = self.part.whole.solid(i) if self.part and alike else _solid(self.world.bodies[i])
         return self._solids[i]
 
     def ends(self, i: int) -> tuple[Floats, Floats]:
@@ -201,7 +204,7 @@ class Recorded:
     def placed(self) -> list[Placed]:
         """All colliding shapes through time, those of bodies first."""
         if self.part is not None:
-            return [shape.during(self.part.frames) for shape in self.part.whole.placed]
+            return as_parts(self.part.whole.placed, self.world, self.part.frames)
         return placed_shapes(self.world, self.body_q)
 
     @cached_property
@@ -215,7 +218,10 @@ class Recorded:
         """Let copies of a world, of T frames each, work out at once what is of each frame by itself: all geometry."""
         recording, count = copies[0].recording, len(copies[0].time)
         body_q = np.concatenate([copy.body_q for copy in copies])
-        whole = Recorded(replace(recording, time=np.arange(len(body_q), dtype=np.float64), body_q=body_q))
+        whole = Whole(
+            replace(recording, time=np.arange(len(body_q), dtype=np.float64), body_q=body_q),
+            [copy.world for copy in copies],
+        )
         for n, copy in enumerate(copies):
             copy.part = Part(whole, slice(n * count, (n + 1) * count))
 
@@ -242,3 +248,30 @@ class Recorded:
         if container is None:
             return np.zeros(len(self.track(fluid).time))
         return self.containment(container, fluid).outside
+
+
+class Whole(Recorded):
+    """The frames of several copies one after another, of bodies that may be of other sizes in each."""
+
+    def __init__(self, recording: Recording, worlds: Sequence[World]) -> None:
+        """Of copies that are of one form (`wsim.judge.evidence.alike.same_form`)."""
+        super().__init__(recording)
+        self._worlds = worlds
+        self._stacks: dict[int, Solid[Shape]] = {}
+
+    @cached_property
+    def placed(self) -> list[Placed]:
+        """All colliding shapes through all frames."""
+        return placed_together(self._worlds, self.body_q)
+
+    def solid(self, i: int) -> Solid[Shape]:
+        """A body's shapes, of each frame."""
+        if i not in self._stacks:
+            shapes = [_solid(world.bodies[i]).shapes for world in self._worlds]
+            count = len(self.time) // len(self._worlds)
+            self._stacks[i] = Solid([stacked(each, count) for each in zip(*shapes, strict=True)])
+        return self._stacks[i]
+
+    def varies(self, i: int) -> bool:
+        """Whether a body is of another size in some copy."""
+        return any(isinstance(shape, Stacked) for shape in self.solid(i).shapes)

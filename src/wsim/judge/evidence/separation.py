@@ -45,4 +45,4 @@ def separation(a: Placed, b: Placed, frames: NDArray[np.intp]) -> Floats:
 
 def _extent(placed: Placed, frames: NDArray[np.intp], axes: Floats) -> tuple[Floats, Floats]:
     """How far a shape reaches from its own place along unit axes (n, A, 3), backwards and forwards, (n, A) each [m]."""
-    return placed.kind.ends(rotate(conjugate(placed.rotation[frames])[:, None], axes))
+    return placed.at(frames).ends(rotate(conjugate(placed.rotation[frames])[:, None], axes))

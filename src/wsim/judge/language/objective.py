@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from wsim.judge.checks.check import Check
+from wsim.judge.evidence.alike import same_geometry
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language.evaluate import Outcome, evaluate
 from wsim.judge.language.kinds import formula_of
@@ -62,6 +63,8 @@ class ObjectiveCheck(Check):
 
     def prepare(self, joined: Evidence, copies: Sequence[Evidence]) -> None:
         """What it comes to in all copies at once, where one formula says it of all; MissingError."""
+        if not all(same_geometry(copies[0].world, evidence.world) for evidence in copies):
+            return
         formulas = [formula_of(self.objective, evidence) for evidence in copies]
         if any(formula != formulas[0] for formula in formulas):
             return
