@@ -26,7 +26,11 @@ _kept: dict[bytes, bytes] = {}  # lines that were seen, without their numbers
 
 def skeleton(stage: Path) -> str:
     """A digest of a stage's text without its known numbers; "" of what is no text, or names other files."""
-    text = stage.read_bytes()
+    return skeleton_of(stage.read_bytes())
+
+
+def skeleton_of(text: bytes) -> str:
+    """As `skeleton`, of the text itself."""
     if not text.startswith(TEXT) or REFERENCE in text:
         return ""
     if len(_kept) > _MOST_LINES:
