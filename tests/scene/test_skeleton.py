@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from wsim.scene import Scene
-from wsim.scene.skeleton import skeleton
+from wsim.scene.skeleton import is_free, skeleton
 
 
 def saved(path: Path, edge: float, turn: float = 10.0) -> Path:
@@ -45,3 +45,11 @@ def test_what_may_hang_on_other_files_has_none(tmp_path: Path) -> None:
     stage.write_text(stage.read_text() + "# @other.usda@\n")
     assert skeleton(stage) == ""
     assert skeleton(Path(__file__)) == ""
+
+
+def test_attributes_are_free_by_their_whole_name() -> None:
+    free = ("xformOp:translate", "wsim:value", "size", "physics:mass", "drive:angular:physics:stiffness")
+    assert all(map(is_free, free))
+    assert not any(
+        map(is_free, ("inputs:ior", "points", "physics:massless", "resize", "drive:angular:physics:maxForce"))
+    )

@@ -43,6 +43,7 @@ from wsim.scene.check_motion import motion_problems
 from wsim.scene.check_reach import overreached
 from wsim.scene.check_targets import check_targets
 from wsim.scene.errors import one_line
+from wsim.scene.skeleton import is_free
 from wsim.scene.usd_policies import policy_problems
 
 _NOW = Usd.TimeCode.Default()
@@ -133,19 +134,19 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         if len(prims) > MAX_PRIMS:
             yield f"{stage.GetRootLayer().GetDisplayName()}: more than {MAX_PRIMS} prims"
             return
-    sound = True
-    for problem in chain(_metadata(stage), _values(stage, prims, known), _validators(stage, known)):
+    sound, ours = True, schema.ours(prims)
+    for problem in chain(_metadata(stage), _values(stage, prims, set(ours), known), _validators(stage, known)):
         sound = False
         yield problem
     if sound:  # what follows reads shapes, and follows indices and paths
-        ours = set(schema.ours(prims))
         for prim in prims:
-            yield from check_solid(prim)
-            if prim in ours:
-                yield from cord_problems(prim)
+            yield from check_solid(prim, known=known)
+        for prim in ours:
+            yield from cord_problems(prim)
         yield from joint_problems(stage)
-        yield from policy_problems(prims)
-        yield from contact_problems(prims)
+        yield from policy_problems(ours)
+        if any(schema.has(prim, schema.CONTACT) for prim in ours):
+            yield from contact_problems(prims)
         wrong = list(motion_problems(stage))
         yield from wrong
         if not wrong and any(joints_of(stage)):  # of paths that can be followed
@@ -153,9 +154,9 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
             yield from overreached(stage)
 
 
-def _values(stage: Usd.Stage, prims: list[Usd.Prim], known: bool) -> Iterator[str]:
+def _values(stage: Usd.Stage, prims: list[Usd.Prim], ours: set[Usd.Prim], known: bool) -> Iterator[str]:
     """Numbers, indices and paths."""
-    points, ours = 0, set(schema.ours(prims))
+    points = 0
     for prim in prims:
         yield from _numbers(prim, known)
         if not known:
@@ -217,6 +218,8 @@ def _may_be_infinite(name: str) -> bool:
 def _numbers(prim: Usd.Prim, known: bool) -> Iterator[str]:
     """Authored values and time samples that are not finite."""
     for attribute in prim.GetAuthoredAttributes():
+        if known and not is_free(attribute.GetName()):
+            continue
         for time in (_NOW,) if known else (_NOW, *attribute.GetTimeSamples()):
             value = attribute.Get(time)
             if isinstance(value, float) and math.isfinite(value):
@@ -261,14 +264,13 @@ def _pose(prim: Usd.Prim) -> Iterator[str]:
     if not prim.IsA(UsdGeom.Xformable):
         return
     matrix = UsdGeom.Xformable(prim).ComputeLocalToWorldTransform(_NOW)
-    numbers = np.array(matrix)
-    if not np.isfinite(numbers).all():
+    if not np.isfinite(np.array(matrix)).all():
         yield f"{prim.GetPath()}: its pose is not finite"
         return
     for axis, value in zip("xyz", matrix.ExtractTranslation(), strict=True):
         if abs(value) > MAX_POSITION:
             yield f"{prim.GetPath()}.xformOp: {axis} = {value:g} m must be within {MAX_POSITION:g} m of the origin"
-    if abs(np.linalg.det(numbers[:3, :3])) < 1e-15:
+    if abs(matrix.GetDeterminant3()) < 1e-15:
         yield f"{prim.GetPath()}.xformOp:scale: the scale is zero along an axis"
 
 

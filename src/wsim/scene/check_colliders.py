@@ -16,20 +16,21 @@ _BOUNDS = ("boundingCube", "boundingSphere")  # what stands for a mesh that may 
 _AXES = ("X", "Y", "Z")
 
 
-def check_solid(prim: Usd.Prim) -> Iterator[str]:
-    """Problems of one prim: an axis, a body or a collider."""
-    axis = prim.GetAttribute("physics:axis" if prim.IsA(UsdPhysics.Joint) else "axis")
-    if axis and axis.HasAuthoredValue() and axis.Get() not in _AXES:
-        yield f"{axis.GetPath()}: {axis.Get()!r} must be one of {', '.join(_AXES)}"
-        return
+def check_solid(prim: Usd.Prim, *, known: bool = False) -> Iterator[str]:
+    """Problems of one prim: an axis, a body or a collider; of a stage of a known skeleton those of numbers alone."""
+    if not known:
+        axis = prim.GetAttribute("physics:axis" if prim.IsA(UsdPhysics.Joint) else "axis")
+        if axis and axis.HasAuthoredValue() and axis.Get() not in _AXES:
+            yield f"{axis.GetPath()}: {axis.Get()!r} must be one of {', '.join(_AXES)}"
+            return
     if prim.HasAPI(UsdPhysics.RigidBodyAPI):
-        yield from _body(prim)
+        yield from _body(prim, known)
     if prim.IsA(UsdGeom.Mesh):
         yield from _mesh(UsdGeom.Mesh(prim))
 
 
-def _body(prim: Usd.Prim) -> Iterator[str]:
-    outer = _carried_by(prim)
+def _body(prim: Usd.Prim, known: bool) -> Iterator[str]:
+    outer = None if known else _carried_by(prim)
     if outer:
         yield f"{prim.GetPath()}: a rigid body inside the rigid body <{outer.GetPath()}>; put it beside, and join them"
     elif not _weighs(prim):

@@ -42,14 +42,14 @@ def joint_problems(stage: Usd.Stage) -> Iterator[str]:
             closing.append(joint)
         else:
             yield from _grown(tree, joint, holders)
-    geared = geared_joints(stage)
+    geared = geared_joints(stage) if closing else set()
     for joint in closing:
         yield from _constraint(joint, joint.GetPath() in geared)
     yield from _roots(tree, stage)
-    for prim in stage.Traverse():
-        if schema.has(prim, schema.GEAR):
-            yield from _gear(prim)
-    meshes = meshes_of(stage)
+    gears = [prim for prim in stage.Traverse() if schema.has(prim, schema.GEAR)]
+    for prim in gears:
+        yield from _gear(prim)
+    meshes = meshes_of(stage) if gears else []
     for k, mesh in enumerate(meshes):
         there = contradicts(meshes[:k], mesh)
         if there is not None:

@@ -19,14 +19,18 @@ def motion_problems(stage: Usd.Stage) -> Iterator[str]:
     """Problems of the paths of a stage, and of kinematic bodies on joints."""
     for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
         rigid = prim.HasAPI(UsdPhysics.RigidBodyAPI)
-        if schema.has(prim, schema.PATH) and not _kinematic(prim):
+        moved = schema.has(prim, schema.PATH)
+        if not (rigid or moved):
+            continue
+        kinematic = _kinematic(prim)
+        if moved and not kinematic:
             yield f"{prim.GetPath()}: only a kinematic rigid body has a path; give it physics:kinematicEnabled = 1"
-        elif rigid and not _kinematic(prim) and _sampled(prim):
+        elif rigid and not kinematic and _sampled(prim):
             yield (
                 f"{prim.GetPath()}.xformOp: time samples do nothing on a body that is not kinematic; remove them, "
                 "or give it physics:kinematicEnabled = 1"
             )
-        elif _kinematic(prim):
+        elif kinematic:
             yield from _path(prim)
     for joint in joints_of(stage):
         yield from _joint(stage, joint)

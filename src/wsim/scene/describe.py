@@ -55,7 +55,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
     _check_units(stage)
     prims = list(stage.Traverse(Usd.TraverseInstanceProxies()))
     ours, default = schema.ours(prims), stage.GetDefaultPrim()
-    bodies, statics = _solids(prims, stage)
+    bodies, statics = _solids(prims, ours, stage)
     joints, gears = list(read_joints(prims)), list(read_gears(prims))
     return World(
         name=default.GetName() if default else "world",
@@ -66,7 +66,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         fluids=[_fluid(prim) for prim in ours if schema.has(prim, schema.FLUID)],
         joints=joints,
         gears=gears,
-        policies=list(read_policies(prims)),
+        policies=list(read_policies(ours)),
         apart=[*_meshed(joints, gears), *_filtered(prims)],
         springs=springs(ours),
         ropes=ropes(ours),
@@ -132,26 +132,31 @@ def _run(prims: list[Usd.Prim]) -> dict[str, Any]:
     }
 
 
-def _solids(prims: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[Static]]:
+def _solids(prims: list[Usd.Prim], ours: list[Usd.Prim], stage: Usd.Stage) -> tuple[list[Body], list[Static]]:
+    # Asked of each shape and all above it; of most stages once will do.
+    belts, wet = (any(schema.has(prim, name) for prim in ours) for name in (schema.SURFACE_VELOCITY, schema.FLUID))
     bodies = {str(prim.GetPath()): prim for prim in prims if prim.HasAPI(UsdPhysics.RigidBodyAPI)}
     frames = {path: rigid_frame(prim) for path, prim in bodies.items()}
     of_body: dict[str, list[Shape]] = {path: [] for path in bodies}
     of_static: dict[str, list[Shape]] = {}
     for prim in prims:
-        if not prim.IsA(UsdGeom.Gprim) or not _shown(prim) or _in_fluid(prim):
+        if not prim.IsA(UsdGeom.Gprim) or not _shown(prim) or (wet and _in_fluid(prim)):
             continue
         owner = owner_of(prim)
         base = frames[owner] if owner else Gf.Matrix4d(1.0)
         shape = read_shape(prim, base)
         if shape is None:
             continue
-        shape = with_surface_velocity(shape, prim, base)
-        shape = shape.model_copy(update={"convex": collides_as_hull(prim, moves=bool(owner))})
+        if belts:
+            shape = with_surface_velocity(shape, prim, base)
+        if collides_as_hull(prim, moves=bool(owner)):
+            shape = shape.model_copy(update={"convex": True})
         if owner:
             of_body[owner].append(shape)
         else:
-            still_shape = shape.model_copy(update={"exact": collides_exactly(prim)})
-            of_static.setdefault(object_path(prim, stage), []).append(still_shape)
+            if collides_exactly(prim):
+                shape = shape.model_copy(update={"exact": True})
+            of_static.setdefault(object_path(prim, stage), []).append(shape)
     moving = [_body(prim, frames[path], of_body[path]) for path, prim in bodies.items()]
     still = [
         Static(prim=path, shapes=shapes, line=line_of(stage.GetPrimAtPath(path))) for path, shapes in of_static.items()

@@ -27,7 +27,7 @@ _JOINTS = (
 def read_joints(prims: list[Usd.Prim]) -> Iterator[Joint]:
     """The joints among a stage's prims that hold a body."""
     for prim in prims:
-        for usd, kind in _JOINTS:
+        for usd, kind in _JOINTS if prim.IsA(UsdPhysics.Joint) else ():
             if not prim.IsA(usd):
                 continue
             stage = prim.GetStage()
@@ -119,7 +119,8 @@ def _strength(joint: UsdPhysics.Joint) -> dict[str, Any]:
 def read_gears(prims: list[Usd.Prim]) -> Iterator[Gear]:
     """The gears among a stage's prims, and the joints that mimic another."""
     for prim in prims:
-        if schema.has(prim, schema.GEAR):
+        applied = schema.applied(prim)
+        if schema.GEAR in applied:
             yield Gear(
                 prim=str(prim.GetPath()),
                 first=_target(prim, "wsim:joint0"),
@@ -127,7 +128,7 @@ def read_gears(prims: list[Usd.Prim]) -> Iterator[Gear]:
                 ratio=value_of(prim, "ratio", 1.0),
                 line=line_of(prim),
             )
-        elif is_mimic(prim):
+        elif MIMIC in applied and is_mimic(prim):
             unit = math.pi / 180.0 if prim.IsA(UsdPhysics.RevoluteJoint) else 1.0
             yield Gear(
                 prim=str(prim.GetPath()),

@@ -35,7 +35,7 @@ class Reading(BaseModel):
         return json.dumps(self.model_dump(), allow_nan=False, separators=(",", ":")).encode()
 
 
-def read(path: Path, stage: Usd.Stage | None = None, known: str = "") -> Reading:
+def read(path: Path, stage: Usd.Stage | None = None, known: str | None = None) -> Reading:
     """Read a stage.
 
     Args:
@@ -43,4 +43,4 @@ def read(path: Path, stage: Usd.Stage | None = None, known: str = "") -> Reading
         stage: It, where it is open.
         known: Its skeleton, where that is known.
     """
-    return Reading(world=describe(stage or path), skeleton=known or skeleton(path))
+    return Reading(world=describe(stage or path), skeleton=skeleton(path) if known is None else known)

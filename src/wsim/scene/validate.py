@@ -65,6 +65,8 @@ class Call:
 
     def number(self, field: str, value: object, unit: str = "") -> float:
         """A finite number."""
+        if type(value) is float and math.isfinite(value):  # as most are, of a hundred that a small scene gives
+            return value
         if isinstance(value, (bool, str, bytes)) or value is None:
             self.fail(f"{field} = {shown(value)} must be a number{_of(unit)}")
         try:
@@ -206,6 +208,8 @@ class Call:
         return self._items(field, value, 3, meaning)
 
     def _items(self, field: str, value: object, count: int, meaning: str) -> Sequence[object]:
+        if isinstance(value, (tuple, list)) and len(value) == count:
+            return list(value)
         if isinstance(value, Set):
             self.fail(
                 f"{field} = {shown(value)} is a set, which has no order; give a list of {count} numbers {meaning}"

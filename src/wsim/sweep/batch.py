@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from wsim.sweep.candidate import Candidate
 
 BYTES_OF_A_PARTICLE = 28  # seven numbers in single precision
+A_CALL = 32  # stages that a helper is asked about at once: sending one and its answer takes longer than reading it
 NO_ROOM = ("out of memory", "failed to allocate", "memory allocation")
 
 
@@ -61,7 +62,8 @@ def batches(built: Sequence[tuple[Candidate, Iteration, bytes]], most: int, proc
     """
     given = [(iteration.stage, told) for _, iteration, told in built]
     with uncollected():
-        said = list(shared_out(_described, given, forks(processes)))
+        some = [given[first : first + A_CALL] for first in range(0, len(given), A_CALL)]
+        said = [each for found in shared_out(_all_described, some, forks(processes)) for each in found]
     members = [
         Member(candidate, iteration, *of) for (candidate, iteration, _), of in zip(built, said, strict=True) if of
     ]
@@ -73,6 +75,10 @@ def batches(built: Sequence[tuple[Candidate, Iteration, bytes]], most: int, proc
             size = max(1, min(most, int(room / max(1, *(bytes_of_particles(member.world) for member in own)))))
             found += [own[first : first + size] for first in range(0, len(own), size)]
     return [batch for batch in found if len(batch) > 1]
+
+
+def _all_described(given: Sequence[tuple[Path, bytes]]) -> list[tuple[World, str, str] | None]:
+    return [_described(each) for each in given]
 
 
 def _described(given: tuple[Path, bytes]) -> tuple[World, str, str] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from typing import Any
 
 from wsim.program.inside.build_task import author, copy, write
@@ -27,3 +28,16 @@ def run(job: dict[str, Any]) -> dict[str, Any]:
 def head(size: int) -> bytes:
     """What goes ahead of so many bytes."""
     return b"%0*d" % (SIZE, size)
+
+
+def parts(target: int, count: int) -> Iterator[tuple[int, int]]:
+    """Where each part of what a process appended begins, and its bytes; it ends where what is there does."""
+    total, at = os.fstat(target).st_size, 0
+    for _ in range(count):
+        said = os.pread(target, SIZE, at)
+        at += SIZE
+        size = int(said) if len(said) == SIZE and said.isdigit() else total
+        if at + size > total:
+            return
+        yield at, size
+        at += size

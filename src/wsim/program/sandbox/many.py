@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
-from wsim.program.inside.builds_task import SIZE
+from wsim.program.inside.builds_task import parts
 from wsim.program.sandbox.builder import build, deliver, look, numbers, program_file
 from wsim.program.sandbox.isolation import choose
 from wsim.program.sandbox.limits import Limits
@@ -84,27 +84,25 @@ def _together(
     roots = [Path(path).resolve() for path in readable]
     shared = _times(limits, -(-len(stages) // A_LIMIT))
     with tempfile.TemporaryDirectory(prefix="wsim-stage-") as folder, ExitStack() as stack:
-        made = [Path(folder) / f"stage_{k}.usda" for k in range(len(stages))]
-        target, told = (_opened(Path(folder) / name, stack) for name in ("stages", "told"))
+        target, told = (_opened(Path(folder) / name, os.O_RDWR, stack) for name in ("stages", "told"))
+        made = _opened(Path(folder) / "stages", os.O_RDONLY, stack)  # all that who checks them gets
         each = [numbers(values) for values in params]
         job = {"task": "builds", "program": str(program), "seed": 0, "each": each, "stages_fd": target}
-        check = {"task": "checks", "stages": [str(path) for path in made], "roots": [str(root) for root in roots]}
+        check = {"task": "checks", "count": len(stages), "most": limits.file_bytes, "stages_fd": made}
+        check |= {"roots": [str(root) for root in roots]} | ({"told_fd": told} if tell else {})
         process = stack.enter_context(
             SandboxProcess(job, limits=shared, isolation=isolation, readable=[program, *roots], descriptors=[target])
         )
         checker = stack.enter_context(
             SandboxProcess(
-                check | ({"told_fd": told} if tell else {}),
-                limits=shared,
-                isolation=isolation,
-                readable=[Path(folder), *roots],
-                descriptors=[told] if tell else [],
+                check, limits=shared, isolation=isolation, readable=roots, descriptors=[made, *([told] if tell else [])]
             )
         )
         process.send()
         process.wait(shared.wall_seconds)
-        written = list(_parted(target, made, limits))
-        if len(written) < len(made):
+        places = list(parts(made, len(stages)))
+        written = [look(made, at, size, limits)[0] == "ok" for at, size in places]
+        if len(written) < len(stages):
             written.append(False)  # at this one it ended
         if not any(written):
             return [None] * len(written)
@@ -112,17 +110,18 @@ def _together(
         checker.wait(shared.check_seconds)
         report = read_report(checker.report()) if checker.code == 0 and not checker.stopped else None
         sound = set(report.sound) if report else set()
-        said = [os.pread(told, size, at) for at, size in _parts(told, len(made))] if tell else []
+        said = [os.pread(told, size, at) for at, size in parts(told, len(stages))] if tell else []
         found: list[bytes | None] = [None] * len(written)
         for k in sorted(sound.intersection(k for k, ok in enumerate(written) if ok)):
-            deliver(made[k], stages[k])
+            deliver(made, *places[k], stages[k])
             found[k] = said[k] if k < len(said) else b""
         return found
 
 
-def _opened(path: Path, stack: ExitStack) -> int:
-    """A new file that is open as long as the stack is."""
-    target = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o600)
+def _opened(path: Path, how: int, stack: ExitStack) -> int:
+    """A file that is open as long as the stack is; a new one where it is to be written."""
+    new = os.O_CREAT | os.O_EXCL if how != os.O_RDONLY else 0
+    target = os.open(path, how | new | os.O_NOFOLLOW, 0o600)
     stack.callback(os.close, target)
     return target
 
@@ -132,26 +131,3 @@ def _times(limits: Limits, count: int) -> Limits:
     cpu = None if limits.cpu_seconds is None else limits.cpu_seconds * count
     more = {name: getattr(limits, name) * count for name in ("wall_seconds", "check_seconds", "file_bytes")}
     return limits.model_copy(update={**more, "cpu_seconds": cpu})
-
-
-def _parted(target: int, made: Sequence[Path], limits: Limits) -> Iterator[bool]:
-    """Write what a process appended, each stage to its file; whether it is one. It ends where what is there does."""
-    for path, (at, size) in zip(made, _parts(target, len(made)), strict=False):
-        with path.open("x+b") as out:
-            left = size if size <= limits.file_bytes else 0
-            while left and (sent := os.sendfile(out.fileno(), target, at + size - left, left)):
-                left -= sent
-            yield look(out.fileno(), limits)[0] == "ok"
-
-
-def _parts(target: int, count: int) -> Iterator[tuple[int, int]]:
-    """Where each part of what a process appended begins, and its bytes; it ends where what is there does."""
-    total, at = os.fstat(target).st_size, 0
-    for _ in range(count):
-        head = os.pread(target, SIZE, at)
-        at += SIZE
-        size = int(head) if len(head) == SIZE and head.isdigit() else total
-        if at + size > total:
-            return
-        yield at, size
-        at += size
