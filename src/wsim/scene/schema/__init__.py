@@ -22,6 +22,9 @@ SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 GEAR = "WsimGearAPI"
 DRIVE = "WsimDriveAPI"
 POLICY = "WsimPolicyAPI"
+SENSOR_IMU = "WsimSensorIMUAPI"
+SENSOR_JOINTS = "WsimSensorJointsAPI"
+SENSOR_RANGE = "WsimSensorRangeAPI"
 
 
 def register() -> None:
