@@ -227,6 +227,11 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "sensor_joints": (
         {"name": "new", "joints": ["hinge", "slide"]}, {"name": "new name", "joints": "joints", **RATE},
     ),
+    "sensor_contact": (
+        {"name": "new", "body": "ball"},
+        {"name": "new name", "body": "body that moves", "rotation_deg": "three numbers", "threshold": "number >= 0",
+         **RATE},
+    ),
     "sensor_range": (
         {"name": "new", "body": "ball"},
         {"name": "new name", "body": "body that moves, or the world", **POSE, **RATE, "rays": "whole number",

@@ -12,7 +12,7 @@ from pxr import Gf, Usd, UsdPhysics
 from wsim.scene import Scene, SceneError
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
-from wsim.scene.world_sensors import SensorIMU, SensorJoints, SensorRange
+from wsim.scene.world_sensors import SensorContact, SensorIMU, SensorJoints, SensorRange
 
 
 @pytest.fixture
@@ -64,6 +64,16 @@ def test_the_rays_of_a_scan_are_read_back(scene: Scene, tmp_path: Path) -> None:
     assert (around.body, around.position, around.seed) == (None, (1.0, 2.0, 3.0), None)
 
 
+def test_a_contact_sensor_is_read_back(scene: Scene, tmp_path: Path) -> None:
+    scene.sensor_contact("skin", "door", rotation_deg=(0.0, 0.0, 180.0), threshold=2.5, rate=20.0)
+    path = scene.save(tmp_path / "stage.usda")
+    assert check_stage(path, [tmp_path]) == []
+    (skin,) = describe(path).sensors
+    assert isinstance(skin, SensorContact) and skin.channels == {"force": (3,), "touching": ()}
+    assert (skin.body, skin.threshold, skin.rate) == ("/World/door", 2.5, 20.0)
+    assert skin.rotation == pytest.approx((0.0, 0.0, 1.0, 0.0))
+
+
 def test_a_robot_stands_for_its_hinges_and_sliders(tmp_path: Path) -> None:
     scene = Scene()
     arm = scene.robot("arm", "desk_arm", fixed=True)
@@ -83,6 +93,7 @@ REFUSED: dict[str, tuple[Callable[[Scene], object], str]] = {
         lambda s: s.sensor_range("new", s.ground("floor")),
         'body = "floor" is nothing that moves; .*, or give None and a position in the world',
     ),
+    "ground that feels": (lambda s: s.sensor_contact("new", s.ground("floor")), 'body = "floor" is nothing that moves'),
     "many rays": (
         lambda s: s.sensor_range("new", None, rays=1000, layers=101),
         "rays = 1000 in layers = 101 are 101000",

@@ -310,3 +310,121 @@ def test_the_noise_of_a_scan_has_its_deviation(tmp_path: Path) -> None:
     off = track["distance"][0, 0] - to_the_walls(1.2, 0.1, np.radians(np.arange(-180.0, 180.0, 0.5)))
     assert off.std() == pytest.approx(0.01, rel=4.0 / math.sqrt(2.0 * 720))
     assert abs(off.mean()) < 4.0 * 0.01 / math.sqrt(720)
+
+
+def test_what_lies_on_a_slope_feels_its_weight_in_its_own_axes(tmp_path: Path) -> None:
+    tilt, mass = math.radians(20.0), 2.0
+
+    def build(scene: Scene) -> None:
+        turn = (0.0, math.degrees(tilt), 0.0)
+        up = np.array((math.sin(tilt), 0.0, math.cos(tilt)))
+        scene.box("slope", size=(4.0, 1.0, 0.1), rotation_deg=turn, static=True, friction=0.8)
+        box = scene.box("box", size=(0.2,) * 3, position=tuple(0.15 * up), rotation_deg=turn, mass=mass, friction=0.8)
+        scene.sensor_contact("skin", box)
+        scene.sensor_contact("turned", box, rotation_deg=(0.0, 0.0, 180.0))
+
+    sensors = recorded(tmp_path, build, 1.0).sensors
+    wanted = np.array((-math.sin(tilt), 0.0, math.cos(tilt))) * mass * G
+    assert len(sensors["/World/skin"].time) == 100
+    np.testing.assert_allclose(sensors["/World/skin"]["force"][20:], [wanted] * 80, atol=1e-4)
+    np.testing.assert_allclose(sensors["/World/turned"]["force"][20:], [wanted * (-1, 1, 1)] * 80, atol=1e-4)
+    np.testing.assert_array_equal(sensors["/World/skin"]["touching"], 1.0)
+
+
+def test_a_ball_feels_nothing_until_it_lands(tmp_path: Path) -> None:
+    height = 0.5
+
+    def build(scene: Scene) -> None:
+        scene.ground()
+        ball = scene.sphere("ball", radius=0.1, position=(0.0, 0.0, 0.1 + height), mass=1.0)
+        scene.sensor_contact("skin", ball)
+        scene.sensor_contact("numb", ball, threshold=20.0)
+
+    sensors = recorded(tmp_path, build, 1.0).sensors
+    track, lands = sensors["/World/skin"], math.sqrt(2.0 * height / G)
+    before = track.time < lands - 0.002
+    assert not track["touching"][before].any() and not track["force"][before].any()
+    np.testing.assert_array_equal(track["touching"][track.time > lands + 0.3], 1.0)
+    late = track["force"][track.time > lands + 0.3]
+    np.testing.assert_allclose(late, [(0.0, 0.0, G)] * len(late), atol=0.02)
+    assert not sensors["/World/numb"]["touching"][track.time > lands + 0.3].any()
+
+
+def test_what_is_squeezed_is_touched_and_its_forces_cancel(tmp_path: Path) -> None:
+    def build(scene: Scene) -> None:
+        scene.simulation(gravity=(0.0, 0.0, 0.0))
+        box = scene.box("box", size=(0.2, 0.2, 0.2), position=(0.0, 0.0, 1.0), mass=1.0)
+        scene.box("wall", size=(0.1, 1.0, 1.0), position=(-0.15, 0.0, 1.0), static=True)
+        plate = scene.box("plate", size=(0.1, 0.2, 0.2), position=(0.15, 0.0, 1.0), mass=1.0)
+        drive = Drive(stiffness=1000.0, damping=100.0, position=-0.01)  # into the box: 10 N
+        scene.joint_prismatic("press", None, plate, axis="X", drive=drive)
+        scene.sensor_contact("skin", box)
+        scene.sensor_contact("hand", plate)
+
+    sensors = recorded(tmp_path, build).sensors
+    late = slice(25, None)
+    np.testing.assert_array_equal(sensors["/World/skin"]["touching"][late], 1.0)
+    np.testing.assert_allclose(sensors["/World/skin"]["force"][late], 0.0, atol=0.05)
+    np.testing.assert_allclose(sensors["/World/hand"]["force"][late, 0], 10.0, rtol=0.02)
+
+
+def test_each_world_of_a_batch_has_sensors_of_its_own(tmp_path: Path) -> None:
+    """Stages that differ in numbers: a mass, a drive, a wall, and where the sensors are."""
+    masses, goals, away, spin = (1.0, 3.0), (0.0, 0.2), (2.0, 2.5), math.radians(90.0)
+
+    def build(scene: Scene, k: int) -> None:
+        scene.ground()
+        box = scene.box("box", size=(0.2, 0.2, 0.2), position=(0.0, 3.0, 0.1), mass=masses[k])
+        scene.sensor_imu("still", box, rotation_deg=(0.0, 90.0 * k, 0.0))
+        scene.sensor_contact("skin", box)
+        disc = scene.cylinder(
+            "disc", radius=0.5, height=0.1, position=(6.0, 0.0, 1.0), angular_velocity_deg=(0.0, 0.0, 90.0)
+        )
+        scene.joint_revolute("axle", None, disc, axis="Z")
+        scene.sensor_imu("turning", disc, position=(0.2 + 0.2 * k, 0.0, 0.0))
+        arm = scene.box("arm", size=(0.2, 0.2, 0.2), position=(0.0, -4.0, 1.0), mass=1.0)
+        drive = Drive(stiffness=1000.0, damping=60.0, position=goals[k])
+        scene.joint_prismatic("lift", None, arm, axis="Z", drive=drive)
+        scene.sensor_joints("encoder", "lift")
+        scene.box("wall", size=(0.2, 1.0, 1.0), position=(away[k] + 0.1, 0.0, 1.5), static=True)
+        scene.sensor_range("eye", None, position=(0.0, 0.0, 1.5), rays=2, fan_deg=(0.0, 180.0))
+
+    stages = [stage(tmp_path, lambda s, k=k: build(s, k), name=f"s{k}") for k in range(2)]
+    simulation = Simulation(stages, device="cpu")
+    for _ in range(25):
+        simulation.advance_frame()
+    simulation.sensors.ask(simulation.step_count, simulation)
+    begin = np.cumsum([0, *(math.prod(shape) for _, _, shape in channels(simulation.world))])
+    flat = simulation.sensors.flat()
+    assert flat.shape == (2, begin[-1])
+    for k in range(2):
+        told = {
+            (prim.removeprefix("/World/"), name): flat[k, begin[i] : begin[i + 1]]
+            for i, (prim, name, _) in enumerate(channels(simulation.world))
+        }
+        up = (-G, 0.0, 0.0) if k else (0.0, 0.0, G)
+        np.testing.assert_allclose(told["still", "accelerometer"], up, atol=0.01)
+        np.testing.assert_allclose(told["skin", "force"], (0.0, 0.0, masses[k] * G), rtol=1e-3, atol=0.01)
+        assert told["skin", "touching"] == 1.0
+        np.testing.assert_allclose(told["turning", "accelerometer"], (-(spin**2) * (0.2 + 0.2 * k), 0.0, G), atol=0.02)
+        np.testing.assert_allclose(told["turning", "gyroscope"], (0.0, 0.0, spin), atol=1e-3)
+        assert told["encoder", "position"] == pytest.approx(goals[k] - G / 1000.0, abs=1e-3)
+        assert told["encoder", "effort"] == pytest.approx(G, rel=0.01)
+        np.testing.assert_allclose(told["eye", "distance"], (away[k], math.inf), rtol=1e-6)
+
+
+def test_copies_of_a_stage_have_noise_of_their_own(tmp_path: Path) -> None:
+    def build(scene: Scene) -> None:
+        ball = scene.sphere("ball", radius=0.1, position=(0.0, 0.0, 5.0))
+        scene.sensor_imu("imu", ball, gyroscope_noise=0.01)
+
+    path = stage(tmp_path, build, 0.1)
+
+    def spins(**options: Any) -> np.ndarray:
+        simulation = Simulation(path, device="cpu", **options)
+        simulation.advance_frame()
+        return simulation.sensors.flat()[:, 3:]
+
+    together = spins(world_count=3, seeds=[0, 5, 6])
+    assert len({tuple(row) for row in together}) == 3
+    np.testing.assert_array_equal(together[[1]], spins(seeds=[5]))  # by itself it is the same

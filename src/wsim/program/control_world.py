@@ -176,6 +176,16 @@ class ControlSensor:
         """(W, layers, rays) of a range scan [m]; infinite where nothing is met."""
         return self._channel("distance")
 
+    @property
+    def force(self) -> Floats:
+        """(W, 3) of contacts, in the frame of a contact sensor [N]."""
+        return self._channel("force")
+
+    @property
+    def touching(self) -> Floats:
+        """(W,) 1 where anything touches a contact sensor's body, else 0."""
+        return self._channel("touching")
+
     def _channel(self, name: str) -> Floats:
         if name not in self._channels:
             raise AttributeError(f"the sensor {self._prim} tells no {name}; it tells {', '.join(self._channels)}")

@@ -13,6 +13,7 @@ from wsim.scene.validate import Call, shown
 
 _MOST_NOISE = 1e3  # [m/s^2/sqrt(Hz)], [rad/s/sqrt(Hz)]
 _MOST_BIAS = 1e3  # [m/s^2], [rad/s]
+_MOST_FORCE = 1e9  # [N]
 _MAX_SEED = 2**31 - 1
 _HERE = (0.0, 0.0, 0.0)
 Values = dict[str, tuple[Sdf.ValueTypeName, object]]
@@ -173,6 +174,44 @@ class Sensors(Author):
         )
         if prim:
             made.CreateRelationship("wsim:body", custom=False).SetTargets([prim.GetPath()])
+        return Handle(made.GetName(), path, "sensor")
+
+    def sensor_contact(
+        self,
+        name: str,
+        body: Handle | str,
+        *,
+        rotation_deg: Sequence[float] = _HERE,
+        threshold: float = 1e-3,
+        rate: float = 100.0,
+    ) -> Handle:
+        """Feel what contacts push a body with: the net force [N] in the sensor's frame, and whether anything touches.
+
+        Both are of the last step. A blow is the impulse over a step, and is felt by the sample of its own step alone;
+        what it does to the body an IMU tells at any rate. A body that is squeezed is touched, and its forces cancel.
+
+        Args:
+            name: Of its prim.
+            body: That moves; a handle or a name. All its colliders feel.
+            rotation_deg: Roll, pitch, yaw of the sensor's frame, in the body's [deg].
+            threshold: It is touched where contacts together press with more [N].
+            rate: Samples a second [Hz]; the time between is rounded to whole steps, one at least.
+
+        Raises:
+            SceneError: If the body never moves, nothing of it collides, or a number is out of range.
+        """
+        call = Call("sensor_contact", name)
+        path = self._path(call)
+        prim = self._carrier(call, body)
+        if not any(part.HasAPI(UsdPhysics.CollisionAPI) for part in Usd.PrimRange(prim)):
+            call.fail(f"body = {shown(prim.GetName())} has nothing that collides; name a solid")
+        names = Sdf.ValueTypeNames
+        values: Values = {
+            "threshold": (names.Double, call.within("threshold", threshold, 0.0, _MOST_FORCE, "N")),
+            "rotation": (names.Quatd, rotation(call.angles(rotation_deg))),
+        }
+        made = self._sensor(path, schema.SENSOR_CONTACT, values | _rate(call, rate))
+        made.CreateRelationship("wsim:body", custom=False).SetTargets([prim.GetPath()])
         return Handle(made.GetName(), path, "sensor")
 
     def _sensor(self, path: str, kind: str, values: Values) -> Usd.Prim:

@@ -13,11 +13,12 @@ from wsim.scene import schema
 from wsim.scene.sensors import is_of_one_freedom
 from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_quat, to_vec3
-from wsim.scene.world_sensors import Sensor, SensorIMU, SensorJoints, SensorRange
+from wsim.scene.world_sensors import Sensor, SensorContact, SensorIMU, SensorJoints, SensorRange
 
-_KINDS = (schema.SENSOR_IMU, schema.SENSOR_JOINTS, schema.SENSOR_RANGE)
+_KINDS = (schema.SENSOR_IMU, schema.SENSOR_JOINTS, schema.SENSOR_RANGE, schema.SENSOR_CONTACT)
 _LARGEST = 1e6  # of noise and bias
 _FARTHEST = 30.0  # [m]
+_THRESHOLD = 1e-3  # [N]
 _UNIT = 1e-6  # by which a quaternion's length may be off
 
 
@@ -41,6 +42,9 @@ def read_sensors(prims: Iterable[Usd.Prim]) -> Iterator[Sensor]:
                 noise=value_of(prim, "noise", 0.0),
                 seed=value_of(prim, "seed", None),
             )
+        elif schema.has(prim, schema.SENSOR_CONTACT):
+            felt = {key: value for key, value in _mounted(prim).items() if key != "position"}
+            yield SensorContact(**felt, threshold=value_of(prim, "threshold", _THRESHOLD))
 
 
 def sensor_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
@@ -89,15 +93,17 @@ def _problems(prim: Usd.Prim, kind: str) -> Iterator[str]:
     yield from _mounting_problems(prim)
     if (seed := value_of(prim, "seed", 0)) < 0:
         yield f"seed: {seed} must be at least 0"
+    if kind == schema.SENSOR_RANGE:
+        yield from _range_problems(prim)
+    elif not targets_of(prim, "body"):
+        yield "body: it must be one rigid body"
     if kind == schema.SENSOR_IMU:
         yield from _imu_problems(prim)
-    else:
-        yield from _range_problems(prim)
+    if kind == schema.SENSOR_CONTACT and not (least := value_of(prim, "threshold", _THRESHOLD)) >= 0.0:
+        yield f"threshold: {least:g} must be at least 0 N"
 
 
 def _imu_problems(prim: Usd.Prim) -> Iterator[str]:
-    if len(prim.GetRelationship("wsim:body").GetTargets()) != 1:
-        yield "body: it must be one rigid body"
     for part in ("accelerometer", "gyroscope"):
         if not 0.0 <= (noise := value_of(prim, f"{part}Noise", 0.0)) <= _LARGEST:
             yield f"{part}Noise: {noise:g} must be at least 0 and at most {_LARGEST:g}"

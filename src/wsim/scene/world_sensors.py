@@ -71,4 +71,18 @@ class SensorRange(_Mounted):
         return {"distance": (len(self.elevations), len(self.azimuths))}
 
 
-Sensor: TypeAlias = Annotated[SensorIMU | SensorJoints | SensorRange, Field(discriminator="kind")]
+class SensorContact(_Sensor):
+    """What contacts push a body with, in a frame that turns with it."""
+
+    kind: Literal["contact"] = "contact"
+    body: str  # prim
+    rotation: _Quat = (0.0, 0.0, 0.0, 1.0)  # of its own frame, in the body's
+    threshold: float  # [N]: it is touched where contacts press with more
+
+    @property
+    def channels(self) -> dict[str, Shape]:
+        """Shape of what it tells, by name."""
+        return {"force": (3,), "touching": ()}
+
+
+Sensor: TypeAlias = Annotated[SensorIMU | SensorJoints | SensorRange | SensorContact, Field(discriminator="kind")]

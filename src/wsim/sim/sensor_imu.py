@@ -32,7 +32,7 @@ class IMU:
         seeds: What each world's noise differs by.
 
     Attributes:
-        spans: Whether a sample tells of the time since the one before.
+        spans: Whether a sample tells of the time before it.
     """
 
     spans = True

@@ -25,7 +25,7 @@ class Joints:
         seeds: What each world's noise differs by; it has none.
 
     Attributes:
-        spans: Whether a sample tells of the time since the one before.
+        spans: Whether a sample tells of the time before it.
 
     Raises:
         UserError: If one of its joints has no position of its own in the model.

@@ -31,7 +31,7 @@ class Range:
         seeds: What each world's noise differs by.
 
     Attributes:
-        spans: Whether a sample tells of the time since the one before.
+        spans: Whether a sample tells of the time before it.
         points: What the last scan of the first world met [m], in the world, (n, 3).
     """
 

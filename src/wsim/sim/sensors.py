@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wsim.scene.world import World
-from wsim.scene.world_sensors import Sensor, SensorIMU, SensorJoints, SensorRange
+from wsim.scene.world_sensors import Sensor, SensorContact, SensorIMU, SensorJoints, SensorRange
+from wsim.sim.sensor_contact import Contact
 from wsim.sim.sensor_imu import IMU
 from wsim.sim.sensor_joints import Joints
 from wsim.sim.sensor_range import Range
@@ -31,6 +32,7 @@ KINDS: dict[type[Any], Callable[[Built, int, float, Sequence[int]], Any]] = {
     SensorIMU: IMU,
     SensorJoints: Joints,
     SensorRange: Range,
+    SensorContact: Contact,
 }
 
 

@@ -25,6 +25,7 @@ POLICY = "WsimPolicyAPI"
 SENSOR_IMU = "WsimSensorIMUAPI"
 SENSOR_JOINTS = "WsimSensorJointsAPI"
 SENSOR_RANGE = "WsimSensorRangeAPI"
+SENSOR_CONTACT = "WsimSensorContactAPI"
 
 
 def register() -> None:
