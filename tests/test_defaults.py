@@ -18,6 +18,7 @@ def test_a_stage_that_says_nothing_has_the_defaults(tmp_path: Path) -> None:
     scene.fluid("water", fills=tank, level=0.5, spacing=0.1)
     scene.box("box", size=(0.1, 0.1, 0.1), position=(0.0, 0.0, 2.0))
     scene.camera("side", eye=(0.0, -4.0, 1.0), target=(0.0, 0.0, 0.5))
+    scene.sensor_imu("imu", "box")
     scene.save(tmp_path / "stage.usda")
     world = describe(tmp_path / "stage.usda")
     assert world.gravity == pytest.approx((0.0, 0.0, -defaults.GRAVITY), rel=1e-6)  # USD keeps 32 bits of them
@@ -27,6 +28,7 @@ def test_a_stage_that_says_nothing_has_the_defaults(tmp_path: Path) -> None:
     assert world.bodies[0].mass / world.bodies[0].volume == pytest.approx(defaults.BODY_DENSITY, rel=1e-6)
     shape = world.bodies[0].shapes[0]
     assert pair_law(world, shape, shape).friction == defaults.FRICTION
+    assert world.sensors[0].rate == defaults.SENSOR_RATE
     assert world.cameras[0].fov == pytest.approx(defaults.FIELD_OF_VIEW, rel=1e-6)
 
 

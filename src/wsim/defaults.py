@@ -15,3 +15,4 @@ FLUID_DENSITY = 1000.0  # of water [kg/m^3]
 FLUID_VISCOSITY = 0.001  # of water [Pa s]
 FRICTION = 0.5
 FIELD_OF_VIEW = 50.0  # of a camera, horizontal [deg]
+SENSOR_RATE = 100.0  # samples a second [Hz]

@@ -189,6 +189,37 @@ def test_a_world_without_bodies_or_joints() -> None:
         world.body("block")
 
 
+def test_control_reads_what_sensors_told(start) -> None:
+    channels = [
+        ("/World/arm/imu", "accelerometer", (3,)),
+        ("/World/clock", "effort", ()),
+        ("/World/arm/q", "effort", (2,)),
+    ]
+    process = start(
+        "import numpy as np\n"
+        "def control(world, t):\n"
+        "    imu, q = world.sensor('imu'), world.sensor('/World/arm/q')\n"
+        "    assert world.sensors == ['/World/arm/imu', '/World/clock', '/World/arm/q']\n"
+        "    assert world.sensor('clock').effort.shape == (3,) and q.effort.shape == (3, 2)\n"
+        "    world.apply_force('block', imu.accelerometer, np.stack([*q.effort.T, q.effort[:, 0]], axis=1))\n",
+        layout=replace(LAYOUT, channels=channels),
+    )
+    sensed = np.arange(6.0 * W).reshape(W, 6)
+    pushed = process.step(0.0, _state() | {"sensed": sensed})["body_force"][:, 0]
+    np.testing.assert_array_equal(pushed, sensed[:, [0, 1, 2, 4, 5, 4]])
+
+
+def test_a_sensor_tells_what_it_has_alone() -> None:
+    layout = ControlLayout([], channels=[("/World/imu", "gyroscope", (3,))])
+    world = ControlWorld(layout, layout.views(bytearray(layout.size)))
+    with pytest.raises(AttributeError, match="the sensor /World/imu tells no effort; it tells gyroscope"):
+        _ = world.sensor("imu").effort
+    with pytest.raises(LookupError, match="no sensor 'lidar'; known: imu, /World/imu"):
+        world.sensor("lidar")
+    with pytest.raises(ValueError, match="read-only"):
+        world.sensor("imu").gyroscope[:] = 1.0
+
+
 def test_a_name_that_two_prims_have_needs_its_path() -> None:
     layout = ControlLayout(["/World/a/wheel", "/World/b/wheel"])
     world = ControlWorld(layout, layout.views(bytearray(layout.size)))

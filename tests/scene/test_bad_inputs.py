@@ -58,6 +58,10 @@ KINDS: dict[str, tuple[object, ...]] = {
     "object": (*OBJECT, None),
     "object or the world": OBJECT,
     "joint": (*OBJECT, None, "ball", "weld"),
+    "joints": (*OBJECT, None, "ball", "weld", ["hinge", "weld"], ["hinge", "hinge"], {"hinge"}),
+    "body that moves": (*OBJECT, None, "wheel", "hinge"),
+    "body that moves, or the world": (*OBJECT, "wheel", "hinge"),
+    "span": ("wide", 1.0, None, (1.0,), (-1.0, 0.0, 1.0), (NAN, 1.0), (-1.0, INF), (1.0, -1.0), {-1, 1}, (-1, "1")),
     "material": ("wod", "ball", "", 7, NAN, True, [], GONE, object()),
     "tank": (*OBJECT, "ball"),
     "range": (
@@ -170,6 +174,7 @@ KINDS: dict[str, tuple[object, ...]] = {
 }  # fmt: skip
 
 POSE = {"position": "three numbers", "rotation_deg": "three numbers"}
+RATE = {"rate": "number > 0"}
 START = {"velocity": "three numbers", "angular_velocity_deg": "three numbers"}
 SURFACE = {"material": "material", "friction": "coefficient", "restitution": "share", "color": "colour"}
 MASS = {"density": "number > 0", "mass": "number > 0"}
@@ -212,6 +217,26 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {"name": "new", "robot": "arm", "policy": "steer", "times": (0.0, 1.0), "commands": (HERE, (1.0, 0.0, 0.0))},
         {"name": "new name", "robot": "robot there", "policy": "policy", "command": "command",
          "times": "command times", "commands": "commands", "route": "route", "speed": "number > 0"},
+    ),
+    "sensor_imu": (
+        {"name": "new", "body": "ball"},
+        {"name": "new name", "body": "body that moves", **POSE, **RATE, "accelerometer_noise": "number >= 0",
+         "gyroscope_noise": "number >= 0", "accelerometer_bias": "three numbers", "gyroscope_bias": "three numbers",
+         "seed": "seed"},
+    ),
+    "sensor_joints": (
+        {"name": "new", "joints": ["hinge", "slide"]}, {"name": "new name", "joints": "joints", **RATE},
+    ),
+    "sensor_contact": (
+        {"name": "new", "body": "ball"},
+        {"name": "new name", "body": "body that moves", "rotation_deg": "three numbers", "threshold": "number >= 0",
+         **RATE},
+    ),
+    "sensor_range": (
+        {"name": "new", "body": "ball"},
+        {"name": "new name", "body": "body that moves, or the world", **POSE, **RATE, "rays": "whole number",
+         "fan_deg": "span", "layers": "whole number", "tilt_deg": "span", "nearest": "number >= 0",
+         "farthest": "number > 0", "noise": "number >= 0", "seed": "seed"},
     ),
     "vehicle": (
         {"name": "new"},

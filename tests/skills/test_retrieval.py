@@ -12,7 +12,7 @@ FLOAT, FLUID, WAVES = "floating-bodies", "containers-and-fluid", "waves-and-dam-
 RIGID, STACK, JOINT = "rigid-bodies", "stacks-and-contact", "joints-and-mechanisms"
 SWING, HIT, CONTROL = "pendulums-and-springs", "projectiles-and-collisions", "control-functions"
 CAMERA, PARAM, STEP = "cameras-and-light", "parameters", "time-step-and-stability"
-USD, GOAL, REPAIR = "raw-usd", "objectives", "repairing"
+USD, GOAL, REPAIR, SENSE = "raw-usd", "objectives", "repairing", "sensors"
 
 CASES = {
     "A cork ball floats in a tank of water.": {FLOAT},
@@ -40,6 +40,7 @@ CASES = {
     "Water is poured into a bucket.": {FLUID},
     "Honey fills a glass.": {FLUID},
     "A drone hovers at 1 m by feedback control.": {CONTROL},
+    "What an IMU on the trolley measures, and a lidar that scans the room.": {SENSE},
     "A cart follows a sine path along a rail.": {CONTROL, JOINT},
     "Show it from above, with a close camera and sunlight from the left.": {CAMERA},
     "Sweep the friction from 0.1 to 0.9.": {PARAM},

@@ -34,9 +34,10 @@ def sum_contacts(
     shape_body: wp.array(dtype=int),
     # Data out:
     force: wp.array2d(dtype=wp.float64),  # on each body of all worlds [N]
+    load: wp.array(dtype=wp.float64),  # on each body, whichever way contacts press [N]
     deepest: wp.array(dtype=wp.float64),  # of each world [m]
 ):
-    """Add up the forces of all contacts, and find the deepest of each world."""
+    """Add up the forces of all contacts, and their sizes, and find the deepest of each world."""
     k = wp.tid()
     if k >= contacts[0]:
         return
@@ -48,8 +49,11 @@ def sum_contacts(
     push = wp.vec3(0.0, 0.0, 0.0)
     for axis in range(3):
         push += row_force[w, rows[k, axis]] * frame[k][axis]
-    push_body(force, body_of(geom[k][0], geom_shape[w], shape_body), -1.0, push)
-    push_body(force, body_of(geom[k][1], geom_shape[w], shape_body), 1.0, push)
+    for side in range(2):
+        body = body_of(geom[k][side], geom_shape[w], shape_body)
+        push_body(force, body, float(2 * side - 1), push)
+        if body >= 0:
+            wp.atomic_add(load, body, wp.float64(wp.length(push)))
 
 
 @wp.kernel(enable_backward=False)

@@ -10,6 +10,7 @@ Imported in the sandbox beside the program: NumPy alone.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -20,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float32]
 
 _ALIGN = 64
-INPUTS = ("body_q", "body_qd", "joint_q", "joint_qd")
+INPUTS = ("body_q", "body_qd", "joint_q", "joint_qd", "sensed")
 OUTPUTS = ("joint_target", "joint_force", "body_force")
 
 
@@ -32,6 +33,7 @@ class ControlLayout:
         bodies: Prim paths of the bodies, in the order of `body_q`.
         joints: Prim paths of the joints with one degree of freedom, in the order of `joint_q`.
         world_count: Worlds that run side by side: the leading axis of every array.
+        channels: Of sensors, in the order of `sensed`: prim path, channel, and shape of what it tells.
         apart: Each world has the program to itself, loaded for it alone, and is asked by itself as the only one;
             without, one call is asked about all of them.
     """
@@ -40,6 +42,7 @@ class ControlLayout:
     joints: list[str] = field(default_factory=list)
     world_count: int = 1
     apart: bool = False
+    channels: list[tuple[str, str, tuple[int, ...]]] = field(default_factory=list)
 
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """The shape of each array by name; all are float32, but for `t`, float64."""
@@ -50,6 +53,7 @@ class ControlLayout:
             "body_qd": (w, b, 6),
             "joint_q": (w, j),
             "joint_qd": (w, j),
+            "sensed": (w, sum(math.prod(shape) for _, _, shape in self.channels)),
             "joint_target": (w, j),
             "joint_force": (w, j),
             "body_force": (w, b, 6),
@@ -136,12 +140,66 @@ class ControlJoint:
         self._force[...] = value
 
 
+class ControlSensor:
+    """What a sensor told last, in all worlds, W of them; the arrays are for reading, and each kind has some of them."""
+
+    def __init__(self, prim: str, channels: dict[str, Floats]) -> None:
+        self._prim, self._channels = prim, channels
+
+    @property
+    def accelerometer(self) -> Floats:
+        """(W, 3) specific force, in the frame of an IMU [m/s^2]: mean since the sample before, 9.81 upwards at rest."""
+        return self._channel("accelerometer")
+
+    @property
+    def gyroscope(self) -> Floats:
+        """(W, 3) angular velocity, in the frame of an IMU [rad/s]."""
+        return self._channel("gyroscope")
+
+    @property
+    def position(self) -> Floats:
+        """(W, J) of a joint sensor's joints [rad] or [m]."""
+        return self._channel("position")
+
+    @property
+    def velocity(self) -> Floats:
+        """(W, J) of a joint sensor's joints [rad/s] or [m/s]."""
+        return self._channel("velocity")
+
+    @property
+    def effort(self) -> Floats:
+        """(W, J) of a joint sensor's joints' drives and of `force` [N m] or [N]."""
+        return self._channel("effort")
+
+    @property
+    def distance(self) -> Floats:
+        """(W, layers, rays) of a range scan [m]; infinite where nothing is met."""
+        return self._channel("distance")
+
+    @property
+    def force(self) -> Floats:
+        """(W, 3) of contacts, in the frame of a contact sensor [N]."""
+        return self._channel("force")
+
+    @property
+    def touching(self) -> Floats:
+        """(W,) 1 where anything touches a contact sensor's body, else 0."""
+        return self._channel("touching")
+
+    def _channel(self, name: str) -> Floats:
+        if name not in self._channels:
+            raise AttributeError(f"the sensor {self._prim} tells no {name}; it tells {', '.join(self._channels)}")
+        return self._channels[name]
+
+
 class ControlWorld:
     """All worlds at one time. Names are prim names or prim paths."""
 
     def __init__(self, layout: ControlLayout, arrays: dict[str, NDArray[Any]]) -> None:
         self.world_count = layout.world_count
         self._bodies, self._joints = _names(layout.bodies), _names(layout.joints)
+        self._prims = list(dict.fromkeys(prim for prim, _, _ in layout.channels))
+        self._sensors, self._channels = _names(self._prims), layout.channels
         self._arrays = dict(arrays)
         for name in INPUTS:
             self._arrays[name] = arrays[name].view()
@@ -168,6 +226,22 @@ class ControlWorld:
         i = _find(self._joints, name, "joint")
         a = self._arrays
         return ControlJoint(a["joint_q"][:, i], a["joint_qd"][:, i], a["joint_target"][:, i], a["joint_force"][:, i])
+
+    @property
+    def sensors(self) -> list[str]:
+        """Prim paths of the sensors."""
+        return list(self._prims)
+
+    def sensor(self, name: str) -> ControlSensor:
+        """What a sensor told last; LookupError if there is none of that name."""
+        prim = self._prims[_find(self._sensors, name, "sensor")]
+        found, start = {}, 0
+        for owner, channel, shape in self._channels:
+            end = start + math.prod(shape)
+            if owner == prim:
+                found[channel] = self._arrays["sensed"][:, start:end].reshape(self.world_count, *shape)
+            start = end
+        return ControlSensor(prim, found)
 
     def apply_force(self, name: str, force: ArrayLike, torque: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         """Push a body until the next call, on top of what was applied in this one.

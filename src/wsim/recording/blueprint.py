@@ -9,7 +9,7 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from wsim.geometry.rotations import rotate
-from wsim.recording.columns import HEIGHT_ROOT, LOG_ENTITY, SCALAR_ROOT, TIMELINE, entity_path
+from wsim.recording.columns import HEIGHT_ROOT, LOG_ENTITY, SCALAR_ROOT, SENSOR_ROOT, TIMELINE, entity_path
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
@@ -58,6 +58,8 @@ def _plots(world: World) -> list[Any]:
     plots = [rrb.TimeSeriesView(name="Energy [J]", origin="/", contents=[energy])]
     if world.bodies:
         plots.append(rrb.TimeSeriesView(name="Height of bodies [m]", origin="/", contents=[f"{HEIGHT_ROOT}**"]))
+    if world.sensors:
+        plots.append(rrb.TimeSeriesView(name="Sensors", origin="/", contents=[f"{SENSOR_ROOT}/**"]))
     plots.append(rrb.TimeSeriesView(name="Other scalars", origin="/", contents=[f"{SCALAR_ROOT}**", f"- {energy}"]))
     return plots
 

@@ -25,6 +25,7 @@ PROPERTY_ENTITY = "/__properties/wsim"
 FRAME_ENTITY = "/frames"
 SCALAR_ROOT = "/plots/"
 HEIGHT_ROOT = "/heights/"
+SENSOR_ROOT = "/sensors"  # before a sensor's prim; its channels below
 LOG_ENTITY = "/log"
 
 WORLD = "wsim.Recording:world"
@@ -44,6 +45,7 @@ APPLIED = "wsim.Body:applied"  # impulse and work
 APPLIED_TURN = "wsim.Body:applied_turn"  # angular impulse
 LEAD = "wsim.Body:lead"  # momentum and angular momentum that velocities gained beside all impulses
 CONTROLLED = "wsim.Body:controlled"  # impulse of control, which is part of the applied one
+SENSED = "wsim.Sensor:values"
 SEEN = "wsim.Camera:seen"
 SEEN_OBJECTS = "wsim.Camera:objects"
 PARTICLE_VELOCITY = "wsim.Fluid:velocity"

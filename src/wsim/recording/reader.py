@@ -22,6 +22,7 @@ from wsim.recording.causes import read_bodies, read_frames
 from wsim.recording.contacts import read_contacts
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, ImageTrack, Recording, SeenTrack
+from wsim.recording.sensors import read_sensors
 from wsim.recording.table import Clock, Table
 from wsim.recording.ties import read_ties
 from wsim.scene.world import World
@@ -70,6 +71,7 @@ def read(path: str | Path) -> Recording:
         wall_impulse=read_frames(table, frame_ns, names.WALL_IMPULSE),
         contacts=read_contacts(table, frame_ns),
         ties=read_ties(table, world, frame_ns),
+        sensors=read_sensors(table, world, clock),
     )
 
 

@@ -13,6 +13,7 @@ from PIL import Image
 
 from wsim.recording.contacts import ContactTrack
 from wsim.recording.frames import FluidFrame, Frame, LogLine
+from wsim.recording.sensors import SensorTrack
 from wsim.recording.ties import TieTrack
 from wsim.scene.world import World
 
@@ -96,6 +97,7 @@ class Recording:
     lead: Floats | None = None  # (T, B, 6) [N s, N m s], momentum and angular momentum beside all impulses, likewise
     contacts: ContactTrack | None = None  # what pairs of shapes gave each other since the frame before
     ties: TieTrack | None = None  # what joints, springs and ropes gave, likewise; None in recordings of before
+    sensors: Mapping[str, SensorTrack] = field(default_factory=dict)  # by prim
 
     @property
     def complete(self) -> bool:

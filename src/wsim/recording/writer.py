@@ -24,6 +24,7 @@ from wsim.recording.causes import of_bodies as causes_of_bodies
 from wsim.recording.causes import of_frame as causes_of_frame
 from wsim.recording.contacts import WIDTH as CONTACT_WIDTH
 from wsim.recording.frames import Frame
+from wsim.recording.sensors import SensorBuffer
 from wsim.recording.shapes import is_nested, log_camera, log_scene
 from wsim.scene.world import World
 
@@ -76,6 +77,7 @@ class RecordingWriter:
         self._fluids = {fluid.prim: FluidBuffer(self._stream, fluid, world) for fluid in world.fluids}
         self._cords = CordBuffer(self._stream, world)
         self._rows = RowBuffer(self._stream)
+        self._sensors = SensorBuffer(self._stream, world)
         self._write_setup(blueprint)
 
     def frame(self, t: float, frame: Frame) -> None:
@@ -123,6 +125,17 @@ class RecordingWriter:
         entity = names.entity_path(prim) if prim is not None else names.LOG_ENTITY
         self._rows.add(entity, _time_ns(t), row)
         self._log_count += 1
+
+    def sample(
+        self, t: float, prim: str, sample: Mapping[str, NDArray[Any]], points: NDArray[Any] | None = None
+    ) -> None:
+        """Record what one of `world.sensors` told at time `t` [s], by channel, and draw points [m] that it met, (n, 3).
+
+        Raises:
+            ValueError: If the world has no such sensor, or it tells something else.
+        """
+        self._check_open()
+        self._sensors.add(_time_ns(t), prim, sample, points)
 
     def image(self, t: float, camera_prim: str, rgb: NDArray[np.uint8]) -> None:
         """Record a camera's picture as JPEG.
@@ -206,6 +219,7 @@ class RecordingWriter:
             fluid.flush()
         self._cords.flush()
         self._rows.flush()
+        self._sensors.flush()
         self._bodies.flush()
         self._flushed_at = time.monotonic()
 

@@ -13,6 +13,7 @@ from wsim.progress import Progress, silent
 from wsim.runs.settings import Settings
 from wsim.scene.describe import describe
 from wsim.sim.control import ArrayController, driven_joints
+from wsim.sim.sensors import channels
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
@@ -52,6 +53,7 @@ def open_controller(
     if not is_controlled(program):
         yield None
         return
-    layout = ControlLayout([body.prim for body in world.bodies], driven_joints(world), world_count, apart=True)
+    bodies, joints = [body.prim for body in world.bodies], driven_joints(world)
+    layout = ControlLayout(bodies, joints, world_count, apart=True, channels=channels(world))
     with ControlProcess(program, layout, settings.limits(), settings.isolation) as process:
         yield ArrayController(process.step)

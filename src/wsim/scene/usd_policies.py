@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from wsim.assets.policies import PolicySpec
 from wsim.limits import MAX_KEYS, MAX_POSITION
 from wsim.scene import schema
-from wsim.scene.usd_prims import line_of, value_of
+from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_vec3
 from wsim.scene.world import Policy
 
@@ -27,8 +27,8 @@ def read_policies(prims: Iterable[Usd.Prim]) -> Iterator[Policy]:
         network = value_of(prim, "network", None)
         yield Policy(
             prim=str(prim.GetPath()),
-            base=str(_targets(prim, "base")[0].GetPath()),
-            joints=[str(joint.GetPath()) for joint in _targets(prim, "joints")],
+            base=str(targets_of(prim, "base")[0].GetPath()),
+            joints=[str(joint.GetPath()) for joint in targets_of(prim, "joints")],
             spec=PolicySpec.model_validate_json(value_of(prim, "description", "")),
             network=str(network.resolvedPath or network.path),
             sha256=value_of(prim, "sha256", ""),
@@ -48,7 +48,7 @@ def policy_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
             continue
         for problem in _problems(prim):
             yield f"{prim.GetPath()}.wsim:{problem}"
-        for joint in _targets(prim, "joints"):
+        for joint in targets_of(prim, "joints"):
             other = set_by.setdefault(str(joint.GetPath()), str(prim.GetPath()))
             if other != str(prim.GetPath()):
                 yield f"{prim.GetPath()}.wsim:joints: <{joint.GetPath()}> is set by <{other}>, too"
@@ -60,7 +60,7 @@ def _problems(prim: Usd.Prim) -> Iterator[str]:
     except ValidationError as error:
         yield f"description: {error.errors()[0]['msg']}"
         return
-    bases, joints = _targets(prim, "base"), _targets(prim, "joints")
+    bases, joints = targets_of(prim, "base"), targets_of(prim, "joints")
     if len(bases) != 1 or not bases[0].HasAPI(UsdPhysics.RigidBodyAPI):
         yield "base: it must be one rigid body"
     if len(joints) != len(spec.joints):
@@ -86,9 +86,3 @@ def _problems(prim: Usd.Prim) -> Iterator[str]:
         yield f"route: at most {MAX_KEYS} points, each at most {MAX_POSITION:g} m away"
     if route and not 0.0 < speed <= _LARGEST:
         yield f"speed: {speed:g} must be above 0 and at most {_LARGEST:g} m/s"
-
-
-def _targets(prim: Usd.Prim, name: str) -> list[Usd.Prim]:
-    relation = prim.GetRelationship(f"wsim:{name}")
-    found = (prim.GetStage().GetPrimAtPath(path) for path in (relation.GetTargets() if relation else []))
-    return [each for each in found if each]

@@ -19,6 +19,13 @@ def value_of(prim: Usd.Prim, name: str, default: object) -> Any:
     return default if value is None else value
 
 
+def targets_of(prim: Usd.Prim, name: str) -> list[Usd.Prim]:
+    """The prims that a prim's relationship `wsim:name` points to, as far as they are there."""
+    relation = prim.GetRelationship(f"wsim:{name}")
+    found = (prim.GetStage().GetPrimAtPath(path) for path in (relation.GetTargets() if relation else []))
+    return [each for each in found if each]
+
+
 def line_of(prim: Usd.Prim) -> str | None:
     """The line of the program that made a prim."""
     line = prim.GetCustomDataByKey("wsim:line")

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from wsim.assets.policies import PolicySpec
 from wsim.defaults import DURATION, FIELD_OF_VIEW, FRAME_RATE, GRAVITY
+from wsim.scene.world_sensors import Sensor
 
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
@@ -314,6 +315,7 @@ class World(_Model):
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
     policies: list[Policy] = Field(default_factory=list)
+    sensors: list[Sensor] = Field(default_factory=list)
     apart: list[tuple[str, str]] = Field(default_factory=list)  # objects or shapes that never touch
     foreign: list[Foreign] = Field(default_factory=list)
     cameras: list[Camera] = Field(default_factory=list)

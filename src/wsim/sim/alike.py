@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from wsim.errors import UserError
 from wsim.scene.validate import shown
 from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Policy, Rope, Shape, Spring, World
+from wsim.scene.world_sensors import SensorContact, SensorIMU, SensorRange
 
 # Numbers that each world of a batch has of its own.
 FREE: dict[type[BaseModel], frozenset[str]] = {
@@ -24,6 +25,11 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     Gear: frozenset({"ratio", "offset"}),
     Contact: frozenset({"friction", "restitution"}),
     Policy: frozenset({"times", "commands", "speed"}),
+    SensorIMU: frozenset(
+        {"position", "rotation", "accelerometer_noise", "gyroscope_noise", "accelerometer_bias", "gyroscope_bias"}
+    ),
+    SensorRange: frozenset({"position", "rotation", "nearest", "farthest", "noise"}),
+    SensorContact: frozenset({"rotation", "threshold"}),
     Guide: frozenset({"position", "axis", "side"}),
     Spring: frozenset({"stiffness", "damping", "rest_length"}),
     Rope: frozenset({"length"}),

@@ -26,7 +26,8 @@ class ArrayController:
     """Calls `exchange(t, state)` once a control step, and applies what it answers.
 
     Args:
-        exchange: Takes `body_q` (W, B, 7), `body_qd` (W, B, 6), `joint_q`, `joint_qd` and `joint_target` (W, J);
+        exchange: Takes `body_q` (W, B, 7), `body_qd` (W, B, 6), `joint_q`, `joint_qd` and `joint_target` (W, J), and
+            `sensed` (W, n), what sensors told last (`wsim.sim.sensors.channels`);
             answers `joint_target` (W, J) [rad or m], `joint_force` (W, J) [N m or N] and `body_force` (W, B, 6), the
             force [N] and torque [N m] at the centre of mass in the world frame. B follows the world's bodies, J
             `driven_joints`.
@@ -50,6 +51,7 @@ class ArrayController:
                 "joint_q": state.joint_q.numpy()[coordinate],
                 "joint_qd": state.joint_qd.numpy()[dof],
                 "joint_target": targets[target],
+                "sensed": simulation.sensors.flat(),
             },
         )
         if simulation.rigid and simulation.rigid.ledger:

@@ -1,4 +1,4 @@
-"""What contacts press with at the end of a step: the net force on each body, and the deepest of each world."""
+"""What contacts press with at the end of a step: net force and load of each body, and the deepest of each world."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ class Pressed:
 
     Attributes:
         force: On each body [N], (bodies, 3).
+        load: On each body, of contacts that press whichever way [N], (bodies,).
         deepest: Of each world [m], (W,).
     """
 
@@ -27,14 +28,15 @@ class Pressed:
         self._model, self._solver, self._on_c = model, solver, on_c
         with wp.ScopedDevice(model.device):
             self.force: Any = wp.zeros((model.body_count, 3), dtype=wp.float64)
+            self.load: Any = wp.zeros(model.body_count, dtype=wp.float64)
             self.deepest: Any = wp.zeros(max(1, model.world_count), dtype=wp.float64)
 
     def measure(self) -> None:
-        """Work both out for the step that was taken last."""
-        self.force.zero_()
-        self.deepest.zero_()
-        if self._on_c:
-            self._of_c(self.force.numpy(), self.deepest.numpy())  # on a CPU these are the arrays themselves
+        """Work them out for the step that was taken last."""
+        for array in (self.force, self.load, self.deepest):
+            array.zero_()
+        if self._on_c:  # on a CPU these are the arrays themselves
+            self._of_c(self.force.numpy(), self.load.numpy(), self.deepest.numpy())
             return
         data, contact = self._solver.mjw_data, self._solver.mjw_data.contact
         wp.launch(
@@ -44,11 +46,11 @@ class Pressed:
                 data.nacon, contact.worldid, contact.geom, contact.frame, contact.dist, contact.efc_address,
                 data.efc.force, self._solver.mjc_geom_to_newton_shape, self._model.shape_body,
             ],
-            outputs=[self.force, self.deepest],
+            outputs=[self.force, self.load, self.deepest],
             device=self._model.device,
         )  # fmt: skip
 
-    def _of_c(self, force: np.ndarray, deepest: np.ndarray) -> None:
+    def _of_c(self, force: np.ndarray, load: np.ndarray, deepest: np.ndarray) -> None:
         mujoco = self._solver.import_mujoco()[0]
         mj_model, mj_data = self._solver.mj_model, self._solver.mj_data
         shapes = self._solver.mjc_geom_to_newton_shape.numpy()[0]
@@ -64,3 +66,4 @@ class Pressed:
                 body = bodies[shapes[geom]]
                 if body >= 0:
                     force[body] += sign * push
+                    load[body] += np.sqrt(push @ push)

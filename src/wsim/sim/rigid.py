@@ -78,6 +78,7 @@ class RigidBodies:
         cylinders: Pairs of shapes of the first world, a cylinder first, that MuJoCo does not see touch.
 
     Attributes:
+        driven: Whether any joint has a motor; `observables` then has what each gives.
         ledger: What fluid, drives and the controller put into the bodies; None where there are none of them.
         pressed: What contacts press with.
     """
@@ -121,7 +122,7 @@ class RigidBodies:
         if not self.on_c:
             kinds = {self.solver.ObservableKind.OVERFLOW}
             self.overflow_seen = wp.zeros(max(1, model.world_count), dtype=wp.int32, device=model.device)
-        driven = _is_driven(model)
+        self.driven = driven = _is_driven(model)
         if driven:
             kinds.add(self.solver.ObservableKind.QFRC_ACTUATOR)
         self.observables: Any = self.solver.observables(kinds) if kinds else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from importlib.metadata import version
 from pathlib import Path
@@ -24,6 +24,7 @@ from wsim.sim.alike import paths_of
 from wsim.sim.cameras import CameraRenderer
 from wsim.sim.devices import pick_device, steps_in_c
 from wsim.sim.entering import entered
+from wsim.sim.events import Events
 from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
@@ -32,6 +33,7 @@ from wsim.sim.policies import PolicyController
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
+from wsim.sim.sensors import Sensors
 from wsim.sim.starts import start
 from wsim.sim.turns import Controller, Turns
 from wsim.solvers.solver_sph import SolverSPH
@@ -61,6 +63,7 @@ class Simulation:
         model: The Newton model.
         state: The present state.
         control: Joint targets and forces.
+        sensors: What sensors told last.
         time: Simulated time [s].
         compiled: Seconds that each module took that was compiled for it, by name [s].
     """
@@ -104,8 +107,6 @@ class Simulation:
         self.model = self.built.model
         self.dt, self.substeps = self.built.time_step.dt, self.built.time_step.substeps
         self.time, self.step_count = 0.0, 0
-        self._were_inside: set[str] = set()
-        self._broken: set[str] = set()
         progress("compiling kernels", 1, 3)
         self.rigid = (
             RigidBodies(
@@ -128,6 +129,7 @@ class Simulation:
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         if self.rigid and self.rigid.ledger and controller is not None:
             self.rigid.ledger.control = self.control_force
+        self.sensors = Sensors(self.built, self.dt, seeds)
         self._steered, self._turns = controller is not None, Turns(self.dt)
         for k in range(len(self.world.policies)):
             policy = PolicyController(self.model, self.built.worlds, self.built.bodies, k)
@@ -207,26 +209,28 @@ class Simulation:
     def advance_frame(self) -> None:
         """Advance by one recorded frame.
 
-        On CUDA its steps are captured in a graph once and replayed; with a controller, those between two of its calls.
+        On CUDA its steps are captured in a graph once and replayed; with a controller or sensors, those between two of
+        their turns. So are those in C taken in one go that are the solver's alone.
         """
-        if self.rigid and self.rigid.alone and not self.fluid and not self._turns:
-            self.state.clear_forces()
-            self.rigid.steps(self.state, self.control, self.dt, self.substeps)
-            self._count(self.substeps)
-        elif self.device.is_cuda:
-            left = self.substeps
-            while left:
-                steps = min(left, self._until_control())
-                wp.capture_launch(self._captured(steps))
-                self._count(steps)
-                left -= steps
-        else:
+        alone = self.rigid if self.rigid and self.rigid.alone and not self.fluid and not self._turns else None
+        if not alone and not self.device.is_cuda:
             for _ in range(self.substeps):
                 self.step()
+            return
+        left = self.substeps
+        while left:
+            steps = min(left, self._until_control())
+            if alone:
+                self.state.clear_forces()
+                alone.steps(self.state, self.control, self.dt, steps)
+            else:
+                wp.capture_launch(self._captured(steps))
+            self._count(steps)
+            left -= steps
 
     def _until_control(self) -> int:
-        """Steps until a controller is asked again; those are whose turn is now."""
-        return self._turns.ask(self.step_count, self) if self._turns else self.substeps
+        """Steps until a sensor is read or a controller asked again; those are whose turn is now, sensors first."""
+        return min([self.substeps, *(each.ask(self.step_count, self) for each in (self.sensors, self._turns) if each)])
 
     def _count(self, steps: int) -> None:
         self.step_count += steps
@@ -299,6 +303,7 @@ class Simulation:
                     )
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
+            events, self.sensors.keep = Events(self.built, self.fluid), writer.sample
             for frame in range(frames + 1):
                 with phases.phase("simulate"):
                     if frame:
@@ -306,18 +311,20 @@ class Simulation:
                     problems = self.problems()
                 measured = measure(self.built, self.state, self.rigid, self.fluid)
                 writer.frame(self.time, measured)
-                for prim, text in self._breakages(measured.scalars):
+                for prim, text in events.breakages(measured.scalars):
                     writer.log(self.time, "INFO", text, prim)
                 if pictures and not problems:
                     with phases.phase("draw"):
                         pictures.take(frame, self.time, self.state)
                 progress("simulating", frame, frames)
-                for prim, text in self._departures():
+                for prim, text in events.departures(self.state):
                     writer.log(self.time, "WARN", text, prim)
                 for problem in problems:
                     writer.log(self.time, "ERROR", problem)
                 if problems:
                     break
+            if self.sensors and not problems:
+                self.sensors.ask(self.step_count, self)  # whose turn is at the end
             if pictures:
                 with phases.phase("draw"):
                     pictures.finish()
@@ -336,28 +343,6 @@ class Simulation:
             seconds=phases.rounded(),
             compiled=self.compiled,
         )
-
-    def _breakages(self, scalars: Mapping[str, float]) -> list[tuple[str, str]]:
-        """Joints of the first world that have broken since the last call: prim and what to say."""
-        found = []
-        for joint in self.built.breakable[0]:
-            name = joint.prim.removeprefix("/World")
-            if scalars[f"broken{name}"] and joint.prim not in self._broken:
-                self._broken.add(joint.prim)
-                force, torque = scalars[f"force{name}"], scalars[f"torque{name}"]
-                found.append((joint.prim, f"{joint.prim} breaks under {force:.4g} N and {torque:.4g} N m"))
-        return found
-
-    def _departures(self) -> list[tuple[str, str]]:
-        """Bodies of the first world that have left the fluid's domain since the last call: prim and what to say."""
-        if not self.fluid:
-            return []
-        outside = set(self.fluid.bodies_outside(self.state))
-        prims = {body.prim: index in outside for body, index in zip(self.world.bodies, self.built.bodies, strict=True)}
-        gone = [prim for prim, is_outside in prims.items() if is_outside and prim in self._were_inside]
-        self._were_inside = {prim for prim, is_outside in prims.items() if not is_outside}
-        low, high = (np.round(corner, 3).tolist() for corner in self.fluid.domain)
-        return [(prim, f"{prim} has left the fluid's domain, {low} to {high} m: no fluid is there") for prim in gone]
 
     def facts(self) -> dict[str, Any]:
         """Numbers of the run that the recording keeps."""

@@ -61,7 +61,8 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
     limit = limits[reason]
     frame = 1.0 / world.frame_rate
     least = max(1, math.ceil(frame / limit - 1e-9))
-    substeps = _in_step(least, (world.frame_rate / policy.spec.rate for policy in world.policies))
+    rates = (*(policy.spec.rate for policy in world.policies), *(sensor.rate for sensor in world.sensors))
+    substeps = _in_step(least, (world.frame_rate / rate for rate in rates))
     return TimeStep(frame / substeps, substeps, reason)
 
 

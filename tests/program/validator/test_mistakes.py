@@ -211,9 +211,11 @@ def build(scene):
     scene.ground()
     box = scene.box("block", size=(0.2, 0.2, 0.2), position=(0, 0, 1))
     scene.joint_revolute("hinge", None, box)
+    scene.sensor_imu("imu", box)
 
 
 def control(world, t):
+    felt = world.sensor("imu").accelerometer
     joint = world.joint("hinge")
     body = world.body("block")
     joint.target = math.radians(30.0)
@@ -228,6 +230,9 @@ def control(world, t):
         ("body.pos", "attribute", "pos"),
         ('world.body("blokc")', "prim", "blokc"),
         ('world.joint("block")', "prim", "block"),
+        ('world.sensor("block")', "prim", 'no sensor "block"'),
+        ('world.sensor("imu").accel', "attribute", "accel"),
+        ('world.sensor("imu").gyroscope = 1.0', "attribute", "for reading"),
         ('world.push("block", (0, 0, 1))', "attribute", "push"),
         ('world.apply_force("block", force=(0, 0, 1), point=(0, 0, 0))', "argument", "point"),
         ("joint.target = math.degrees(t)", "unit", "radians"),

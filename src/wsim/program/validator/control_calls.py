@@ -6,9 +6,11 @@ from typing import Any
 
 from wsim.program.api.entry import Entry
 from wsim.program.validator.problem import spelt
-from wsim.program.validator.scratch import BODIES, JOINTS
+from wsim.program.validator.scratch import BODIES, JOINTS, SENSORS
 from wsim.program.validator.state import State
 from wsim.program.validator.values import UNKNOWN, Const, Instance, Items, Value
+
+_NAMED = {"joint": ("joint", JOINTS), "sensor": ("sensor", SENSORS)}  # by the call: what it names; else a body
 
 
 def check(reader: State, entry: Entry, owner: Value | None, bound: dict[str, Any]) -> None:
@@ -24,11 +26,10 @@ def check(reader: State, entry: Entry, owner: Value | None, bound: dict[str, Any
         return
     if not isinstance(value.value, str) or "asset" in world.names.values():
         return
-    wanted = JOINTS if entry.short == "joint" else BODIES
+    what, wanted = _NAMED.get(entry.short, ("body", BODIES))
     known = {name for name, method in world.names.items() if method in wanted}
     name = value.value.removeprefix("/World/")
     if name not in known:
-        what = "joint" if entry.short == "joint" else "body"
         reader.problems.add(node, "prim", f'no {what} "{value.value}" is built', spelt(name, known, 0.5))
 
 

@@ -43,18 +43,20 @@ _NEEDS: dict[str, dict[str, Any]] = {
     # cells as large as it may be: of a size or a cell tried alone there are not too many
     "terrain": {"size": (0.2, 0.2), "cell": 1000.0, "layers": [_level]}, "scatter": {"count": 1},
     "gear": {"ratio": 1.0}, "robot": {"file_or_id": "desk_arm"}, "vehicle": {},
-    "policy": {},
+    "policy": {}, "sensor_imu": {}, "sensor_joints": {}, "sensor_range": {"body": None},
+    "sensor_contact": {},
 }  # fmt: skip
 MANY = ("cable", "robot", "vehicle", "scatter")  # whose bodies and joints have names of their own
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
+SENSORS = ("sensor_imu", "sensor_joints", "sensor_range", "sensor_contact")
 ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
 OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terrain", "scatter", "tank", "fluid")
 # Arguments whose rightness hangs on what else is in the scene.
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
-         "body", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
+         "body", "joints", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
          "layers", "areas", "on", "count", "clear")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
@@ -121,7 +123,18 @@ class World:
                 self.note("capsule" if method == "cable" else "mesh", each.name, certain=certain)
             return Const(made), "", ""
         self.open = self.open or method in MANY
-        if certain and method in (*OBJECTS, *JOINTS, *CORDS, "gear", "policy", "camera", "light", "material", "param"):
+        if certain and method in (
+            *OBJECTS,
+            *JOINTS,
+            *CORDS,
+            *SENSORS,
+            "gear",
+            "policy",
+            "camera",
+            "light",
+            "material",
+            "param",
+        ):
             self.trusted = False
         self.note(method, name, certain=certain)
         field, refusal = self._try(method, arguments)
@@ -255,6 +268,10 @@ def _tied(scene: Scene, method: str, number: int) -> dict[str, Any]:
         return {"a": body("a")}
     if method.startswith("joint_"):
         return {"child": body("a")}
+    if method in ("sensor_imu", "sensor_contact"):
+        return {"body": body("a")}
+    if method == "sensor_joints":
+        return {"joints": scene.joint_revolute(f"probe_joint_{number}", None, body("a"))}
     if method == "gear":
         ends = {"joint_a": "a", "joint_b": "b"}
         return {key: scene.joint_revolute(f"probe_joint_{number}{e}", None, body(e)) for key, e in ends.items()}

@@ -22,6 +22,10 @@ SURFACE_VELOCITY = "WsimSurfaceVelocityAPI"
 GEAR = "WsimGearAPI"
 DRIVE = "WsimDriveAPI"
 POLICY = "WsimPolicyAPI"
+SENSOR_IMU = "WsimSensorIMUAPI"
+SENSOR_JOINTS = "WsimSensorJointsAPI"
+SENSOR_RANGE = "WsimSensorRangeAPI"
+SENSOR_CONTACT = "WsimSensorContactAPI"
 
 
 def register() -> None:

@@ -1,0 +1,87 @@
+"""Sensors at work: each is read at its own rate in all worlds at once, by whoever wants its last sample.
+
+Newton's own `SensorIMU` wants the solver's accelerations. Those leave out what a blow changes, and under the law of
+contact (`wsim.solvers.contact_law`) a step's velocities are not what they alone lead to: here readings come from the
+state, as a recording has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wsim.scene.world import World
+from wsim.scene.world_sensors import Sensor, SensorContact, SensorIMU, SensorJoints, SensorRange
+from wsim.sim.sensor_contact import Contact
+from wsim.sim.sensor_imu import IMU
+from wsim.sim.sensor_joints import Joints
+from wsim.sim.sensor_range import Range
+from wsim.sim.turns import Controller, Turns
+
+if TYPE_CHECKING:
+    from wsim.sim.model import Built
+
+Floats = NDArray[np.float64]
+Sample = dict[str, Floats]  # by channel, each (W, ...)
+# Time [s], prim, what the first world's tells, and points in the world that it met, if it meets any.
+Kept = Callable[[float, str, Mapping[str, Floats], Floats | None], None]
+KINDS: dict[type[Any], Callable[[Built, int, float, Sequence[int]], Any]] = {
+    SensorIMU: IMU,
+    SensorJoints: Joints,
+    SensorRange: Range,
+    SensorContact: Contact,
+}
+
+
+class Sensors:
+    """The sensors of a world, in all worlds.
+
+    Args:
+        built: The model.
+        dt: The time step [s].
+        seeds: One for each world, of what its sensors' noise differs by from another's; by default copies of one stage
+            are counted.
+
+    Attributes:
+        keep: Told of each sample of the first world; None: nobody is.
+    """
+
+    def __init__(self, built: Built, dt: float, seeds: Sequence[int] = ()) -> None:
+        self.keep: Kept | None = None
+        self._worlds = max(1, built.model.world_count)
+        own = seeds or (range(self._worlds) if len(built.worlds) == 1 else [0] * self._worlds)
+        self._turns = Turns(dt)
+        self._last: dict[str, Sample] = {}
+        for k, sensor in enumerate(built.world.sensors):
+            steps = max(1, round(1.0 / (sensor.rate * dt)))
+            reader = KINDS[type(sensor)](built, k, steps * dt, own)
+            self._turns.add(self._reading(sensor, reader), steps * dt)
+
+    def __bool__(self) -> bool:
+        return bool(self._turns)
+
+    def ask(self, step: int, simulation: Any) -> int:
+        """Read those whose turn is at a step; the steps until the next turn of any."""
+        return self._turns.ask(step, simulation)
+
+    def flat(self) -> NDArray[np.float32]:
+        """The last sample of all, side by side in the order of `World.sensors` and of their channels, (W, n)."""
+        rows = [part.reshape(self._worlds, -1) for sample in self._last.values() for part in sample.values()]
+        return np.concatenate([np.zeros((self._worlds, 0)), *rows], axis=1).astype(np.float32)
+
+    def _reading(self, sensor: Sensor, reader: Any) -> Controller:
+        def turn(t: float, simulation: Any) -> None:
+            sample = self._last[sensor.prim] = reader(t, simulation)
+            if self.keep is not None and (t > 0.0 or not reader.spans):
+                first = {name: part[0] for name, part in sample.items()}
+                self.keep(t, sensor.prim, first, getattr(reader, "points", None))
+
+        return turn
+
+
+def channels(world: World) -> list[tuple[str, str, tuple[int, ...]]]:
+    """What `Sensors.flat` has of a world: prim, channel and shape of each part, in its order."""
+    return [(each.prim, name, shape) for each in world.sensors for name, shape in each.channels.items()]
