@@ -288,5 +288,15 @@ def test_steps_are_such_that_policies_keep_their_rate(own: Path, frames: float, 
     assert (chosen.substeps, chosen.reason) == (steps, "rigid bodies")
 
 
+def test_steps_are_such_that_sensors_and_policies_keep_their_rates(own: Path) -> None:
+    policies.write(own, "matrix", spec(), policies.linear(np.zeros((SIZE, 2))))
+    scene = Scene()
+    scene.simulation(duration=1.0, frame_rate=30.0, gravity=(0.0, 0.0, 0.0))
+    arm = scene.robot("arm", "desk_arm", position=(0.0, 0.0, 5.0), fixed=False)
+    scene.policy("steer", arm, "matrix")
+    scene.sensor_imu("imu", scene.box("box", size=(0.1, 0.1, 0.1), mass=1.0, position=(2.0, 0.0, 1.0)), rate=400.0)
+    assert choose_time_step(describe(scene.save(own / "stage.usda")), None).substeps == 40  # 3/5 of a frame, and 3/40
+
+
 def test_a_world_without_a_policy_has_none() -> None:
     assert World().policies == []
