@@ -17,6 +17,8 @@ import numpy as np
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import jolts
 from wsim.judge.books.lateness import steps_at_most
+from wsim.judge.books.mobility import mobilities
+from wsim.judge.books.ways import Course, off_the_way
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.joints import AXES, broken, track_of
 from wsim.judge.evidence.motion import FLOAT32
@@ -45,6 +47,14 @@ class Law:
     error: Floats  # (T - 1,) share of the force that the frames do not tell
     known: Bools  # (T - 1,) whether the frames tell it
     most: float = np.inf  # what it may be at most where they do not [N or N m]
+    mean: Floats | None = None  # (T - 1,) what its joint's way tells of it there, where that is more [N or N m]
+    off: Floats | None = None  # (T - 1,) by how much that may be off; inf where the way tells nothing
+
+    @property
+    def beside(self) -> Floats:
+        """What it may be at most beside what is given of it, either way, (T - 1,) [N or N m]."""
+        bound = np.full(len(self.known), self.most) if self.off is None else np.minimum(self.most, self.off)
+        return np.where(self.known, 0.0, bound)
 
 
 @dataclass(frozen=True)
@@ -101,6 +111,7 @@ class Laws:
         for joint in self._evidence.world.joints:
             if joint.drive is not None and self.joints[joint.prim]:
                 self._refine_drive(joint, self.joints[joint.prim][0], total, wrong)
+                self._on_the_way(joint, self.joints[joint.prim][0], total)
         return total, wrong
 
     def _refine_drive(self, joint: Joint, law: Law, total: Floats, wrong: Floats) -> None:
@@ -126,6 +137,35 @@ class Laws:
                 middle = 0.5 * (way[1:] + way[:-1])
                 total[:, row] += more[:, None] * middle
                 wrong[:, row] += unsure[:, None] * np.linalg.norm(middle.reshape(-1, 2, 3), axis=2)
+
+    def _on_the_way(self, joint: Joint, law: Law, total: Floats) -> None:
+        """What a drive gives in the mean where frames do not tell it and the way of its joint does."""
+        if law.mean is None:
+            return
+        along = self._along(joint)
+        unit = self._law(*along.acting(np.ones(len(along.rate))), (0.0, 0.0), along.loose)
+        for row, way in ((law.one, unit.back), (law.two, unit.wrench)):
+            if row >= 0:
+                total[:, row] += law.mean[:, None] * 0.5 * (way[1:] + way[:-1])
+
+    def _told_by_way(self, joint: Joint, law: Law) -> Law:
+        """A drive's law with what the joint's way tells of its mean where frames do not; a rotor takes its gain."""
+        found, drive, motion, place = self.mean_of_drive(joint), joint.drive, self._motion, self.position(joint)
+        if found is None or place is None or drive is None or not drive.told or self._set:
+            return law
+        turns, rate = joint.kind == "revolute", self.rate(joint)
+        extent = np.pi if turns else float(np.abs(motion.com).max(initial=0.0))
+        late = 0.0 if motion.step else self._step(law)
+        course = Course(place, rate, motion.h, turns, extent, self._mobility.get(joint.prim, 0.0), late)
+        off = off_the_way(drive, course, *found)
+        tells = ~law.known & (off < law.most) & ~broken(self._evidence, joint)[1:]
+        rotor = np.where(law.known, 0.0, joint.armature * np.diff(rate) / motion.h)
+        return replace(law, mean=np.where(tells, found[0], 0.0) - rotor, off=np.where(tells, off, law.most))
+
+    @cached_property
+    def _mobility(self) -> dict[str, float]:
+        """By how much a unit effort speeds up each joint at most [1/kg or 1/(kg m^2)]."""
+        return mobilities(self._evidence)
 
     def effort(self, joint: Joint) -> Floats:
         """What the law of a joint's drive gives at each frame, as much as it can, (T,) [N or N m]."""
@@ -240,9 +280,13 @@ class Laws:
             return []
         along = self._along(joint)
         holds = ~broken(self._evidence, joint)[1:] & (joint.armature == 0.0)
-        laws = [] if joint.drive is None else [self._drive(joint.drive, along, track.position, holds)]
+        laws = []
+        if joint.drive is not None:
+            laws = [self._told_by_way(joint, self._drive(joint.drive, along, track.position, holds))]
         laws += [self._friction(joint.friction, along, holds)] if joint.friction > 0.0 else []
-        return [replace(law, most=np.inf) for law in laws] if joint.armature else laws  # what a rotor takes is not told
+        if joint.armature and joint.drive is None:  # what its rotor takes is not told
+            return [replace(law, most=np.inf) for law in laws]
+        return laws
 
     def _drive(self, drive: Motor, along: _Along, position: Floats, holds: Bools) -> Law:
         effort = _effort(drive, position, along.rate)

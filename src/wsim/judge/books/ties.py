@@ -67,7 +67,7 @@ class Ties:
         most = np.zeros(len(none))
         for law in laws:
             free |= ~law.known
-            most += np.where(law.known, 0.0, law.most)
+            most += law.beside
         untold = joint.prim in self._gears.untold
         if joint.kind == "spherical":  # no law for what turns a ball joint, nor where its stop is
             untold |= joint.drive is not None or joint.friction > 0.0 or joint.high is not None

@@ -1,0 +1,68 @@
+"""What a joint's way tells of its drive's mean force where frames are too far apart to tell the force all along.
+
+A damper gives its constant times how far the joint goes, however fast it goes there: a mode that it damps need not be
+resolved, only one that the stiffness makes swing, of phase p between frames. Its mean both ends' places and rates leave
+to p^4 / 720 of its amplitude (`jolts.mean_force`). Where the joint goes farther than rates and accelerations have it,
+or less far, it may have gone by as much at once, at any time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wsim.judge.evidence.motion import FLOAT32
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wsim.scene.world import Motor
+
+    Floats = NDArray[np.float64]
+    Bools = NDArray[np.bool_]
+
+FOLLOWED = 2.0  # of the phase that a drive's stiffness gives its mechanism [rad]: faster ones are not followed
+BEYOND = 250.0  # p^2 / 250 of the fastest h tells p^4 / 720 of an amplitude from its rates, p^2 / 2 of it at least
+QUARTER = 0.5 * np.pi  # [rad] in an interval: how far a hinge goes that turns by more is not known from its ends
+
+
+@dataclass(frozen=True)
+class Course:
+    """How a joint with a drive goes, of T frames."""
+
+    place: Floats  # (T,) [rad or m]
+    rate: Floats  # (T,)
+    h: Floats  # (T - 1,) [s]
+    turns: bool  # a hinge's
+    extent: float  # the largest number that its place is the rounded difference of [rad or m]
+    mobility: float  # by how much a unit effort speeds it up at most [1/kg or 1/(kg m^2)]
+    late: float  # the time step, where the law's mean has not allowed for it yet [s]
+
+
+def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: Bools) -> Floats:
+    """By how much a drive's mean force may be off what its joint's way tells, (T - 1,) [N or N m]; inf: by any.
+
+    Args:
+        drive: Its law.
+        course: How its joint goes.
+        mean: What the way tells, (T - 1,).
+        may: By how much that is off where the rate changes evenly, or jumps (`Laws.mean_of_drive`).
+        below: Where it is below its greatest effort at both ends.
+    """
+    if len(course.h) < 2:
+        return np.full(len(course.h), np.inf)
+    h, rate, extent = course.h, course.rate, 8.0 * FLOAT32 * course.extent
+    fastest = np.maximum(np.abs(rate[1:]), np.abs(rate[:-1]))
+    bend = h / 12.0 * np.diff(np.gradient(rate))
+    stray = np.abs(np.diff(course.place) - 0.5 * (rate[1:] + rate[:-1]) * h + bend)
+    phase = np.sqrt(drive.stiffness * course.mobility) * h
+    off = may + drive.stiffness * (stray + phase**2 / BEYOND * fastest * h + extent)
+    off = off + drive.damping / h * (0.5 * course.late * np.abs(np.diff(rate)) + extent)
+    tells = phase < FOLLOWED
+    if course.turns:
+        tells &= fastest * h < QUARTER
+    if drive.max_effort is not None:  # what goes to and fro may be at its most meanwhile
+        tells &= below & (np.abs(mean) + off + drive.damping * stray / h < drive.max_effort)
+    return np.asarray(np.where(tells, off, np.inf))

@@ -1,0 +1,124 @@
+"""What a joint's way tells of its drive: by closed form, and on vehicles and robots whose ties nobody recorded."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.judge.theory import ask
+from wsim.judge.books import jolts
+from wsim.judge.books.mobility import mobilities
+from wsim.judge.books.ways import Course, off_the_way
+from wsim.judge.checks.forces import CheckForces
+from wsim.judge.evidence.evidence import Evidence
+from wsim.recording import read
+from wsim.scene import Scene
+from wsim.scene.world import Motor
+from wsim.sim import Simulation
+
+H, FRAMES = 1.0 / 60.0, 30
+
+
+def told(drive, place, rate, mobility):
+    """What the way tells of a drive that is set to 0, and by how much that may be off."""
+    h = np.full(len(place) - 1, H)
+    mean, may = jolts.mean_force((drive.stiffness, drive.damping), place, rate, h, 0.0)
+    course = Course(place, rate, h, False, 1.0, mobility, 0.0)
+    return -mean, off_the_way(drive, course, -mean, may, np.full(len(h), True))
+
+
+@pytest.mark.parametrize("phase", [0.3, 1.0, 1.9])
+def test_a_mode_that_swings_between_frames_is_told(phase):
+    omega, drive = phase / H, Motor(stiffness=100.0, damping=0.0)
+    t = np.arange(FRAMES) * H + 0.003
+    mean, off = told(drive, np.sin(omega * t), omega * np.cos(omega * t), omega**2 / 100.0)
+    true = -100.0 * np.diff(-np.cos(omega * t)) / phase
+    assert np.all(np.abs(mean - true) <= off)
+    assert phase > 1.0 or np.all(off < 0.1 * 100.0)
+
+
+def test_a_mode_that_is_faster_is_not():
+    omega, t = 2.2 / H, np.arange(FRAMES) * H
+    _, off = told(Motor(stiffness=100.0), np.sin(omega * t), omega * np.cos(omega * t), omega**2 / 100.0)
+    assert np.all(np.isinf(off))
+
+
+def test_what_is_damped_away_within_an_interval_is_told_by_how_far_it_went():
+    """A wheel that a step throws up, by 2 m/s within the interval, whose damper takes it back in a quarter of it."""
+    fades, speed, when = 0.25 * H, 2.0, 10.3 * H
+    t = np.arange(FRAMES) * H
+    since = np.maximum(t - when, 0.0)
+    place, rate = speed * fades * (1.0 - np.exp(-since / fades)), speed * np.exp(-since / fades) * (t > when)
+    drive = Motor(stiffness=25e3, damping=36.0 / fades)
+    mean, off = told(drive, place, rate, 1.0 / 36.0)
+    whole = np.where(t > when, speed * fades * (since - fades * (1.0 - np.exp(-since / fades))), 0.0)
+    true = -25e3 * np.diff(whole) / H - drive.damping * np.diff(place) / H
+    assert np.all(np.abs(mean - true) <= off)
+    assert np.all(off[:9] < 1e-3 * 36.0 * speed / H)
+
+
+# ---- worlds
+def car(scene):
+    scene.simulation(duration=0.7, frame_rate=60)
+    scene.ground()
+    scene.vehicle("car", speed=5.0)
+
+
+def arm(scene):
+    scene.simulation(duration=0.7, frame_rate=60)
+    scene.ground()
+    robot = scene.robot("arm", "desk_arm", joints={"lift": 10.0, "elbow": 80.0, "wrist": 30.0})
+    robot.drive("lift", position=0.0)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    made = {}
+    for build in (car, arm):
+        folder, scene = tmp_path_factory.mktemp(build.__name__), Scene()
+        build(scene)
+        Simulation(scene.save(folder / "stage.usda"), device="cpu").run(folder / "r.rrd")
+        run = read(folder / "r.rrd")
+        world = run.world.model_copy(update={"time_step": 0.0})
+        made[build.__name__] = replace(run, world=world, metadata={"complete": True}, contacts=None, ties=None)
+    return made
+
+
+def heavier(run, prim, share):
+    """What its world says to weigh more: up to there a share of that weight is lifted by nothing."""
+    bodies = [
+        body.model_copy(update={"mass": body.mass / (1.0 - share)}) if body.prim == prim else body
+        for body in run.world.bodies
+    ]
+    return replace(run, world=run.world.model_copy(update={"bodies": bodies}))
+
+
+def accepted(run):
+    return all(finding.passed for finding in ask(CheckForces(), run))
+
+
+@pytest.mark.parametrize("name", ["car", "arm"])
+def test_sound_runs_are_accepted(runs, name):
+    assert accepted(runs[name])
+
+
+@pytest.mark.parametrize(
+    ("name", "prim", "share"),
+    [("car", "/World/car", 0.15), ("car", "/World/car", 0.05), ("arm", "/World/arm/forearm", 0.15),
+     ("arm", "/World/arm/hand", 0.15)],
+)  # fmt: skip
+def test_a_lift_by_nothing_is_found_where_no_tie_was_recorded(runs, name, prim, share):
+    """Its springs' and its motors' laws tell what they carry, though what they damp is faster than the frames."""
+    assert not accepted(heavier(runs[name], prim, share))
+
+
+def test_a_joint_moves_what_hangs_on_it_and_no_less(runs):
+    """A wheel's spring its hub and the wheel, a little less than 36 kg as the body gives way; an arm's lift its all."""
+    of_car, of_arm = (mobilities(Evidence(runs[name])) for name in ("car", "arm"))
+    body = 1300.0 - 4 * 36.0
+    assert 1.0 / of_car["/World/car_spring_rear_left"] == pytest.approx(36.0, rel=0.15)
+    assert 1.0 / of_car["/World/car_spring_rear_left"] > 1.0 / (1.0 / 36.0 + 4.0 / body)
+    rotor = next(joint for joint in runs["arm"].world.joints if joint.prim.endswith("lift")).armature
+    assert 1.0 / of_arm["/World/arm/joints/lift"] > rotor + 1.4 * 0.12**2 + 0.8 * 0.1**2
+    assert math.isfinite(of_arm["/World/arm/joints/roll"])
