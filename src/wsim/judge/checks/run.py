@@ -178,7 +178,7 @@ class CheckPlanObjects(Check):
             kind = item.role if item.role in ("container", "fluid") else item.state
             if prim not in everything:
                 found.append(self.failed(f"The plan's {item.name} is not in the world: no {prim}", prim=prim))
-            elif prim not in has[kind]:
+            elif not (any(within(each, prim) for each in has[kind]) if item.assembled else prim in has[kind]):
                 actual = next((name for name, prims in has.items() if prim in prims), "something else")
                 message = f"{prim} is {actual}; the plan has it as {kind}"
                 found.append(self.failed(message, prim=prim))
@@ -217,7 +217,7 @@ class CheckPlanControl(Check):
             return []
         driven = {joint.prim for joint in evidence.world.joints if joint.drive is not None}
         asked = [
-            item.name
+            f"{item.name}, which a policy is to walk" if each.kind == "policy" else item.name
             for item in plan.objects
             for each in item.registration.actuation
             if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
