@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from tests.judge.theory import ball, box, ground, record, slab, times, with_world
+from wsim.assets.policies import Observation, PolicySpec
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import Signals, evaluate, parse
+from wsim.judge.repair.walking import by_policy
 from wsim.recording.contacts import ContactTrack
-from wsim.scene.world import Joint
+from wsim.scene.world import Joint, Motor, Policy
 
 T = times(1.0, 10.0)
 # Shapes as a recording counts them: of the leg, the base and a ball, then of the ground and a wall.
@@ -68,3 +70,22 @@ def test_what_presses_on_any_part_of_it_is_told_by_its_force():
 def test_without_contacts_nothing_is_said():
     with pytest.raises(MissingError, match="has no contacts"):
         asked("touches_only(dog, ground)", robot([], contacts=False))
+
+
+def test_what_to_change_is_its_policy_or_that_it_has_none():
+    """A base with two servos on it walks by a policy alone; what has none is told to have one."""
+    servos = [
+        Joint(prim=f"/World/dog/joints/{side}", kind="revolute", parent="/World/dog/base", child="/World/dog/leg",
+              drive=Motor(stiffness=20.0, damping=0.5))
+        for side in ("left", "right")
+    ]  # fmt: skip
+    evidence = robot([]).evidence
+    none = Evidence(with_world(evidence.recording, joints=servos))
+    walks = Policy(
+        prim="/World/walk", base="/World/dog/base", joints=[], network="", sha256="", route=[(1.0, 0.0, 0.0)],
+        spec=PolicySpec(joints=["hip"], rate=50.0, observations=[Observation(of="command")]),
+    )  # fmt: skip
+    walked = Evidence(with_world(evidence.recording, joints=servos, policies=[walks]))
+    found = [by_policy(each, "/World/dog/base") for each in (none, walked)]
+    assert [each.sentence for each in found] == ["add policy of /World/dog", "change route of /World/walk"]
+    assert by_policy(walked, "/World/ball") is None and by_policy(evidence, "/World/dog/base") is None

@@ -217,13 +217,22 @@ class CheckPlanControl(Check):
             return []
         driven = {joint.prim for joint in evidence.world.joints if joint.drive is not None}
         asked = [
-            f"{item.name}, which a policy is to walk" if each.kind == "policy" else item.name
+            item.name
             for item in plan.objects
             for each in item.registration.actuation
             if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
             if controlled or not _by_policy(evidence, item.name, each.joint)
         ]
         asked += [step.title for step in plan.steps if step.asks_for_control]
+        idle = [
+            item.name
+            for item in plan.objects
+            if not controlled and any(each.policy for each in item.registration.actuation)
+            and not _by_policy(evidence, item.name, None)
+        ]  # fmt: skip
+        if idle:
+            target = RepairTarget(kind="controller", prim=evidence.prim(idle[0]), parameter="policy", direction="add")
+            return [self.failed(f"The plan lets a policy walk {idle[0]}, and none does", target=target)]
         if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
         message = (
