@@ -64,7 +64,7 @@ def test_what_must_happen_is_measured(made) -> None:
     assert asked[0].count(" then ") == len(ROUTE) - 2 and asked[0].count("within 0.25 m") == len(ROUTE) - 1
     assert asked[1] == "touches_only(go2, ground)"
     assert "upright(go2, within 20 deg)" in asked[2]
-    assert "stays_within(go2, (-2.9, -1.6, 0.32), radius 0.1 m)" in asked[3]
+    assert asked[3] == "finally[2](stays_within(go2, (-2.9, -1.6, 0.32), radius 0.1 m))"
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from wsim.assets.sources import sources
 from wsim.errors import UserError
 from wsim.plan.schema import Actuation, FromRobot, Objective, PlanObject, Pose, Registration
 from wsim.plan.schema.formula_contact import TouchesOnly
-from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, TurnedBetween, Upright
+from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, Upright
 from wsim.plan.schema.nodes import Always, Finally, Then
 from wsim.rules.cast import Cast
 from wsim.rules.grammar import NotUnderstood
@@ -17,8 +17,8 @@ from wsim.rules.scenes.office import ROUTE, cameras, check_way, office
 from wsim.rules.scenes.part import Part
 
 SPEED, LEAST_SPEED, MOST_SPEED = 0.8, 0.2, 0.9  # [m/s]: usual, and what the prompt may give
-SLOWER, SETTLES = 1.15, 5.0  # corners take time, and so does standing at the end [s]
-NEAR, HOME, TURNED = 0.25, 0.10, 10.0  # of a way-point, of the start at the end [m], and its heading then [deg]
+SLOWER, SETTLES, STANDS = 1.15, 5.0, 2.0  # corners take time; to come to stand; and for how long it stands [s]
+NEAR, HOME = 0.25, 0.10  # of a way-point, and of the start at the end [m]
 UPRIGHT, BOBS = 20.0, 0.08  # how far it may lean [deg], and rise or give on its legs [m]
 FRAME_RATE = 25.0  # [1/s]: half as often as a walking policy is asked
 
@@ -84,7 +84,6 @@ def _objectives(robot: str, height: float) -> list[Objective]:
          Then(events=visits, windows=(None,) * (len(visits) - 1))),
         ("It touches nothing but the floor.", TouchesOnly(object=robot, objects=("ground",))),
         ("It stays up.", Upright(object=robot, within=UPRIGHT) & stands),
-        (f"It ends where it began, to {100 * HOME:g} cm, and looks the same way.",
-         Finally(of=back & TurnedBetween(object=robot, axis="z", low=-TURNED, high=TURNED))),
+        (f"It ends where it began, to {100 * HOME:g} cm.", Finally(of=back, seconds=STANDS)),
     )  # fmt: skip
     return [Objective(kind="formula", object=robot, sentence=text, formula=formula) for text, formula in asked]
