@@ -64,7 +64,7 @@ def build(scene: Scene) -> None:
     if scene.param("walks", 1.0, low=0.0, high=1.0) > 0.5:
         scene.policy("patrol", dog, "go2_walk", route=ROUTE, speed=SPEED)
     scene.light("sun", direction=(-0.3, 0.5, -1.0))
-    scene.camera("above", eye=(0.0, -5.2, 9.8), target=(0.0, -0.1, 0.0), fov=56.0, width=800, height=450)
+    scene.camera("above", eye=(0.0, -3.4, 10.6), target=(0.0, -0.1, 0.0), fov=56.0, width=800, height=450)
     scene.camera("desks", eye=(-0.7, -2.9, 2.1), target=(-3.2, 0.6, 0.3), fov=75.0)
     scene.camera("meeting", eye=(4.7, -2.9, 2.1), target=(1.3, 0.0, 0.3), fov=75.0)
 

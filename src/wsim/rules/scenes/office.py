@@ -87,7 +87,7 @@ def cameras() -> list[CameraPlan]:
     """From above, and into each room from a corner; there is no ceiling."""
     inside, top = DEPTH / 2 - 0.3, HEIGHT - 0.1
     return [
-        CameraPlan(name="above", eye=(0.0, -5.6, 11.4), target=(0.0, -0.1, 0.0)),
+        CameraPlan(name="above", eye=(0.0, -3.6, 12.0), target=(0.0, -0.1, 0.0)),
         CameraPlan(name="desks", eye=(PARTITION - 0.3, -inside, top), target=(-3.1, 0.5, 0.2)),
         CameraPlan(name="meeting", eye=(LENGTH / 2 - 0.3, -inside, top), target=(1.4, 0.2, 0.2)),
     ]
