@@ -20,6 +20,7 @@ from wsim.assets.wheels import fetch
 from wsim.intake.model import IntakeError
 from wsim.intake.pull import complete, pull
 from wsim.intake.robots import TakenIn
+from wsim.plan.store import load
 from wsim.recording.reader import read
 from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
@@ -202,3 +203,19 @@ def test_the_example_of_a_route_builds(go2: TakenIn, tmp_path: Path) -> None:
     assert iteration.build().ok
     (policy,) = describe(iteration.stage).policies
     assert [each[:2] for each in policy.route] == [(1.6, 0.0), (1.6, 1.6), (0.0, 1.6)]
+
+
+def test_the_example_of_an_office_builds_what_its_plan_has(go2: TakenIn, tmp_path: Path) -> None:
+    """Its objects are the plan's, and its route is; that the walk is accepted takes minutes: docs/robots.md."""
+    examples = Path(__file__).parents[2] / "examples"
+    plan = load(examples / "plans" / "go2_office.json")
+    iteration = Iteration.of(examples / "robots" / "office_patrol.py", tmp_path, plan)
+    assert iteration.build().ok
+    world = describe(iteration.stage)
+    made = {each.prim.split("/")[2] for each in (*world.bodies, *world.statics)}
+    assert made == {item.name for item in plan.objects}
+    (walk,) = plan.object("go2").registration.actuation
+    (policy,) = world.policies
+    assert [each[:2] for each in policy.route] == [point[:2] for point in walk.route]
+    assert policy.speed == walk.speed
+    assert sum(item.primitive == "asset" for item in plan.objects) == 26

@@ -42,7 +42,12 @@ def test_what_a_prompt_becomes(expected):
     [
         ("A giraffe stands on a table", ["giraffe"]),
         ("A ball and a trampoline", ["trampoline"]),
-        ("A robot pushes a box", ["robot"]),
+        ("A giant pushes a box", ["giant"]),
+        ("A robot pushes a box", ["a robot pushes a box"]),
+        ("A robot stands on the ground", ["a robot"]),
+        ("A robot patrols a ball", ["a robot patrols a ball"]),
+        ("An office with a ball", ["an office"]),
+        ("A ball rolls and comes back", ["a ball comes back"]),
         ("A wooden bal on the floor", ["bal"]),
         ("A velvet cube rests on the ground", ["velvet"]),
         ("A turquoise ball", ["turquoise"]),
@@ -96,6 +101,9 @@ def test_a_word_that_is_nearly_known_is_suggested():
         ("A ball rolls down a ramp and a cube floats in a tank", "without a tank"),
         ("Water pours into a bowl and a ball falls into a bucket", "empty vessel"),
         ("A ball rests on the ground for 500 seconds", "outside 0.1 to 60"),
+        ("A robot dog patrols an office and a ball rolls", "'a ball': .* furnishes an office itself"),
+        ("Two robot dogs patrol an office", "'two robot dogs': .* for one robot"),
+        ("A robot dog patrols an office at 3 m/s", "3 m/s is outside 0.2 to 0.9"),
         ("A red ball to the left of a blue ball and the blue ball to the left of the red ball", "in a circle"),
     ],
 )

@@ -53,6 +53,9 @@ class Source(_Model):
     unpack: list[str]  # patterns of the files that are taken
     licenses: list[str]  # files that must stay with it
     robot: str  # its URDF or MJCF
+    called: list[str] = Field(default_factory=list)  # what people call it, in small letters
+    size: tuple[float, float, float] | None = None  # of the box round it in its pose [m]
+    height: float = 0.0  # of its base's origin then [m]
     servos: dict[str, Servo] = Field(default_factory=dict)
     poses: dict[str, dict[str, float]] = Field(default_factory=dict)
     policies: dict[str, PolicyFile] = Field(default_factory=dict)  # by id

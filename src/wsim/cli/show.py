@@ -115,6 +115,8 @@ def _objects(plan: Plan) -> Table:
         what = item.primitive
         if item.construction.kind == "asset":
             what = f"asset {item.construction.asset}"
+        elif item.construction.kind == "robot":
+            what = f"robot {item.construction.robot}"
         elif item.construction.kind == "external":
             what = f"{item.construction.candidate} (for now: {item.primitive})"
         place = "" if item.pose is None else ", ".join(f"{x:.3g}" for x in item.pose.position)

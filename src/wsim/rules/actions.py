@@ -7,6 +7,7 @@ from collections.abc import Callable
 from wsim.errors import UserError
 from wsim.rules.cast import CARRIERS, Beside, Thing
 from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
+from wsim.rules.lexicon import lexicon
 from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import arrange, common, do, hang, part, put, put_inside, stand, support, where
 from wsim.rules.reader import Reader
@@ -310,6 +311,26 @@ def _tilt(_reader: Reader, thing: Thing, action: Action) -> None:
     do(thing, "tilt")
 
 
+# ---- on its legs
+def _patrol(reader: Reader, thing: Thing, action: Action) -> None:
+    """Walk round an office."""
+    target = action.target
+    if thing.noun.family != "robot" or target is None or lexicon().nouns[target.kind].family != "office":
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a robot patrol an office, but not so:")
+    for place in action.places:
+        if place.preposition != "speed" or not common(reader, thing, place):
+            raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
+    put(thing, "ground")
+    do(thing, "patrol")
+    reader.cast.office = target.words
+
+
+def _return(_reader: Reader, thing: Thing, action: Action) -> None:
+    """Come back, which every patrol does."""
+    if "patrol" not in thing.does or action.places:
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a robot come back from a patrol, but not this:")
+
+
 # ---- how it goes on
 def _stop(reader: Reader, thing: Thing, action: Action) -> None:
     """Slide towards something, and stand still before it."""
@@ -380,7 +401,7 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "topple": _topple, "fall": _fall, "drop": _fall, "bounce": _bounce,
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
-    "carry": _carry, "move": _move, "ride": _ride, "run": _run,
+    "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return,
     "stop": _stop, "climb": _come_again, "die": _come_again,
     "stack": _stack, "face": _face, "rest": _rest, "hold": _refused, "pour": _refused,
 }  # fmt: skip

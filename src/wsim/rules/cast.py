@@ -100,6 +100,7 @@ class Cast:
     tank: str | None = None  # the prompt's words for it, if it was named
     water: str | None = None
     pour: Pour | None = None
+    office: str | None = None  # the prompt's words for one that is patrolled
     duration: float | None = None  # [s], if it was given
     assumptions: list[Assumption] = field(default_factory=list)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -11,11 +12,12 @@ from typing import Any, Literal
 
 from wsim.assets import Asset, load_catalogue
 from wsim.assets.folders import stamp
+from wsim.assets.sources import sources
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Material
 
-Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw"]
+Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw", "robot", "office"]
 Words = tuple[str, ...]
 BALL = "sport/ball"  # the catalogue's category of what is round and rolls
 _KEYS = {
@@ -134,6 +136,7 @@ def _lexicon(_assets: tuple[str, int]) -> Lexicon:
     _groups(made, nouns)
     _nouns(made, nouns)
     _others(made)
+    _robots(made)
     return made
 
 
@@ -305,3 +308,11 @@ def _others(made: Lexicon) -> None:
             size = _built(asset, shape, None)
             made.nouns[asset.id] = Noun(asset.id, "solid", shape, size, size, length, "wood", asset.mass, asset.id)
             _name(made, asset.id, list(_names(asset, made, taken)), ())
+
+
+def _robots(made: Lexicon) -> None:
+    """Robots that can be pulled, with a policy that walks them; a number in a name is a word of its own: "go 2"."""
+    for id, source in sources().items():
+        if source.policies and source.size is not None:
+            made.nouns[id] = Noun(id, "robot", "box", source.size, source.size, "x")
+            _name(made, id, [re.sub(r"(?<=[a-z])(?=\d)", " ", called) for called in source.called], ())

@@ -140,7 +140,9 @@ def _check_water(cast: Cast) -> None:
 def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
-    moving = thing.target is not None or {"roll", "slide", "push", "throw", "meet", "ride", "run"} & {*thing.does}
+    moving = thing.target is not None or {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol"} & {
+        *thing.does
+    }
     carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
     posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
     ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")

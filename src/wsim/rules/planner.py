@@ -27,6 +27,7 @@ from wsim.rules.scenes.incline import build_inclines
 from wsim.rules.scenes.mechanisms import build_pendulum, build_seesaw
 from wsim.rules.scenes.motion import ground_object
 from wsim.rules.scenes.part import Part
+from wsim.rules.scenes.patrol import build_patrol
 from wsim.rules.scenes.pour import build_pour
 from wsim.rules.scenes.tank import build_tank
 from wsim.rules.steps import steps
@@ -47,11 +48,13 @@ def plan(prompt: str) -> Plan:
     cast = understand(parse(prompt))
     scene = _scene(cast)
     duration = _duration(cast, scene)
-    _note_what_is_common(cast, prompt, duration)
+    _note_what_is_common(cast, prompt, duration, scene)
     common = {
         "title": " ".join(prompt.split()).rstrip("."),
         "prompt": prompt,
-        "simulation": SimulationPlan(duration=duration, spacing=scene.spacing, frame_rate=FRAME_RATE),
+        "simulation": SimulationPlan(
+            duration=duration, spacing=scene.spacing, frame_rate=scene.frame_rate or FRAME_RATE
+        ),
     }
     placed = layout(Plan(objects=scene.objects, **common))
     whole = Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common)
@@ -60,7 +63,7 @@ def plan(prompt: str) -> Plan:
             **whole.model_dump(),
             "contacts": contacts(cast, scene.names, whole),
             "objectives": scene.objectives,
-            "cameras": cameras(whole, above=scene.surface, goes=scene.goes),
+            "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
             "assumptions": cast.assumptions,
         }
@@ -72,7 +75,7 @@ def _scene(cast: Cast) -> Part:
     scene = Part(objects=[ground_object()])
     if cast.wet:
         scene.add(build_tank(cast, taken))
-    for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw):
+    for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw, build_patrol):
         made = build(cast, taken)
         if made.objects and cast.wet:
             raise UserError(
@@ -94,14 +97,16 @@ def _duration(cast: Cast, scene: Part) -> float:
     return cast.duration
 
 
-def _note_what_is_common(cast: Cast, prompt: str, duration: float) -> None:
+def _note_what_is_common(cast: Cast, prompt: str, duration: float, scene: Part) -> None:
     words = re.findall(r"[a-z]+", prompt.lower())
     if not set(words) & set(lexicon().words_of("GROUND")):
         cast.assume("scene", "on level ground", "something has to carry it")
     if cast.duration is None:
-        cast.assume("scene", f"{duration:g} s long", "time to come to rest; the prompt gives no duration")
+        what = "the way, and time" if scene.cameras else "time"
+        cast.assume("scene", f"{duration:g} s long", f"{what} to come to rest; the prompt gives no duration")
     if "then" in words:
         cast.assume(
             "scene", "everything starts at once", "'then' gives no time, and the builtin planner schedules nothing"
         )
-    cast.assume("cameras", "side and top", "the prompt names no view")
+    views = ", ".join(camera.name for camera in scene.cameras) or "side and top"
+    cast.assume("cameras", views, "the prompt names no view")

@@ -116,7 +116,9 @@ def _objects(plan: Plan, name: str) -> list[str]:
     for item in plan.objects:
         if name not in ("", item.name):
             continue
-        what = f"asset {item.construction.asset}" if item.construction.kind == "asset" else item.primitive
+        made = item.construction
+        what = f"asset {made.asset}" if made.kind == "asset" else item.primitive
+        what = f"robot {made.robot}" if made.kind == "robot" else what
         pose, weight = item.pose, item.registration
         density = weight.density or (item.material.density if item.material and not weight.mass else None)
         rows.append([

@@ -7,22 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.judge.theory import ask
+from tests.judge.theory import ask, box, record, times, with_world
 from wsim.judge.checks.fluid import CheckPlanFluid
 from wsim.judge.checks.plan import CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_closed import CheckPlanClosed
 from wsim.judge.checks.plan_contacts import CheckPlanContacts
 from wsim.judge.checks.plan_joints import CheckPlanJoints
 from wsim.judge.checks.plan_motion import CheckPlanMotion
+from wsim.judge.checks.run import CheckPlanObjects
 from wsim.judge.decide import judge
-from wsim.plan.schema import Plan
+from wsim.plan.schema import FromRobot, Plan, PlanObject, Proxy
 from wsim.program.compose import compose
 from wsim.recording.reader import read
 from wsim.recording.recording import Recording
 from wsim.rules.planner import plan as make_plan
 from wsim.scene import Scene
 from wsim.scene.describe import describe
-from wsim.scene.world import World
+from wsim.scene.world import Joint, World
 from wsim.sim import Simulation
 
 CHECKS = (
@@ -221,3 +222,22 @@ def test_a_motor_that_drags_a_box_down_its_ramp_is_rejected(tmp_path: Path) -> N
         verdicts.append(judge(read(tmp_path / f"{len(verdicts)}.rrd"), plan))
     assert verdicts[0].status == "accepted" or {f.check for f in verdicts[0].failures} <= {"CheckInFrame", "CheckSeen"}
     assert {("CheckPlanJoints", "/World/rail")} <= {(f.check, f.prim) for f in verdicts[1].failures}
+
+
+def test_a_robot_has_links_of_its_own_and_must_be_there():
+    """Its links are bodies within it; a plan's robot that is not in the world, or something else, is found."""
+    made = Joint(prim="/World/dog/joints/hip", kind="revolute", parent="/World/dog/base", child="/World/dog/leg")
+    t = times(1.0)
+    dog = PlanObject(name="dog", role="robot", construction=FromRobot(robot="go2", size=(0.7, 0.4, 0.4)))
+    plan = Plan(title="A robot", prompt="A robot.", objects=[dog])
+
+    def world(*bodies):
+        return record([box(name) for name in bodies], np.zeros((len(t), 3 * len(bodies))), np.zeros((len(t), 3)), t)
+
+    there = with_world(world("dog/base", "dog/leg"), joints=[made])
+    assert all(each.passed for check in (CheckPlanObjects(), CheckPlanClosed()) for each in ask(check, there, plan))
+    (missing,) = (each for each in ask(CheckPlanObjects(), world("cat/base"), plan) if "dog" in each.message)
+    assert missing.message == "The plan's dog is not in the world: no /World/dog"
+    solid = dog.model_copy(update={"construction": Proxy(primitive="box", size=(0.7, 0.4, 0.4))})  # of one piece
+    asked = ask(CheckPlanClosed(), there, plan.model_copy(update={"objects": [solid]}))
+    assert [each.prim for each in asked if not each.passed] == ["/World/dog/base", "/World/dog/leg"]

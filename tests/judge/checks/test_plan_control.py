@@ -6,7 +6,7 @@ from tests.judge.checks.test_plan import a_plan, a_world
 from tests.judge.theory import ask, with_world
 from wsim.assets.policies import Observation, PolicySpec
 from wsim.judge.checks.run import CheckPlanControl
-from wsim.plan.schema import Step
+from wsim.plan.schema import FromRobot, Plan, PlanObject, Registration, Step
 from wsim.plan.schema.objects import Actuation
 from wsim.scene.world import Joint, Policy
 
@@ -46,3 +46,16 @@ def test_a_policy_excuses_nothing_that_it_does_not_move():
     assert not judged(["box"], "knee")
     assert not judged(["box", "ball"])
     assert not judged(["box"], "hip", [STEP]) and judged(["box"], "hip", [STEP], controlled=True)
+
+
+def test_a_policy_that_the_plan_names_and_the_world_lacks_is_said_so():
+    dog = PlanObject(
+        name="dog", role="robot", construction=FromRobot(robot="go2", size=(0.7, 0.4, 0.4)),
+        registration=Registration(actuation=[Actuation(kind="policy", policy="go2_walk")]),
+    )  # fmt: skip
+    plan = Plan(title="", prompt="", objects=[dog])
+    (found,) = ask(CheckPlanControl(), with_world(a_world(), policies=[]), plan)
+    assert (found.passed, found.message) == (False, "The plan lets a policy walk dog, and none does")
+    assert (found.target.kind, found.target.parameter, found.target.direction) == ("controller", "policy", "add")
+    walks = Policy(prim="/World/walk", base="/World/dog/base", joints=[], spec=SPEC, network="", sha256="")
+    assert all(each.passed for each in ask(CheckPlanControl(), with_world(a_world(), policies=[walks]), plan))

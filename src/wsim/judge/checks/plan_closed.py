@@ -43,8 +43,8 @@ def owner(evidence: Evidence, prim: str) -> PlanObject | None:
 
 
 def assembled(item: PlanObject | None) -> bool:
-    """Whether what stands for an object may have parts and joints of its own: an asset of the catalogue."""
-    return item is not None and item.primitive == "asset"
+    """Whether what stands for an object may have parts and joints of its own: an asset of the catalogue, or a robot."""
+    return item is not None and item.assembled
 
 
 @dataclass

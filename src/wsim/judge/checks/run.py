@@ -178,7 +178,7 @@ class CheckPlanObjects(Check):
             kind = item.role if item.role in ("container", "fluid") else item.state
             if prim not in everything:
                 found.append(self.failed(f"The plan's {item.name} is not in the world: no {prim}", prim=prim))
-            elif prim not in has[kind]:
+            elif not (any(within(each, prim) for each in has[kind]) if item.assembled else prim in has[kind]):
                 actual = next((name for name, prims in has.items() if prim in prims), "something else")
                 message = f"{prim} is {actual}; the plan has it as {kind}"
                 found.append(self.failed(message, prim=prim))
@@ -224,6 +224,15 @@ class CheckPlanControl(Check):
             if controlled or not _by_policy(evidence, item.name, each.joint)
         ]
         asked += [step.title for step in plan.steps if step.asks_for_control]
+        idle = [
+            item.name
+            for item in plan.objects
+            if not controlled and any(each.policy for each in item.registration.actuation)
+            and not _by_policy(evidence, item.name, None)
+        ]  # fmt: skip
+        if idle:
+            target = RepairTarget(kind="controller", prim=evidence.prim(idle[0]), parameter="policy", direction="add")
+            return [self.failed(f"The plan lets a policy walk {idle[0]}, and none does", target=target)]
         if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
         message = (

@@ -29,6 +29,7 @@ from wsim.plan.schema.formula_contact import (
     StopsBefore,
     SupportedBy,
     Touches,
+    TouchesOnly,
 )
 
 if TYPE_CHECKING:
@@ -73,6 +74,18 @@ def _never_touches(asked: NeverTouches, signals: Signals) -> list[Measure]:
             max(asked.clearance, FLOAT32 * size),  # what presses has no gap
             "m", asked.clearance or size, source, at_most=False,
         )
+    ]  # fmt: skip
+
+
+@measures(TouchesOnly)
+def _touches_only(asked: TouchesOnly, signals: Signals) -> list[Measure]:
+    """The force by which each other thing presses on it, as a mean since the frame before; it is to be none."""
+    prim, weight = signals.prim(asked.object), signals.weight(asked.object)
+    others = signals.pressing(asked.object, asked.objects)
+    return [
+        Measure(f"force by which {other} presses on it", prim, force, 0.0, "N", weight, "it touches nothing else",
+                expected=0.0)
+        for other, force in (others or {"anything else": np.zeros((1, len(signals.time)))}).items()
     ]  # fmt: skip
 
 
@@ -256,8 +269,8 @@ def _aim(asked: Touches, finding: Finding, evidence: Evidence) -> RepairTarget:
     return missed(evidence, finding.prim or "", evidence.prim(asked.ref), finding.value or 0.0)
 
 
-@mends(NeverTouches)
-def _part(asked: NeverTouches, finding: Finding, evidence: Evidence) -> RepairTarget:
+@mends(NeverTouches, TouchesOnly)
+def _part(asked: NeverTouches | TouchesOnly, finding: Finding, evidence: Evidence) -> RepairTarget:
     """Two that must not touch."""
     why = "it comes too near: start it farther off, or send it another way"
     return RepairTarget(

@@ -9,6 +9,7 @@ import numpy as np
 from wsim.judge.language.measure import MENDERS, Measure
 from wsim.judge.repair.drive import to_point
 from wsim.judge.repair.rule import longer_run
+from wsim.judge.repair.walking import by_policy
 from wsim.judge.verdict import Finding, RepairTarget
 from wsim.plan.schema.formula import Eventually, Formula, Ordered, Predicate
 from wsim.plan.schema.formula_place import Reaches
@@ -26,6 +27,9 @@ def target_of(
         return RepairTarget(kind="program", prim=finding.prim, parameter="order", direction="change", why=why)
     if finding.value is None and finding.expected is None:
         return None
+    walked = by_policy(evidence, finding.prim or "")
+    if walked is not None:
+        return walked
     driven = _driven_there(part, predicate, finding, evidence)
     late = _late(predicate, measure, finding, evidence)
     if late is not None:

@@ -152,11 +152,40 @@ class Signals:
         found[0] = found[1]
         return found[None]
 
+    def pressing(self, name: str, but: Sequence[str]) -> dict[str, Floats]:
+        """What else than some others presses on an object or a part of it: how hard, as a mean since the frame before.
+
+        Returns:
+            By the prim of each, (1, T) [N]: sums of sizes, which do not cancel; none of what never presses.
+
+        Raises:
+            MissingError: Contacts are not recorded, as those of many worlds at once are not.
+        """
+        contacts = self.evidence.recording.contacts if self.evidence is not None and self.count == 1 else None
+        if contacts is None:
+            raise MissingError("the recording has no contacts: what presses on what is not told")
+        own, allowed = self.parts(name), set().union(*(self.parts(each) for each in but))
+        owners = self._owners()
+        h = np.diff(self.time, prepend=2.0 * self.time[0] - self.time[1]) if len(self.time) > 1 else np.ones(1)
+        found: dict[str, Floats] = {}
+        for frame, pair, pressed in zip(contacts.frame, contacts.pair, contacts.pressed, strict=True):
+            one, two = owners[pair[0]], owners[pair[1]]
+            if (one in own) == (two in own) or pressed <= 0.0:
+                continue
+            other = two if one in own else one
+            if other not in allowed:
+                found.setdefault(other, np.zeros((1, len(self.time))))[0, frame] += pressed / h[frame]
+        return found
+
+    def _owners(self) -> list[str]:
+        """The prim that each shape is of, as a recording counts shapes."""
+        found = [body.prim for body in self.world.bodies for _ in body.shapes]
+        return found + [static.prim for static in self.world.statics for _ in static.shapes]
+
     def _pushes(self, prims: set[str], by: set[str]) -> NDArray[np.int8]:
         """Of each recorded push: 1 if it is on the first objects by the others, -1 if it is the other way, else 0."""
         assert self.evidence is not None and self.evidence.recording.contacts is not None
-        owners = [body.prim for body in self.world.bodies for _ in body.shapes]
-        owners += [static.prim for static in self.world.statics for _ in static.shapes]
+        owners = self._owners()
         ours, theirs = (np.array([owner in some for owner in owners], dtype=np.int8) for some in (prims, by))
         one, two = self.evidence.recording.contacts.pair.T
         return np.asarray(ours[two] * theirs[one] - ours[one] * theirs[two])
@@ -170,10 +199,23 @@ class Signals:
         return {bodies[k].prim for k in welded(everything, self.row(name))}
 
     # ---- who is who
+    def parts(self, name: str) -> set[str]:
+        """The prims of all bodies of an object that is made of several, as a robot is; else its own."""
+        whole = name if name.startswith("/") else Evidence.prim(name)
+        return {body.prim for body in self.world.bodies if body.prim.startswith(f"{whole}/")} or {self.prim(name)}
+
     def prim(self, name: str) -> str:
-        """The prim of a name; MissingError naming all that are known."""
+        """The prim of a name, of what is made of several bodies that of its base, which hangs on no other of them.
+
+        Raises:
+            MissingError: There is none; it names all that are known.
+        """
         prim = name if name.startswith("/") else Evidence.prim(name)
         world = self.world
+        within = [body.prim for body in world.bodies if body.prim.startswith(f"{prim}/")]
+        if within and all(body.prim != prim for body in world.bodies):
+            hung = {joint.child for joint in world.joints if joint.parent in within}
+            return next((each for each in within if each not in hung), within[0])
         known = [body.prim for body in world.bodies] + [static.prim for static in world.statics]
         known += [container.prim for container in world.containers] + [fluid.prim for fluid in world.fluids]
         if prim not in known:

@@ -1,7 +1,7 @@
 """What is known of one object alone: its box, its hollow, its surfaces, what of it is solid.
 
-An object's own frame has its origin where its pose is: the centre of the bottom face of a tank and of an asset, the
-centre of anything else.
+An object's own frame has its origin where its pose is: the centre of the bottom face of a tank, an asset and a robot,
+the centre of anything else.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from wsim.plan.layout.boxes import TOUCH, Box, Matrix, Solid, rotation
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.schema import FromAsset, PlanObject, Vec3
 
-STANDS = ("tank", "asset")  # their pose is the centre of the bottom face
+STANDS = ("tank", "asset", "robot")  # their pose is the centre of the bottom face
 UPRIGHT: Vec3 = (0.0, 0.0, 0.0)
 
 
@@ -28,7 +28,7 @@ def entry(item: PlanObject) -> Any:
 def local_size(item: PlanObject) -> Vec3:
     """Edge lengths of the bounding box before it is turned [m]; a tank's are its outer ones."""
     size = item.size
-    if item.primitive == "box" or (item.primitive == "fluid" and size):
+    if item.primitive in ("box", "robot") or (item.primitive == "fluid" and size):
         return (size[0], size[1], size[2])
     if item.primitive == "sphere":
         return (2 * size[0],) * 3

@@ -54,7 +54,7 @@ def with_size(item: PlanObject, size: tuple[float, ...]) -> PlanObject:
     """A copy whose primitive has this size [m]."""
     built = item.built
     if not isinstance(built, Proxy):
-        raise LayoutError(f"{item.name}: an asset's size is the catalogue's; use a box")
+        raise LayoutError(f"{item.name}: its size is that of its {built.kind}; use a box")
     size = tuple(round(value, 6) for value in size)
     proxy = built.model_copy(update={"size": size})
     made = item.construction

@@ -47,7 +47,9 @@ def _way_out(item: Any) -> str:
     if item["type"] == "missing":
         return "; add it"
     if item["type"] == "union_tag_not_found":
-        return '; add "kind": "proxy" (a primitive), "asset" (of the catalogue) or "external" (with a stand-in)'
+        return (
+            '; add "kind": "proxy" (a primitive), "asset" (of the catalogue), "robot" or "external" (with a stand-in)'
+        )
     if item["type"] == "string_unicode":
         return "; it holds half of a character (a lone surrogate, such as \\ud800); write the whole one"
     return ""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
+from pydantic import Field
+
 from wsim.plan.schema.base import NotNegative, Positive
 from wsim.plan.schema.predicate import Named, Predicate, quantity
 
@@ -76,6 +78,18 @@ class NeverTouches(Predicate):
     clearance: NotNegative = quantity("m", 0.0)
 
 
+class TouchesOnly(Predicate):
+    """Nothing presses on the object, or on a part of it, but some others, and its own parts."""
+
+    op: Literal["touches_only"] = "touches_only"
+    object: Named
+    objects: tuple[Named, ...] = Field(min_length=1, max_length=1000)
+
+    def objects_named(self) -> set[str]:
+        """The object, and what it may touch."""
+        return {self.object, *self.objects}
+
+
 class RollsWithoutSlip(Predicate):
     """The point of a round object that is on the ground, or on another object, stands still on it."""
 
@@ -137,6 +151,6 @@ class BouncesTo(Predicate):
 
 
 PREDICATES: tuple[type[Predicate], ...] = (
-    RestsOn, LiesOn, StaysOn, WeighsOn, SupportedBy, Touches, NeverTouches, RollsWithoutSlip, Settles, CollidesWith,
-    Pushes, StopsBefore, BouncesTo,
+    RestsOn, LiesOn, StaysOn, WeighsOn, SupportedBy, Touches, NeverTouches, TouchesOnly, RollsWithoutSlip, Settles,
+    CollidesWith, Pushes, StopsBefore, BouncesTo,
 )  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from wsim.defaults import FRICTION
-from wsim.plan.schema.base import Color, Name, NotNegative, Positive, Share, Sparse, Strict, Text, Vec3, Word
+from wsim.plan.schema.base import Color, Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
 from wsim.plan.schema.relations import Relation
 
 Role = Literal["rigid_body", "mechanism", "vehicle", "robot", "terrain", "fluid", "container", "sensor", "background"]
@@ -39,7 +39,7 @@ ROLE_PRIMITIVES: dict[str, tuple[str, ...]] = {
     "rigid_body": _SOLIDS,
     "mechanism": _SOLIDS,
     "vehicle": _SOLIDS,
-    "robot": _SOLIDS,
+    "robot": (*_SOLIDS, "robot"),
     "sensor": _SOLIDS,
     "background": _SOLIDS,
     "container": ("tank", *_SOLIDS),
@@ -85,6 +85,14 @@ class FromAsset(Strict):
     asset: Word  # its id
 
 
+class FromRobot(Strict):
+    """A robot that was taken in or can be pulled (docs/robots.md): links and joints of its own."""
+
+    kind: Literal["robot"] = "robot"
+    robot: Word  # its id
+    size: tuple[Positive, Positive, Positive]  # of the box round it as it stands [m]
+
+
 class External(Strict):
     """Something to be found elsewhere; until it is, the stand-in is built."""
 
@@ -93,7 +101,7 @@ class External(Strict):
     stand_in: Proxy
 
 
-Construction = Annotated[Proxy | FromAsset | External, Field(discriminator="kind")]
+Construction = Annotated[Proxy | FromAsset | FromRobot | External, Field(discriminator="kind")]
 
 
 class Material(Sparse):
@@ -121,6 +129,9 @@ class Pose(Strict):
     rotation_deg: Vec3 = (0.0, 0.0, 0.0)
 
 
+WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
+
+
 class Actuation(Strict):
     """What drives the object, or a joint of it."""
 
@@ -130,6 +141,20 @@ class Actuation(Strict):
         (), max_length=10_000
     )  # of the kind's unit: rad or m, per second, N, N m; a path's points
     words: Text = ""
+    policy: Word | None = None  # of the kind "policy": the id of the network that walks the robot
+    route: tuple[WayPoint, ...] = Field((), max_length=1000)  # along which it walks it, one after the other
+    speed: Positive | None = None  # along the route [m/s]
+
+    @model_validator(mode="after")
+    def _walks(self) -> Actuation:
+        if self.kind != "policy" and (self.policy or self.route or self.speed):
+            raise ValueError(f'policy, route and speed are of the kind "policy"; this is of {self.kind!r}')
+        return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without what only a policy has where it has it not, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if value or name not in ("policy", "route", "speed")}
 
 
 class Registration(Strict):
@@ -184,19 +209,19 @@ class PlanObject(Strict):
         )
 
     @property
-    def built(self) -> Proxy | FromAsset:
+    def built(self) -> Proxy | FromAsset | FromRobot:
         """What is built: the stand-in of what is external."""
         return self.construction.stand_in if isinstance(self.construction, External) else self.construction
 
     @property
     def primitive(self) -> str:
-        """The primitive that is built, or "asset"."""
-        return self.built.primitive if isinstance(self.built, Proxy) else "asset"
+        """The primitive that is built, or "asset" or "robot"."""
+        return self.built.primitive if isinstance(self.built, Proxy) else self.built.kind
 
     @property
     def size(self) -> tuple[float, ...]:
-        """The primitive's size [m]; empty for an asset."""
-        return self.built.size if isinstance(self.built, Proxy) else ()
+        """The primitive's size, or that of the box round a robot [m]; empty for an asset."""
+        return () if isinstance(self.built, FromAsset) else self.built.size
 
     @property
     def volume(self) -> float | None:
@@ -229,6 +254,11 @@ class PlanObject(Strict):
         return density * volume if density is not None and volume is not None else None
 
     @property
+    def assembled(self) -> bool:
+        """Whether what stands for it may have parts and joints of its own: an asset of the catalogue, or a robot."""
+        return self.primitive in ("asset", "robot")
+
+    @property
     def relations(self) -> list[Relation]:
         """Its rows of the topology."""
         return self.topology.relation
@@ -252,7 +282,7 @@ class PlanObject(Strict):
             raise ValueError(
                 f'{self.name}: state of a {self.role} is {" or ".join(ROLE_STATES[self.role])}; it is "{self.state}"'
             )
-        weighed = self.material or self.registration.mass or self.registration.density or self.primitive == "asset"
+        weighed = self.material or self.registration.mass or self.registration.density or self.assembled
         if self.state == "dynamic" and not weighed:
             raise ValueError(f'{self.name}: a dynamic body needs "material" with a name and a density in kg/m^3')
         if self.dimensions is not None and min(self.dimensions) <= 0.0:
@@ -274,6 +304,6 @@ class PlanObject(Strict):
             raise ValueError(f"{self.name}: rolling needs a velocity; give one, or leave rolling out")
         if self.rolling and self.angular_velocity_deg is not None:
             raise ValueError(f"{self.name}: rolling gives the spin; remove angular_velocity_deg, or rolling")
-        if self.surface_velocity is not None and self.primitive in ("fluid", "tank", "asset"):
+        if self.surface_velocity is not None and self.primitive in ("fluid", "tank", "asset", "robot"):
             raise ValueError(f"{self.name}: surface_velocity is of a solid; it is a {self.primitive}")
         return self

@@ -32,7 +32,7 @@ def _continues(group: list[PlanObject], item: PlanObject) -> bool:
         item.surface_velocity is not None
         or start not in ("0", "1")
         or item.name != f"{prefix}_{int(start) + len(group)}"
-        or item.primitive in ("tank", "fluid", "ground", "asset")
+        or item.primitive in ("tank", "fluid", "ground", "asset", "robot")
     ):
         return False
     return _alike(first) == _alike(item) and position(first) != position(item)

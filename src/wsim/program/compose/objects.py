@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from wsim.plan.schema import PlanObject
-from wsim.program.compose import assets, fluids, loops, shapes
+from wsim.program.compose import assets, fluids, loops, robots, shapes
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, tuple_of
 
@@ -22,7 +22,7 @@ def statements(draft: Draft) -> list[str]:
             continue
         item = group[0]
         target = "scene." + item.primitive
-        if item.name in containers | jointed:
+        if item.name in containers | jointed or robots.walked(item):
             draft.handles[item.name] = draft.variable(item.name)
             target = f"{draft.handles[item.name]} = {target}"
         lines += call(target, [f'"{item.name}"', *_arguments(draft, item)])
@@ -37,6 +37,8 @@ def _arguments(draft: Draft, item: PlanObject) -> list[str]:
         return fluids.arguments(draft, item)
     if item.primitive == "asset":
         return assets.arguments(item)
+    if item.primitive == "robot":
+        return robots.arguments(item)
     return shapes.arguments(draft, item)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wsim.defaults import FRAME_RATE
 from wsim.plan.schema import Plan, SimulationPlan
-from wsim.program.compose import cameras, contacts, joints, materials, objects, words
+from wsim.program.compose import cameras, contacts, joints, materials, objects, robots, words
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, number
 
@@ -28,6 +28,7 @@ def compose(plan: Plan) -> str:
         *materials.statements(draft),
         *objects.statements(draft),
         *joints.statements(draft),
+        *robots.policies(draft),
         *contacts.statements(plan),
         *cameras.statements(plan),
         *_simulation(plan.simulation),

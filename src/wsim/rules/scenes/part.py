@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from wsim.defaults import GRAVITY
-from wsim.plan.schema import Joint, Objective, PlanObject, Vec3
+from wsim.plan.schema import CameraPlan, Joint, Objective, PlanObject, Vec3
 
 MOST_SPEED = 50.0  # that the prompt may give [m/s]
 DIRECTIONS: dict[str, Vec3] = {
@@ -30,6 +30,8 @@ class Part:
         names: Of each thing's objects, lowest first, by the thing's identity.
         spacing: Of its fluid's particles [m]; 0 without a fluid.
         surface: Height that the side camera looks across [m].
+        cameras: Its own, where the usual two do not show it.
+        frame_rate: That it is to be recorded at [1/s]; 0 where it does not matter.
         goes: From its start to where else an object comes, which the cameras are to show, too [m].
     """
 
@@ -42,6 +44,8 @@ class Part:
     spacing: float = 0.0
     surface: float | None = None
     goes: dict[str, list[Vec3]] = field(default_factory=dict)
+    cameras: list[CameraPlan] = field(default_factory=list)
+    frame_rate: float = 0.0
 
     def add(self, other: Part) -> None:
         """Take in another part."""
@@ -52,6 +56,8 @@ class Part:
         self.duration = max(self.duration, other.duration)
         self.names |= other.names
         self.goes |= other.goes
+        self.cameras += other.cameras
+        self.frame_rate = max(self.frame_rate, other.frame_rate)
         self.spacing = self.spacing or other.spacing
         self.surface = self.surface if self.surface is not None else other.surface
 

@@ -1,0 +1,56 @@
+"""Arguments of `scene.robot`, and the policies that walk robots."""
+
+from __future__ import annotations
+
+from wsim.errors import UserError
+from wsim.plan.schema import FromRobot, PlanObject
+from wsim.program.compose.draft import Draft
+from wsim.program.compose.poses import position
+from wsim.program.source import call, number, tuple_of
+
+UPRIGHT = 1e-6  # [deg]: as far as a robot may lean
+
+
+def arguments(item: PlanObject) -> list[str]:
+    """All arguments but the name.
+
+    Raises:
+        UserError: If the plan gives it what is its own, or leans it.
+    """
+    weighed = item.registration.mass is not None or item.registration.density is not None
+    turn = item.pose.rotation_deg if item.pose is not None else (0.0, 0.0, 0.0)
+    for what, given in (
+        ("velocity", any(item.velocity)),
+        ("material", item.material is not None),
+        ("registration.mass or .density", weighed),
+        ('state "kinematic"', item.state == "kinematic"),
+        ("roll or pitch", max(abs(turn[0]), abs(turn[1])) > UPRIGHT),
+    ):
+        if given:
+            raise UserError(f"{item.name}: a robot stands at rest with its own {what}; remove it")
+    found = [f'"{item.built.robot}"' if isinstance(item.built, FromRobot) else ""]
+    found.append(f"position={tuple_of(position(item))}")
+    return [*found, *([f"yaw_deg={number(turn[2])}"] if turn[2] else [])]
+
+
+def walked(item: PlanObject) -> bool:
+    """Whether a policy walks it."""
+    return item.primitive == "robot" and any(each.policy for each in item.registration.actuation)
+
+
+def policies(draft: Draft) -> list[str]:
+    """A call for each policy that walks a robot along a route."""
+    lines: list[str] = []
+    for item in draft.plan.objects:
+        for each in item.registration.actuation if item.primitive == "robot" else ():
+            if not each.policy:
+                continue
+            given = [f'"{item.name}_walk"', draft.handles[item.name], f'"{each.policy}"']
+            if each.route:
+                route = draft.variable(f"{item.name}_route")
+                lines += [f"    {route} = (", *(f"        {tuple_of(point)}," for point in each.route), "    )"]
+                given.append(f"route={route}")
+            if each.speed:
+                given.append(f"speed={number(each.speed)}")
+            lines += call("scene.policy", given)
+    return lines
