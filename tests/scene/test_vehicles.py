@@ -2,8 +2,10 @@
 
 import math
 
+import numpy as np
 import pytest
 
+from wsim.geometry.shapes import kind_of
 from wsim.scene import Scene, SceneError, VehicleSpec
 from wsim.scene.describe import describe
 from wsim.scene.validate import Call
@@ -24,6 +26,16 @@ def test_what_it_weighs_is_what_the_spec_says(kind, tmp_path):
     ahead = sum(body.mass * (body.position[0] + body.com[0]) for body in world.bodies) / spec.mass
     assert height == pytest.approx(spec.com_height, rel=1e-5)
     assert 0.5 + ahead / spec.wheelbase == pytest.approx(spec.front_share, rel=1e-5)
+
+
+@KINDS
+def test_no_part_turns_harder_than_all_its_mass_at_its_edge(kind, tmp_path):
+    scene = Scene()
+    scene.vehicle("v", kind)
+    for body in describe(scene.save(tmp_path / "v.usda")).bodies:
+        reach = max(math.dist(shape.position, body.com) + kind_of(shape).radius_about for shape in body.shapes)
+        greatest = np.linalg.eigvalsh(np.reshape(body.inertia, (3, 3)))[2]
+        assert 0.0 < greatest <= body.mass * reach**2, body.prim
 
 
 @KINDS

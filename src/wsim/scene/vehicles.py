@@ -25,7 +25,7 @@ _FASTEST = 100.0  # [m/s]
 _SLIP = 1.0  # [rad/s]: an engine gives its full torque to a wheel that lags by so much
 _STEER_STEP = 0.625e-3  # [s]: the time step that the stiffness of the steering leaves
 _STEER_SHARE = 0.25  # of 1 / omega, that a step may be
-_GYRATION = 0.2  # [m], of an upright
+_GYRATION = 0.4  # of an upright, in radii of its wheel
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ class Vehicles(Compounds, Joints, Contacts):
         """A knuckle that turns about the vertical: its hinge, and itself."""
         mass = 0.5 * spec.upright_mass
         knuckle = self._upright(f"{name}_knuckle_{corner}", corner, spec, frame, mass)
-        inertia = 0.5 * mass * _GYRATION**2  # of two alike against each other
+        inertia = 0.5 * mass * (_GYRATION * spec.wheel_radius) ** 2  # of two alike against each other
         stiffness = inertia * (_STEER_SHARE / _STEER_STEP) ** 2
         damping = 2.0 * math.sqrt(stiffness * (inertia + 0.5 * spec.wheel_inertia))
         most = 1.2 * max(abs(spec.wheel_angle_deg(corner, side * spec.steer_limit_deg)) for side in (-1, 1))
@@ -220,7 +220,7 @@ class Vehicles(Compounds, Joints, Contacts):
         inward = math.copysign(0.5 * spec.wheel_width, -y)
         part = Part("cylinder", radius=0.25 * spec.wheel_radius, height=0.4 * spec.wheel_width, axis="Y",
                     position=(0.0, inward, 0.0), color=(0.2, 0.2, 0.21))  # fmt: skip
-        properties = MassProperties.of(mass, np.zeros(3), mass * _GYRATION**2 * np.eye(3))
+        properties = MassProperties.of(mass, np.zeros(3), mass * (_GYRATION * spec.wheel_radius) ** 2 * np.eye(3))
         return self._piece(name, [Piece(part, True)], frame, (x, y, spec.wheel_radius), properties)
 
     def _piece(
