@@ -117,4 +117,4 @@ def test_what_meets_nothing_weighs_what_it_states(tmp_path):
     scene.vehicle("v", "hmmwv")
     hub = describe(scene.save(tmp_path / "v.usda")).body("/World/v_hub_rear_left")
     assert not any(shape.collides for shape in hub.shapes)
-    assert hub.mass == pytest.approx(69.975) and hub.inertia[0] == pytest.approx(69.975 * 0.2**2)
+    assert hub.mass == pytest.approx(69.975) and hub.inertia[0] == pytest.approx(69.975 * (0.4 * 0.467) ** 2)

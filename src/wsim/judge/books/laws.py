@@ -155,7 +155,7 @@ class Laws:
             return law
         turns, rate = joint.kind == "revolute", self.rate(joint)
         extent = np.pi if turns else float(np.abs(motion.com).max(initial=0.0))
-        late = 0.0 if motion.step else self._step(law)
+        late = motion.step or self._step(law)  # solvers tell the rate at a step's end, at its start or between
         course = Course(place, rate, motion.h, turns, extent, self._mobility.get(joint.prim, 0.0), late)
         off = off_the_way(drive, course, *found)
         tells = ~law.known & (off < law.most) & ~broken(self._evidence, joint)[1:]

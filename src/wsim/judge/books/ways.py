@@ -38,7 +38,7 @@ class Course:
     turns: bool  # a hinge's
     extent: float  # the largest number that its place is the rounded difference of [rad or m]
     mobility: float  # by how much a unit effort speeds it up at most [1/kg or 1/(kg m^2)]
-    late: float  # the time step, where the law's mean has not allowed for it yet [s]
+    late: float  # the time step, which a rate may be told late by [s]
 
 
 def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: Bools) -> Floats:
