@@ -101,6 +101,7 @@ REFUSED: dict[str, tuple[Callable[[Scene], object], str]] = {
     "nothing between": (lambda s: s.sensor_range("new", None, nearest=3.0, farthest=2.0), "nearest = 3 m is not below"),
     "more than a turn": (lambda s: s.sensor_range("new", None, fan_deg=(-200.0, 200.0)), "more than a turn"),
     "a rate": (lambda s: s.sensor_imu("new", "door", rate=1e5), "rate = 100000 must be <= 10000 Hz"),
+    "a rate of none": (lambda s: s.sensor_imu("new", "door", rate=1e-310), "rate = 1e-310 must be >= 0.001 Hz"),
 }
 
 
@@ -116,9 +117,25 @@ WRONG: dict[str, tuple[Callable[[Usd.Prim, Usd.Prim], object], str]] = {
     "no body": (lambda imu, _: imu.GetRelationship("wsim:body").ClearTargets(True), "imu.wsim:body: it must be one"),
     "a joint as body": (
         lambda imu, _: imu.GetRelationship("wsim:body").SetTargets(["/World/hinge"]),
-        "imu.wsim:body: it must be one rigid body",
+        "imu.wsim:body: </World/hinge> is a PhysicsRevoluteJoint; it must be a rigid body",
     ),
-    "rate": (lambda imu, _: imu.GetAttribute("wsim:rate").Set(0.0), "imu.wsim:rate: 0 must be above 0"),
+    "a number as body": (
+        lambda imu, _: imu.GetStage().GetPrimAtPath("/World/scan").GetRelationship("wsim:body").SetTargets(
+            ["/World/door.physics:mass"]
+        ),
+        "scan.wsim:body: </World/door.physics:mass>",
+    ),
+    "rate": (lambda imu, _: imu.GetAttribute("wsim:rate").Set(1e-310), "imu.wsim:rate: 1e-310 must be at least 0.001"),
+    "a joint that is off": (
+        lambda imu, _: UsdPhysics.Joint.Get(imu.GetStage(), "/World/hinge").CreateJointEnabledAttr(False),
+        "encoder.wsim:joints: </World/hinge> is not enabled",
+    ),
+    "the world's seed": (
+        lambda imu, _: next(
+            prim for prim in imu.GetStage().Traverse() if prim.IsA(UsdPhysics.Scene)
+        ).GetAttribute("wsim:seed").Set(-5),
+        "wsim:seed: -5 must be at least 0",
+    ),
     "turn": (
         lambda imu, _: imu.GetAttribute("wsim:rotation").Set(Gf.Quatd(2.0)),
         "imu.wsim:rotation: its quaternion must have the length 1",

@@ -305,6 +305,12 @@ def test_a_scan_is_the_same_with_pictures(tmp_path: Path) -> None:
     np.testing.assert_allclose(read(tmp_path / "r.rrd").sensors["/World/eye"]["distance"], [[[2.95]]] * 3, rtol=2e-6)
 
 
+def test_a_scan_tells_nothing_beyond_its_bounds_however_noisy(tmp_path: Path) -> None:
+    track = told(tmp_path, lambda s: room(s, rays=360, fan_deg=(-180.0, 180.0), noise=5.0, nearest=1.0, farthest=3.0))
+    seen = track["distance"][np.isfinite(track["distance"])]
+    assert seen.size > 100 and seen.min() >= 1.0 and seen.max() <= 3.0
+
+
 def test_the_noise_of_a_scan_has_its_deviation(tmp_path: Path) -> None:
     track = told(tmp_path, lambda s: room(s, rays=720, fan_deg=(-180.0, 180.0), noise=0.01, seed=3))
     off = track["distance"][0, 0] - to_the_walls(1.2, 0.1, np.radians(np.arange(-180.0, 180.0, 0.5)))
@@ -428,3 +434,27 @@ def test_copies_of_a_stage_have_noise_of_their_own(tmp_path: Path) -> None:
     together = spins(world_count=3, seeds=[0, 5, 6])
     assert len({tuple(row) for row in together}) == 3
     np.testing.assert_array_equal(together[[1]], spins(seeds=[5]))  # by itself it is the same
+
+
+@pytest.mark.parametrize("device", ["cpu", pytest.param("cuda:0", marks=pytest.mark.cuda)])
+def test_worlds_at_once_tell_what_one_in_c_does(tmp_path: Path, device: str) -> None:
+    def build(scene: Scene) -> None:
+        scene.ground()
+        box = scene.box("box", size=(0.2, 0.2, 0.2), position=(0.0, 0.0, 0.1), mass=2.0)
+        scene.sensor_imu("imu", box, position=(0.05, 0.0, 0.02), rotation_deg=(90.0, 0.0, 0.0))
+        scene.sensor_contact("sole", box)
+        scene.sensor_range("scan", box, position=(0.0, 0.0, 0.3), rays=3, rate=50.0)
+        scene.box("wall", size=(0.1, 4.0, 2.0), position=(1.05, 0.0, 1.0), static=True)
+        rod = scene.box("rod", size=(0.4, 0.03, 0.03), position=(0.2, 2.0, 1.0), mass=1.0)
+        hinge = scene.joint_revolute("hinge", None, rod, anchor=(0.0, 2.0, 1.0), axis="Y")
+        scene.sensor_joints("encoder", [hinge])
+
+    path = stage(tmp_path, build)
+    one, many = Simulation(path, device="cpu"), Simulation(path, device=device, world_count=2)
+    for _ in range(10):
+        one.advance_frame()
+        many.advance_frame()
+    told_one, told_many = one.sensors.flat(), many.sensors.flat()
+    assert told_many.shape == (2, told_one.shape[1])
+    np.testing.assert_allclose(told_many, np.repeat(told_one, 2, axis=0), rtol=1e-3, atol=5e-3)
+    assert np.isinf(told_one).sum() == 2  # two rays meet nothing

@@ -320,6 +320,8 @@ def _wsim(prim: Usd.Prim) -> Iterator[str]:
         for name, limit, unit in (("duration", MAX_DURATION, "s"), ("frameRate", MAX_FRAME_RATE, "Hz")):
             yield from _bounded(prim.GetAttribute(f"wsim:{name}"), limit, unit)
         yield from _bounded(prim.GetAttribute("wsim:timeStep"), MAX_TIME_STEP, "s", zero=True, low=MIN_TIME_STEP)
+        if (seed := prim.GetAttribute("wsim:seed").Get()) is not None and seed < 0:
+            yield f"{prim.GetPath()}.wsim:seed: {seed} must be at least 0"
     if schema.FLUID in applied:
         yield from _fluid(prim)
     if schema.SURFACE_VELOCITY in applied:

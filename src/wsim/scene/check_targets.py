@@ -24,7 +24,7 @@ def check_targets(prim: Usd.Prim) -> Iterator[str]:
             target = prim.GetStage().GetPrimAtPath(path.GetPrimPath())
             if not target or (path.IsPropertyPath() and not target.GetPropertyAtPath(path)):
                 yield f"{relation.GetPath()}: <{path}> is not there"
-            elif fits is not None and not fits(target):
+            elif fits is not None and (path.IsPropertyPath() or not fits(target)):
                 yield f"{relation.GetPath()}: <{path}> is a {target.GetTypeName() or 'prim'}; it must be {kind}"
     if prim.IsA(UsdPhysics.Joint):
         yield from _joint(UsdPhysics.Joint(prim))
@@ -110,6 +110,8 @@ _KINDS: dict[str, tuple[Callable[[Usd.Prim], bool], str]] = {
     "physics:filteredGroups": (lambda prim: prim.IsA(UsdPhysics.CollisionGroup), "a PhysicsCollisionGroup"),
     "physics:simulationOwner": (lambda prim: prim.IsA(UsdPhysics.Scene), "a PhysicsScene"),
     "wsim:container": (lambda prim: schema.has(prim, schema.CONTAINER), "a container"),
+    "wsim:body": (lambda prim: bool(prim.HasAPI(UsdPhysics.RigidBodyAPI)), "a rigid body"),
+    "wsim:joints": (lambda prim: prim.IsA(UsdPhysics.Joint), "a joint"),
     "wsim:first": (_solid, "something that collides"),
     "wsim:second": (_solid, "something that collides"),
 }

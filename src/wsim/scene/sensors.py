@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from pxr import Gf, Sdf, Usd, UsdPhysics, Vt
 
-from wsim.limits import MAX_POSITION, MAX_RATE, MAX_RAYS
+from wsim.limits import MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, rotation
 from wsim.scene.validate import Call, shown
@@ -254,7 +254,7 @@ def _mounting(call: Call, position: Sequence[float], rotation_deg: Sequence[floa
 
 
 def _rate(call: Call, rate: float) -> Values:
-    return {"rate": (Sdf.ValueTypeNames.Double, call.positive("rate", rate, MAX_RATE, "Hz"))}
+    return {"rate": (Sdf.ValueTypeNames.Double, call.positive("rate", rate, MAX_RATE, "Hz", low=MIN_RATE))}
 
 
 def _seed(call: Call, seed: int | None) -> Values:

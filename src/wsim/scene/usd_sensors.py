@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pxr import Gf, Usd, UsdPhysics
 
 from wsim.defaults import SENSOR_RATE
-from wsim.limits import MAX_POSITION, MAX_RATE, MAX_RAYS
+from wsim.limits import MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
 from wsim.scene import schema
 from wsim.scene.sensors import is_of_one_freedom
 from wsim.scene.usd_prims import line_of, targets_of, value_of
@@ -77,8 +77,8 @@ def _vector(prim: Usd.Prim, name: str) -> tuple[float, float, float]:
 
 def _rate_problems(prim: Usd.Prim) -> Iterator[str]:
     rate = value_of(prim, "rate", SENSOR_RATE)
-    if not 0.0 < rate <= MAX_RATE:
-        yield f"rate: {rate:g} must be above 0 and at most {MAX_RATE:g} Hz"
+    if not MIN_RATE <= rate <= MAX_RATE:
+        yield f"rate: {rate:g} must be at least {MIN_RATE:g} and at most {MAX_RATE:g} Hz"
 
 
 def _problems(prim: Usd.Prim, kind: str) -> Iterator[str]:
@@ -89,6 +89,8 @@ def _problems(prim: Usd.Prim, kind: str) -> Iterator[str]:
         for joint in joints:
             if not is_of_one_freedom(joint):
                 yield f"joints: <{joint.GetPath()}> is no revolute or prismatic joint"
+            elif UsdPhysics.Joint(joint).GetJointEnabledAttr().Get() is False:
+                yield f"joints: <{joint.GetPath()}> is not enabled; enable it, or leave it out"
         return
     yield from _mounting_problems(prim)
     if (seed := value_of(prim, "seed", 0)) < 0:

@@ -91,10 +91,10 @@ class Range:
             true = self._found.numpy().astype(np.float64).reshape(directions.shape[:2])
         else:
             true = np.full(directions.shape[:2], -1.0)
-        met = (true >= self._limits[:, 0]) & (true >= 0.0) & (true <= self._limits[:, 1])
         told = true
         if self._noise.any():
             told = true + self._noise * np.array([each.standard_normal(true.shape[1]) for each in self._random])
+        met = (true >= 0.0) & (told >= self._limits[:, 0]) & (told <= self._limits[:, 1])
         self.points = (origins + told[..., None] * directions)[0, met[0]]
         return {"distance": np.where(met, told, np.inf).reshape(self._shape)}
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from wsim.sim.spring_steps import DRIVE_SHARE, spring_limits
 LARGEST_RIGID_STEP = 1.0 / 800.0  # [s]: contacts are as hard as the step allows
 DAMPED_SHARE = 0.5  # of a speed, lost in a step
 SHARE_OF_SIZE = 0.25  # a body may cross this share of the thinnest thing in a step
-MOST_PARTS = 60  # of a frame, that rates are brought to
+ON_TIME = 1e-3  # of an interval, by which it may be longer or shorter
 DEARER = 2.0  # by which steps may be shorter for rates to be kept
 
 
@@ -62,23 +61,24 @@ def choose_time_step(world: World, fluid_limit: float | None, given: float | Non
     frame = 1.0 / world.frame_rate
     least = max(1, math.ceil(frame / limit - 1e-9))
     rates = (*(policy.spec.rate for policy in world.policies), *(sensor.rate for sensor in world.sensors))
-    substeps = _in_step(least, (world.frame_rate / rate for rate in rates))
+    substeps = _in_step(least, int(frame / MIN_TIME_STEP), [world.frame_rate / rate for rate in rates])
     return TimeStep(frame / substeps, substeps, reason)
 
 
-def _in_step(least: int, intervals: Iterable[float]) -> int:
-    """Steps a frame of which intervals are whole numbers: those for which that is not too dear.
+def _in_step(least: int, most: int, intervals: Sequence[float]) -> int:
+    """Steps a frame of which intervals are whole numbers, or nearly so if that would take too many.
 
     Args:
         least: That the limits ask for.
+        most: That there may be.
         intervals: After which something takes its turn [frames].
     """
-    parts = 1
-    for interval in intervals:
-        more = math.lcm(parts, Fraction(interval).limit_denominator(MOST_PARTS).denominator)
-        if more * math.ceil(least / more) <= DEARER * least:
-            parts = more
-    return parts * math.ceil(least / parts)
+    if not intervals:
+        return least
+    counts = np.arange(least, max(least, min(most, int(DEARER * least))) + 1)
+    steps = np.outer(intervals, counts)
+    off = np.abs(np.maximum(np.rint(steps), 1.0) / steps - 1.0).max(axis=0)
+    return int(counts[np.argmax(off <= max(off.min(), ON_TIME))])
 
 
 def _drive_limits(world: World) -> dict[str, float]:

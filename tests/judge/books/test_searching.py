@@ -50,6 +50,21 @@ def test_each_finds_what_its_own_would_in_any_order():
     assert many > 100
 
 
+def test_one_that_joins_after_another_was_asked_has_its_own_sizes():
+    """Where it differs from the first by some shapes alone, the others are the first's."""
+    random = np.random.default_rng(1)
+    first, other, later = (shapes(random) for _ in range(3))
+    later[2:] = first[2:]
+    search = Search(len(KINDS), first, {})
+    found(search.resized(other), poses(random))
+    many, pose = 0, poses(random)
+    own = Search(len(KINDS), later, {})
+    for had, wanted in zip(found(search.resized(later), pose), found(own, pose), strict=True):
+        assert np.array_equal(had, wanted)
+        many += len(wanted)
+    assert many
+
+
 @pytest.mark.parametrize("fields", [{"static": (1.0, 1.0, 0.2)}, {"position": (0.0, 0.0, 0.1)}])
 def test_what_is_not_alone_at_its_place_has_its_own(fields):
     """The slab beside the floor, and shapes off their bodies' origins."""

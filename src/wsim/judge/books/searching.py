@@ -54,7 +54,9 @@ class Search:
         self._data = mujoco.MjData(self._model)
         names = [self._model.geom(k).name for k in range(self._model.ngeom)]
         self.shape_of_geom = np.array([int(name[1:]) for name in names], dtype=np.intp)
-        self._sizes: list[tuple[Any, Floats]] = []  # views of the model, and what is to be in them
+        model = self._model
+        views = model.geom_size, model.geom_rbound, model.geom_aabb, model.bvh_aabb
+        self._sizes = [(view, view.copy()) for view in views]  # of the model, and what is to be in them
         self._in_use: list[object] = [self._sizes]  # what the model has; of all that share it
 
     def resized(self, shapes: Shapes) -> Search | None:
@@ -64,8 +66,7 @@ class Search:
         on its body, and at its place.
         """
         model, alone = self._model, np.bincount([row for row, *_ in self._shapes if row >= 0], minlength=1) == 1
-        size, about, boxes = model.geom_size.copy(), model.geom_rbound.copy(), model.geom_aabb.copy()
-        trees = model.bvh_aabb.copy()
+        size, about, boxes, trees = (own.copy() for _, own in self._sizes)  # the model may have another's
         for geom, k in enumerate(self.shape_of_geom):
             (row, _, old), (_, _, new) = self._shapes[k], shapes[k]
             if all(getattr(old, name) == getattr(new, name) for name in ("size", "position", "rotation")):
@@ -84,11 +85,8 @@ class Search:
             trees[tree] = *np.zeros(3), *half
         found = copy(self)
         found._shapes = shapes
-        found._sizes = [
-            (model.geom_size, size), (model.geom_rbound, about), (model.geom_aabb, boxes), (model.bvh_aabb, trees),
-        ]  # fmt: skip
-        if not self._sizes:
-            self._sizes += [(view, view.copy()) for view, _ in found._sizes]
+        views = (view for view, _ in self._sizes)
+        found._sizes = list(zip(views, (size, about, boxes, trees), strict=True))
         return found
 
     def at(self, pose: Floats, far: Floats, ours: Bools, far_body: Floats, ours_body: Bools) -> Any:
