@@ -7,7 +7,7 @@ import ast
 import pytest
 
 from wsim.errors import UserError
-from wsim.plan.schema import Actuation, FromRobot, Material, Plan, PlanObject, Pose, Registration
+from wsim.plan.schema import Actuation, FromRobot, Material, Plan, PlanObject, Pose, Proxy, Registration
 from wsim.program.compose import compose
 from wsim.scene import Scene
 
@@ -41,10 +41,31 @@ def test_a_policy_walks_it_along_its_route() -> None:
     assert again.objects[0].registration.actuation == [walk]
 
 
+def test_what_its_id_says_stays_a_string() -> None:
+    text = compose(Plan(title="A robot", prompt="", objects=[placed('a", position=open("b"), c="')]))
+    (call,) = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)
+               and getattr(node.func, "attr", "") == "robot")  # fmt: skip
+    assert [argument.value for argument in call.args] == ["worker", 'a", position=open("b"), c="']
+
+
 def test_what_a_robot_has_of_its_own_is_refused_with_a_way_out() -> None:
     with pytest.raises(UserError, match="worker: a robot stands at rest with its own material; remove it"):
         compose(Plan(title="", prompt="", objects=[placed(material=Material(name="tin", density=900.0))]))
+    with pytest.raises(UserError, match="worker: a robot stands at rest with its own angular_velocity_deg; remove it"):
+        compose(Plan(title="", prompt="", objects=[placed(angular_velocity_deg=(0.0, 0.0, 9.0))]))
     with pytest.raises(ValueError, match='policy, route and speed are of the kind "policy"'):
         Actuation(kind="path", route=((0.0, 0.0),))
+    with pytest.raises(ValueError, match="route and speed are walked by a policy; name it"):
+        Actuation(kind="policy", route=((0.0, 0.0),))
+    with pytest.raises(ValueError, match=r"speed 0\.8 m/s is along a route; give one"):
+        Actuation(kind="policy", policy="go2_walk", speed=0.8)
+    walk = Actuation(kind="policy", policy="go2_walk")
+    with pytest.raises(ValueError, match="worker: it has the policies go2_walk, go2_walk; one walks it"):
+        placed("go2", registration=Registration(actuation=[walk, walk]))
+    with pytest.raises(ValueError, match="door: policy 'go2_walk' walks a robot"):
+        PlanObject(
+            name="door", role="rigid_body", construction=Proxy(primitive="box", size=(1.0, 1.0, 1.0)),
+            material=Material(name="tin", density=900.0), registration=Registration(actuation=[walk]),
+        )  # fmt: skip
     with pytest.raises(ValueError, match="primitive of a vehicle is"):
         placed().model_copy(update={"role": "vehicle"}).model_validate(placed().model_dump() | {"role": "vehicle"})

@@ -68,6 +68,17 @@ def test_what_must_happen_is_measured(made) -> None:
 
 
 @pytest.mark.parametrize(
+    "says",
+    ["A 40 kg Go2 patrols an office.", "A red robot dog patrols an office.", "A wooden robot dog patrols an office.",
+     "A Go2 1 m above the ground patrols an office.", "A Go2 patrols a large office.", "A Go2 patrols a 20 m office.",
+     "A Go2 patrols two offices.", "A Go2 patrols an office with water."],
+)  # fmt: skip
+def test_what_it_would_leave_out_is_refused(says: str) -> None:
+    with pytest.raises(UserError, match=r"a robot is as it was made|furnishes one office itself"):
+        plan(says)
+
+
+@pytest.mark.parametrize(
     ("says", "speed"),
     [
         ("A robot dog walks round an office at 0.5 m/s and returns", 0.5),

@@ -317,6 +317,8 @@ def _patrol(reader: Reader, thing: Thing, action: Action) -> None:
     target = action.target
     if thing.noun.family != "robot" or target is None or lexicon().nouns[target.kind].family != "office":
         raise NotUnderstood([f"{thing.words} {action.words}"], "lets a robot patrol an office, but not so:")
+    if target.adorned:
+        raise NotUnderstood([target.words], "furnishes one office itself, and not as it is told to:")
     for place in action.places:
         if place.preposition != "speed" or not common(reader, thing, place):
             raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)

@@ -35,6 +35,12 @@ class Phrase:
     filled: bool = False  # a container that was said to hold water
     places: list[Place] = field(default_factory=list)
 
+    @property
+    def adorned(self) -> bool:
+        """Whether it is said of what it is made, how large, how many or where."""
+        own = (self.material, self.color, self.scale, self.length, self.measures, self.edges, self.filled)
+        return any(own) or self.plural or (self.count or 1) > 1 or bool(self.places)
+
 
 @dataclass
 class Place:

@@ -238,6 +238,9 @@ def test_a_robot_has_links_of_its_own_and_must_be_there():
     assert all(each.passed for check in (CheckPlanObjects(), CheckPlanClosed()) for each in ask(check, there, plan))
     (missing,) = (each for each in ask(CheckPlanObjects(), world("cat/base"), plan) if "dog" in each.message)
     assert missing.message == "The plan's dog is not in the world: no /World/dog"
+    for other in (world("dog"), world("dog/base", "dog/leg")):  # a box; two that nothing holds together
+        (wrong,) = (each for each in ask(CheckPlanObjects(), other, plan) if not each.passed)
+        assert wrong.message == "/World/dog has no links that joints hold together, as a robot has"
     solid = dog.model_copy(update={"construction": Proxy(primitive="box", size=(0.7, 0.4, 0.4))})  # of one piece
     asked = ask(CheckPlanClosed(), there, plan.model_copy(update={"objects": [solid]}))
     assert [each.prim for each in asked if not each.passed] == ["/World/dog/base", "/World/dog/leg"]

@@ -52,6 +52,16 @@ def test_its_name_means_the_body_that_hangs_on_no_other_of_it():
         signals.prim("cat")
 
 
+def test_what_it_stands_on_is_a_part_of_it():
+    """A robot whose base is static has the base's prim for its own: what presses on that presses on the robot."""
+    bodies = [ball("arm/link"), ball("brick")]
+    place = np.zeros((len(T), 2, 3))
+    made = record(bodies, place, place, T, statics=[ground(), slab("arm", (0.1, 0.1, 0.5), (3.0, 0.0, 0.25))])
+    signals = Signals.of(Evidence(made))
+    assert signals.prim("arm") == "/World/arm"
+    assert signals.parts("arm") == {"/World/arm", "/World/arm/link"}
+
+
 def test_what_presses_on_any_part_of_it_is_told_by_its_force():
     """Its leg stands on the ground with 4 N s a frame and presses its own base; 0.3 N s of the wall are 3 N."""
     stands = [(k, GROUND, LEG, 4.0) for k in range(1, len(T))] + [(3, LEG, BASE, 1.0), (4, GROUND, BALL, 9.0)]

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 RESOLVED = 0.5  # of a mode's phase between two frames [rad]: what is faster is not known from the frames
 
+USUAL_STEP = 2e-3  # [s], of engines that do not tell theirs
+
 
 @dataclass(frozen=True)
 class Law:
@@ -155,9 +157,9 @@ class Laws:
             return law
         turns, rate = joint.kind == "revolute", self.rate(joint)
         extent = np.pi if turns else float(np.abs(motion.com).max(initial=0.0))
-        late = motion.step or self._step(law)  # solvers tell the rate at a step's end, at its start or between
-        course = Course(place, rate, motion.h, turns, extent, self._mobility.get(joint.prim, 0.0), late)
-        off = off_the_way(drive, course, *found)
+        late = motion.step or max(self._step(law), USUAL_STEP)
+        course = Course(place, rate, motion.h, turns, extent, self._mobility.get(joint.prim, np.inf), late)
+        off = off_the_way(drive, course, *found, self._may_be_hit([row for row in (law.one, law.two) if row >= 0]))
         tells = ~law.known & (off < law.most) & ~broken(self._evidence, joint)[1:]
         rotor = np.where(law.known, 0.0, joint.armature * np.diff(rate) / motion.h)
         return replace(law, mean=np.where(tells, found[0], 0.0) - rotor, off=np.where(tells, off, law.most))

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from wsim.geometry.rotations import rotate
-from wsim.judge.evidence.joints import AXES, anchors_of
+from wsim.judge.evidence.joints import AXES, anchors_of, broken
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -84,7 +84,7 @@ def _ways(
         free, held = linear[:, along], np.concatenate([linear[:, across], twists], axis=1)
     elif joint.kind == "spherical":
         held = linear
-    elif joint.kind == "compound":  # its own motions are not asked, and all may give way
+    if joint.kind == "compound" or broken(evidence, joint).any():  # own motions are not asked, and all may give way
         held = linear[:, :0]
     return tuple(_on(evidence, joint, row, place, frames, below, each) for each in (free, held))  # type: ignore[return-value]
 

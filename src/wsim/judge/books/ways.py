@@ -3,7 +3,8 @@
 A damper gives its constant times how far the joint goes, however fast it goes there: a mode that it damps need not be
 resolved, only one that the stiffness makes swing, of phase p between frames. Its mean both ends' places and rates leave
 to p^4 / 720 of its amplitude (`jolts.mean_force`). Where the joint goes farther than rates and accelerations have it,
-or less far, it may have gone by as much at once, at any time.
+or less far, it may have gone by as much at once, at any time. A blow may bring a drive to its greatest effort between
+two frames, and nothing of that is left at their ends.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ class Course:
     late: float  # the time step, which a rate may be told late by [s]
 
 
-def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: Bools) -> Floats:
+def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: Bools, struck: Bools) -> Floats:
     """By how much a drive's mean force may be off what its joint's way tells, (T - 1,) [N or N m]; inf: by any.
 
     Args:
@@ -50,6 +51,7 @@ def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: 
         mean: What the way tells, (T - 1,).
         may: By how much that is off where the rate changes evenly, or jumps (`Laws.mean_of_drive`).
         below: Where it is below its greatest effort at both ends.
+        struck: Where a blow may come.
     """
     if len(course.h) < 2:
         return np.full(len(course.h), np.inf)
@@ -59,10 +61,13 @@ def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: 
     stray = np.abs(np.diff(course.place) - 0.5 * (rate[1:] + rate[:-1]) * h + bend)
     phase = np.sqrt(drive.stiffness * course.mobility) * h
     off = may + drive.stiffness * (stray + phase**2 / BEYOND * fastest * h + extent)
-    off = off + drive.damping / h * (0.5 * course.late * np.abs(np.diff(rate)) + extent)
+    off = off + drive.damping / h * extent
+    # Sums over steps are those of starts, of ends or of means, of place and rate each.
+    far, faster = np.abs(np.diff(course.place)), np.abs(np.diff(rate))
+    off = off + np.minimum(course.late / h, 1.0) * (0.5 * drive.stiffness * far + drive.damping * faster)
     tells = phase < FOLLOWED
     if course.turns:
         tells &= fastest * h < QUARTER
     if drive.max_effort is not None:  # what goes to and fro may be at its most meanwhile
-        tells &= below & (np.abs(mean) + off + drive.damping * stray / h < drive.max_effort)
+        tells &= below & ~struck & (np.abs(mean) + off + drive.damping * stray / h < drive.max_effort)
     return np.asarray(np.where(tells, off, np.inf))

@@ -182,6 +182,8 @@ class CheckPlanObjects(Check):
                 actual = next((name for name, prims in has.items() if prim in prims), "something else")
                 message = f"{prim} is {actual}; the plan has it as {kind}"
                 found.append(self.failed(message, prim=prim))
+            elif item.primitive == "robot" and not _linked(evidence, prim):
+                found.append(self.failed(f"{prim} has no links that joints hold together, as a robot has", prim=prim))
         planned = {evidence.prim(item.name) for item in evidence.plan.objects}
         for prim in sorted(everything - planned):
             message = f"{prim} is in the world, but not in the plan"
@@ -203,6 +205,13 @@ class CheckPlanObjects(Check):
         return RepairTarget(
             kind="missing object", prim=prim, direction="add", why="the plan has it, the world does not"
         )
+
+
+def _linked(evidence: Evidence, whole: str) -> bool:
+    """Whether what lies under a prim is several bodies, each of them held by a joint to another."""
+    links = {body.prim for body in evidence.world.bodies if within(body.prim, whole)}
+    held = [joint for joint in evidence.world.joints if within(joint.prim, whole)]
+    return len(links) > 1 and links <= {end for joint in held for end in (joint.parent, joint.child)}
 
 
 @dataclass

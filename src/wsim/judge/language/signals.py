@@ -202,7 +202,8 @@ class Signals:
     def parts(self, name: str) -> set[str]:
         """The prims of all bodies of an object that is made of several, as a robot is; else its own."""
         whole = name if name.startswith("/") else Evidence.prim(name)
-        return {body.prim for body in self.world.bodies if body.prim.startswith(f"{whole}/")} or {self.prim(name)}
+        solids = [body.prim for body in self.world.bodies] + [static.prim for static in self.world.statics]
+        return {prim for prim in solids if prim == whole or prim.startswith(f"{whole}/")} or {self.prim(name)}
 
     def prim(self, name: str) -> str:
         """The prim of a name, of what is made of several bodies that of its base, which hangs on no other of them.
@@ -212,12 +213,12 @@ class Signals:
         """
         prim = name if name.startswith("/") else Evidence.prim(name)
         world = self.world
-        within = [body.prim for body in world.bodies if body.prim.startswith(f"{prim}/")]
-        if within and all(body.prim != prim for body in world.bodies):
-            hung = {joint.child for joint in world.joints if joint.parent in within}
-            return next((each for each in within if each not in hung), within[0])
         known = [body.prim for body in world.bodies] + [static.prim for static in world.statics]
         known += [container.prim for container in world.containers] + [fluid.prim for fluid in world.fluids]
+        within = [body.prim for body in world.bodies if body.prim.startswith(f"{prim}/")]
+        if within and prim not in known:
+            hung = {joint.child for joint in world.joints if joint.parent in within}
+            return next((each for each in within if each not in hung), within[0])
         if prim not in known:
             raise MissingError(f"the world has no {name!r}; it has {', '.join(dict.fromkeys(known)) or 'nothing'}")
         return prim

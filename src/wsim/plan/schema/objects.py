@@ -149,6 +149,10 @@ class Actuation(Strict):
     def _walks(self) -> Actuation:
         if self.kind != "policy" and (self.policy or self.route or self.speed):
             raise ValueError(f'policy, route and speed are of the kind "policy"; this is of {self.kind!r}')
+        if (self.route or self.speed) and not self.policy:
+            raise ValueError("route and speed are walked by a policy; name it, or leave them out")
+        if self.speed and not self.route:
+            raise ValueError(f"speed {self.speed:g} m/s is along a route; give one, or leave speed out")
         return self
 
     @model_serializer(mode="wrap")
@@ -302,6 +306,15 @@ class PlanObject(Strict):
             )
         if self.rolling and not any(self.velocity):
             raise ValueError(f"{self.name}: rolling needs a velocity; give one, or leave rolling out")
+        policies = [each.policy for each in self.registration.actuation if each.policy]
+        if policies and self.primitive != "robot":
+            raise ValueError(
+                f'{self.name}: policy {policies[0]!r} walks a robot; it is no construction of kind "robot"'
+            )
+        if len(policies) > 1:
+            raise ValueError(
+                f"{self.name}: it has the policies {', '.join(policies)}; one walks it, leave the others out"
+            )
         if self.rolling and self.angular_velocity_deg is not None:
             raise ValueError(f"{self.name}: rolling gives the spin; remove angular_velocity_deg, or rolling")
         if self.surface_velocity is not None and self.primitive in ("fluid", "tank", "asset", "robot"):

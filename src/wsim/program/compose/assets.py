@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from wsim.errors import UserError
 from wsim.plan.schema import FromAsset, PlanObject
 from wsim.program.compose.poses import position, rotation
@@ -26,6 +28,6 @@ def arguments(item: PlanObject) -> list[str]:
                 f"{item.name}: an asset of the catalogue keeps its own {what}; remove it, or give the object a "
                 'construction of kind "proxy"'
             )
-    found = [f'"{item.built.asset}"' if isinstance(item.built, FromAsset) else ""]
+    found = [json.dumps(item.built.asset) if isinstance(item.built, FromAsset) else ""]
     found += [f"position={tuple_of(position(item))}", *rotation(item)]
     return [*found, *(["static=True"] if item.state == "static" else [])]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from wsim.errors import UserError
 from wsim.plan.schema import FromRobot, PlanObject
 from wsim.program.compose.draft import Draft
@@ -21,6 +23,7 @@ def arguments(item: PlanObject) -> list[str]:
     turn = item.pose.rotation_deg if item.pose is not None else (0.0, 0.0, 0.0)
     for what, given in (
         ("velocity", any(item.velocity)),
+        ("angular_velocity_deg", any(item.angular_velocity_deg or ())),
         ("material", item.material is not None),
         ("registration.mass or .density", weighed),
         ('state "kinematic"', item.state == "kinematic"),
@@ -28,7 +31,7 @@ def arguments(item: PlanObject) -> list[str]:
     ):
         if given:
             raise UserError(f"{item.name}: a robot stands at rest with its own {what}; remove it")
-    found = [f'"{item.built.robot}"' if isinstance(item.built, FromRobot) else ""]
+    found = [json.dumps(item.built.robot) if isinstance(item.built, FromRobot) else ""]
     found.append(f"position={tuple_of(position(item))}")
     return [*found, *([f"yaw_deg={number(turn[2])}"] if turn[2] else [])]
 
@@ -45,7 +48,7 @@ def policies(draft: Draft) -> list[str]:
         for each in item.registration.actuation if item.primitive == "robot" else ():
             if not each.policy:
                 continue
-            given = [f'"{item.name}_walk"', draft.handles[item.name], f'"{each.policy}"']
+            given = [f'"{item.name}_walk"', draft.handles[item.name], json.dumps(each.policy)]
             if each.route:
                 route = draft.variable(f"{item.name}_route")
                 lines += [f"    {route} = (", *(f"        {tuple_of(point)}," for point in each.route), "    )"]

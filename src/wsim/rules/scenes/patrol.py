@@ -41,6 +41,8 @@ def build_patrol(cast: Cast, taken: set[str]) -> Part:
         what = others[0] if others else walking[0].words
         raise UserError(f"{what!r}: the builtin planner furnishes an office itself, for one robot; leave the rest out")
     thing = walking[0]
+    if thing.phrase.adorned or thing.drop_height is not None or thing.support is not None:
+        raise UserError(f"{thing.words!r}: a robot is as it was made, and starts on the floor; leave the rest out")
     speed = SPEED if thing.speed is None else thing.speed
     if not LEAST_SPEED <= speed <= MOST_SPEED:
         raise UserError(f"{speed:g} m/s is outside {LEAST_SPEED:g} to {MOST_SPEED:g} m/s, at which the robot walks")
