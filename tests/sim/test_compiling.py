@@ -9,7 +9,7 @@ import warp as wp
 from wsim.progress import silent
 from wsim.scene import Scene
 from wsim.sim import Simulation, start_warp
-from wsim.sim.compiling import BODIES, BODIES_OF_WARP, CAMERA, MODEL, compile_all, modules_named, rehearse
+from wsim.sim.compiling import BODIES, BODIES_OF_WARP, CAMERA, MODEL, compile_all, load_all, modules_named, rehearse
 
 
 @pytest.fixture
@@ -52,6 +52,8 @@ def test_what_is_rehearsed_is_compiled_once_and_then_found(cache):
     before = compiled(cache)
     assert len(before) == 3
     assert compile_all(needed, "cpu") == {}
+    load_all(needed, "cpu")
+    assert all(kernel.module.execs for kernel in kernels)
     for kernel in kernels:
         wp.launch(kernel, dim=3, inputs=[x], device="cpu")
     assert x.numpy().tolist() == [111.0] * 3
@@ -97,6 +99,7 @@ def test_a_module_that_does_not_compile_says_so_when_it_is_launched(cache):
     good = adder(3.0)
     needed = rehearse(lambda: [wp.launch(kernel, dim=1, inputs=[x], device="cpu") for kernel in (wrong, good)])
     compile_all(needed, "cpu")
+    load_all(needed, "cpu")
     wp.launch(good, dim=1, inputs=[x], device="cpu")
     assert x.numpy().tolist() == [3.0]
     with pytest.raises(Exception, match="wrong"):

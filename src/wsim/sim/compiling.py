@@ -126,6 +126,14 @@ def compile_all(needed: Sequence[Needed], device: Any, progress: Progress = sile
         return _compile_missing(_missing(needed, device), device, progress)
 
 
+def load_all(needed: Sequence[Needed], device: Any) -> None:
+    """Load modules, as their first launch would: while a graph is captured is no time for that."""
+    device = wp.get_device(device)
+    for module, block in dict.fromkeys(needed):
+        with contextlib.suppress(Exception):  # one that does not compile says so when launched
+            module.load(device, block)
+
+
 def _compile_missing(missing: Sequence[Needed], device: Any, progress: Progress) -> dict[str, float]:
     if len(missing) < 2:
         return {}  # one alone is compiled as it is launched

@@ -153,7 +153,10 @@ class Simulation:
         """Compile every kernel of a step, on a state that is thrown away."""
         kept, self.state = self.state, self.model.state()
         self.state.assign(kept)
-        self.compiled |= compiling.compile_all(self._launched(), self.device, progress)
+        launched = self._launched()
+        self.compiled |= compiling.compile_all(launched, self.device, progress)
+        if self.device.is_cuda:
+            compiling.load_all(launched, self.device)
         self.state.assign(kept)
         self._forget()  # copies are made in a rehearsal, and what they are of was not computed
         self._push_and_move()
