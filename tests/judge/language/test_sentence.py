@@ -27,6 +27,7 @@ names = st.one_of(
     st.from_regex(r"\A[A-Za-z_][A-Za-z0-9_]{0,8}\Z"),
     st.sampled_from(["and", "end", "not", "then", "ordered", "within", "m", "touches", "/World/robot/arm", "a/b"]),
 )
+ALL_NAMED = VOCABULARY["counts"], VOCABULARY["touches_only"]  # some objects at least
 numbers = st.floats(1e-6, 1e6, allow_nan=False)
 points = st.tuples(*[st.floats(-1e6, 1e6, allow_nan=False)] * 3)
 windows = st.one_of(
@@ -50,7 +51,7 @@ def fields(kind: type[Predicate]) -> st.SearchStrategy[Predicate]:
         "direction": st.sampled_from([None, "front", "back", "left", "right"]),
         "amplitude": st.one_of(st.none(), st.floats(0.1, 180)), "speed": st.one_of(st.none(), numbers),
         "restitution": st.one_of(st.none(), st.floats(0, 1)), "what": st.sampled_from(["energy", "momentum"]),
-        "objects": st.lists(names, min_size=kind is VOCABULARY["counts"], max_size=3), "height": numbers,
+        "objects": st.lists(names, min_size=kind in ALL_NAMED, max_size=3), "height": numbers,
         "within": st.floats(1e-6, 0.9) if needs else st.one_of(st.none(), st.floats(1e-6, 180)),
     }  # fmt: skip
     if kind is SpeedBetween:
