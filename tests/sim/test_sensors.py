@@ -14,9 +14,9 @@ from wsim.errors import UserError
 from wsim.recording import Recording, read
 from wsim.recording.sensors import SensorTrack
 from wsim.scene import Drive, Scene
+from wsim.scene.world_sensors import channels
 from wsim.sim import Simulation
 from wsim.sim.alike import alike
-from wsim.sim.sensors import channels
 
 G = 9.81
 Build = Callable[[Scene], object]
@@ -188,7 +188,7 @@ def test_control_is_told_the_sample_of_its_own_time(tmp_path: Path) -> None:
 
     path = stage(tmp_path, build)
     simulation = Simulation(path, device="cpu", controller=exchange)
-    assert channels(simulation.world) == [
+    assert channels(simulation.world.sensors) == [
         ("/World/servo", "position", (1,)), ("/World/servo", "velocity", (1,)), ("/World/servo", "effort", (1,)),
         ("/World/imu", "accelerometer", (3,)), ("/World/imu", "gyroscope", (3,)),
     ]  # fmt: skip
@@ -400,13 +400,13 @@ def test_each_world_of_a_batch_has_sensors_of_its_own(tmp_path: Path) -> None:
     for _ in range(25):
         simulation.advance_frame()
     simulation.sensors.ask(simulation.step_count, simulation)
-    begin = np.cumsum([0, *(math.prod(shape) for _, _, shape in channels(simulation.world))])
+    begin = np.cumsum([0, *(math.prod(shape) for _, _, shape in channels(simulation.world.sensors))])
     flat = simulation.sensors.flat()
     assert flat.shape == (2, begin[-1])
     for k in range(2):
         told = {
             (prim.removeprefix("/World/"), name): flat[k, begin[i] : begin[i + 1]]
-            for i, (prim, name, _) in enumerate(channels(simulation.world))
+            for i, (prim, name, _) in enumerate(channels(simulation.world.sensors))
         }
         up = (-G, 0.0, 0.0) if k else (0.0, 0.0, G)
         np.testing.assert_allclose(told["still", "accelerometer"], up, atol=0.01)

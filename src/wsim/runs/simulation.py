@@ -12,8 +12,8 @@ from wsim.program.control import ControlLayout, ControlProcess, has_control
 from wsim.progress import Progress, silent
 from wsim.runs.settings import Settings
 from wsim.scene.describe import describe
+from wsim.scene.world_sensors import channels
 from wsim.sim.control import ArrayController, driven_joints
-from wsim.sim.sensors import channels
 
 if TYPE_CHECKING:
     from wsim.scene.world import World
@@ -54,6 +54,6 @@ def open_controller(
         yield None
         return
     bodies, joints = [body.prim for body in world.bodies], driven_joints(world)
-    layout = ControlLayout(bodies, joints, world_count, apart=True, channels=channels(world))
+    layout = ControlLayout(bodies, joints, world_count, apart=True, channels=channels(world.sensors))
     with ControlProcess(program, layout, settings.limits(), settings.isolation) as process:
         yield ArrayController(process.step)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -86,3 +87,8 @@ class SensorContact(_Sensor):
 
 
 Sensor: TypeAlias = Annotated[SensorIMU | SensorJoints | SensorRange | SensorContact, Field(discriminator="kind")]
+
+
+def channels(sensors: Iterable[Sensor]) -> list[tuple[str, str, Shape]]:
+    """What sensors tell, side by side as the simulator gives it: prim, channel and shape of each part, in its order."""
+    return [(each.prim, name, shape) for each in sensors for name, shape in each.channels.items()]

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wsim.scene.world import World
 from wsim.scene.world_sensors import Sensor, SensorContact, SensorIMU, SensorJoints, SensorRange
 from wsim.sim.sensor_contact import Contact
 from wsim.sim.sensor_imu import IMU
@@ -80,8 +79,3 @@ class Sensors:
                 self.keep(t, sensor.prim, first, getattr(reader, "points", None))
 
         return turn
-
-
-def channels(world: World) -> list[tuple[str, str, tuple[int, ...]]]:
-    """What `Sensors.flat` has of a world: prim, channel and shape of each part, in its order."""
-    return [(each.prim, name, shape) for each in world.sensors for name, shape in each.channels.items()]
