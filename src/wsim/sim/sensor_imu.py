@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -49,12 +48,7 @@ class IMU:
         # it walks off by N sqrt(t), however often it is read.
         deviation = [np.array([[getattr(each, f"{part}_noise")] for each in stated]) for part in parts]
         self._deviation = [each / np.sqrt(interval) for each in deviation]
-        self._random = [
-            np.random.default_rng(
-                [built.world_of(w).seed if each.seed is None else each.seed, seeds[w], zlib.crc32(each.prim.encode())]
-            )
-            for w, each in enumerate(stated)
-        ]
+        self._random = self._mount.generators(built, seeds)
 
     def __call__(self, t: float, simulation: Any) -> dict[str, Floats]:
         """`accelerometer` [m/s^2] and `gyroscope` [rad/s], (W, 3) each.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +42,15 @@ class Mount:
             self.bodies = in_every_world(built.bodies[[row]], worlds, built.model.body_count)[:, 0]
         self.position = np.array([each.position for each in self.stated])
         self.rotation = np.array([each.rotation for each in self.stated])
+
+    def generators(self, built: Built, seeds: Sequence[int]) -> list[np.random.Generator]:
+        """Of its noise, one for each world: by its own seed or the stage's, the world's among `seeds`, and its name."""
+        return [
+            np.random.default_rng(
+                [built.world_of(w).seed if each.seed is None else each.seed, seeds[w], zlib.crc32(each.prim.encode())]
+            )
+            for w, each in enumerate(self.stated)
+        ]
 
     def frames(self, state: Any) -> tuple[Floats, Floats]:
         """Places [m] and turns of the sensor in the world, (W, 3) and (W, 4)."""

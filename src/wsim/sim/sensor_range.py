@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import zlib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -45,12 +44,7 @@ class Range:
         self._rays = np.array([_directions(each.azimuths, each.elevations) for each in stated])  # (W, rays, 3)
         self._limits = np.array([[[each.nearest], [each.farthest]] for each in stated])  # (W, 2, 1)
         self._noise = np.array([[each.noise] for each in stated])
-        self._random = [
-            np.random.default_rng(
-                [built.world_of(w).seed if each.seed is None else each.seed, seeds[w], zlib.crc32(each.prim.encode())]
-            )
-            for w, each in enumerate(stated)
-        ]
+        self._random = self._mount.generators(built, seeds)
         self.points: Floats = np.zeros((0, 3))
         self._model = self._seen(built.model)
         with wp.ScopedDevice(built.model.device):

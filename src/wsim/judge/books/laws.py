@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 RESOLVED = 0.5  # of a mode's phase between two frames [rad]: what is faster is not known from the frames
-
 USUAL_STEP = 2e-3  # [s], of engines that do not tell theirs
 
 
@@ -159,7 +158,10 @@ class Laws:
         extent = np.pi if turns else float(np.abs(motion.com).max(initial=0.0))
         late = motion.step or max(self._step(law), USUAL_STEP)
         course = Course(place, rate, motion.h, turns, extent, self._mobility.get(joint.prim, np.inf), late)
-        off = off_the_way(drive, course, *found, self._may_be_hit([row for row in (law.one, law.two) if row >= 0]))
+        struck = np.full(len(motion.h), False)
+        if drive.max_effort is not None:
+            struck = self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
+        off = off_the_way(drive, course, *found, struck)
         tells = ~law.known & (off < law.most) & ~broken(self._evidence, joint)[1:]
         rotor = np.where(law.known, 0.0, joint.armature * np.diff(rate) / motion.h)
         return replace(law, mean=np.where(tells, found[0], 0.0) - rotor, off=np.where(tells, off, law.most))
