@@ -24,7 +24,7 @@ def told(drive, place, rate, mobility):
     """What the way tells of a drive that is set to 0, and by how much that may be off."""
     h = np.full(len(place) - 1, H)
     mean, may = jolts.mean_force((drive.stiffness, drive.damping), place, rate, h, 0.0)
-    course = Course(place, rate, h, False, 1.0, mobility, 0.0)
+    course = Course(place, rate, h, 1.0, mobility, 0.0)
     return -mean, off_the_way(drive, course, -mean, may, np.full(len(h), True), np.full(len(h), False))
 
 

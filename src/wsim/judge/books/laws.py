@@ -112,7 +112,7 @@ class Laws:
         for joint in self._evidence.world.joints:
             if joint.drive is not None and self.joints[joint.prim]:
                 self._refine_drive(joint, self.joints[joint.prim][0], total, wrong)
-                self._on_the_way(joint, self.joints[joint.prim][0], total)
+                self._on_the_way(joint, self.joints[joint.prim][0], total, wrong)
         return total, wrong
 
     def _refine_drive(self, joint: Joint, law: Law, total: Floats, wrong: Floats) -> None:
@@ -139,25 +139,34 @@ class Laws:
                 total[:, row] += more[:, None] * middle
                 wrong[:, row] += unsure[:, None] * np.linalg.norm(middle.reshape(-1, 2, 3), axis=2)
 
-    def _on_the_way(self, joint: Joint, law: Law, total: Floats) -> None:
-        """What a drive gives in the mean where frames do not tell it and the way of its joint does."""
-        if law.mean is None:
+    def _on_the_way(self, joint: Joint, law: Law, total: Floats, wrong: Floats) -> None:
+        """What a drive gives in the mean where frames do not tell it and the way of its joint does.
+
+        It may have given it at either end of the interval, along the way that it has there, and as much to and fro.
+        """
+        if law.mean is None or joint.drive is None:
             return
+        effort = np.abs(self.effort(joint))
+        most = np.maximum(np.abs(law.mean), np.maximum(effort[1:], effort[:-1]))
+        most = np.where(law.mean == 0.0, 0.0, most + joint.drive.damping * np.abs(np.diff(self.rate(joint))))
         along = self._along(joint)
         unit = self._law(*along.acting(np.ones(len(along.rate))), (0.0, 0.0), along.loose)
         for row, way in ((law.one, unit.back), (law.two, unit.wrench)):
             if row >= 0:
                 total[:, row] += law.mean[:, None] * 0.5 * (way[1:] + way[:-1])
+                turned = 0.5 * np.linalg.norm(np.diff(way, axis=0).reshape(-1, 2, 3), axis=2) + _bent(way)
+                wrong[:, row] += most[:, None] * turned
 
     def _told_by_way(self, joint: Joint, law: Law) -> Law:
         """A drive's law with what the joint's way tells of its mean where frames do not; a rotor takes its gain."""
         found, drive, motion, place = self.mean_of_drive(joint), joint.drive, self._motion, self.position(joint)
+        if joint.kind != "prismatic":  # of what turns far between two frames they tell too little
+            return law
         if found is None or place is None or drive is None or not drive.told or self._set:
             return law
-        turns, rate = joint.kind == "revolute", self.rate(joint)
-        extent = np.pi if turns else float(np.abs(motion.com).max(initial=0.0))
+        rate, extent = self.rate(joint), float(np.abs(motion.com).max(initial=0.0))
         late = motion.step or max(self._step(law), USUAL_STEP)
-        course = Course(place, rate, motion.h, turns, extent, self._mobility.get(joint.prim, np.inf), late)
+        course = Course(place, rate, motion.h, extent, self._mobility.get(joint.prim, np.inf), late)
         struck = np.full(len(motion.h), False)
         if drive.max_effort is not None:
             struck = self._may_be_hit([row for row in (law.one, law.two) if row >= 0])
@@ -288,7 +297,7 @@ class Laws:
         if joint.drive is not None:
             laws = [self._told_by_way(joint, self._drive(joint.drive, along, track.position, holds))]
         laws += [self._friction(joint.friction, along, holds)] if joint.friction > 0.0 else []
-        if joint.armature and joint.drive is None:  # what its rotor takes is not told
+        if joint.armature and (joint.drive is None or laws[0].mean is None):  # what its rotor takes is not told
             return [replace(law, most=np.inf) for law in laws]
         return laws
 

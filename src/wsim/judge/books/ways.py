@@ -1,4 +1,4 @@
-"""What a joint's way tells of its drive's mean force where frames are too far apart to tell the force all along.
+"""What a slider's way tells of its drive's mean force where frames are too far apart to tell the force all along.
 
 A damper gives its constant times how far the joint goes, however fast it goes there: a mode that it damps need not be
 resolved, only one that the stiffness makes swing, of phase p between frames. Its mean both ends' places and rates leave
@@ -25,25 +25,24 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 FOLLOWED = 2.0  # of the phase that a drive's stiffness gives its mechanism [rad]: faster ones are not followed
+SLOW = 0.5  # of a speed that the damper takes in a step: how an engine sums up what is faster is its own affair
 BEYOND = 250.0  # p^2 / 250 of the fastest h tells p^4 / 720 of an amplitude from its rates, p^2 / 2 of it at least
-QUARTER = 0.5 * np.pi  # [rad] in an interval: how far a hinge goes that turns by more is not known from its ends
 
 
 @dataclass(frozen=True)
 class Course:
-    """How a joint with a drive goes, of T frames."""
+    """How a slider with a drive goes, of T frames."""
 
-    place: Floats  # (T,) [rad or m]
+    place: Floats  # (T,) [m]
     rate: Floats  # (T,)
     h: Floats  # (T - 1,) [s]
-    turns: bool  # a hinge's
-    extent: float  # the largest number that its place is the rounded difference of [rad or m]
-    mobility: float  # by how much a unit effort speeds it up at most [1/kg or 1/(kg m^2)]
+    extent: float  # the largest number that its place is the rounded difference of [m]
+    mobility: float  # by how much a unit force speeds it up at most [1/kg]
     late: float  # the time step, which a rate may be told late by [s]
 
 
 def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: Bools, struck: Bools) -> Floats:
-    """By how much a drive's mean force may be off what its joint's way tells, (T - 1,) [N or N m]; inf: by any.
+    """By how much a drive's mean force may be off what its joint's way tells, (T - 1,) [N]; inf: by any.
 
     Args:
         drive: Its law.
@@ -65,9 +64,7 @@ def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: 
     # Sums over steps are those of starts, of ends or of means, of place and rate each.
     far, faster = np.abs(np.diff(course.place)), np.abs(np.diff(rate))
     off = off + np.minimum(course.late / h, 1.0) * (0.5 * drive.stiffness * far + drive.damping * faster)
-    tells = phase < FOLLOWED
-    if course.turns:
-        tells &= fastest * h < QUARTER
+    tells = (phase < FOLLOWED) & (drive.damping * course.mobility * course.late < SLOW)
     if drive.max_effort is not None:  # what goes to and fro may be at its most meanwhile
         tells &= below & ~struck & (np.abs(mean) + off + drive.damping * stray / h < drive.max_effort)
     return np.asarray(np.where(tells, off, np.inf))
