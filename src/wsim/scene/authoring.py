@@ -8,8 +8,9 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
+from wsim.scene.specs import put, spec_of
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
 WORLD = "/World"
@@ -86,12 +87,17 @@ def _file_name(path: str) -> str:
     return Path(path).name
 
 
-def note_line(prim: Usd.Prim) -> None:
-    """Write on a prim which line of the program made it, as customData `wsim:line` = "program.py:12"."""
+def calling_line() -> str:
+    """Which line of the program calls: "program.py:12"."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
         frame = frame.f_back
-    prim.SetCustomDataByKey("wsim:line", f"{_file_name(frame.f_code.co_filename)}:{frame.f_lineno}")
+    return f"{_file_name(frame.f_code.co_filename)}:{frame.f_lineno}"
+
+
+def note_line(prim: Usd.Prim) -> None:
+    """Write on a prim which line of the program made it, as customData `wsim:line` = "program.py:12"."""
+    prim.SetCustomDataByKey("wsim:line", calling_line())
 
 
 def calling_folder() -> Path | None:
@@ -114,14 +120,20 @@ def rotation(degrees: Vec3) -> Gf.Quatd:
 
 def set_pose(prim: Usd.Prim, position: Vec3, turn: Gf.Quatd | None = None, scale: Vec3 | None = None) -> None:
     """Author translate, orient and scale, leaving out what does nothing."""
-    xform = UsdGeom.Xformable(prim)
-    xform.ClearXformOpOrder()
+    kinds = Sdf.ValueTypeNames
+    ops: list[tuple[str, Sdf.ValueTypeName, object]] = []
     if position != (0.0, 0.0, 0.0) or (turn is None and scale is None):
-        xform.AddTranslateOp().Set(Gf.Vec3d(*position))
+        ops.append(("xformOp:translate", kinds.Double3, Gf.Vec3d(*position)))
     if turn is not None and turn != Gf.Quatd(1.0):
-        xform.AddOrientOp(UsdGeom.XformOp.PrecisionDouble).Set(turn)
+        ops.append(("xformOp:orient", kinds.Quatd, turn))
     if scale is not None:
-        xform.AddScaleOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*scale))
+        ops.append(("xformOp:scale", kinds.Double3, Gf.Vec3d(*scale)))
+    with Sdf.ChangeBlock():
+        spec = spec_of(prim)
+        for name, kind, value in ops:
+            put(spec, name, kind, value)
+        order = Vt.TokenArray([name for name, _, _ in ops])
+        put(spec, "xformOpOrder", kinds.TokenArray, order, Sdf.VariabilityUniform)
 
 
 def world_pose(prim: Usd.Prim) -> tuple[Gf.Vec3d, Gf.Quatd]:

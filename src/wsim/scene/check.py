@@ -46,6 +46,7 @@ from wsim.scene.errors import one_line
 from wsim.scene.skeleton import is_free
 from wsim.scene.usd_policies import policy_problems
 from wsim.scene.usd_sensors import sensor_problems
+from wsim.scene.usd_shapes import to_vec3
 
 _NOW = Usd.TimeCode.Default()
 # Where USD itself means "without limit" or "not given" by an infinity.
@@ -240,7 +241,7 @@ def _as_array(value: Any) -> np.ndarray | None:
     if isinstance(value, float):
         return np.array([value])
     if type(value) in _QUATERNIONS:
-        return np.array([value.GetReal(), *value.GetImaginary()], dtype=np.float64)
+        return np.append(np.array(value.GetImaginary(), dtype=np.float64), value.GetReal())
     if type(value) in _FLOATS:
         try:
             array = np.array(value, dtype=np.float64).reshape(-1)
@@ -269,7 +270,7 @@ def _pose(prim: Usd.Prim) -> Iterator[str]:
     if not np.isfinite(np.array(matrix)).all():
         yield f"{prim.GetPath()}: its pose is not finite"
         return
-    for axis, value in zip("xyz", matrix.ExtractTranslation(), strict=True):
+    for axis, value in zip("xyz", to_vec3(matrix.ExtractTranslation()), strict=True):
         if abs(value) > MAX_POSITION:
             yield f"{prim.GetPath()}.xformOp: {axis} = {value:g} m must be within {MAX_POSITION:g} m of the origin"
     if abs(matrix.GetDeterminant3()) < 1e-15:

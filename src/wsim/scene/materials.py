@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
+from pxr import Gf, Sdf, Usd, Vt
 
-from wsim.scene import schema
-from wsim.scene.authoring import LOOKS, Author, Handle, note_line
+from wsim.scene import schema, specs
+from wsim.scene.authoring import LOOKS, Author, Handle, calling_line
+from wsim.scene.specs import define, put, spec_of
 from wsim.scene.validate import Call, Vec3, shown, suggestion
 
 # Told apart by people with any kind of colour vision (Okabe and Ito 2008), linear RGB.
@@ -100,30 +101,7 @@ class Materials(Author):
         return material
 
     def _author_material(self, material: Material, look: Look | None = None) -> Material:
-        look = look or Look()
-        if not self._stage.GetPrimAtPath(LOOKS):
-            UsdGeom.Scope.Define(self._stage, LOOKS)
-        usd = UsdShade.Material.Define(self._stage, material.path)
-        shader = UsdShade.Shader.Define(self._stage, f"{material.path}/surface")
-        shader.CreateIdAttr("UsdPreviewSurface")
-        shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(*material.color))
-        for key, value in (("roughness", look.roughness), ("metallic", look.metallic), ("ior", look.ior)):
-            shader.CreateInput(key, Sdf.ValueTypeNames.Float).Set(value)
-        shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(material.opacity)
-        output = shader.CreateOutput("surface", Sdf.ValueTypeNames.Token)
-        usd.CreateSurfaceOutput().ConnectToSource(output)
-        physics = UsdPhysics.MaterialAPI.Apply(usd.GetPrim())
-        if material.friction is not None:
-            physics.CreateStaticFrictionAttr(material.friction)
-            physics.CreateDynamicFrictionAttr(material.friction)
-        if material.restitution is not None:
-            physics.CreateRestitutionAttr(material.restitution)
-        if material.rolling is not None:
-            double = Sdf.ValueTypeNames.Double
-            schema.apply(usd.GetPrim(), schema.MATERIAL, {"rolling": (double, material.rolling)})
-        if material.density is not None:
-            physics.CreateDensityAttr(material.density)
-        note_line(usd.GetPrim())
+        author_material(self._stage.GetRootLayer(), material, look or Look())
         return material
 
     def _surface(
@@ -181,10 +159,46 @@ class Materials(Author):
         return _PALETTE[(self._colors_used - 1) % len(_PALETTE)]
 
 
+def author_material(layer: Sdf.Layer, material: Material, look: Look) -> None:
+    """Write a material and its shader: at once, as a stage composes anew after each change that it is told of."""
+    kinds = Sdf.ValueTypeNames
+    physics = {
+        "density": material.density,
+        "dynamicFriction": material.friction,
+        "restitution": material.restitution,
+        "staticFriction": material.friction,
+    }
+    looks = {"roughness": look.roughness, "metallic": look.metallic, "ior": look.ior, "opacity": material.opacity}
+    with Sdf.ChangeBlock():
+        define(layer, LOOKS, "Scope")
+        usd = define(layer, material.path, "Material")
+        surface = define(layer, f"{material.path}/surface", "Shader")
+        put(surface, "info:id", kinds.Token, "UsdPreviewSurface", Sdf.VariabilityUniform)
+        put(surface, "inputs:diffuseColor", kinds.Color3f, Gf.Vec3f(*material.color))
+        for name, value in looks.items():
+            put(surface, f"inputs:{name}", kinds.Float, value)
+        output = put(surface, "outputs:surface", kinds.Token)
+        put(usd, "outputs:surface", kinds.Token).connectionPathList.explicitItems = [output.path]
+        for name, stated in physics.items():
+            if stated is not None:
+                put(usd, f"physics:{name}", kinds.Float, stated)
+        schemas = ["PhysicsMaterialAPI"]
+        if material.rolling is not None:
+            put(usd, "wsim:rolling", kinds.Double, material.rolling, Sdf.VariabilityUniform)
+            schemas.append(schema.MATERIAL)
+        specs.apply(usd, *schemas)
+        usd.customData = {"wsim": {"line": calling_line()}}
+
+
 def bind(prim: Usd.Prim, material: Material) -> None:
     """Give a piece of geometry its material, and its colour for tools that read no materials."""
-    usd = UsdShade.Material(prim.GetStage().GetPrimAtPath(material.path))
-    UsdShade.MaterialBindingAPI.Apply(prim).Bind(usd)
-    gprim = UsdGeom.Gprim(prim)
-    gprim.CreateDisplayColorAttr(Vt.Vec3fArray([Gf.Vec3f(*material.color)]))
-    gprim.CreateDisplayOpacityAttr(Vt.FloatArray([material.opacity]))
+    kinds = Sdf.ValueTypeNames
+    with Sdf.ChangeBlock():
+        spec = spec_of(prim)
+        specs.apply(spec, "MaterialBindingAPI")
+        bound = spec.relationships.get("material:binding") or Sdf.RelationshipSpec(
+            spec, "material:binding", custom=False
+        )
+        bound.targetPathList.explicitItems = [Sdf.Path(material.path)]
+        put(spec, "primvars:displayColor", kinds.Color3fArray, Vt.Vec3fArray([Gf.Vec3f(*material.color)]))
+        put(spec, "primvars:displayOpacity", kinds.FloatArray, Vt.FloatArray([material.opacity]))

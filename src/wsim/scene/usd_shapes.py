@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -181,19 +182,22 @@ def _cone(cone: UsdGeom.Cone) -> tuple[Array, NDArray[np.int64]]:
 
 def _look(prim: Usd.Prim) -> tuple[Vec3, float]:
     """Linear RGB and opacity of a Gprim: its material's, else its display colour."""
-    gprim = UsdGeom.Gprim(prim)
-    colors, opacities = gprim.GetDisplayColorAttr().Get(), gprim.GetDisplayOpacityAttr().Get()
-    color = to_vec3(colors[0]) if colors else (0.7, 0.7, 0.7)
-    opacity = float(opacities[0]) if opacities else 1.0
     material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
     shader = material.ComputeSurfaceSource()[0] if material else None
-    if shader:
-        diffuse, clear = shader.GetInput("diffuseColor"), shader.GetInput("opacity")
-        if diffuse and diffuse.Get() is not None:
-            color = to_vec3(diffuse.Get())
-        if clear and clear.Get() is not None:
-            opacity = float(clear.Get())
-    return color, opacity
+    color, opacity = (_input(shader, name) if shader else None for name in ("diffuseColor", "opacity"))
+    if color is None:
+        colors = UsdGeom.Gprim(prim).GetDisplayColorAttr().Get()
+        color = colors[0] if colors else (0.7, 0.7, 0.7)
+    if opacity is None:
+        opacities = UsdGeom.Gprim(prim).GetDisplayOpacityAttr().Get()
+        opacity = opacities[0] if opacities else 1.0
+    return to_vec3(color), float(opacity)
+
+
+def _input(shader: UsdShade.Shader, name: str) -> Any:
+    """What a shader's input is set to; None where it is not."""
+    given = shader.GetInput(name)
+    return given.Get() if given else None
 
 
 def _surface(prim: Usd.Prim) -> tuple[float | None, float | None, float | None]:
@@ -211,13 +215,12 @@ def _surface(prim: Usd.Prim) -> tuple[float | None, float | None, float | None]:
 
 
 def to_vec3(vector: Gf.Vec3d) -> Vec3:
-    """A USD vector as plain numbers."""
+    """A USD vector as plain numbers: by their places, as its end is told by an exception."""
     return (float(vector[0]), float(vector[1]), float(vector[2]))
 
 
 def to_quat(quat: Gf.Quatd) -> Quat:
     """A USD quaternion (w first) as (x, y, z, w), of length 1."""
-    x, y, z = quat.GetImaginary()
-    w = quat.GetReal()
+    (x, y, z), w = to_vec3(quat.GetImaginary()), quat.GetReal()
     length = math.sqrt(x * x + y * y + z * z + w * w) or 1.0
     return (x / length, y / length, z / length, w / length)

@@ -120,6 +120,23 @@ def pushed_out(approach: float, restitution: float, step: float) -> float:
     return min(max(deep, 0.0) / FADES, FADING)
 
 
+def comes_back(back: float, pull: float, travel: float) -> float:
+    """How soon at least what bounces may be back [s]; inf of what does not, or is not pulled back.
+
+    A step takes a blow where it finds the body, up to what that goes in a step above the surface, and there it has the
+    speed of a bounce from the surface: from z above it comes down in (sqrt(back^2 - 2 pull z) + back) / pull, and from
+    where it would turn in half the time of a bounce.
+
+    Args:
+        back: The speed at which it leaves the surface [m/s].
+        pull: By what forces pull it back [m/s^2].
+        travel: What it goes in a step [m].
+    """
+    if back <= 0.0 or pull <= 0.0:
+        return float("inf")
+    return float(back + np.sqrt(max(back**2 - 2.0 * pull * travel, 0.0))) / pull
+
+
 def blows(copies: Sequence[Evidence]) -> list[list[Blow]]:
     """All of each of some recordings that stand alone; of worlds that are `similar`, over the same times."""
     motion = copies[0].motion
@@ -202,7 +219,7 @@ def _blow(courses: Courses, touching: Touching, point: Point, faster: float, aft
     evidence, dt = courses.copies[copy], float(courses.dt[copy])
     motion = evidence.motion
     rest, rounding = float(motion.h[k]) - of.when, _rounding(of)
-    returns = 0.0 < 2.0 * law.restitution * speed * dt < faster * rest  # it may have bounced and come back,
+    returns = comes_back(law.restitution * speed, faster / dt, speed * dt) < rest + dt
     # or its rim rolls on from point to point, and each bounces in turn
     returns |= law.restitution > STAYS > abs(point.parting) / speed and not point.balls
     # A step takes a blow where it finds the body, above the surface or below: what comes back is slower or faster.

@@ -19,7 +19,7 @@ from wsim.geometry.rotations import conjugate, cross, rotate
 from wsim.geometry.shapes import kind_of
 from wsim.judge.books.followed import Course, Followed, Pose
 from wsim.judge.books.forces import ONE_WAY, STILL
-from wsim.judge.books.impacts import ACROSS, APART, SHOWS, SLOW, STAYS, Blow, Rub, pushed_out
+from wsim.judge.books.impacts import ACROSS, APART, SHOWS, SLOW, STAYS, Blow, Rub, comes_back, pushed_out
 from wsim.judge.books.pressed import answers
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.touching import Contacts, Touching, together
@@ -135,10 +135,10 @@ class RecordedBlows:
         rest = float(motion.h[k]) - when
         if approach < SLOW * self._followed.dt + unsure:
             return None
-        if unsure > SHOWS * approach or 2.0 * law.restitution * approach < pull * rest * (law.restitution > STAYS):
-            return None  # too slow, or it may have bounced and come back
-        if self._stays(row, law):
-            return None
+        dt, bounces = self._followed.dt, law.restitution > STAYS
+        soonest = comes_back(law.restitution * approach, pull / dt, 2.0 * deep) if bounces else np.inf
+        if unsure > SHOWS * approach or soonest < rest + dt or self._stays(row, law):
+            return None  # too slow, or it may have bounced and come back, or it is pressed on
         first, second = (self._owners[shape] for shape in contacts.track.pair[row].tolist())
         slides = "slides" in (one.kind, two.kind)  # what else rubs may change its slip at once, before frames show it
         rub = None if slides else self._rub(row, law, slips, poses, point)
