@@ -32,6 +32,21 @@ def held(drive: Motor, position: Floats) -> Floats:
     return np.asarray(0.5 * drive.stiffness * within**2 + drive.max_effort * (left - within))
 
 
+def changes_hands(evidence: Evidence, rows: NDArray[np.intp]) -> float:
+    """What the drives of some bodies' joints hold as springs, from its least to its most, added up [J].
+
+    Of drives that somebody sets while the world runs that is not known, and counts as nothing.
+    """
+    found, ours = 0.0, set(rows.tolist())
+    if evidence.recording.metadata.get("controlled"):
+        return found
+    for joint in evidence.world.joints:
+        track, drive = evidence.joint(joint), joint.drive
+        if drive is not None and track is not None and evidence.index(joint.child) in ours:
+            found += float(np.ptp(held(drive, track.position)))
+    return found
+
+
 def given_within(evidence: Evidence) -> Floats:
     """What drives may give at most by any moment of an interval, of that which its ends show, (T - 1,) [J].
 
@@ -45,19 +60,6 @@ def given_within(evidence: Evidence) -> Floats:
         if drive is not None and track is not None:
             found += held(drive, track.position)[:-1] + 0.25 * drive.damping * drive.velocity**2 * evidence.motion.h
     return found
-
-
-def alone(evidence: Evidence) -> tuple[Floats, Floats] | None:
-    """What the only drive of a world did by its steps, and how unsure that is, (T - 1,) each [J]; None of several.
-
-    Of a stiff one frames do not tell it: its speed comes and goes between two of them.
-    """
-    recording = evidence.recording
-    worked, unsure = (recording.scalars.get(f"work/drives{end}") for end in ("", "_unsure"))
-    drives = sum(joint.drive is not None for joint in evidence.world.joints)
-    if drives != 1 or worked is None or unsure is None or not np.isfinite([worked[1:], unsure[1:]]).all():
-        return None
-    return np.asarray(worked[1:], dtype=np.float64), np.asarray(unsure[1:], dtype=np.float64)
 
 
 def resting(ties: RecordedTies, k: int) -> tuple[Floats, Floats]:
