@@ -91,6 +91,14 @@ def mean_force(gains: tuple[float, float], place: Floats, rate: Floats, h: Float
     return mean, 0.5 * gains[0] * (high - low) + 0.5 * np.abs(late)
 
 
+def strayed(place: Floats, rate: Floats, h: Floats) -> Floats:
+    """How far a length goes beside what its rates at both ends give, here or in the intervals beside, (T - 1,)."""
+    bend = h / 12.0 * np.diff(np.gradient(rate)) if len(rate) > 1 else np.zeros(0)
+    off = np.pad(np.abs(np.diff(place) - 0.5 * (rate[1:] + rate[:-1]) * h + bend), 1, mode="edge")
+    found: Floats = np.max([off[:-2], off[1:-1], off[2:]], axis=0)
+    return found
+
+
 def reversed_share(place: Floats, rate: Floats, h: Floats, dt: float) -> Floats:
     """The most of each interval for which a joint may go back though it goes one way at both ends, (T - 1,).
 
