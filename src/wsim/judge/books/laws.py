@@ -199,9 +199,9 @@ class Laws:
         step = self._motion.step if late else 0.0
         mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, step)
         most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - drive.velocity)
-        below = (
-            np.full(len(h), True) if drive.max_effort is None else np.maximum(most[1:], most[:-1]) < drive.max_effort
-        )
+        below = np.maximum(most[1:], most[:-1]) < (np.inf if drive.max_effort is None else drive.max_effort)
+        if drive.max_effort is not None:
+            below &= jolts.between(left, rate, h)
         return drive.damping * drive.velocity - mean, may, below
 
     def _refine(self, spring: Spring, law: Law, total: Floats, wrong: Floats) -> None:

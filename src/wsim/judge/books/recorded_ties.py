@@ -225,7 +225,8 @@ class RecordedTies:
         rounding = 8.0 * FLOAT32 * (drive.stiffness * self._extent(k) + drive.damping * np.abs(rate).max())
         known = (law.error < RESOLVED**2 / 12.0) & (full[1:] == full[:-1]) | (full[1:] * full[:-1] > 0.0)
         known &= ~broken(self._evidence, joint)[1:]
-        mean, unsure, found = 0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull), self.laws.mean_of_drive(joint)
+        mean, found = 0.5 * (pull[1:] + pull[:-1]), self.laws.mean_of_drive(joint)
+        unsure = self._by_frames(pull) + np.where(full[1:] * full[:-1] > 0.0, law.error * np.abs(mean), 0.0)
         if found is not None:
             # What another drive shakes faster than frames tell is damped by how far it went, too.
             stray = jolts.strayed(at.position, rate, self.intervals)
