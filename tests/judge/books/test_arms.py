@@ -7,12 +7,12 @@ w^2 R M the hinge holds the cup, with an arm that turns by w h = 0.2 between fra
 import numpy as np
 import pytest
 
-from tests.judge.theory import RADIUS, G, ask, ball, box, edited, record, times
+from tests.judge.theory import RADIUS, G, ask, ball, box, edited, record, times, with_world
 from wsim.judge.books.arms import shaken
 from wsim.judge.books.balance import Books
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.evidence.evidence import Evidence
-from wsim.scene.world import Joint
+from wsim.scene.world import Guide, Joint, Spring
 
 RATE, TURN, ARM, WALL = 30.0, 0.2, 0.5, 0.04  # [1/s], [rad] a frame, [m], [m]
 CUP, BALL = 20.0, 0.5  # [kg]
@@ -85,3 +85,17 @@ def test_the_mean_of_an_arm_that_shakes_is_known_to_how_far_its_turns_stray(turn
     allowed = shaken(Evidence(rocks, None))[:, 0] + (2 * rock * np.sin(min(turn, np.pi) / 2)) * turn / 12.0
     assert np.all(missed <= allowed)
     assert allowed.max() < max(6.0 * missed.max(), turn**2 * rock)
+
+
+@pytest.mark.parametrize("phase", [0.5, 2.0])
+def test_a_springs_way_strays_from_its_ends_rates_as_far_as_it_swings_between_frames(phase):
+    """By 2 A (sin p/2 - p/2 cos p/2) / L at most, p a frame, of a ball that swings by A across a spring of length L."""
+    t, far, length = times(0.7, RATE), 0.02, 1.0
+    rate, none = phase * RATE, 0.0 * t
+    place = np.stack([far * np.sin(rate * t), none, none + 1.0], axis=1)
+    velocity = np.stack([far * rate * np.cos(rate * t), none, none], axis=1)
+    ends = [Guide(body=None, position=(0, 0, 1.0 + length)), Guide(body="/World/ball", position=(0, 0, 0))]
+    spring = Spring(prim="/World/spring", path=ends, stiffness=100.0, damping=0.0, rest_length=0.5, radius=0.02)
+    found = shaken(Evidence(with_world(record([ball()], place, velocity, t), springs=[spring])))
+    most = 2.0 * far / length * (np.sin(phase / 2) - phase / 2 * np.cos(phase / 2))
+    assert found.max() == pytest.approx(most, rel=0.02)

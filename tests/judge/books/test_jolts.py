@@ -228,3 +228,17 @@ def test_another_dry_friction_is_found_beside_blows(runs):
     for by in (0.75, 1.25):
         pivot = run.world.joints[0].model_copy(update={"friction": by * 0.1})
         assert wrong(replace(run, world=run.world.model_copy(update={"joints": [pivot]})))
+
+
+def test_a_length_that_went_faster_than_at_either_end_is_told_from_one_that_did_not():
+    """A jump of the rate halfway leaves the way between those of both rates; there and back at 10 m/s does not."""
+    h, rate = np.full(3, H), np.array([1.0, 1.0, 0.0, 0.0])
+    assert jolts.between(np.array([0.0, H, 1.5 * H, 1.5 * H]), rate, h).tolist() == [True, True, True]
+    assert jolts.between(np.array([0.0, H, 5.0 * H, 5.0 * H]), rate, h).tolist() == [True, False, True]
+
+
+def test_what_a_length_strays_shows_in_the_intervals_beside():
+    """A rate that went up and down again between two frames, by 0.2 of the way."""
+    place = np.array([0.0, 1.0, 2.2, 3.2, 4.2, 5.2]) * H
+    found = jolts.strayed(place, np.ones(6), np.full(5, H))
+    assert found == pytest.approx(np.array([0.2, 0.2, 0.2, 0.0, 0.0]) * H)

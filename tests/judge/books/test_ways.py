@@ -9,7 +9,7 @@ import pytest
 from tests.judge.theory import ask
 from wsim.judge.books import jolts
 from wsim.judge.books.mobility import mobilities
-from wsim.judge.books.ways import Course, off_the_way
+from wsim.judge.books.ways import Course, eased, off_the_way
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.evidence.evidence import Evidence
 from wsim.recording import read
@@ -56,6 +56,15 @@ def test_what_is_damped_away_within_an_interval_is_told_by_how_far_it_went():
     true = -25e3 * np.diff(whole) / H - drive.damping * np.diff(place) / H
     assert np.all(np.abs(mean - true) <= off)
     assert np.all(off[:9] < 1e-3 * 36.0 * speed / H)
+
+
+def test_a_drive_at_its_most_is_known_where_its_joint_goes_evenly():
+    """A joint that goes evenly, and one that turned back for a tenth of an interval, by as much as it takes."""
+    drive, h = Motor(damping=100.0, velocity=2.0, max_effort=50.0), np.full(9, 0.02)
+    place, rate = 0.02 * np.arange(10.0), np.ones(10)
+    assert np.all(eased(drive, place, rate, h) < 1e-12)
+    place[5:] += 0.5 * 0.1 * 0.02  # 0.5 m/s faster for a tenth of it, at which it is asked for its most and no more
+    assert eased(drive, place, rate, h)[4] == pytest.approx(0.2)
 
 
 # ---- worlds

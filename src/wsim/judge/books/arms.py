@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.scene.world import Joint
+    from wsim.scene.world import Joint, Spring
 
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
@@ -62,7 +62,8 @@ def turned(evidence: Evidence, size: Floats) -> Floats:
 def shaken(evidence: Evidence) -> Floats:
     """How far turns stray from the mean of the rates at both ends, (T - 1, B) [rad]: in each mechanism the most.
 
-    In the intervals beside it. Where a body turns by half a turn a frame or more nobody knows.
+    In the intervals beside it; of bodies, and of springs' ways. Where a body turns by half a turn a frame or more
+    nobody knows.
     """
     motion, q = evidence.motion, evidence.body_q[..., 3:]
     found = np.zeros((len(motion.h), len(motion.mass)))
@@ -73,12 +74,34 @@ def shaken(evidence: Evidence) -> Floats:
     size = np.linalg.norm(turn[..., :3], axis=2, keepdims=True)
     angle = 2.0 * np.arctan2(size, turn[..., 3:]) * turn[..., :3] / np.maximum(size, 1e-12)
     off = np.linalg.norm(angle - 0.5 * (motion.w[1:] + motion.w[:-1]) * motion.h[:, None, None], axis=2)
+    for spring in evidence.world.springs:
+        held = [evidence.index(guide.body) for guide in spring.path if guide.body is not None]
+        off[:, held] = np.maximum(off[:, held], _of_spring(evidence, spring)[:, None])
     off = np.pad(off, ((1, 1), (0, 0)), mode="edge")
     off = np.maximum(off[:-2], off[2:])  # what strays in one interval alone does not swing
     for unit in np.unique(motion.unit[motion.jointed]):
         own = np.flatnonzero(motion.unit == unit)
         found[:, own] = np.minimum(off[:, own].max(axis=1, keepdims=True), 1.0)
     return found
+
+
+def _of_spring(evidence: Evidence, spring: Spring) -> Floats:
+    """How far a spring's way strays from where the speeds of its ends take it, (T - 1,) [rad]."""
+    motion = evidence.motion
+    way, speed = np.zeros((2, len(evidence.time), 3))
+    for guide, sign in zip(spring.path, (-1.0, 1.0), strict=True):
+        if guide.body is None:
+            way += sign * np.array(guide.position)
+            continue
+        i = evidence.index(guide.body)
+        place = evidence.body_q[:, i, :3] + rotate(evidence.body_q[:, i, 3:], np.array(guide.position)[None])
+        way += sign * place
+        speed += sign * (motion.v[:, i] + np.cross(motion.w[:, i], place - motion.com[:, i]))
+    length = np.maximum(np.linalg.norm(way, axis=1), 1e-9)
+    off = np.diff(way, axis=0) - 0.5 * (speed[1:] + speed[:-1]) * motion.h[:, None]
+    along = 0.5 * (way[1:] / length[1:, None] + way[:-1] / length[:-1, None])
+    off -= np.einsum("ti,ti->t", off, along)[:, None] * along
+    return np.asarray(np.linalg.norm(off, axis=1) / np.minimum(length[1:], length[:-1]))
 
 
 def changing(asked: Floats, angle: Floats, mass: Floats, hit: Bools, unit: Rows) -> Floats:

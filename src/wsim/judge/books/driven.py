@@ -16,6 +16,7 @@ from wsim.judge.evidence.motion import FLOAT32
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.books.laws import Laws
     from wsim.judge.books.recorded_ties import RecordedTies
     from wsim.judge.evidence.evidence import Evidence
     from wsim.scene.world import Motor
@@ -30,6 +31,21 @@ def held(drive: Motor, position: Floats) -> Floats:
         return np.asarray(0.5 * drive.stiffness * left**2)
     within = np.minimum(left, drive.max_effort / drive.stiffness)
     return np.asarray(0.5 * drive.stiffness * within**2 + drive.max_effort * (left - within))
+
+
+def changes_hands(evidence: Evidence, rows: NDArray[np.intp]) -> float:
+    """What the drives of some bodies' joints hold as springs, from its least to its most, added up [J].
+
+    Of drives that somebody sets while the world runs that is not known, and counts as nothing.
+    """
+    found, ours = 0.0, set(rows.tolist())
+    if evidence.recording.metadata.get("controlled"):
+        return found
+    for joint in evidence.world.joints:
+        track, drive = evidence.joint(joint), joint.drive
+        if drive is not None and track is not None and evidence.index(joint.child) in ours:
+            found += float(np.ptp(held(drive, track.position)))
+    return found
 
 
 def given_within(evidence: Evidence) -> Floats:
@@ -47,17 +63,29 @@ def given_within(evidence: Evidence) -> Floats:
     return found
 
 
-def alone(evidence: Evidence) -> tuple[Floats, Floats] | None:
-    """What the only drive of a world did by its steps, and how unsure that is, (T - 1,) each [J]; None of several.
+def thrown(evidence: Evidence, laws: Laws) -> Floats:
+    """What of sliders' drives counts as if all came at one end of an interval, on each body, (T - 1, B) [N s].
 
-    Of a stiff one frames do not tell it: its speed comes and goes between two of them.
+    A drive that is faster than the frames may give one way and take it back: of impulses whose sizes add up to s and
+    whose sum is p no part is more than (s + p) / 2. One of stiffness k gives at most k A + c sqrt(k / m) A, A as far as
+    what it holds and what moves can take it; a damper alone gives one way.
     """
-    recording = evidence.recording
-    worked, unsure = (recording.scalars.get(f"work/drives{end}") for end in ("", "_unsure"))
-    drives = sum(joint.drive is not None for joint in evidence.world.joints)
-    if drives != 1 or worked is None or unsure is None or not np.isfinite([worked[1:], unsure[1:]]).all():
-        return None
-    return np.asarray(worked[1:], dtype=np.float64), np.asarray(unsure[1:], dtype=np.float64)
+    motion, ties = evidence.motion, evidence.recording.ties
+    found = np.zeros((len(motion.h), len(motion.mass)))
+    for k, joint in enumerate(evidence.world.joints):
+        drive, track, law = joint.drive, evidence.joint(joint), laws.joints[joint.prim]
+        if drive is None or track is None or ties is None or not law or joint.kind != "prismatic":
+            continue
+        rows = np.flatnonzero(motion.unit == motion.unit[evidence.index(joint.child)])
+        given = np.abs(ties.drive[1:, k].astype(np.float64))
+        far = np.sqrt(
+            (drive.position - track.position[:-1]) ** 2
+            + 2.0 * motion.kinetic[:-1, rows].sum(axis=1) / max(drive.stiffness, 1e-12)
+        )
+        most = (drive.stiffness + drive.damping * np.sqrt(drive.stiffness * laws.loose(joint)[:-1])) * far
+        sizes = given if drive.stiffness <= 0.0 else np.minimum(most, drive.max_effort or np.inf) * motion.h
+        found[:, rows] += np.where(law[0].known, 0.0, 0.5 * (np.maximum(sizes, given) + given))[:, None]
+    return found
 
 
 def resting(ties: RecordedTies, k: int) -> tuple[Floats, Floats]:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.evidence.motion import FLOAT32
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -89,6 +91,25 @@ def mean_force(gains: tuple[float, float], place: Floats, rate: Floats, h: Float
     late = np.minimum(dt / h, 1.0) * (0.5 * gains[0] * far + gains[1] * faster)
     mean = 0.5 * gains[0] * (low + high) + gains[1] * far / h - 0.5 * late
     return mean, 0.5 * gains[0] * (high - low) + 0.5 * np.abs(late)
+
+
+def strayed(place: Floats, rate: Floats, h: Floats) -> Floats:
+    """How far a length goes beside what its rates at both ends give, here or in the intervals beside, (T - 1,)."""
+    bend = h / 12.0 * np.diff(np.gradient(rate)) if len(rate) > 1 else np.zeros(0)
+    off = np.pad(np.abs(np.diff(place) - 0.5 * (rate[1:] + rate[:-1]) * h + bend), 1, mode="edge")
+    found: Floats = np.max([off[:-2], off[1:-1], off[2:]], axis=0)
+    return found
+
+
+def between(place: Floats, rate: Floats, h: Floats) -> Bools:
+    """Where a length goes as far as at some rate between those of both ends, or of an even change, (T - 1,).
+
+    Else it went faster than at either end, or the other way, for a while.
+    """
+    bend = h / 12.0 * np.abs(np.diff(np.gradient(rate))) if len(rate) > 1 else np.zeros(0)
+    off = bend + 8.0 * FLOAT32 * np.abs(place).max(initial=np.pi)
+    low, high = np.minimum(rate[1:], rate[:-1]) * h, np.maximum(rate[1:], rate[:-1]) * h
+    return np.asarray((np.diff(place) >= low - off) & (np.diff(place) <= high + off))
 
 
 def reversed_share(place: Floats, rate: Floats, h: Floats, dt: float) -> Floats:

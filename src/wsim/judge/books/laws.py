@@ -18,7 +18,7 @@ from wsim.geometry.rotations import rotate
 from wsim.judge.books import jolts
 from wsim.judge.books.lateness import steps_at_most
 from wsim.judge.books.mobility import mobilities
-from wsim.judge.books.ways import Course, off_the_way
+from wsim.judge.books.ways import Course, eased, off_the_way
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.joints import AXES, broken, track_of
 from wsim.judge.evidence.motion import FLOAT32
@@ -199,9 +199,9 @@ class Laws:
         step = self._motion.step if late else 0.0
         mean, may = jolts.mean_force((drive.stiffness, drive.damping), left, rate, h, step)
         most = drive.stiffness * np.abs(left) + drive.damping * np.abs(rate - drive.velocity)
-        below = (
-            np.full(len(h), True) if drive.max_effort is None else np.maximum(most[1:], most[:-1]) < drive.max_effort
-        )
+        below = np.maximum(most[1:], most[:-1]) < (np.inf if drive.max_effort is None else drive.max_effort)
+        if drive.max_effort is not None:
+            below &= jolts.between(left, rate, h)
         return drive.damping * drive.velocity - mean, may, below
 
     def _refine(self, spring: Spring, law: Law, total: Floats, wrong: Floats) -> None:
@@ -309,7 +309,7 @@ class Laws:
         # All of an interval at its full strength it is known; where it comes to that, or leaves it, it is not.
         strained, told = full[1:] * full[:-1] > 0.0, drive.told and not self._set
         known = ((law.known & (full[1:] == full[:-1])) | strained) & holds & told
-        error = np.where(strained, 0.0, law.error)
+        error = np.where(strained, eased(drive, position, along.rate, self._motion.h), law.error)
         return replace(law, known=known, error=error, most=most if told else np.inf)
 
     @property

@@ -20,12 +20,13 @@ from scipy.sparse.csgraph import connected_components
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import relaxing
-from wsim.judge.books.driven import alone
+from wsim.judge.books.driven import changes_hands
 from wsim.judge.books.led import STEADY, Led, late, over, told
 from wsim.judge.books.phases import sinking
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.recorded_ties import OWN
 from wsim.judge.books.rubbing import beside, taken
+from wsim.judge.books.worked import worked
 from wsim.judge.evidence.carriers import leads, surface_speed
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.motion import FLOAT32
@@ -113,15 +114,15 @@ class Losses:
         if self.ties is not None:
             for k, pair in enumerate(self.ties.pairs):
                 if ours & set(pair) and self.ties.joints[k].kind in OWN:
-                    work, doubt, lost = self._of_joint(k)
-                    driven, unsure, most = driven + work, unsure + doubt, most + lost
+                    most += self._of_joint(k)
             most += self._jerked(ours)
+            driven, unsure = worked(self._evidence, self.ties, ours)
         damped, most, least, unsure, driven = (
             np.concatenate([[0.0], np.cumsum(each)]) for each in (damped, most, least, unsure + off, driven)
         )
         driven = driven + (led.work + led.late)[:, rows].sum(axis=1)
         unsure = unsure + led.unsure[:, rows].sum(axis=1)
-        return Taken(damped, most, least, unsure, driven, self._held(ours))
+        return Taken(damped, most, least, unsure, driven, changes_hands(self._evidence, rows))
 
     # ---- contacts
     def _by_contacts(self, rows: Rows) -> Floats:
@@ -299,35 +300,13 @@ class Losses:
         return found
 
     # ---- ties
-    def _of_joint(self, k: int) -> tuple[Floats, Floats, Floats]:
-        """A joint's drive's work, how unsure it is, and what its friction and stops may take, (T - 1,) each [J]."""
+    def _of_joint(self, k: int) -> Floats:
+        """What a joint's friction and stops may take, (T - 1,) [J]."""
         assert self.ties is not None
-        joint, track = self.ties.joints[k], self.ties.track
-        rate = self.ties.laws.rate(joint)
+        rate, track = self.ties.laws.rate(self.ties.joints[k]), self.ties.track
         friction, stop = (np.asarray(each[1:, k], dtype=np.float64) for each in (track.friction, track.stop))
         change, fastest = np.abs(np.diff(rate)), np.maximum(np.abs(rate[1:]), np.abs(rate[:-1]))
-        work, doubt = self._driven(k, rate)
-        return work, doubt, np.abs(friction) * fastest + np.abs(stop) * (fastest + change)
-
-    def _driven(self, k: int, rate: Floats) -> tuple[Floats, Floats]:
-        """The work of a joint's drive, and how unsure it is, (T - 1,) each [J]: by its law, or by what is recorded."""
-        assert self.ties is not None
-        joint, h = self.ties.joints[k], self._motion.h
-        stated, held = self.ties.drive(k), self._evidence.joint(joint)
-        at_most = joint.drive is not None and joint.drive.max_effort is not None
-        spun = 0.5 * joint.armature * np.diff(rate**2)  # what its rotor keeps
-        if stated is not None and held is not None and joint.drive is not None and stated.known.all() and not at_most:
-            stretch = joint.drive.position - held.position
-            rubs, doubt = joint.drive.damping * np.array(over(self._evidence, rate * (rate - joint.drive.velocity)))
-            return -0.5 * joint.drive.stiffness * np.diff(stretch**2) - rubs - spun, doubt
-        if stated is not None and (recorded := alone(self._evidence)) is not None:
-            return recorded
-        drive = np.asarray(self.ties.track.drive[1:, k], dtype=np.float64)
-        mean, change = 0.5 * (rate[1:] + rate[:-1]), np.diff(rate)
-        force = np.gradient(drive / h) if len(drive) > 1 else np.zeros(len(drive))
-        bend = h * force * change / 12.0  # where both change evenly
-        jumps = np.abs(np.diff(change, prepend=change[:1]))
-        return drive * mean + bend - spun, np.abs(bend) + np.abs(drive) * jumps / 6.0
+        return np.asarray(np.abs(friction) * fastest + np.abs(stop) * (fastest + change))
 
     def ahead(self, rows: Rows) -> tuple[Floats, Floats]:
         """What steps of the first order show too little of the energy that they keep, and how unsure it is, (T,) [J].
@@ -353,15 +332,6 @@ class Losses:
         doubt = np.abs(gained) * np.where(known, 2.0 * share * (1.0 - share), 0.5)
         correction, unsure = (np.concatenate([[0.0], np.cumsum(each)]) for each in (share * gained, doubt))
         return correction, unsure
-
-    def _held(self, ours: set[int]) -> float:
-        """What drives hold as springs, from its least to its most [J]."""
-        found = 0.0
-        for joint in self._evidence.world.joints:
-            at = self._evidence.joint(joint)
-            if joint.drive is not None and at is not None and self._evidence.index(joint.child) in ours:
-                found += 0.5 * joint.drive.stiffness * float(np.ptp((joint.drive.position - at.position) ** 2))
-        return found
 
     def _damped(self, ours: set[int]) -> tuple[Floats, Floats]:
         """What springs' dampers take by their law, and how unsure that is, (T - 1,) each [J]."""

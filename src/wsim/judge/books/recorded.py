@@ -16,6 +16,7 @@ import numpy as np
 from wsim.geometry.rotations import conjugate, rotate
 from wsim.judge.books.laws import Laws
 from wsim.judge.books.recorded_ties import RecordedTies
+from wsim.judge.books.sampled import sampled
 from wsim.judge.books.sharing import UPRIGHT, bend, lever, share
 from wsim.judge.evidence.motion import FLOAT32
 from wsim.recording.contacts import shapes_of
@@ -44,8 +45,8 @@ class Balanced:
     force: Floats  # (T - 1, B, 3) over the mass [m/s^2]
     torque: Floats  # (T - 1, B, 3) over m R [m/s^2]
     moved: Floats  # (T - 1, B) what contacts and ties gave, over the mass, and the rounding of velocities [m/s^2]
-    stepped: Floats  # (T - 1, B) what a first-order step leaves of a body that turns about another place [m/s^2]
-    lagging: Floats  # (T - 1, B) what it leaves of angular momentum, where ties turn with bodies [m/s^2]
+    stepped: Floats  # (T - 1, B) what steps leave: one of first order, of what turns about another place [m/s^2]
+    lagging: Floats  # (T - 1, B) what they leave of angular momentum, where ties turn with bodies [m/s^2]
     judged: Bools  # (B,)
     turned: Bools  # (B,) whether its torques are known, too
 
@@ -100,12 +101,14 @@ class RecordedContacts:
         rounding = 8.0 * FLOAT32 * np.maximum(speed[1:], speed[:-1])
         moved = (moved + applied) / motion.mass / motion.h[:, None]
         loose = ~motion.kinematic & (~motion.jointed | (self.ties is not None))
-        lagging = np.zeros_like(stepped)
+        lagging, missed = np.zeros_like(stepped), np.zeros((*stepped.shape, 2))
         if self.ties is not None:
             lagging = self.ties.stepped(moved + self._evidence.gravity)
+            missed = sampled(self._evidence, self.ties.laws)
         pushed = recording.applied_impulse is not None or bool(recording.metadata.get("controlled"))
         known = loose & (recording.applied_turn is not None or not pushed)
-        return Balanced(force, torque, moved + rounding / motion.h[:, None], stepped + lagging, lagging, loose, known)
+        of_steps = stepped + lagging + missed[..., 0], lagging + missed[..., 1]
+        return Balanced(force, torque, moved + rounding / motion.h[:, None], *of_steps, loose, known)
 
     def _stepped(self) -> Floats:
         """The solver steps the velocity of a body's origin; that of its centre of mass at l is off, as of a joint's.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.books import arms, jolts
+from wsim.judge.books.driven import thrown
 from wsim.judge.books.laws import RESOLVED, Laws
 from wsim.judge.books.ropes import Ropes
 from wsim.judge.evidence.cords import track_of_spring
@@ -139,6 +140,9 @@ class RecordedTies:
         anchors = anchors_of(self._evidence, joint)
         push, about = (array[1:, k].astype(np.float64) for array in (track.impulse, track.about_anchor))
         reach, off, moved = np.linalg.norm(about, axis=1), np.zeros(len(push)), np.zeros(len(push))
+        slides, at = np.zeros(len(push)), self._evidence.joint(joint)
+        if at is not None and joint.kind == "prismatic":  # an arm that swings between frames
+            slides = jolts.strayed(at.position, self.laws.rate(joint), motion.h)
         for side, (row, sign) in enumerate(zip(self.pairs[k], (-1.0, 1.0), strict=True)):
             if row < 0:
                 continue
@@ -147,7 +151,8 @@ class RecordedTies:
             expected = sign * (about + np.cross(arm, push))
             off = np.maximum(off, np.linalg.norm(track.turn[1:, k, side] - expected, axis=1))
             uneven = self._uneven[:, row] + 0.5 * _turn(push)
-            moved = np.maximum(moved, np.linalg.norm(np.diff(arms, axis=0), axis=1) * uneven)
+            strays = slides * np.linalg.norm(push, axis=1)
+            moved = np.maximum(moved, np.linalg.norm(np.diff(arms, axis=0), axis=1) * uneven + strays)
             reach = np.maximum(reach, np.linalg.norm(arms, axis=1).max() * np.linalg.norm(push, axis=1))
         if joint.kind in OWN:
             axes = self.laws.axis(joint)
@@ -164,7 +169,7 @@ class RecordedTies:
 
     @cached_property
     def _uneven(self) -> Floats:
-        """What of contacts' impulses on each body's mechanism counts as if all came at an end, (T - 1, B) [N s].
+        """What of contacts' and drives' impulses on each body's mechanism counts as if all came at an end, (T - 1, B).
 
         A ball that is hit and hits the next one shows next to nothing of either blow on the whole, and each passed
         through its joints with the arms of its own instant. Of impulses whose sizes add up to s and whose sum is p,
@@ -173,8 +178,9 @@ class RecordedTies:
         """
         motion, contacts = self._evidence.motion, self._evidence.recording.contacts
         sums, sizes = np.zeros((len(motion.h), len(motion.mass), 3)), np.zeros((len(motion.h), len(motion.mass)))
+        hurled = thrown(self._evidence, self.laws)
         if contacts is None:
-            return sizes
+            return hurled
         owner = np.array([i for i, body in enumerate(self._evidence.world.bodies) for _ in body.shapes], dtype=np.intp)
         impulse = contacts.impulse.astype(np.float64)
         for side, sign in ((0, -1.0), (1, 1.0)):
@@ -189,7 +195,7 @@ class RecordedTies:
             around = np.pad(size, 1)
             blow = np.minimum(np.maximum(size - np.minimum(around[:-2], around[2:]), 0.0), whole)
             sizes[:, rows] = 0.5 * (size - whole + blow)[:, None]
-        return sizes
+        return sizes + hurled
 
     def _turned(self, k: int) -> Floats:
         """The share of joint k's impulses that arms taken halfway may miss, (T - 1,)."""
@@ -199,7 +205,7 @@ class RecordedTies:
         rate = np.pad(self._turning[:, hangs].max(axis=1), 1, mode="edge")
         angle = np.max([rate[:-2], rate[1:-1], rate[2:]], axis=0) * motion.h
         size = np.linalg.norm(self.track.joints[1:, k, :12].astype(np.float64), axis=1)
-        change = _jump(size) / np.maximum(size, 1e-30)
+        change = _turn(size[:, None]) / np.maximum(size, 1e-30)
         shaken = self._shaken[:, rows].max(axis=1, initial=0.0)
         found: Floats = np.minimum(angle**2 / 12.0 + 0.5 * angle * np.minimum(change, 1.0) + shaken, 2.0)
         return np.where(angle > RESOLVED, 2.0, found)  # they may point anywhere
@@ -219,10 +225,15 @@ class RecordedTies:
         rounding = 8.0 * FLOAT32 * (drive.stiffness * self._extent(k) + drive.damping * np.abs(rate).max())
         known = (law.error < RESOLVED**2 / 12.0) & (full[1:] == full[:-1]) | (full[1:] * full[:-1] > 0.0)
         known &= ~broken(self._evidence, joint)[1:]
-        mean, unsure, found = 0.5 * (pull[1:] + pull[:-1]), self._by_frames(pull), self.laws.mean_of_drive(joint)
+        mean, found = 0.5 * (pull[1:] + pull[:-1]), self.laws.mean_of_drive(joint)
+        unsure = self._by_frames(pull) + np.where(full[1:] * full[:-1] > 0.0, law.error * np.abs(mean), 0.0)
         if found is not None:
-            hit = self.struck[:, self.pairs[k][1]]
-            mean, unsure = (np.where(hit, *pair) for pair in ((found[0], mean), (found[1], unsure)))
+            # What another drive shakes faster than frames tell is damped by how far it went, too.
+            stray = jolts.strayed(at.position, rate, self.intervals)
+            shaken = drive.damping * stray / self.intervals > unsure
+            hit = self.struck[:, self.pairs[k][1]] | shaken
+            may = found[1] + drive.stiffness * np.where(shaken, stray, 0.0)
+            mean, unsure = (np.where(hit, *pair) for pair in ((found[0], mean), (may, unsure)))
             known &= found[2] | ~hit
         return Stated(mean, unsure + rounding, known)
 
@@ -291,7 +302,7 @@ class RecordedTies:
         scale = np.repeat([1.0, 1.0 / arm], 3)
         off = np.linalg.norm((given - tension[:, None] * mean) * scale, axis=1)
         turned = np.maximum(np.linalg.norm((last - first) * scale, axis=1), self._swept(cord, row, arm))
-        change = _jump(tension)
+        change = _turn(tension[:, None])
         late = 0.5 * np.minimum(evidence.motion.dt / evidence.motion.h, 1.0)
         # One that goes from push to pull is next to nothing on the whole, and yet gives by how far its way turns: at
         # most an eighth of its change, where that comes at once halfway, and a twelfth where it comes evenly.
@@ -367,15 +378,6 @@ class RecordedTies:
     def effective(self, joint: Joint) -> bool:
         """Whether nothing but what is recorded acts along a joint's own motion."""
         return joint.armature == 0.0 and joint.kind != "compound"
-
-
-def _jump(values: Floats) -> Floats:
-    """By how much each of some numbers in a row differs from one beside it, at most, (n,)."""
-    if len(values) < 2:
-        return np.abs(values)
-    step = np.abs(np.diff(values))
-    found: Floats = np.maximum(np.append(step, 0.0), np.append(0.0, step))
-    return found
 
 
 def _turn(vectors: Floats) -> Floats:

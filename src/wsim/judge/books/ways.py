@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.judge.books import jolts
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
@@ -39,6 +40,28 @@ class Course:
     extent: float  # the largest number that its place is the rounded difference of [m]
     mobility: float  # by how much a unit force speeds it up at most [1/kg]
     late: float  # the time step, which a rate may be told late by [s]
+
+
+def eased(drive: Motor, place: Floats, rate: Floats, h: Floats) -> Floats:
+    """The share of a drive's effort, at its most at both ends of an interval, that may be missing, (T - 1,).
+
+    To give less it has to be asked for less, by as much as it is asked for beyond its most: its joint then goes by
+    another rate for a while, and so much farther or less far than rates and accelerations have it. What else hangs
+    there may swing it so, or hit it. For that while it may have given all of it the other way.
+
+    Args:
+        drive: Its law.
+        place: Of its joint, (T,) [rad or m].
+        rate: (T,).
+        h: Lengths of the intervals, (T - 1,) [s].
+    """
+    if drive.max_effort is None or len(h) < 2:
+        return np.zeros(len(h))
+    stray = jolts.strayed(place, rate, h)
+    asked = np.abs(drive.stiffness * (drive.position - place) + drive.damping * (drive.velocity - rate))
+    beyond = np.minimum(asked[1:], asked[:-1]) - drive.max_effort - drive.stiffness * stray
+    lasts = drive.damping * stray / h / np.maximum(beyond, 1e-12 * drive.max_effort)
+    return np.asarray(2.0 * np.minimum(lasts, 1.0))
 
 
 def off_the_way(drive: Motor, course: Course, mean: Floats, may: Floats, below: Bools, struck: Bools) -> Floats:

@@ -11,9 +11,11 @@ from wsim.geometry.rotations import lengths
 from wsim.judge.books.copies import told
 from wsim.judge.books.hidden import hidden
 from wsim.judge.books.laws import Laws
+from wsim.judge.books.mobility import mobilities
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.checks.strangest import strangest
 from wsim.judge.evidence.cords import track_of_spring
+from wsim.judge.evidence.joints import anchors_of
 from wsim.judge.evidence.motion import FLOAT32
 
 if TYPE_CHECKING:
@@ -247,20 +249,25 @@ def _bends(rate: Floats) -> Floats:
 def _driven(evidence: Evidence) -> tuple[Floats, Floats]:
     """How fast bodies may have gone and turned by drives that are faster than the frames, (T - 1, B) each.
 
-    As fast as the joint has gone; where it is known what the drive is set to, towards that alone.
+    As fast as the joint has gone; where it is known what the drive is set to, towards that, or as far as it swings.
+    What swings by a radian or more between two frames may as well not have gone at all at the rates that they show.
     """
     motion, world = evidence.motion, evidence.world
     going, turning = (np.zeros((len(motion.h), len(world.bodies))) for _ in range(2))
     if not any(joint.drive for joint in world.joints):
         return going, turning
-    laws = Laws(evidence).joints
+    laws_of = Laws(evidence)
+    laws = laws_of.joints
     for joint in world.joints:
         track = None if joint.drive is None else evidence.joint(joint)
         if track is None or not laws[joint.prim]:
             continue
         known = np.all([law.known for law in laws[joint.prim]], axis=0)
-        rate = np.where(known, 0.0, np.abs(np.diff(track.position)) / motion.h)
-        rate = np.where(_towards(evidence, joint, track.position), rate, 0.0)
+        rate, swings = np.abs(np.diff(track.position)) / motion.h, ~known & _swings(evidence, joint)
+        there = _towards(evidence, joint, track.position) | (swings & _reached(evidence, joint, track.position))
+        rate = np.where(~known & there, rate, 0.0)
+        goes = laws_of.rate(joint)
+        rate = rate + np.where(swings, 0.5 * np.abs(goes[1:] + goes[:-1]), 0.0)
         child = evidence.index(joint.child)
         rows = np.flatnonzero(motion.unit == motion.unit[child])
         if joint.kind == "prismatic":
@@ -303,6 +310,29 @@ def _towards(evidence: Evidence, joint: Joint, position: Floats) -> NDArray[np.b
         return np.ones(len(position) - 1, dtype=bool)
     off = np.abs(position - drive.position)
     return np.asarray(off[1:] <= off[:-1])
+
+
+def _swings(evidence: Evidence, joint: Joint) -> NDArray[np.bool_]:
+    """Where a drive's stiffness makes its joint swing by a radian or more, (T - 1,)."""
+    stiffness = 0.0 if joint.drive is None else joint.drive.stiffness
+    loose = mobilities(evidence).get(joint.prim, np.inf) if stiffness else 0.0
+    return np.asarray(stiffness * loose * evidence.motion.h**2 >= 1.0)
+
+
+def _reached(evidence: Evidence, joint: Joint, position: Floats) -> NDArray[np.bool_]:
+    """Whether a driven joint is as far from what its drive is set to as it may swing, (T - 1,).
+
+    With what it held and how fast all that hangs together was, and about where it bears a load.
+    """
+    assert joint.drive is not None
+    motion, stiffness = evidence.motion, max(joint.drive.stiffness, 1e-12)
+    rows = np.flatnonzero(motion.unit == motion.unit[evidence.index(joint.child)])
+    off, moving = np.abs(position - joint.drive.position), motion.kinetic[:-1, rows].sum(axis=1)
+    far = np.ones(len(rows))
+    if joint.kind == "revolute":
+        far = lengths(motion.com[:, rows] - anchors_of(evidence, joint).below[:, None]).max(axis=0)
+    sags = evidence.gravity * float(motion.mass[rows] @ far) / stiffness
+    return np.asarray(off[1:] <= np.sqrt(off[:-1] ** 2 + 2.0 * moving / stiffness) + 2.0 * sags)
 
 
 CHECKS: Checks = (CheckContinuity,)

@@ -9,6 +9,7 @@ import numpy as np
 
 from wsim.geometry.rotations import lengths
 from wsim.judge.books.differences import missed
+from wsim.judge.books.driven import changes_hands
 from wsim.judge.books.giving import held_by_joints
 from wsim.judge.books.led import Led, late_fall, untold
 from wsim.judge.books.losses import Losses
@@ -124,9 +125,8 @@ class CheckEnergy(Check):
         for rows in losses.groups:
             taken, of = losses.of_group(rows), _only(rows, len(motion.mass))
             limit, scale = (float(each[0]) for each in self._limit(evidence, of))
-            limit += self.share * (max(scale, taken.held) - scale)
-            limit += held_by_joints(evidence, losses.ties, rows)
-            limits = limit, max(scale, taken.held)
+            limit, scale = self._with_drives(limit, scale, taken.held)
+            limits = limit + held_by_joints(evidence, losses.ties, rows), scale
             known, phase = energy[:, rows].sum(axis=1) - taken.driven + taken.damped, unseen[:, rows].sum(axis=1)
             gives = np.where(np.isfinite(stored[:, rows]).all(axis=1), held[:, rows].sum(axis=1), np.inf)
             (ahead, stray), fall = losses.ahead(rows), late_fall(evidence, rows)
@@ -254,6 +254,7 @@ class CheckEnergy(Check):
         """What all bodies gain: where they are one mechanism, by the phase of its steps at which that is least."""
         phase, held = (each[:, rows].sum(axis=1) for each in (asked.phase, asked.stored))
         limit, scale = (float(each[0]) for each in self._limit(evidence, _only(rows, len(evidence.motion.mass))))
+        limit, scale = self._with_drives(limit, scale, changes_hands(evidence, rows))
         if asked.one:
             balance = asked.account.balance(asked.late)[:, 0]
             limit += float(turned_over(evidence, falling(evidence)[:, rows].sum(axis=1)[:, None])[0])
@@ -308,6 +309,10 @@ class CheckEnergy(Check):
         settles = self._give(evidence, size) * (motion.touched.any(axis=0) | ~motion.jointed)
         lift = weight * (settles + 4.0 * FLOAT32 * height)
         return self.share * scale + lift @ of, scale
+
+    def _with_drives(self, limit: float, scale: float, held: float) -> tuple[float, float]:
+        """The same where what drives hold as springs changes hands, too [J]."""
+        return limit + self.share * (max(scale, held) - scale), max(scale, held)
 
     def _give(self, evidence: Evidence, size: Floats) -> Floats:
         """How far bodies may be lifted out of what they stand in, (B,) [m]: as deep as they are said to be, or are."""

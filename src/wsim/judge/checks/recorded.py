@@ -151,7 +151,8 @@ class CheckRecordedForces(Check):
         """All that slips of what hangs on joints rubs, together, with all its friction.
 
         Links of a cable chatter between frames, so that each may rub otherwise for a while. A slip that changes by a
-        share x of its speed turns by x at most, and loses 1 - √(1 - x²) of its friction.
+        share x of its speed turns by arcsin x at most, and those of a pair's points, of what spins, from their mean's
+        way by as much as `RecordedContacts.swing` has it: of friction that is turned by t 1 - cos t is lost.
         """
         across, speed = slips
         rows = np.flatnonzero(lasts & ~contacts.loose & (contacts.friction > 0.0))
@@ -167,7 +168,8 @@ class CheckRecordedForces(Check):
             way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-30)
             rubs = -np.einsum("ni,ni->n", (contacts.track.impulse - contacts.track.along)[own].astype(np.float64), way)
             change = np.linalg.norm(across[own, 1] - across[own, 0], axis=1) / speed[own].min(axis=1)
-            lost = float((most[own] * (1.0 - np.sqrt(1.0 - np.minimum(change, 1.0) ** 2))).sum()) / total
+            turned = np.arcsin(np.minimum(change, 1.0)) + contacts.swing(normal, speed.min(axis=1))[own]
+            lost = float((most[own] * (1.0 - np.cos(np.minimum(turned, np.pi)))).sum()) / total
             share, k = float(rubs.sum()) / total, int(own[np.argmax(most[own])])
             found.append(
                 self._of_row(
