@@ -213,7 +213,7 @@ def _front(item: PlanObject) -> Point | None:
     if item.pose is None or not (turned or item.role in ("vehicle", "robot")):
         return None
     ahead = _placed(
-        item.pose, (_edges(item)[0][0] / 2 if item.primitive in ("box", "asset", "robot") else item.size[0], 0.0, 0.0)
+        item.pose, (_edges(item)[0][0] / 2 if item.primitive in ("box", "asset", "robot", "vehicle") else item.size[0], 0.0, 0.0)
     )
     return ahead[0], ahead[1]
 
