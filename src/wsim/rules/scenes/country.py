@@ -95,7 +95,7 @@ def scattered(
     ):  # fmt: skip
         for k, thing in enumerate(things):
             count = thing.phrase.count or (min(MOST, max(3, round(distance / per))) if thing.phrase.plural else 1)
-            if thing.phrase.count is None:
+            if thing.phrase.count is None and thing.phrase.plural:
                 cast.assume(thing.words, f"{count} of them beside its way", "the prompt gives no number")
             kept = [Clearance(points=tuple(way), by=round(0.5 * width + by, 2))]
             kept += [Clearance(points=(at,), by=CLEAR_ENDS + width) for at in (way[0], way[-1])]

@@ -30,6 +30,8 @@ SPEEDS = {"hmmwv": 8.0, "polaris": 7.0, "car": 10.0, "truck": 8.0, "cart": 4.0} 
 OVER = 1.0  # that it is led farther than it is asked to come, as it stops within so much of its goal [m]
 WINDING = (0.0, 0.3, -0.5, 0.0, 0.4, 0.0)  # of a way, aside at evenly spaced points, of a tenth of its length
 STRAIGHT = 40.0  # [m]: a shorter way does not wind
+STRAIGHT_ON = 2  # points of a way that does not
+LEAST_OVER_HILL = 40.0  # [m]
 MOST_ASIDE = 4.0  # [m]
 NEAR = 1.5  # of a way-point, or the top of a hill [m]
 STANDS, STILL = 1.0, 0.1  # for how long it stands at the end [s], and how fast that may be [m/s]
@@ -131,6 +133,11 @@ def _asked(cast: Cast, thing: Thing) -> _Drive:
     for other in cast.things:
         if other is not thing:
             _sort(asked, other)
+    if asked.hills and distance < LEAST_OVER_HILL:
+        raise UserError(
+            f"{distance:g} m is too short for {asked.hills[0].words!r}, which is 30 m wide; let it drive "
+            f"{LEAST_OVER_HILL:g} m or more"
+        )
     for several in (asked.roads, asked.hills, asked.rough):
         if len(several) > 1:
             raise UserError(f"{several[1].words!r}: the builtin planner lays one of these; leave it out")
@@ -156,8 +163,8 @@ def _sort(asked: _Drive, other: Thing) -> None:
 
 def _country(asked: _Drive, cast: Cast) -> Country:
     """Ground, and what stands on it; how many of what has no number is chosen here."""
-    several = {thing.words for thing in (*asked.rocks, *asked.trees) if thing.phrase.count is None}
-    cast.assumptions = [one for one in cast.assumptions if one.kind != "count" or one.subject not in several]
+    said = {thing.words for thing in (*asked.rocks, *asked.trees)}  # they are beside its way, as many as fit that
+    cast.assumptions = [one for one in cast.assumptions if one.subject not in said]
     ends = [_ahead(asked.way, end, 0.5 * asked.spec.wheelbase)[0] for end in (0, -1)]
     ground = land(asked.way, ends, rough=bool(asked.rough), hill=bool(asked.hills), road=bool(asked.roads),
                   width=asked.spec.track + asked.spec.wheel_width, length=asked.spec.length,
@@ -200,7 +207,8 @@ def _assume(cast: Cast, asked: _Drive, way: Way) -> None:
         cast.assume(thing.words, f"drives at {asked.speed:g} m/s at most", "the prompt gives no speed")
     if "stop" not in thing.does:
         cast.assume(thing.words, "stops at the end of its way", "the prompt does not say what it does there")
-    cast.assume(thing.words, f"{len(way) - 1} way-points, to the front", "the prompt gives no way")
+    points = f"by {len(way) - 1} way-points" if len(way) > STRAIGHT_ON else "straight on"
+    cast.assume(thing.words, f"{points} to the front", "the prompt gives no way")
 
 
 def _objectives(name: str, asked: _Drive, points: list[Vec3], hill: Vec3 | None) -> list[Objective]:
