@@ -1,4 +1,4 @@
-"""Checks of the stage's vehicles and terrain against the plan's: what they are made of, where they stand, their engines."""
+"""Checks of the stage's vehicles and terrain against the plan's: what they are made of, and where they stand."""
 
 from __future__ import annotations
 
@@ -145,9 +145,13 @@ class CheckPlanVehicles(Check):
                                     suggested=item.pose.rotation_deg[2], unit="deg"),
             )  # fmt: skip
 
-    def _number(self, prim: str, what: str, value: float, wanted: float, unit: str, parameter: str) -> Iterator[Finding]:
+    def _number(
+        self, prim: str, what: str, value: float, wanted: float, unit: str, parameter: str
+    ) -> Iterator[Finding]:
         if abs(value - wanted) > self.share * wanted:
-            target = RepairTarget(kind="physical parameter", prim=prim, parameter=parameter, suggested=wanted, unit=unit)
+            target = RepairTarget(
+                kind="physical parameter", prim=prim, parameter=parameter, suggested=wanted, unit=unit
+            )
             yield self.between(
                 f"{prim} has {what} of {value:.4g} {unit}; the plan's kind has {wanted:.4g} {unit}",
                 value, share_about(wanted, self.share), unit, expected=wanted, prim=prim, time=0.0,
@@ -235,10 +239,11 @@ class CheckPlanTerrain(Check):
 
     def _stone(self, made: Static, most: float) -> Iterator[Finding]:
         long = max((max(shape.size) for shape in made.shapes if shape.size), default=0.0)
-        if long > most * (1.0 + self.size):
+        limit = most * (1.0 + self.size)
+        if long > limit:
             yield self.measured(
-                f"{made.prim} is {long:.3g} m long; the plan's rocks at most {most:g} m", long, most * (1.0 + self.size),
-                "m", prim=made.prim, time=0.0, limit_from="the plan's size",
+                f"{made.prim} is {long:.3g} m long; the plan's rocks at most {most:g} m", long, limit, "m",
+                prim=made.prim, time=0.0, limit_from="the plan's size",
                 target=RepairTarget(kind="geometry", prim=made.prim, parameter="size", direction="lower"),
             )  # fmt: skip
 

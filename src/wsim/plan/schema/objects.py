@@ -304,6 +304,8 @@ class PlanObject(Strict):
             raise ValueError(f"{self.name}: {self.primitive} lies about the origin; remove its pose and its rows")
         if self.primitive == "terrain" and self.material is None:
             raise ValueError(f'{self.name}: terrain needs a "material", whose friction it has')
-        if self.material is not None and (self.primitive == "vehicle" or (self.primitive == "scatter" and not self.rocks)):
+        if self.material is not None and (
+            self.primitive == "vehicle" or (self.primitive == "scatter" and not self.rocks)
+        ):
             raise ValueError(f"{self.name}: a {self.primitive} has materials of its own; remove this one")
         return self

@@ -180,7 +180,8 @@ def _contacts(plan: Draft) -> Iterator[str]:
         elif fluid is not None:
             yield f"contacts.{i}: {fluid.name} is a fluid, which has no friction or restitution; name two solids"
         elif {"vehicle", "scatter"} & {one.primitive, other.primitive}:
-            yield f"contacts.{i}: {one.name} and {other.name}: a vehicle or a scatter is many bodies; say it in materials"
+            both = f"{one.name} and {other.name}"
+            yield f"contacts.{i}: {both}: a vehicle or a scatter is many bodies; leave it to their materials"
         elif one.state == other.state == "static":
             yield f"contacts.{i}: {one.name} and {other.name} are both static; they never meet"
         elif pair in ties:

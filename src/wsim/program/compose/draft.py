@@ -28,9 +28,21 @@ class Draft:
     """
 
     plan: Plan
-    names: set[str] = field(default_factory=lambda: {
-        "scene", "build", "control", "world", "t", "Scene", "Drive", "run", "i", *AXES, "position",
-    })
+    names: set[str] = field(
+        default_factory=lambda: {
+            "scene",
+            "build",
+            "control",
+            "world",
+            "t",
+            "Scene",
+            "Drive",
+            "run",
+            "i",
+            *AXES,
+            "position",
+        }
+    )
     materials: dict[str, str] = field(default_factory=dict)
     handles: dict[str, str] = field(default_factory=dict)
     imports: set[str] = field(default_factory=set)

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import json
 
-from wsim.plan.schema import AreaPlan, FromScatter, FromTerrain, HillLayer, LevelLayer, NoiseLayer, PlanObject, RoadLayer
+from wsim.plan.schema import (
+    AreaPlan,
+    FromScatter,
+    FromTerrain,
+    HillLayer,
+    LevelLayer,
+    NoiseLayer,
+    PlanObject,
+    RoadLayer,
+)
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, number, tuple_of
 

@@ -1,4 +1,4 @@
-"""Arguments of `scene.vehicle`, and what drives vehicles: a driver along a route, or an engine and a steering set once."""
+"""Arguments of `scene.vehicle`, and what drives vehicles: a driver along a route, or an engine that is set once."""
 
 from __future__ import annotations
 
@@ -51,7 +51,9 @@ def start_speed(item: PlanObject) -> float:
     x, y, z = item.velocity
     ahead, aside = x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw)
     if math.hypot(aside, z) > ALONG * max(abs(ahead), 1e-9) and any(item.velocity):
-        raise UserError(f"{item.name}: its velocity {list(item.velocity)} m/s is not along its heading; turn one of them")
+        raise UserError(
+            f"{item.name}: its velocity {list(item.velocity)} m/s is not along its heading; turn one of them"
+        )
     return ahead
 
 
@@ -103,4 +105,10 @@ def control(draft: Draft) -> list[str]:
     """The program's `control`, where there are drivers."""
     if not draft.drivers:
         return []
-    return ["", "", "def control(world, t):", '    """Drive."""', *(f"    {name}.drive(world, t)" for name in draft.drivers)]
+    return [
+        "",
+        "",
+        "def control(world, t):",
+        '    """Drive."""',
+        *(f"    {name}.drive(world, t)" for name in draft.drivers),
+    ]
