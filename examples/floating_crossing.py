@@ -57,8 +57,8 @@ def build(scene: Scene) -> None:
     scene.vehicle("buggy", "polaris", position=(START, 0.0, TOP))
 
     scene.light("sun", direction=(-0.4, 0.6, -1.0))
-    scene.camera("side", eye=(0.0, -10.5, 3.4), target=(0.0, 0.0, 1.2), fov=66.0, width=1280, height=720)
-    scene.camera("quarter", eye=(6.5, -6.0, 4.0), target=(0.0, 0.0, 1.2), fov=55.0, width=960, height=540)
+    scene.camera("side", eye=(0.0, -10.5, 3.4), target=(0.0, 0.0, 1.2), fov=74.0, width=1280, height=720)
+    scene.camera("quarter", eye=(4.5, -8.0, 4.2), target=(0.2, 0.0, 1.3), fov=62.0, width=960, height=540)
 
 
 def control(world, t):
