@@ -227,6 +227,19 @@ def test_the_crossings_plan_asks_what_archimedes_says_of_its_world(tmp_path: Pat
 
     assert left(250.0, 0.8) == pytest.approx(0.26, abs=0.01)
     assert left(400.0, 0.4) < -0.05
+    assert left(900.0, 0.8) < 0.0
+
+
+def test_a_crossing_on_a_block_too_dense_is_rejected_for_its_mass(tmp_path: Path) -> None:
+    """Before it has gone under: docs/vehicles.md has the whole run."""
+    plan = load(EXAMPLES / "plans" / "polaris_crossing.json")
+    params = {"duration": 0.1, "spacing": 0.2, "block_density": 900.0}
+    settings = Settings(device="cpu", pictures=False, params=params)
+    verdict = Iteration.of(EXAMPLES / "floating_crossing.py", tmp_path, plan, settings).run()
+    assert verdict.status == "rejected"
+    (mass,) = (finding for finding in verdict.findings if finding.check == "CheckMass")
+    assert mass.prim == "/World/block" and mass.value == pytest.approx(900.0 * 4.4 * 2.4 * 0.8) and not mass.passed
+    assert mass.target.parameter == "density" and mass.target.suggested == pytest.approx(250.0)
 
 
 def test_the_crossing_sets_out_over_water_that_stays(tmp_path: Path) -> None:
