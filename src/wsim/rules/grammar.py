@@ -180,9 +180,9 @@ class _Tokens:
 
 
 def _drives(tokens: list[Token]) -> bool:
-    """Whether what comes next is how far something drives: "drives", "drives for"."""
-    verb = tokens[-2:-1] if tokens and tokens[-1].type == "FOR" else tokens[-1:]
-    return bool(verb) and verb[0].type == "VERB" and _meaning(verb[0]) == "drive"
+    """Whether what comes next is how far something drives: "drives", "drives forward for"."""
+    last = next((token for token in reversed(tokens) if token.type not in ("FOR", "DIRECTION")), None)
+    return last is not None and last.type == "VERB" and _meaning(last) == "drive"
 
 
 def _is(child: Any, *kinds: str) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from wsim.defaults import FIELD_OF_VIEW
 from wsim.plan.schema import (
     AreaPlan,
     CameraPlan,
@@ -23,14 +24,15 @@ from wsim.rules.cast import Cast, Thing
 Way = list[tuple[float, float]]
 
 BESIDE, BEYOND = 20.0, 20.0  # of its way to each side, and beyond its ends, that there is ground [m]
-ROUGH = NoiseLayer(amplitude=0.5, wavelength=16.0, octaves=3, seed=4)
+ROUGH = NoiseLayer(amplitude=0.6, wavelength=16.0, octaves=4, seed=4)
 GENTLE = NoiseLayer(amplitude=0.8, wavelength=40.0, octaves=2, seed=4)  # beside a road
 HILL_AT, HILL, STEEPEST = 0.6, 2.5, 15.0  # where along a way, how high [m], and how steep at most [deg]
 TRACK, ROAD = 1.5, 2.5  # of its wheels' outer width: how wide a track and a road are
 EVEN = 1.0  # beyond what stands on it, that ground is level at both ends [m]
 CLEAR_ROCKS, CLEAR_TREES, CLEAR_ENDS = 1.2, 2.0, 3.0  # beside what drives, and beyond it at both ends [m]
-A_ROCK_PER, A_TREE_PER = 2.5, 6.0  # metres of way, where the prompt gives no number
+A_ROCK_PER, A_TREE_PER = 1.6, 4.0  # metres of way, where the prompt gives no number
 MOST = 60
+LONG, ASIDE = 40.0, 8.0  # a way that is seen by halves, and what is seen beyond its ends [m]
 _SOIL = Material(name="soil", density=1600.0, friction=0.85, color=(0.15, 0.22, 0.08))
 _MUD = Material(name="track", density=1600.0, friction=0.85, rolling=0.03, color=(0.27, 0.19, 0.11))
 _ASPHALT = Material(name="asphalt", density=2300.0, friction=0.9, color=(0.09, 0.09, 0.1))
@@ -99,7 +101,7 @@ def scattered(
                 cast.assume(thing.words, f"{count} of them beside its way", "the prompt gives no number")
             kept = [Clearance(points=tuple(way), by=round(0.5 * width + by, 2))]
             kept += [Clearance(points=(at,), by=CLEAR_ENDS + width) for at in (way[0], way[-1])]
-            size = (0.8, 1.6) if thing.noun.asset == "boulder" else (0.3, 1.0)
+            size = (0.8, 1.6) if thing.noun.asset == "boulder" else (0.3, 1.2)
             seed = (2 if what == "rock" else 5) + 10 * k
             construction = FromScatter(
                 what=_of(thing, what), on="ground", count=count, clear=kept, size=size, seed=seed
@@ -119,12 +121,16 @@ def _of(thing: Thing, what: str) -> tuple[str, ...]:
 
 
 def views(way: Way) -> list[CameraPlan]:
-    """From the side, from behind the start, and from before the goal."""
-    (ax, ay), (bx, by) = way[0], way[-1]
-    middle, half = 0.5 * (ax + bx), 0.5 * (bx - ax)
-    back = 1.25 * half + 10.0
-    return [
-        CameraPlan(name="side", eye=(middle, -back, 0.55 * back), target=(middle, 0.06 * back, 0.0)),
-        CameraPlan(name="start", eye=(ax - 9.0, ay - 5.0, 4.0), target=(ax + 12.0, ay, 1.0)),
-        CameraPlan(name="goal", eye=(bx + 11.0, by - 7.0, 4.5), target=(bx - 14.0, by, 1.0)),
-    ]
+    """From behind the start, and from the side: the whole way, or of a long one each half."""
+    (ax, ay), (bx, _) = way[0], way[-1]
+    parts = 2 if bx - ax > LONG else 1
+    half = 0.5 * (bx - ax) / parts
+    back = (half + ASIDE) / math.tan(math.radians(FIELD_OF_VIEW / 2))
+    sides = []
+    for k in range(parts):
+        middle = round(ax + (2 * k + 1) * half, 2)
+        eye = (middle, round(-0.88 * back, 2), round(0.47 * back, 2))
+        name = "side" if parts == 1 else ("first_half", "second_half")[k]
+        sides.append(CameraPlan(name=name, eye=eye, target=(middle, 0.0, 0.0)))
+    start = CameraPlan(name="start", eye=(ax - 9.0, ay - 5.0, 4.0), target=(ax + 12.0, ay, 1.0))
+    return [*sides, start]
