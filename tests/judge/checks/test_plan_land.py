@@ -139,7 +139,6 @@ def failed(plan: Plan, path: Path, change: tuple[str, str] = ("", ""), drives: b
     simulation.run(path / "r.rrd")
     verdict = judge(read(path / "r.rrd"), plan)
     assert verdict.crashes == []
-    print(*(finding.message for finding in verdict.failures), sep="\n")
     return {finding.check for finding in verdict.failures} - {"CheckSeen", "CheckInFrame"}  # no pictures are taken
 
 
