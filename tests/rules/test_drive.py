@@ -60,7 +60,7 @@ def test_what_must_happen_is_measured(made) -> None:
     assert asked[2].count(" then ") == 4
     assert asked[3] == "touches_only(hmmwv, ground)"
     assert asked[4] == "upright(hmmwv, within 35 deg)"
-    assert asked[5] == "finally[1](speed_between(hmmwv, from 0 m/s to 0.1 m/s))"
+    assert asked[5] == "finally[1](speed_between(hmmwv, low 0 m/s, high 0.1 m/s))"
 
 
 def test_its_way_is_as_long_as_it_says_and_there_is_time_for_it(made) -> None:

@@ -1,4 +1,4 @@
-"""Vehicles and terrain of a plan: what is composed of it is found to be it, and what is built otherwise is found out."""
+"""Vehicles and terrain of a plan: what is composed of it is it, and what is built otherwise is found out."""
 
 from __future__ import annotations
 
