@@ -17,11 +17,13 @@ from pxr import Usd
 from tests.patience import STUCK
 from wsim.judge.verdict import Verdict
 from wsim.plan.layout.boxes import Box
+from wsim.plan.store import load
 from wsim.plan.views import _sees as sees
 from wsim.recording import Recording, read
 from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
 from wsim.scene import Scene
+from wsim.scene.describe import describe
 from wsim.sim import Simulation
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
@@ -30,6 +32,7 @@ EXAMPLES = Path(__file__).parent.parent / "examples"
 LONG = {
     "dam_break",
     "floating_blocks",
+    "floating_crossing",
     "marble_run",
     "offroad_drive",
     "terrain_crates",
@@ -187,6 +190,68 @@ def test_wood_floats_or_stands_where_archimedes_has_it(tmp_path: Path, density: 
     assert under[0] > 0.03  # it starts apart from the bottom
     gap = share * (0.08 - 0.4 * 0.16 * (1.0 - 0.25))
     assert under[-10:].mean() == pytest.approx(gap, abs=0.25 * 0.02)  # of a spacing
+
+
+def test_the_crossings_plan_asks_what_archimedes_says_of_its_world(tmp_path: Path) -> None:
+    """The block goes down by m / rho (1 / A - 1 / A'), and no end of it goes under; of Chrono's block one would."""
+    plan = load(EXAMPLES / "plans" / "polaris_crossing.json")
+    iteration = Iteration.of(EXAMPLES / "floating_crossing.py", tmp_path, plan)
+    assert iteration.build().ok
+    world = describe(iteration.stage)
+    assert {each.prim.split("/")[2] for each in (*world.bodies, *world.statics, *world.fluids)} == {
+        name for item in plan.objects for name in item.prims
+    }
+    (block,) = (body for body in world.bodies if body.prim == "/World/block")
+    load_mass, (length, width, height) = sum(body.mass for body in world.bodies) - block.mass, block.shapes[0].size
+    assert load_mass == pytest.approx(1360.0)
+    (basin,), (water,) = world.containers, world.fluids
+    down = load_mass / 1000.0 * (1.0 / (length * width) - 1.0 / (basin.inner_size[0] * basin.inner_size[1]))
+    (sinks,) = (
+        each.formula.of
+        for each in plan.objectives
+        if each.formula and each.formula.op == "mean" and each.formula.window
+    )
+    assert (sinks.low, sinks.high) == (pytest.approx(-1.1 * down, rel=1e-3), pytest.approx(-0.9 * down, rel=1e-3))
+    draft = block.mass / 1000.0 / (length * width)
+    assert water.center[2] + 0.5 * water.size[2] - draft + 0.5 * height == pytest.approx(block.position[2], abs=1e-6)
+
+    def left(density: float, thick: float) -> float:
+        """Of an end over the water, with the rear axle over it: the weight is 0.43 of the wheelbase farther in [m]."""
+        own = density * length * width * thick
+        total = own + load_mass
+        under = total / 1000.0 / (length * width)
+        high = (own * 0.5 * thick + load_mass * (thick + 0.6)) / total
+        metacentric = 0.5 * under + width * length**3 / 12.0 / (total / 1000.0) - high
+        lean = load_mass * (0.5 * length - 0.43 * 2.715) / (total * metacentric)
+        return thick - under - 0.5 * length * lean
+
+    assert left(250.0, 0.8) == pytest.approx(0.26, abs=0.01)
+    assert left(400.0, 0.4) < -0.05
+    assert left(900.0, 0.8) < 0.0
+
+
+def test_a_crossing_on_a_block_too_dense_is_rejected_for_its_mass(tmp_path: Path) -> None:
+    """Before it has gone under: docs/vehicles.md has the whole run."""
+    plan = load(EXAMPLES / "plans" / "polaris_crossing.json")
+    params = {"duration": 0.1, "spacing": 0.2, "block_density": 900.0}
+    settings = Settings(device="cpu", pictures=False, params=params)
+    verdict = Iteration.of(EXAMPLES / "floating_crossing.py", tmp_path, plan, settings).run()
+    assert verdict.status == "rejected"
+    (mass,) = (finding for finding in verdict.findings if finding.check == "CheckMass")
+    assert mass.prim == "/World/block" and mass.value == pytest.approx(900.0 * 4.4 * 2.4 * 0.8) and not mass.passed
+    assert mass.target.parameter == "density" and mass.target.suggested == pytest.approx(250.0)
+
+
+def test_the_crossing_sets_out_over_water_that_stays(tmp_path: Path) -> None:
+    """Coarse, its first moments: at 1 m/s² it is on by 0.125 m after 0.5 s; the block, at its own draft, stays."""
+    settings = Settings(device="cpu", pictures=False, params={"duration": 0.5, "spacing": 0.2})
+    verdict = Iteration.of(EXAMPLES / "floating_crossing.py", tmp_path, None, settings).run()
+    assert verdict.status == "accepted", verdict.summary
+    recording = read(tmp_path / "recording.rrd")
+    buggy, block = recording.position("/World/buggy"), recording.position("/World/block")
+    assert buggy[-1, 0] + 5.0 == pytest.approx(0.5 * 0.5**2, rel=0.1)
+    assert np.abs(block - block[0]).max() < 0.02
+    assert recording.fluids["/World/water"].position[:, :, 2].min() > 0.1
 
 
 def test_stack_is_knocked_over_by_wsim_run(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from wsim.plan.drawing.picture import WIDTH, draw_picture
 from wsim.plan.drawing.silhouettes import scene_of
 from wsim.plan.drawing.text import draw_text, nice
 from wsim.plan.schema import Material, Plan, PlanObject, Pose, Relation
+from wsim.plan.schema.objects import SPREAD
 from wsim.rules.planner import plan as plan_of
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples" / "plans").glob("*.json"))
@@ -188,10 +189,11 @@ def test_cost_of_a_tank_is_its_volume_over_the_spacing_cubed(tank: Plan) -> None
     assert "no fluid" in cost_of(made(body("box", "box", (1.0, 1.0, 1.0), (0, 0, 0.5)))).sentence()
 
 
-def test_there_are_five_plans_written_by_hand() -> None:
+def test_there_are_six_plans_written_by_hand() -> None:
     assert [path.stem for path in EXAMPLES] == [
         "buggy_floating_bridge",
         "go2_office",
+        "hmmwv_offroad",
         "offroad_vehicle",
         "quadruped_office",
         "wood_afloat",
@@ -202,9 +204,9 @@ def test_there_are_five_plans_written_by_hand() -> None:
 def test_a_plan_written_by_hand_is_laid_out_and_drawn(path: Path, tmp_path: Path) -> None:
     plan = load(path)
     placed = {item.name for item in plan.objects if item.pose is not None}
-    assert placed >= {item.name for item in plan.objects if item.primitive not in ("ground", "fluid")}
+    assert placed >= {item.name for item in plan.objects if item.primitive not in ("ground", "fluid", *SPREAD)}
     assert all(camera.eye is not None and camera.target is not None for camera in plan.cameras)
     drawn = draw_text(plan, 80)
-    assert all(item.name in drawn for item in plan.objects if item.primitive != "ground")
+    assert all(item.name in drawn for item in plan.objects if item.primitive not in ("ground", "scatter"))
     draw_picture(plan, tmp_path / "plan.png")
     assert Image.open(tmp_path / "plan.png").size[0] == WIDTH

@@ -59,7 +59,7 @@ MISTAKES = {
     ),
     "kind of construction": (
         lambda d: of(d, "steel_ball")["construction"].update(kind="magic"),
-        ["objects.{steel_ball}.construction", "'magic'", "'proxy', 'asset', 'robot', 'external'"],
+        ["objects.{steel_ball}.construction", "'magic'", "'robot', 'vehicle', 'terrain', 'scatter', 'external'"],
     ),
     "no stand-in": (
         lambda d: of(d, "steel_ball").update(construction={"kind": "external", "candidate": "a ball"}),

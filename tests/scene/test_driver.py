@@ -92,6 +92,17 @@ def test_its_speeds_are_what_bends_and_brakes_allow():
     assert driver.speed_at(end) == 0.0
 
 
+@pytest.mark.parametrize("points", [2, 3, 14])
+def test_a_straight_way_has_its_speeds_however_few_points_it_has(points):
+    """From rest to rest over 6.5 m: v² = 2 a s, the speed asked for, and v² = 2 b s before the end."""
+    path = [(x, 0.0) for x in np.linspace(-1.0, 5.5, points)]
+    driver = Driver("truck", "hmmwv", path=path, speed=2.0, acceleration=2.0, braking=1.0)
+    assert driver.speed_at(0.5) == pytest.approx(math.sqrt(2.0), rel=1e-6)
+    assert driver.speed_at(2.5) == pytest.approx(2.0, rel=1e-6)
+    assert driver.speed_at(6.0) == pytest.approx(1.0, rel=1e-6)
+    assert driver.speed_at(0.0) == driver.speed_at(6.5) == 0.0
+
+
 def test_on_a_circle_it_is_on_the_line():
     """A goal on the circle that it is on asks for just that circle, but for what steering needs to come about."""
     found = driven(

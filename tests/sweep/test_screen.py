@@ -114,7 +114,8 @@ def formulas(draw):
         inner = ~inner
     kind = draw(st.sampled_from(["alone", "always", "eventually", "finally", "mean"]))
     if kind == "mean":
-        found = Mean(of=inner if isinstance(inner, Predicate) else inner.of, seconds=draw(st.none() | st.just(0.4)))
+        over = draw(st.sampled_from([{}, {"seconds": 0.4}, {"window": (0.3, 0.8)}, {"window": (0.5, None)}]))
+        found = Mean(of=inner if isinstance(inner, Predicate) else inner.of, **over)
     elif kind == "finally":
         found = Finally(of=inner, seconds=draw(st.none() | st.sampled_from([0.0, 0.3])))
     elif kind == "alone":

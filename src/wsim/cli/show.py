@@ -117,6 +117,12 @@ def _objects(plan: Plan) -> Table:
             what = f"asset {item.construction.asset}"
         elif item.construction.kind == "robot":
             what = f"robot {item.construction.robot}"
+        elif item.construction.kind == "vehicle":
+            what = f"vehicle {item.construction.vehicle}"
+        elif item.construction.kind == "scatter":
+            what = f"{item.construction.count} x {', '.join(item.construction.what)}"
+        elif item.construction.kind == "terrain":
+            what = "terrain {:g} x {:g} m".format(*item.construction.extent)
         elif item.construction.kind == "external":
             what = f"{item.construction.candidate} (for now: {item.primitive})"
         place = "" if item.pose is None else ", ".join(f"{x:.3g}" for x in item.pose.position)

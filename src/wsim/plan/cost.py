@@ -8,7 +8,7 @@ Where the figures come from:
 - time step: 0.8 of a smoothing length (1.3 spacings) over the numerical speed of sound, ten times the speed of a
   shallow-water wave or of what falls in (docs/sph.md); never above 1/800 s.
 - speed: 1.3 M particle-steps/s on a CPU core (docs/sph.md, "Speed": 1.24 to 1.28 M in a block of fluid, 1.75 M on two
-  cores in the demo); 0.4 ms a step for a handful of bodies without fluid.
+  cores in the demo); 0.4 ms a step for a handful of bodies without fluid, 5 ms for a vehicle among rocks on terrain.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from wsim.plan.spacing import spacing_of
 PARTICLE_STEPS = 1.3e6  # of one CPU core [1/s]
 BODY_STEP = 0.4e-3  # wall time of a step of five bodies [s]
 LARGEST_STEP = 1.0 / 800.0  # [s]
+VEHICLE_STEP = 5e-3  # wall time of a step of a vehicle on terrain [s]
+STEERED_STEP = 0.625e-3  # that the steering of a vehicle leaves [s]
 LAYERS = 2  # of wall particles
 COURANT = 0.8
 SMOOTHING = 1.3  # smoothing length over spacing
@@ -63,7 +65,8 @@ def cost_of(plan: Plan) -> Cost:
     fluids = [item for item in plan.objects if item.primitive == "fluid" and item.name in boxes]
     wet = [(boxes[item.name], spacing_of(plan, item, boxes[item.name])) for item in fluids]
     spacing = min((apart for _, apart in wet), default=0.0)  # of walls and bodies, and what the step must resolve
-    step = min(plan.simulation.time_step or LARGEST_STEP, LARGEST_STEP)
+    driven = any(item.primitive == "vehicle" for item in plan.objects)
+    step = min(plan.simulation.time_step or LARGEST_STEP, STEERED_STEP if driven else LARGEST_STEP)
     if wet:
         speed = max(math.sqrt(GRAVITY * max(box[2] for box, _ in wet)), _fall(plan))
         step = min(step, COURANT * SMOOTHING * spacing / (SOUND_OVER_SPEED * speed))
@@ -71,8 +74,10 @@ def cost_of(plan: Plan) -> Cost:
     steps = frames * max(1, math.ceil(1.0 / plan.simulation.frame_rate / step - 1e-9))
     fluid = round(sum(math.prod(box) / apart**3 for box, apart in wet))
     others = round(_others(plan, boxes, spacing)) if wet else 0
-    bodies = sum(item.state == "dynamic" for item in plan.objects)
-    wall = steps * ((fluid + others) / PARTICLE_STEPS + BODY_STEP * max(1.0, bodies / 5))
+    vehicles = sum(item.primitive == "vehicle" for item in plan.objects)
+    bodies = sum(item.state == "dynamic" for item in plan.objects) - vehicles
+    rigid = BODY_STEP * max(1.0, bodies / 5) + VEHICLE_STEP * vehicles
+    wall = steps * ((fluid + others) / PARTICLE_STEPS + rigid)
     return Cost(fluid, others, plan.simulation.duration, steps, wall)
 
 

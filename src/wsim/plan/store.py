@@ -10,7 +10,9 @@ from pydantic import ValidationError
 
 from wsim.errors import UserError
 from wsim.plan.layout import LayoutError, layout
+from wsim.plan.layout.land import set_down
 from wsim.plan.schema import PLAN_VERSION, Plan, explain
+from wsim.plan.schema.objects import SPREAD
 from wsim.plan.templates import write_out_fluids
 from wsim.plan.views import resolve_all
 
@@ -40,8 +42,8 @@ def made(data: Any, where: Path) -> Plan:
 
 def _placed(plan: Plan, path: Path) -> Plan:
     try:
-        if all(item.pose is not None or item.primitive in ("ground", "fluid") for item in plan.objects):
-            return resolve_all(write_out_fluids(plan), keep=True)
+        if all(item.pose is not None or item.primitive in ("ground", "fluid", *SPREAD) for item in plan.objects):
+            return resolve_all(set_down(write_out_fluids(plan)), keep=True)
         return layout(plan)
     except LayoutError as error:
         raise UserError(f"{path}: {error}") from error

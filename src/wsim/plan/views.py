@@ -144,7 +144,7 @@ def _shown(plan: Plan, camera: CameraPlan) -> Box:
         held = next((row.ref for row in item.relations if row.predicate == "PLACE-IN" and row.ref), None)
         if held is not None:
             return around(plan.object(held))
-    if item.pose is None or item.primitive == "ground":
+    if item.pose is None or item.primitive == "ground":  # terrain has none
         raise LayoutError(f"camera {camera.name}: {camera.of} has no box of its own; look at a body")
     if item.primitive == "fluid":
         x, y, z = item.pose.position

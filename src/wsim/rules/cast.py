@@ -40,6 +40,7 @@ class Thing:
     path: Thing | None = None  # the ramp that it is on
     off: bool = False  # leaves its support
     speed: float | None = None  # [m/s]
+    way: float | None = None  # that it drives [m]
     angle: float | None = None  # [deg] of a throw, or of a pendulum at the start
     direction: str | None = None
     rod: Phrase | None = None  # what it hangs on

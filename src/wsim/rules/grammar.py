@@ -33,9 +33,9 @@ class NotUnderstood(UserError):  # noqa: N818 - it reads as the sentence it carr
         quoted = ", ".join(f"{word!r}{_suggestion(word) if reason == _UNKNOWN else ''}" for word in words)
         super().__init__(
             f"the builtin planner {reason.rstrip(':')}: {quoted}. It plans things in a tank of water, on the ground, "
-            f"on tables and ramps, and pendulums, and knows only these words — {known_words()}. Reword the prompt, or "
-            "write the plan yourself and pass it: wsim generate --plan plan.json, or let a language model plan: "
-            "wsim generate --planner-model MODEL"
+            f"on tables and ramps, pendulums, and vehicles that drive, and knows only these words — {known_words()}. "
+            "Reword the prompt, or write the plan yourself and pass it: wsim generate --plan plan.json, or let a "
+            "language model plan: wsim generate --planner-model MODEL"
         )
 
 
@@ -131,6 +131,8 @@ class _Tokens:
             at += used
             if token.type == "SIDE" and tokens and tokens[-1].type == "LENGTH":
                 tokens[-1].type = "OFFSET"  # "20 cm behind": the distance, not a size
+            if token.type == "LENGTH" and _drives(tokens):
+                token.type = "WAY"  # "drives 100 m": how far, not the size of what follows
             tokens.append(token)
         return with_running(tokens)
 
@@ -175,6 +177,12 @@ class _Tokens:
         if kind != "LENGTH":
             return None
         return self._token("EDGES", tuple(float(here[i]) * factor for i in (0, 2, 4)), at, 6)
+
+
+def _drives(tokens: list[Token]) -> bool:
+    """Whether what comes next is how far something drives: "drives", "drives forward for"."""
+    last = next((token for token in reversed(tokens) if token.type not in ("FOR", "DIRECTION")), None)
+    return last is not None and last.type == "VERB" and _meaning(last) == "drive"
 
 
 def _is(child: Any, *kinds: str) -> bool:
@@ -365,6 +373,9 @@ class _Clauses(Transformer):
 
     def up_to(self, meta: Any, children: list[Any]) -> Place:
         return Place("up to", length=_meaning(children[1]), words=self._words(meta))
+
+    def so_far(self, meta: Any, children: list[Any]) -> Place:
+        return Place("way", length=_meaning(children[-1]), words=self._words(meta))
 
     def surfaced(self, meta: Any, children: list[Any]) -> Place:
         things = [*(child for child in children if isinstance(child, Phrase)), None, None]

@@ -17,7 +17,9 @@ from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.schema import Material
 
-Family = Literal["solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw", "robot", "office"]
+Family = Literal[
+    "solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw", "robot", "office", "vehicle", "land"
+]
 Words = tuple[str, ...]
 BALL = "sport/ball"  # the catalogue's category of what is round and rolls
 _KEYS = {

@@ -113,6 +113,8 @@ def _settle(reader: Reader) -> None:
         moves = bool({*MOVES, "topple"} & {*thing.does}) or thing.group or thing.noun.family != "solid"
         wet = reader.cast.wet and not moves
         thing.place = "water" if wet else "ground"
+        if thing.noun.family in ("vehicle", "land"):
+            continue
         if ("drop" in thing.does or not thing.does) and thing.support is None and thing.inside is None:
             where = "in the tank of water" if wet else "on the ground"
             reader.cast.assume(thing.words, where, "the prompt does not say where")
@@ -140,9 +142,8 @@ def _check_water(cast: Cast) -> None:
 def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
-    moving = thing.target is not None or {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol"} & {
-        *thing.does
-    }
+    goes = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive"}
+    moving = thing.target is not None or goes & {*thing.does}
     carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
     posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"
     ill = family in ("pendulum", "seesaw") or (thing.support is not None and thing.support.noun.family == "seesaw")

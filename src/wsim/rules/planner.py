@@ -14,6 +14,7 @@ import re
 
 from wsim.errors import UserError
 from wsim.plan.layout import layout
+from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Plan, SimulationPlan
 from wsim.plan.views import cameras
 from wsim.rules.cast import Cast
@@ -22,6 +23,7 @@ from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts
 from wsim.rules.scenes.carried import build_carried
+from wsim.rules.scenes.drive import build_drive
 from wsim.rules.scenes.ground import build_ground
 from wsim.rules.scenes.incline import build_inclines
 from wsim.rules.scenes.mechanisms import build_pendulum, build_seesaw
@@ -57,7 +59,7 @@ def plan(prompt: str) -> Plan:
         ),
     }
     placed = layout(Plan(objects=scene.objects, **common))
-    whole = Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common)
+    whole = set_down(Plan(objects=[*placed.objects, *scene.posed], joints=scene.joints, **common))
     return Plan.model_validate(
         {
             **whole.model_dump(),
@@ -75,7 +77,7 @@ def _scene(cast: Cast) -> Part:
     scene = Part(objects=[ground_object()])
     if cast.wet:
         scene.add(build_tank(cast, taken))
-    for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw, build_patrol):
+    for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw, build_patrol, build_drive):
         made = build(cast, taken)
         if made.objects and cast.wet:
             raise UserError(
@@ -86,6 +88,8 @@ def _scene(cast: Cast) -> Part:
         still = scene.objects[1:] if not cast.wet else []
         fixed = Part(objects=still, posed=scene.posed, names=scene.names)
         scene.add(build_ground(cast, taken, fixed, behind="tank" if cast.wet else None))
+    if any(item.primitive == "terrain" for item in scene.posed):
+        scene.objects = scene.objects[1:]  # the level ground
     return scene
 
 
@@ -99,7 +103,8 @@ def _duration(cast: Cast, scene: Part) -> float:
 
 def _note_what_is_common(cast: Cast, prompt: str, duration: float, scene: Part) -> None:
     words = re.findall(r"[a-z]+", prompt.lower())
-    if not set(words) & set(lexicon().words_of("GROUND")):
+    level = not any(item.primitive == "terrain" for item in scene.posed)
+    if level and not set(words) & set(lexicon().words_of("GROUND")):
         cast.assume("scene", "on level ground", "something has to carry it")
     if cast.duration is None:
         what = "the way, and time" if scene.cameras else "time"

@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,7 @@ _AHEAD = 0.7  # [s] of way that the goal is ahead
 _BEFORE, _AFTER = 3.0, 8.0  # [m] of the line that are searched for the nearest place, behind and before the last one
 _AS_CLOSE = 0.5  # [m] more than the nearest place, that a place where it sets out is away at most
 _SLIP = (0.6, 0.12)  # [m/s], of the speed: a wheel that slips by more gets no torque until it grips
+_LONGEST = 0.5  # [m] between points of the line for which a speed is planned
 _TURNED = 60.0  # [deg/s] that the bicycle's angle changes by at most
 
 
@@ -222,13 +224,21 @@ def _forward(rotation: Floats) -> Floats:
 def _profile(
     points: Floats, top: float, begins: float, acceleration: float, braking: float, lateral: float, *, stop: bool
 ) -> _Profile:  # fmt: skip
-    """The fastest speeds along a line within bounds: of bends first, then forwards, then backwards."""
+    """The fastest speeds along a line within bounds: of bends first, then forwards, then backwards.
+
+    Bends are those of the given points; between two that are far apart more are put, where speed may rise and fall.
+    """
     gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    along = np.concatenate([[0.0], np.cumsum(gaps)])
+    given = np.concatenate([[0.0], np.cumsum(gaps)])
     heading = np.unwrap(np.arctan2(*np.diff(points, axis=0).T[::-1]))
     bend = np.zeros(len(points))
     bend[1:-1] = np.abs(np.diff(heading)) / (0.5 * (gaps[1:] + gaps[:-1]))
-    speed = np.minimum(top, np.sqrt(lateral / np.maximum(bend, 1e-9)))
+    along = np.unique(
+        np.concatenate([np.linspace(a, b, math.ceil((b - a) / _LONGEST) + 1) for a, b in pairwise(given)])
+    )
+    points = np.stack([np.interp(along, given, points[:, k]) for k in (0, 1)], axis=1)
+    speed, gaps = np.full(len(along), top), np.diff(along)
+    speed[np.searchsorted(along, given)] = np.minimum(top, np.sqrt(lateral / np.maximum(bend, 1e-9)))
     speed[0] = min(speed[0], begins)
     for k, gap in enumerate(gaps):
         speed[k + 1] = min(speed[k + 1], math.sqrt(speed[k] ** 2 + 2.0 * acceleration * gap))

@@ -15,7 +15,7 @@ from wsim.scene.areas import Area, closed, divided
 from wsim.scene.authoring import Handle, calling_folder, note_line, set_pose
 from wsim.scene.bodies import finish_collider
 from wsim.scene.height_fields import HeightFields, edges, top_of
-from wsim.scene.layers import Floats, Grid, Layer
+from wsim.scene.layers import Floats, Grid, Layer, sample
 from wsim.scene.materials import Material
 from wsim.scene.static_mesh import define_mesh, smooth_normals
 from wsim.scene.validate import Call, Vec3, shown
@@ -38,6 +38,13 @@ class Terrain(Handle):
     def height(self, x: float, y: float) -> float:
         """Of the ground there, in the world [m]; `SceneError` where there is none."""
         return self._plane(x, y)[0]
+
+    def heights(self, x: Floats, y: Floats) -> Floats:
+        """Of the ground at many places on it, between the corners of a cell in even steps [m]."""
+        rows, columns = self._heights.shape
+        u = ((x - self._middle[0]) / self._size[0] + 0.5) * (columns - 1)
+        v = ((y - self._middle[1]) / self._size[1] + 0.5) * (rows - 1)
+        return np.asarray(self._middle[2] + sample(self._heights, u, v))
 
     def place(self, x: float, y: float, above: float = 0.0) -> Vec3:
         """A point of the ground, or straight above it [m]."""
@@ -64,6 +71,11 @@ class Terrain(Handle):
         kept = call.number("margin", margin, "m")
         off = call.number("x", x, "m") - self._middle[0], call.number("y", y, "m") - self._middle[1]
         return all(abs(each) <= 0.5 * edge - kept for each, edge in zip(off, self._size, strict=True))
+
+    @property
+    def lowest(self) -> float:
+        """Height of its lowest place [m]."""
+        return self._middle[2] + float(self._heights.min())
 
     @property
     def reach(self) -> float:
@@ -152,10 +164,8 @@ class Terrains(HeightFields):
         """
         call = Call("terrain", name)
         path = self._path(call)
-        across = edges(call, size)
-        grid = _grid(call, across, call.size("cell", cell))
-        heights = _laid(call, layers, grid)
-        place = call.position("position", position)
+        grid, ground = _surveyed(call, path, size, layers, cell, position)
+        heights, across, place = ground._heights, ground._size, ground._middle
         depth = call.size("thickness", thickness)
         smooth = math.radians(call.within("smooth_deg", smooth_deg, 0.0, 90.0, "deg"))
         middles = (0.25 * (g[:-1, :-1] + g[:-1, 1:] + g[1:, :-1] + g[1:, 1:]) for g in (grid.x, grid.y))
@@ -176,7 +186,7 @@ class Terrains(HeightFields):
                 called = listed[k - 1].name if k else "geometry"
                 self._part(f"{path}/{called}", points, cells[part], None if normals is None else normals[part], low,
                            surface)  # fmt: skip
-        return Terrain(prim.GetName(), path, "static", heights, across, place)
+        return ground
 
     def _surface_of(self, call: Call, k: int, area: Area, base: Material) -> Material:
         one = Call(call.method, f"{call.name}_{area.name}", f"areas[{k}].")
@@ -198,6 +208,27 @@ class Terrains(HeightFields):
         mesh = define_mesh(self._stage, path, corners, [faces], written).GetPrim()
         note_line(mesh)
         finish_collider(mesh, surface)
+
+
+def surveyed(
+    name: str, *, size: Sequence[float], layers: Sequence[Layer], cell: float = 0.5
+) -> Terrain:  # fmt: skip
+    """What knows the ground that `scene.terrain` makes of the same, about the origin; without a stage.
+
+    Raises:
+        SceneError: As `scene.terrain`.
+    """
+    return _surveyed(Call("terrain", name), f"/World/{name}", size, layers, cell, (0.0, 0.0, 0.0))[1]
+
+
+def _surveyed(
+    call: Call, path: str, size: Sequence[float], layers: object, cell: float, position: Sequence[float]
+) -> tuple[Grid, Terrain]:  # fmt: skip
+    across = edges(call, size)
+    grid = _grid(call, across, call.size("cell", cell))
+    heights = _laid(call, layers, grid)
+    place = call.position("position", position)
+    return grid, Terrain(path.rpartition("/")[2], path, "static", heights, across, place)
 
 
 def _grid(call: Call, across: tuple[float, float], cell: float) -> Grid:

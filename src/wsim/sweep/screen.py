@@ -24,7 +24,7 @@ from wsim.forks import uncollected
 from wsim.judge.decide import conclude
 from wsim.judge.evidence.evidence import Evidence
 from wsim.judge.evidence.recorded import MissingError
-from wsim.judge.language.evaluate import first_of_last
+from wsim.judge.language.evaluate import first_of_last, frames_of
 from wsim.judge.language.measure import MEASURERS
 from wsim.judge.language.measures_way import DIRECTIONS
 from wsim.judge.language.objective import ObjectiveCheck, conjuncts, formula_of
@@ -140,7 +140,7 @@ def in_time(formula: Formula, time: Floats) -> InTime | None:
     if isinstance(formula, Predicate):
         return _alone(formula, time)
     if isinstance(formula, Mean) and isinstance(formula.of, Predicate):
-        return InTime(formula.of, kernel.MEAN, 1.0, first_of_last(time, formula.seconds), len(time))
+        return InTime(formula.of, kernel.MEAN, 1.0, *frames_of(formula, time))
     if not isinstance(formula, Always | Eventually | Finally):
         return None
     inner, sign = formula.of, 1.0

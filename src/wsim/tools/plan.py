@@ -119,6 +119,9 @@ def _objects(plan: Plan, name: str) -> list[str]:
         made = item.construction
         what = f"asset {made.asset}" if made.kind == "asset" else item.primitive
         what = f"robot {made.robot}" if made.kind == "robot" else what
+        what = f"vehicle {made.vehicle}" if made.kind == "vehicle" else what
+        what = f"{made.count} x {', '.join(made.what)}" if made.kind == "scatter" else what
+        what = f"terrain {numbers(made.extent, ' x ')} m" if made.kind == "terrain" else what
         pose, weight = item.pose, item.registration
         density = weight.density or (item.material.density if item.material and not weight.mass else None)
         rows.append([

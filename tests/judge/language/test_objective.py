@@ -38,6 +38,15 @@ def test_a_tower_that_falls_is_rejected_with_the_moment_and_the_angle(stack):
     assert "54 deg at 1.400 s, where 10 deg is the most" in upright.message
 
 
+def test_a_mean_over_a_window_is_told_with_its_ends(stack):
+    """Upright until 1.25 s, 90 degrees from 1.5 s on: what comes after the window is not looked at."""
+    _, (before,) = verdict(stack(fallen=True), "mean[0.5, 1](upright(box_3, 10 deg))")
+    assert before.passed and before.span == (0.0, pytest.approx(1.0)) and "from 0.500 s to 1.000 s" in before.message
+    _, (after,) = verdict(stack(fallen=True), "mean[2, 2.5](upright(box_3, 10 deg))")
+    assert after.value == pytest.approx(90.0, abs=1e-2) and after.time == pytest.approx(2.0) and not after.passed
+    assert after.span == (pytest.approx(1.3), pytest.approx(2.5))
+
+
 def test_a_conjunct_that_fails_is_told_from_one_that_holds(stack):
     _, (stands, falls) = verdict(stack(fallen=True), "upright(box_2, 10 deg) and rests_on(box_3, box_2)")
     assert stands.passed and not falls.passed

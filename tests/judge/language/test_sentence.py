@@ -73,6 +73,7 @@ formulas = st.recursive(
         st.lists(inner, min_size=2, max_size=3).map(lambda of: Or(of=of)),
         inner.map(lambda of: Not(of=of)),
         st.tuples(predicates, st.one_of(st.none(), numbers)).map(lambda p: Mean(of=p[0], seconds=p[1])),
+        st.tuples(predicates, windows).map(lambda p: Mean(of=p[0], window=p[1])),
         st.tuples(inner, windows).map(lambda p: Always(of=p[0], window=p[1])),
         st.tuples(inner, windows).map(lambda p: Eventually(of=p[0], window=p[1])),
         st.tuples(inner, st.one_of(st.none(), numbers)).map(lambda p: Finally(of=p[0], seconds=p[1])),

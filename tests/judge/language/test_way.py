@@ -8,6 +8,7 @@ import pytest
 from tests.judge.language.conftest import G, about_axis, moving, shape, solid, still, times
 from wsim.judge.evidence.recorded import MissingError
 from wsim.judge.language import evaluate, parse
+from wsim.plan.schema.formula import Mean
 from wsim.scene.world import Shape, World
 
 TIME = times(2.0)
@@ -160,3 +161,20 @@ def test_a_mean_forgives_what_each_frame_does_not():
         parse("mean(moves(box, 1 m) and settles(box))")
     with pytest.raises(MissingError, match="not covered"):
         found("mean[3](moves(box))", box)
+
+
+def test_a_mean_over_a_window_is_of_its_frames_alone():
+    """A way of 1 m and 0.2 m of swing from 0.5 s to 1.5 s, a whole period of it, and of 5 m before and after."""
+    inside = (TIME >= 0.5) & (TIME <= 1.5)
+    box = gone(np.where(inside, 1.0 - 0.2 * np.cos(2 * math.pi * TIME), 5.0 * (TIME > 0.0)))
+    outcome = found("mean[0.5, 1.5](gone_between(box, x, 0.9 m, 1.05 m))", box)
+    assert outcome.margin[0] == pytest.approx(0.05, abs=0.01) and outcome.moment[0] == pytest.approx(0.5)
+    assert found("always[0, 1](mean[0.5, 1.5](gone_between(box, x, 0.9 m, 1.05 m)))", box).satisfied[0]
+    assert not found("mean[0.5, 2](gone_between(box, x, 0.9 m, 1.05 m))", box).satisfied[0]
+    assert found("mean[0, end](gone_between(box, x, 2 m, 4 m))", box).satisfied[0]
+    with pytest.raises(MissingError, match="not covered"):
+        found("mean[1, 3](moves(box))", box)
+    with pytest.raises(MissingError, match="holds no frame"):
+        found("mean[0.501, 0.502](moves(box))", box)
+    with pytest.raises(ValueError, match="leave one of the two out"):
+        Mean(of=parse("moves(box)"), seconds=1.0, window=(0.0, 1.0))

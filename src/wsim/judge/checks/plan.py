@@ -15,6 +15,7 @@ from wsim.geometry.shapes import kind_of
 from wsim.judge.checks.check import Check, Checks, listed, share_about
 from wsim.judge.checks.plan_closed import assembled, named
 from wsim.judge.verdict import RepairTarget
+from wsim.plan.schema import FromTerrain
 from wsim.scene.contact import friction_of, restitution_of, rolling_of
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
-    from wsim.plan.schema import PlanObject
+    from wsim.plan.schema import Material, PlanObject
     from wsim.scene.world import Body, Shape, Static
 
     Floats = NDArray[np.float64]
@@ -239,14 +240,10 @@ class CheckPlanLooks(Check):
 
     def evaluate(self, evidence: Evidence) -> list[Finding]:
         """One finding for each object that differs, or one for none."""
-        found = [finding for item, made in pairs(evidence) for finding in self._look(made, item)]
+        found = [finding for made, shape, material in _seen(evidence) for finding in self._look(made, shape, material)]
         return found or ([self.passed("Objects have the plan's looks")] if evidence.plan is not None else [])
 
-    def _look(self, made: Body | Static, item: PlanObject) -> Iterator[Finding]:
-        material = item.material
-        if material is None or item.primitive not in PRIMITIVES or not made.shapes:
-            return
-        shape = made.shapes[0]
+    def _look(self, made: Body | Static, shape: Shape, material: Material) -> Iterator[Finding]:
         wanted = (
             ("friction", friction_of, material.friction, max(self.surface * material.friction, self.least)),
             ("restitution", restitution_of, material.restitution, max(self.surface * material.restitution, self.least)),
@@ -285,6 +282,21 @@ def pairs(evidence: Evidence) -> Iterator[tuple[PlanObject, Body | Static]]:
         prim = evidence.prim(item.name)
         if prim in made:
             yield item, made[prim]
+
+
+def _seen(evidence: Evidence) -> Iterator[tuple[Body | Static, Shape, Material]]:
+    """The shapes that the plan has a material for, of terrain each of its areas' too, and of rocks each one's."""
+    for item, made in pairs(evidence):
+        if item.material is not None and item.primitive in PRIMITIVES and made.shapes:
+            yield made, made.shapes[0], item.material
+        if item.material is not None and isinstance(item.built, FromTerrain):
+            areas = {area.name: area.material for area in item.built.areas}
+            for shape in made.shapes:
+                yield made, shape, areas.get(shape.prim.rsplit("/", 1)[-1], item.material)
+    for static in evidence.world.statics:
+        item_of = evidence.planned(static.prim)
+        if item_of is not None and item_of.rocks and item_of.material is not None and static.shapes:
+            yield static, static.shapes[0], item_of.material
 
 
 def _turned(item: PlanObject, turn: Floats, shape: Shape) -> float:

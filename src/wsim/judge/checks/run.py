@@ -174,9 +174,10 @@ class CheckPlanObjects(Check):
         everything = {"/".join(prim.split("/")[:3]) for prims in has.values() for prim in prims}
         found = []
         for item in evidence.plan.objects:
-            prim = evidence.prim(item.name)
             kind = item.role if item.role in ("container", "fluid") else item.state
-            if prim not in everything:
+            missing = [evidence.prim(name) for name in item.prims if evidence.prim(name) not in everything]
+            prim = missing[0] if missing else evidence.prim(item.prims[0])
+            if missing:
                 found.append(self.failed(f"The plan's {item.name} is not in the world: no {prim}", prim=prim))
             elif not (any(within(each, prim) for each in has[kind]) if item.assembled else prim in has[kind]):
                 actual = next((name for name, prims in has.items() if prim in prims), "something else")
@@ -184,16 +185,17 @@ class CheckPlanObjects(Check):
                 found.append(self.failed(message, prim=prim))
             elif item.primitive == "robot" and not _linked(evidence, prim):
                 found.append(self.failed(f"{prim} has no links that joints hold together, as a robot has", prim=prim))
-        planned = {evidence.prim(item.name) for item in evidence.plan.objects}
+        planned = {evidence.prim(name) for item in evidence.plan.objects for name in item.prims}
         for prim in sorted(everything - planned):
             message = f"{prim} is in the world, but not in the plan"
             found.append(self.failed(message, prim=prim))
-        return found or [self.passed(f"The world has the plan's {len(planned)} objects and no others")]
+        return found or [self.passed(f"The world has the plan's {len(evidence.plan.objects)} objects and no others")]
 
     def repair(self, finding: Finding, evidence: Evidence) -> RepairTarget:
         """An object of the plan that the world lacks, or has in another role, or one that the plan does not have."""
         prim = finding.prim
-        planned = {evidence.prim(item.name) for item in evidence.plan.objects} if evidence.plan is not None else set()
+        items = evidence.plan.objects if evidence.plan is not None else []
+        planned = {evidence.prim(name) for item in items for name in item.prims}
         if prim not in planned:
             why = "the plan does not have it"
             return RepairTarget(kind="extra object", prim=prim, direction="remove", why=why)
@@ -229,6 +231,7 @@ class CheckPlanControl(Check):
             item.name
             for item in plan.objects
             for each in item.registration.actuation
+            if each.kind != "drive"  # its engine and its steering are set on the stage
             if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
             if controlled or not _by_policy(evidence, item.name, each.joint)
         ]

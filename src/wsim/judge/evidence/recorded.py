@@ -116,9 +116,13 @@ class Recorded:
         return any(parameter.value != parameter.default for parameter in self.world.parameters)
 
     def planned(self, prim: str) -> PlanObject | None:
-        """The plan's object that a prim is made of."""
+        """The plan's object that a prim is made of, or a part of."""
+        return self._owners.get(prim)
+
+    @cached_property
+    def _owners(self) -> dict[str, PlanObject]:
         items = self.plan.objects if self.plan is not None else []
-        return next((item for item in items if self.prim(item.name) == prim), None)
+        return {self.prim(name): item for item in reversed(items) for name in item.prims}
 
     @staticmethod
     def prim(name: str) -> str:

@@ -136,8 +136,8 @@ class _Evaluation:
             return node, self._of_predicate(node)
         assert isinstance(node.of, Predicate)  # as a plan makes sure
         shape = (self.signals.count, len(self.signals.time))
-        frames = slice(first_of_last(self.signals.time, node.seconds), None)
-        return node.of, [measure.averaged(shape, frames) for measure in self._of_predicate(node.of)]
+        frames = frames_of(node, self.signals.time)
+        return node.of, [measure.averaged(shape, *frames) for measure in self._of_predicate(node.of)]
 
     def _of_predicate(self, predicate: Predicate) -> list[Measure]:
         for name in sorted(predicate.objects_named()):
@@ -217,7 +217,7 @@ class _Evaluation:
 
     def _of_means(self, mean: Mean) -> Trace:
         """The same at each frame; what decides is where the means begin."""
-        trace, first = self._frames(mean), first_of_last(self.signals.time, mean.seconds)
+        trace, (first, _) = self._frames(mean), frames_of(mean, self.signals.time)
         frames = len(self.signals.time)
         return Trace(trace.robustness, (trace.source // frames * frames + first).astype(np.int32))
 
@@ -259,6 +259,14 @@ def first_of_last(time: Floats, seconds: float | None) -> int:
     if wanted > span + step / 2:
         raise MissingError(f"the last {wanted:g} s are not covered: the recording has {span:.4g} s; record longer")
     return int(np.searchsorted(time, time[-1] - wanted - 1e-6))
+
+
+def frames_of(mean: Mean, time: Floats) -> tuple[int, int]:
+    """The frames [low, high) that a mean is over; MissingError where they are not covered, or there is none."""
+    if mean.window is None:
+        return first_of_last(time, mean.seconds), len(time)
+    low, high = span_of(time, len(time), mean.window)
+    return int(low[0]), int(high[0])
 
 
 def final_window(span: float) -> float:

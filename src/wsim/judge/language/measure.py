@@ -25,7 +25,7 @@ class Measure:
 
     Arrays are (W, T), or broadcast to it. `scale` is what one unit of the number is worth beside others: margins of
     different units are compared as shares of their scales. `band` is both limits of what has two. `note` is what a
-    finding says besides, where it fails; `single` is, of means, the measure that they are of.
+    finding says besides, where it fails; `single` is, of means, the measure that they are of, `last` their last frame.
     """
 
     what: str  # of what the number is: "tilt"
@@ -40,6 +40,7 @@ class Measure:
     band: tuple[Floats | float, Floats | float] | None = None
     note: str = ""
     single: Measure | None = None
+    last: int = -1
 
     @classmethod
     def about(cls, value: Floats, expected: Floats | float, tolerance: Floats | float, **rest: Any) -> Measure:
@@ -56,20 +57,21 @@ class Measure:
             value=value, limit=np.where(above, band[1], band[0]), at_most=above, expected=expected, band=band, **rest
         )
 
-    def averaged(self, shape: tuple[int, int], frames: slice) -> Measure:
-        """The same of the mean number over some frames, (W, 1), against the mean of its limits."""
+    def averaged(self, shape: tuple[int, int], low: int, high: int) -> Measure:
+        """The same of the mean number over the frames [low, high), (W, 1), against the mean of its limits."""
+        frames = slice(low, high)
 
         def mean(numbers: Floats | float) -> Floats:
             return np.asarray(np.broadcast_to(numbers, shape)[:, frames].mean(axis=1, keepdims=True))
 
         same: dict[str, Any] = {
             "what": f"mean {self.what}", "prim": self.prim, "unit": self.unit, "limit_from": self.limit_from,
-            "note": self.note, "single": self, "scale": mean(self.scale),
+            "note": self.note, "single": self, "last": high - 1, "scale": mean(self.scale),
         }  # fmt: skip
         expected = None if self.expected is None else mean(self.expected)
         if self.band is not None and expected is not None:
             return self.between(mean(self.value), (mean(self.band[0]), mean(self.band[1])), expected, **same)
-        at_most = np.broadcast_to(self.at_most, shape)[:, -1:]
+        at_most = np.broadcast_to(self.at_most, shape)[:, high - 1 : high]
         return Measure(value=mean(self.value), limit=mean(self.limit), at_most=at_most, expected=expected, **same)
 
     @property

@@ -135,7 +135,12 @@ class Asked:
         own = limit - value if at_most else value - limit
         at_most ^= bool(own * outcome.margin[n] < 0.0)
         satisfied, span = bool(outcome.satisfied[n]), self._span(measure, frame)
-        when = f"from {moment:.3f} s on" if measure.single is not None else f"at {moment:.3f} s"
+        when = f"at {moment:.3f} s"
+        if measure.single is not None:
+            last = measure.last % len(signals.time)
+            when = f"from {moment:.3f} s " + (
+                "on" if last == len(signals.time) - 1 else f"to {signals.time[last]:.3f} s"
+            )
         if not satisfied and _at_the_end(part):
             details["time"] = span[0]  # what fails at the end is to be looked at where it came to be so
             when += f", and so since {span[0]:.3f} s"
@@ -164,9 +169,9 @@ class Asked:
         time, margin = self.signals.time, self._here(measure.margin)
         side = margin[frame] >= 0.0
         if measure.single is not None:
-            margin = self._here(measure.single.margin)
+            margin = self._here(measure.single.margin)[: measure.last + 1 or None]
             if (margin[-1] >= 0.0) != side:
-                return float(time[frame]), float(time[-1])
+                return float(time[frame]), float(time[measure.last])
             frame = len(margin) - 1
         other = np.flatnonzero((margin >= 0.0) != side)
         first = other[other < frame].max(initial=-1) + 1
@@ -201,4 +206,6 @@ def conjuncts(formula: Formula) -> tuple[Formula, ...]:
 
 def _at_the_end(part: Formula) -> bool:
     """Whether a formula is about the end of the recording."""
-    return isinstance(part, Finally | Mean) or (isinstance(part, Predicate) and part.alone.startswith("finally"))
+    if isinstance(part, Mean):
+        return part.window is None
+    return isinstance(part, Finally) or (isinstance(part, Predicate) and part.alone.startswith("finally"))

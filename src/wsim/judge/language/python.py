@@ -33,9 +33,9 @@ def finally_(of: Formula, seconds: float | None = None) -> tree.Finally:
     return tree.Finally(of=of, seconds=seconds)
 
 
-def mean(of: tree.Predicate, seconds: float | None = None) -> tree.Mean:
-    """A predicate, of the means of its numbers over the recording's last seconds, or the judge's final window."""
-    return tree.Mean(of=of, seconds=seconds)
+def mean(of: tree.Predicate, seconds: float | None = None, window: Between | None = None) -> tree.Mean:
+    """A predicate, of the means of its numbers over the recording's last seconds, the final window, or one [s]."""
+    return tree.Mean(of=of, seconds=seconds, window=window)
 
 
 def ordered(*events: Formula) -> tree.Ordered:

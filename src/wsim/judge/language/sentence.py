@@ -49,7 +49,7 @@ GRAMMAR = r"""
     | "always" window? "(" formula ")" -> always
     | "eventually" window? "(" formula ")" -> eventually
     | "finally" ["[" number "]"] "(" formula ")" -> at_the_end
-    | "mean" ["[" number "]"] "(" formula ")" -> mean
+    | "mean" ("[" number "]" | window)? "(" formula ")" -> mean
     | "ordered" "(" formula ("," formula)+ ")" -> ordered
     | NAME "(" argument ("," argument)* ")" -> predicate
 window: "[" number "," (number | "end") "]"
@@ -180,8 +180,11 @@ class _Build(Transformer[Token, Any]):
     def at_the_end(self, seconds: _Number | None, part: Formula) -> Finally:
         return Finally(seconds=None if seconds is None else seconds.into("s", "finally"), of=part)
 
-    def mean(self, seconds: _Number | None, part: Formula) -> Mean:
-        return Mean(seconds=None if seconds is None else seconds.into("s", "mean"), of=part)
+    def mean(self, *parts: Any) -> Mean:
+        over = parts[0] if len(parts) > 1 else None
+        if isinstance(over, tuple):
+            return Mean(window=over, of=parts[-1])
+        return Mean(seconds=None if over is None else over.into("s", "mean"), of=parts[-1])
 
     def until(self, hold: Formula, *rest: Any) -> Until:
         return Until(hold=hold, window=rest[0] if len(rest) > 1 else None, goal=rest[-1])
@@ -260,6 +263,8 @@ def sentence(formula: Formula) -> str:
         return "not " + _within(formula.of, (Until, Then, Or, And))
     if isinstance(formula, (Always, Eventually)):
         return f"{formula.op}{_window(formula.window)}({sentence(formula.of)})"
+    if isinstance(formula, Mean) and formula.window is not None:
+        return f"mean{_window(formula.window)}({sentence(formula.of)})"
     if isinstance(formula, (Finally, Mean)):
         seconds = "" if formula.seconds is None else f"[{_digits(formula.seconds)}]"
         return f"{formula.op}{seconds}({sentence(formula.of)})"

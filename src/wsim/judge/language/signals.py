@@ -200,9 +200,12 @@ class Signals:
 
     # ---- who is who
     def parts(self, name: str) -> set[str]:
-        """The prims of all bodies of an object that is made of several, as a robot is; else its own."""
+        """The prims of all bodies of an object that is made of several, as a robot or a vehicle is; else its own."""
         whole = name if name.startswith("/") else Evidence.prim(name)
         solids = [body.prim for body in self.world.bodies] + [static.prim for static in self.world.statics]
+        item = self.evidence.planned(whole) if self.evidence is not None else None
+        if item is not None and whole == Evidence.prim(item.name) and len(item.prims) > 1:
+            return {Evidence.prim(each) for each in item.prims} & {*solids}
         return {prim for prim in solids if prim == whole or prim.startswith(f"{whole}/")} or {self.prim(name)}
 
     def prim(self, name: str) -> str:

@@ -13,13 +13,14 @@ from typing import Literal
 from wsim.defaults import WALL
 from wsim.errors import UserError
 from wsim.plan.layout import extents
-from wsim.plan.schema import Plan, PlanObject, Pose, Vec3
+from wsim.plan.schema import FromTerrain, Plan, PlanObject, Pose, Vec3
 
 View = Literal["above", "side"]
 Style = Literal["solid", "glass", "fluid", "wide"]
 Point = tuple[float, float]
 VIEWS: tuple[View, ...] = ("above", "side")
 ROUND = 40  # corners of a circle
+FLAT = 0.1  # [m]: how high terrain without hills is drawn
 WIDE = 0.6  # share of the scene's area from which a flat thing is a floor that others are drawn on
 _GREY = (0.5, 0.5, 0.5)
 
@@ -114,6 +115,10 @@ def _solid(item: PlanObject, items: dict[str, PlanObject]) -> _Solid | None:
         return None
     if item.primitive == "fluid":
         return _fluid(item, items)
+    if isinstance(item.built, FromTerrain):
+        x, y = item.built.extent
+        top = max((each.height for each in item.built.layers if each.kind == "hill"), default=0.0)
+        return _box(Pose(position=(0.0, 0.0, 0.0)), (x, y, max(top, FLAT)), 0.5 * max(top, FLAT))
     if item.pose is None:
         return None
     pose, size = item.pose, item.size
@@ -199,7 +204,7 @@ def _silhouette(item: PlanObject, solid: _Solid, view: View, area: float) -> Sil
         style = "fluid"
     elif item.primitive == "tank" or (item.material is not None and item.material.opacity < 0.5):
         style = "glass"
-    elif (item.role == "terrain" and item.primitive == "box") or (
+    elif (item.role == "terrain" and item.primitive in ("box", "terrain")) or (
         item.state == "static" and view == "above" and spans > WIDE * area
     ):
         style = "wide"
@@ -213,7 +218,8 @@ def _front(item: PlanObject) -> Point | None:
     if item.pose is None or not (turned or item.role in ("vehicle", "robot")):
         return None
     ahead = _placed(
-        item.pose, (_edges(item)[0][0] / 2 if item.primitive in ("box", "asset", "robot") else item.size[0], 0.0, 0.0)
+        item.pose,
+        (_edges(item)[0][0] / 2 if item.primitive in ("box", "asset", "robot", "vehicle") else item.size[0], 0.0, 0.0),
     )
     return ahead[0], ahead[1]
 

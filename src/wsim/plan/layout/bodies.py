@@ -1,7 +1,7 @@
 """What is known of one object alone: its box, its hollow, its surfaces, what of it is solid.
 
-An object's own frame has its origin where its pose is: the centre of the bottom face of a tank, an asset and a robot,
-the centre of anything else.
+An object's own frame has its origin where its pose is: the centre of the bottom face of a tank, an asset, a robot and a
+vehicle, the centre of anything else.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from wsim.assets import get
 from wsim.defaults import WALL
 from wsim.plan.layout.boxes import TOUCH, Box, Matrix, Solid, rotation
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.schema import FromAsset, PlanObject, Vec3
+from wsim.plan.schema import FromAsset, FromVehicle, PlanObject, Vec3
 
-STANDS = ("tank", "asset", "robot")  # their pose is the centre of the bottom face
+STANDS = ("tank", "asset", "robot", "vehicle")  # their pose is the centre of the bottom face
 UPRIGHT: Vec3 = (0.0, 0.0, 0.0)
 
 
@@ -41,6 +41,11 @@ def local_size(item: PlanObject) -> Vec3:
     if item.primitive == "asset":
         x, y, z = entry(item).size
         return (float(x), float(y), float(z))
+    if isinstance(item.built, FromVehicle):
+        from wsim.scene.vehicle_spec import preset  # with USD, and few plans have a vehicle
+
+        spec = preset(item.built.vehicle)
+        return (spec.length, max(spec.width, spec.track + spec.wheel_width), spec.height)
     raise LayoutError(f"{item.name}: a {item.primitive} has no bounding box; no object can be placed by its sides")
 
 
@@ -91,7 +96,7 @@ def solids(item: PlanObject) -> list[Box]:
 
 def convex(item: PlanObject) -> list[Solid]:
     """The convex bodies that an object with a pose fills: one, or the floor and walls of what is hollow."""
-    if item.pose is None or item.primitive in ("ground", "fluid"):
+    if item.pose is None or item.primitive in ("ground", "fluid"):  # terrain has no pose
         return []
     turn = rotation(item.pose.rotation_deg)
     if is_hollow(item):

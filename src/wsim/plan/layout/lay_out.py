@@ -6,6 +6,7 @@ from wsim.plan import templates, views
 from wsim.plan.layout import headings, heights, plane, sizes
 from wsim.plan.layout.check import check_clear, check_rows
 from wsim.plan.layout.errors import LayoutError
+from wsim.plan.layout.land import set_down
 from wsim.plan.layout.world import World
 from wsim.plan.schema import Plan
 
@@ -27,7 +28,7 @@ def layout(plan: Plan) -> Plan:
     placed = templates.write_out_fluids(world.placed())
     check_clear(placed)
     check_rows(placed)
-    return views.resolve_all(placed)
+    return views.resolve_all(set_down(placed))
 
 
 def _settle(world: World) -> None:

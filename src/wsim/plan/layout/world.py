@@ -11,6 +11,7 @@ from wsim.plan.layout.errors import LayoutError
 from wsim.plan.layout.rows import Row, placing
 from wsim.plan.schema import Plan, PlanObject, Pose, Vec3
 from wsim.plan.schema.circles import in_turn, round_again
+from wsim.plan.schema.objects import SPREAD
 from wsim.plan.schema.predicates import Kind
 
 
@@ -67,7 +68,7 @@ class World:
 
     def _shapeless(self, item: PlanObject) -> bool:
         if item.primitive != "fluid":
-            return item.primitive == "ground"
+            return item.primitive in ("ground", *SPREAD)
         poured = any(row.predicate == "FREE-SURFACE-AT" for row in self.of[item.name])
         return not item.size or poured
 

@@ -1,6 +1,22 @@
 """The plan's model: a pydantic schema in which nothing dangles."""
 
 from wsim.plan.schema.base import Name, Vec3
+from wsim.plan.schema.constructions import (
+    AreaPlan,
+    Clearance,
+    External,
+    FromAsset,
+    FromRobot,
+    FromScatter,
+    FromTerrain,
+    FromVehicle,
+    HillLayer,
+    LevelLayer,
+    Material,
+    NoiseLayer,
+    Proxy,
+    RoadLayer,
+)
 from wsim.plan.schema.draft import (
     Assumption,
     AssumptionKind,
@@ -19,13 +35,8 @@ from wsim.plan.schema.draft import (
 from wsim.plan.schema.explain import explain
 from wsim.plan.schema.objects import (
     Actuation,
-    External,
-    FromAsset,
-    FromRobot,
-    Material,
     PlanObject,
     Pose,
-    Proxy,
     Registration,
 )
 from wsim.plan.schema.plan import PLAN_VERSION, Plan
@@ -37,18 +48,26 @@ __all__ = [
     "PREDICATES",
     "TEMPLATES",
     "Actuation",
+    "AreaPlan",
     "Assumption",
     "AssumptionKind",
     "CameraPlan",
+    "Clearance",
     "Contact",
     "External",
     "FromAsset",
     "FromRobot",
+    "FromScatter",
+    "FromTerrain",
+    "FromVehicle",
+    "HillLayer",
     "ImageHints",
     "Joint",
     "JointDrive",
+    "LevelLayer",
     "Material",
     "Name",
+    "NoiseLayer",
     "Objective",
     "Outputs",
     "Plan",
@@ -60,6 +79,7 @@ __all__ = [
     "Region",
     "Registration",
     "Relation",
+    "RoadLayer",
     "SensorPlan",
     "SimulationPlan",
     "Step",

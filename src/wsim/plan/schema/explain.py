@@ -48,7 +48,8 @@ def _way_out(item: Any) -> str:
         return "; add it"
     if item["type"] == "union_tag_not_found":
         return (
-            '; add "kind": "proxy" (a primitive), "asset" (of the catalogue), "robot" or "external" (with a stand-in)'
+            '; add "kind": "proxy" (a primitive), "asset" (of the catalogue), "robot", "vehicle", "terrain", "scatter" '
+            'or "external" (with a stand-in)'
         )
     if item["type"] == "string_unicode":
         return "; it holds half of a character (a lone surrogate, such as \\ud800); write the whole one"

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from wsim.plan.schema import formula_contact, formula_fluid, formula_motion, formula_place
 from wsim.plan.schema.base import Positive
-from wsim.plan.schema.nodes import Always, And, Eventually, Finally, Node, Not, Or, Then, Until
+from wsim.plan.schema.nodes import Always, And, Eventually, Finally, Node, Not, Or, Then, Until, Window
 from wsim.plan.schema.predicate import Predicate
 
 __all__ = [
@@ -35,16 +35,22 @@ class Ordered(Predicate):
 
 
 class Mean(Node):
-    """The predicate, said of the means of its numbers over the recording's last seconds, or the final window."""
+    """The predicate, said of the means of its numbers over the recording's last seconds, the final window, or another.
+
+    The window is in seconds from the recording's start, wherever the mean stands.
+    """
 
     op: Literal["mean"] = "mean"
     seconds: Positive | None = None
+    window: Window | None = None
     of: Formula
 
     @model_validator(mode="after")
     def _of_numbers(self) -> Mean:
         if not isinstance(self.of, Predicate) or isinstance(self.of, Ordered):
             raise ValueError("mean: it takes one predicate, whose numbers have a mean; put it around each of them")
+        if self.seconds is not None and self.window is not None:
+            raise ValueError("mean: it is over the last seconds or over a window; leave one of the two out")
         return self
 
     def parts(self) -> tuple[Formula, ...]:

@@ -3,48 +3,43 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from wsim.defaults import FRICTION
-from wsim.plan.schema.base import Color, Name, NotNegative, Number, Positive, Share, Sparse, Strict, Text, Vec3, Word
+from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
+from wsim.plan.schema.constructions import (
+    CORNERS,
+    ROCKS,
+    Built,
+    Construction,
+    External,
+    FromRobot,
+    FromScatter,
+    FromVehicle,
+    Material,
+    Primitive,
+    Proxy,
+)
 from wsim.plan.schema.relations import Relation
 
 Role = Literal["rigid_body", "mechanism", "vehicle", "robot", "terrain", "fluid", "container", "sensor", "background"]
 State = Literal["static", "dynamic", "kinematic", "fluid"]
-Primitive = Literal["box", "sphere", "cylinder", "capsule", "tank", "fluid", "ground"]
-SIZE_COUNT: dict[str, tuple[int, ...]] = {
-    "box": (3,),
-    "sphere": (1,),
-    "cylinder": (2,),
-    "capsule": (2,),
-    "tank": (3,),
-    "fluid": (0, 3),
-    "ground": (0,),
-}
-SIZE_MEANING = {
-    "box": "the edge lengths (x, y, z)",
-    "sphere": "(radius,)",
-    "cylinder": "(radius, height)",
-    "capsule": "(radius, height without the caps)",
-    "tank": "the inner edge lengths (x, y, z)",
-    "fluid": "the edge lengths (x, y, z), or nothing when it fills a container",
-    "ground": "nothing",
-}
 _SOLIDS = ("box", "sphere", "cylinder", "capsule")
+_OWN = ("asset", "robot", "vehicle", "terrain", "scatter")  # kinds of construction that are no primitives
+SPREAD = ("terrain", "scatter")  # they lie about the world's origin, and have no pose
 _MOTIONS = ("angular_velocity_deg", "rolling", "surface_velocity")
 ROLLS = ("sphere", "cylinder", "capsule")
 ROLE_PRIMITIVES: dict[str, tuple[str, ...]] = {
     "rigid_body": _SOLIDS,
     "mechanism": _SOLIDS,
-    "vehicle": _SOLIDS,
+    "vehicle": (*_SOLIDS, "vehicle"),
     "robot": (*_SOLIDS, "robot"),
     "sensor": _SOLIDS,
-    "background": _SOLIDS,
+    "background": (*_SOLIDS, "scatter"),
     "container": ("tank", *_SOLIDS),
     "fluid": ("fluid",),
-    "terrain": ("ground", *_SOLIDS),
+    "terrain": ("ground", *_SOLIDS, "terrain", "scatter"),
 }
 ROLE_STATES: dict[str, tuple[str, ...]] = {
     "rigid_body": ("dynamic", "static", "kinematic"),
@@ -57,63 +52,6 @@ ROLE_STATES: dict[str, tuple[str, ...]] = {
     "fluid": ("fluid",),
     "terrain": ("static",),
 }
-
-
-class Proxy(Strict):
-    """A primitive that stands for the object."""
-
-    kind: Literal["proxy"] = "proxy"
-    primitive: Primitive
-    size: tuple[Positive, ...] = Field((), max_length=3)  # [m], as SIZE_MEANING has it
-
-    @model_validator(mode="after")
-    def _count(self) -> Proxy:
-        counts = SIZE_COUNT[self.primitive]
-        if len(self.size) not in counts:
-            wanted = " or ".join(str(count) for count in counts)
-            raise ValueError(
-                f"size of a {self.primitive} has {wanted} numbers, {SIZE_MEANING[self.primitive]}, in metres; "
-                f"it has {len(self.size)}"
-            )
-        return self
-
-
-class FromAsset(Strict):
-    """An entry of the catalogue."""
-
-    kind: Literal["asset"] = "asset"
-    asset: Word  # its id
-
-
-class FromRobot(Strict):
-    """A robot that was taken in or can be pulled (docs/robots.md): links and joints of its own."""
-
-    kind: Literal["robot"] = "robot"
-    robot: Word  # its id
-    size: tuple[Positive, Positive, Positive]  # of the box round it as it stands [m]
-
-
-class External(Strict):
-    """Something to be found elsewhere; until it is, the stand-in is built."""
-
-    kind: Literal["external"] = "external"
-    candidate: Word  # what to look for
-    stand_in: Proxy
-
-
-Construction = Annotated[Proxy | FromAsset | FromRobot | External, Field(discriminator="kind")]
-
-
-class Material(Sparse):
-    """Bulk and surface properties."""
-
-    name: Word
-    density: Positive  # [kg/m^3]
-    friction: NotNegative = FRICTION
-    restitution: Share = 0.0  # 0 leaves it to what it touches; a contact's 0 is 0
-    rolling: Share | None = None  # rolling resistance: a torque, of radius times push
-    color: Color = (0.7, 0.7, 0.7)
-    opacity: Share = 1.0
 
 
 class Topology(Strict):
@@ -130,23 +68,41 @@ class Pose(Strict):
 
 
 WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
+_OF_SOME = ("policy", "route", "speed", "steer_deg")  # kinds of actuation
 
 
 class Actuation(Strict):
     """What drives the object, or a joint of it."""
 
-    kind: Literal["position", "velocity", "force", "torque", "path", "policy"]
+    kind: Literal["position", "velocity", "force", "torque", "path", "policy", "driver", "drive"]
     joint: Name | None = None
     target: tuple[float, ...] = Field(
         (), max_length=10_000
     )  # of the kind's unit: rad or m, per second, N, N m; a path's points
     words: Text = ""
     policy: Word | None = None  # of the kind "policy": the id of the network that walks the robot
-    route: tuple[WayPoint, ...] = Field((), max_length=1000)  # along which it walks it, one after the other
-    speed: Positive | None = None  # along the route [m/s]
+    route: tuple[WayPoint, ...] = Field((), max_length=1000)  # of a policy or a driver, one point after the other
+    speed: Positive | None = None  # along the route, or of what is driven straight on [m/s]
+    steer_deg: Number | None = None  # of the kind "drive": of the front wheels, to the left
+
+    @model_validator(mode="after")
+    def _drives(self) -> Actuation:
+        if self.steer_deg is not None and self.kind != "drive":
+            raise ValueError(f'steer_deg is of the kind "drive"; this is of {self.kind!r}')
+        if self.kind not in ("driver", "drive"):
+            return self
+        if self.speed is None or self.joint or self.target or self.policy:
+            raise ValueError(f'a {self.kind} is a vehicle\'s, with its "speed"; it takes no joint, target or policy')
+        if self.kind == "driver" and not self.route:
+            raise ValueError('a driver follows a "route" from where the vehicle starts; it has none')
+        if self.kind == "drive" and self.route:
+            raise ValueError('what is driven straight on, or in a circle, has no route; a "driver" follows one')
+        return self
 
     @model_validator(mode="after")
     def _walks(self) -> Actuation:
+        if self.kind in ("driver", "drive"):
+            return self
         if self.kind != "policy" and (self.policy or self.route or self.speed):
             raise ValueError(f'policy, route and speed are of the kind "policy"; this is of {self.kind!r}')
         if (self.route or self.speed) and not self.policy:
@@ -157,8 +113,8 @@ class Actuation(Strict):
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without what only a policy has where it has it not, so that a plan without it reads as it always did."""
-        return {name: value for name, value in write(self).items() if value or name not in ("policy", "route", "speed")}
+        """Without what only some kinds have where it has it not, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if value or name not in _OF_SOME}
 
 
 class Registration(Strict):
@@ -213,19 +169,19 @@ class PlanObject(Strict):
         )
 
     @property
-    def built(self) -> Proxy | FromAsset | FromRobot:
+    def built(self) -> Built:
         """What is built: the stand-in of what is external."""
         return self.construction.stand_in if isinstance(self.construction, External) else self.construction
 
     @property
     def primitive(self) -> str:
-        """The primitive that is built, or "asset" or "robot"."""
+        """The primitive that is built, or the kind of its construction: "asset", "robot", "vehicle", "terrain", ..."""
         return self.built.primitive if isinstance(self.built, Proxy) else self.built.kind
 
     @property
     def size(self) -> tuple[float, ...]:
-        """The primitive's size, or that of the box round a robot [m]; empty for an asset."""
-        return () if isinstance(self.built, FromAsset) else self.built.size
+        """The primitive's size, or that of the box round a robot [m]; empty for what has its own, or none."""
+        return self.built.size if isinstance(self.built, (Proxy, FromRobot)) else ()
 
     @property
     def volume(self) -> float | None:
@@ -259,8 +215,24 @@ class PlanObject(Strict):
 
     @property
     def assembled(self) -> bool:
-        """Whether what stands for it may have parts and joints of its own: an asset of the catalogue, or a robot."""
-        return self.primitive in ("asset", "robot")
+        """Whether what stands for it may have parts and joints of its own: an asset, a robot or a vehicle."""
+        return self.primitive in ("asset", "robot", "vehicle")
+
+    @property
+    def rocks(self) -> bool:
+        """Whether it is rocks that are scattered, which have its material."""
+        return isinstance(self.built, FromScatter) and self.built.what == (ROCKS,)
+
+    @property
+    def prims(self) -> tuple[str, ...]:
+        """Names of the prims that it is: its own, of a vehicle also its parts', of what is scattered each one's."""
+        if isinstance(self.built, FromScatter):
+            return tuple(f"{self.name}_{k}" for k in range(self.built.count))
+        if isinstance(self.built, FromVehicle):
+            knuckles = (f"knuckle_{corner}" for corner in CORNERS[:2])
+            parts = (*knuckles, *(f"{part}_{corner}" for part in ("hub", "wheel") for corner in CORNERS))
+            return (self.name, *(f"{self.name}_{part}" for part in parts))
+        return (self.name,)
 
     @property
     def relations(self) -> list[Relation]:
@@ -317,6 +289,23 @@ class PlanObject(Strict):
             )
         if self.rolling and self.angular_velocity_deg is not None:
             raise ValueError(f"{self.name}: rolling gives the spin; remove angular_velocity_deg, or rolling")
-        if self.surface_velocity is not None and self.primitive in ("fluid", "tank", "asset", "robot"):
+        if self.surface_velocity is not None and self.primitive in ("fluid", "tank", *_OWN):
             raise ValueError(f"{self.name}: surface_velocity is of a solid; it is a {self.primitive}")
+        return self
+
+    @model_validator(mode="after")
+    def _is_driven(self) -> PlanObject:
+        driven = [each.kind for each in self.registration.actuation if each.kind in ("driver", "drive")]
+        if driven and self.primitive != "vehicle":
+            raise ValueError(f'{self.name}: a {driven[0]} is of a vehicle; it is no construction of kind "vehicle"')
+        if len(driven) > 1:
+            raise ValueError(f"{self.name}: it has {', '.join(driven)}; one drives it, leave the others out")
+        if self.primitive in SPREAD and (self.pose is not None or self.relations):
+            raise ValueError(f"{self.name}: {self.primitive} lies about the origin; remove its pose and its rows")
+        if self.primitive == "terrain" and self.material is None:
+            raise ValueError(f'{self.name}: terrain needs a "material", whose friction it has')
+        if self.material is not None and (
+            self.primitive == "vehicle" or (self.primitive == "scatter" and not self.rocks)
+        ):
+            raise ValueError(f"{self.name}: a {self.primitive} has materials of its own; remove this one")
         return self

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, get_args
 
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
+from wsim.plan.schema.constructions import FromScatter
 from wsim.plan.schema.draft import KindOfTwo
 from wsim.plan.schema.supports import support_problems
 
@@ -30,6 +31,7 @@ def problems(plan: Draft) -> list[str]:
         *_joints(plan),
         *_contacts(plan),
         *_actuation(plan),
+        *_land(plan),
         *_others(plan),
     ]
 
@@ -96,6 +98,8 @@ def _row_problems(where: str, item: PlanObject, row: Relation, items: dict[str, 
     # What is hollow beside tanks is known to the catalogue alone; the layout asks it.
     if other is not None and row.predicate == "PLACE-IN" and other.primitive in ("ground", "fluid"):
         yield f"{where}.ref: PLACE-IN needs a container; {row.ref} is a {other.role}"
+    if other is not None and other.primitive in ("terrain", "scatter"):
+        yield f"{where}.ref: {row.ref} is a {other.primitive}, which has no sides and no top; give {item.name} a pose"
     if spec.of_role not in (None, item.role):
         yield f"{where}: {row.predicate} is a {spec.of_role}'s; {item.name} is a {item.role}"
 
@@ -175,6 +179,9 @@ def _contacts(plan: Draft) -> Iterator[str]:
             yield f"contacts.{i}.ref: {one.name} does not touch itself; name another object"
         elif fluid is not None:
             yield f"contacts.{i}: {fluid.name} is a fluid, which has no friction or restitution; name two solids"
+        elif {"vehicle", "scatter"} & {one.primitive, other.primitive}:
+            both = f"{one.name} and {other.name}"
+            yield f"contacts.{i}: {both}: a vehicle or a scatter is many bodies; leave it to their materials"
         elif one.state == other.state == "static":
             yield f"contacts.{i}: {one.name} and {other.name} are both static; they never meet"
         elif pair in ties:
@@ -199,6 +206,21 @@ def _actuation(plan: Draft) -> Iterator[str]:
                 yield f"{where}: no joint {actuation.joint!r}; the plan has {', '.join(joints) or 'none'}"
             elif actuation.joint is not None and joints[actuation.joint].drive is not None:
                 yield f"{where}: {actuation.joint} has a drive; remove it, or this actuation: one thing drives a joint"
+
+
+def _land(plan: Draft) -> Iterator[str]:
+    """Terrain is there once, and what is scattered lies on it; its prims' names are nobody else's."""
+    items = {item.name: item for item in plan.objects}
+    lands = [item.name for item in plan.objects if item.primitive in ("terrain", "ground")]
+    if len(lands) > 1 and any(items[name].primitive == "terrain" for name in lands):
+        yield f"objects: {' and '.join(lands)} are both the ground; keep one of them"
+    owner: dict[str, str] = {}
+    for i, item in enumerate(plan.objects):
+        if isinstance(item.built, FromScatter) and items.get(item.built.on, item).primitive != "terrain":
+            yield f"objects.{i}.construction.on: {item.built.on!r} is no terrain of the plan; scatter it on one"
+        for prim in item.prims:
+            if owner.setdefault(prim, item.name) != item.name:
+                yield f"objects.{i}.name: {prim} would be a part of {item.name} and of {owner[prim]}; rename one"
 
 
 def _others(plan: Draft) -> Iterator[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from wsim.plan.schema import PlanObject
+from wsim.plan.schema.objects import SPREAD
 from wsim.program.compose import shapes
 from wsim.program.compose.draft import AXES, Draft
 from wsim.program.compose.poses import position
@@ -32,7 +33,7 @@ def _continues(group: list[PlanObject], item: PlanObject) -> bool:
         item.surface_velocity is not None
         or start not in ("0", "1")
         or item.name != f"{prefix}_{int(start) + len(group)}"
-        or item.primitive in ("tank", "fluid", "ground", "asset", "robot")
+        or item.primitive in ("tank", "fluid", "ground", "asset", "robot", "vehicle", *SPREAD)
     ):
         return False
     return _alike(first) == _alike(item) and position(first) != position(item)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from wsim.plan.schema import Material
+from collections.abc import Iterator, Sequence
+
+from wsim.plan.schema import FromTerrain, Material, PlanObject
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, number, tuple_of
 
@@ -11,8 +13,7 @@ def statements(draft: Draft) -> list[str]:
     """Each material of a solid object once, in the order of their first objects."""
     lines: list[str] = []
     objects = draft.plan.objects
-    for item in objects:
-        material = item.material
+    for item, material in _used(objects):
         if material is None or item.primitive == "fluid" or material.model_dump_json() in draft.materials:
             continue
         variable = draft.variable(material.name)
@@ -20,6 +21,14 @@ def statements(draft: Draft) -> list[str]:
         moving = any(other.material == material and other.state == "dynamic" for other in objects)
         lines += _statement(draft, material, variable, moving=moving)
     return [*lines, ""] if lines else []
+
+
+def _used(objects: Sequence[PlanObject]) -> Iterator[tuple[PlanObject, Material | None]]:
+    """Each object's material, and those of terrain's areas."""
+    for item in objects:
+        yield item, item.material
+        if isinstance(item.built, FromTerrain):
+            yield from ((item, area.material) for area in item.built.areas)
 
 
 def _statement(draft: Draft, material: Material, variable: str, *, moving: bool) -> list[str]:

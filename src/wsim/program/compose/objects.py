@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from wsim.plan.schema import PlanObject
-from wsim.program.compose import assets, fluids, loops, robots, shapes
+from wsim.plan.schema import FromScatter, FromTerrain, PlanObject
+from wsim.program.compose import assets, fluids, land, loops, robots, shapes, vehicles
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, tuple_of
 
@@ -21,8 +21,14 @@ def statements(draft: Draft) -> list[str]:
             lines += loops.loop(draft, group)
             continue
         item = group[0]
+        if isinstance(item.built, FromTerrain):
+            lines += land.terrain(draft, item, item.built)
+            continue
+        if isinstance(item.built, FromScatter):
+            lines += land.scatter(draft, item, item.built)
+            continue
         target = "scene." + item.primitive
-        if item.name in containers | jointed or robots.walked(item):
+        if item.name in containers | jointed or robots.walked(item) or vehicles.driven(item):
             draft.handles[item.name] = draft.variable(item.name)
             target = f"{draft.handles[item.name]} = {target}"
         lines += call(target, [f'"{item.name}"', *_arguments(draft, item)])
@@ -39,14 +45,16 @@ def _arguments(draft: Draft, item: PlanObject) -> list[str]:
         return assets.arguments(item)
     if item.primitive == "robot":
         return robots.arguments(item)
+    if item.primitive == "vehicle":
+        return vehicles.arguments(draft, item)
     return shapes.arguments(draft, item)
 
 
 def _ordered(objects: Sequence[PlanObject]) -> list[PlanObject]:
-    """In the plan's order, but a fluid straight after the tank that it fills."""
+    """In the plan's order, but terrain first, and a fluid straight after the tank that it fills."""
     filling = [item for item in objects if item.primitive == "fluid" and fluids.container(item) is not None]
     ordered = []
-    for item in objects:
+    for item in sorted(objects, key=lambda one: one.primitive != "terrain"):
         if item not in filling:
             ordered += [item, *(fluid for fluid in filling if fluids.container(fluid) == item.name)]
     return ordered

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wsim.defaults import FRAME_RATE
 from wsim.plan.schema import Plan, SimulationPlan
-from wsim.program.compose import cameras, contacts, joints, materials, objects, robots, words
+from wsim.program.compose import cameras, contacts, joints, materials, objects, robots, vehicles, words
 from wsim.program.compose.draft import Draft
 from wsim.program.source import call, number
 
@@ -23,25 +23,31 @@ def compose(plan: Plan) -> str:
     """
     draft = Draft(plan)
     # In this order: the names of materials are taken first, and joints speak of objects by their variables.
+    drivers = vehicles.drivers(draft)
     body = [
         *words.assumptions(plan),
         *materials.statements(draft),
         *objects.statements(draft),
         *joints.statements(draft),
         *robots.policies(draft),
+        *vehicles.set_off(draft),
         *contacts.statements(plan),
         *cameras.statements(plan),
         *_simulation(plan.simulation),
     ]
+    named = {"Scene", *draft.imports, *(["Drive"] if any(joint.drive for joint in plan.joints) else [])}
+    constants = [*draft.constants(), *drivers]
     lines = [
         *words.docstring(plan),
         "",
-        f"from wsim.scene import {'Drive, ' if any(joint.drive for joint in plan.joints) else ''}Scene",
+        f"from wsim.scene import {', '.join(sorted(named))}",
+        *(["", *constants] if constants else []),
         "",
         "",
         "def build(scene: Scene) -> None:",
         '    """Author the world."""',
         *body,
+        *vehicles.control(draft),
         "",
         "",
         'if __name__ == "__main__":',

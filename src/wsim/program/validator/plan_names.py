@@ -21,7 +21,7 @@ def check(reader: Reader, plan: Plan) -> None:
     made = set(world.names) | world.others
     build = reader.module.values.get("build")
     node = getattr(build, "node", reader.tree)
-    wanted = {item.name: "object" for item in plan.objects}
+    wanted = {prim: "object" for item in plan.objects for prim in item.prims}
     wanted |= {joint.name: "joint" for joint in plan.joints} | {camera.name: "camera" for camera in plan.cameras}
     if reader.whole and not world.open:
         for name, what in wanted.items():

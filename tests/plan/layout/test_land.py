@@ -1,0 +1,147 @@
+"""A plan's terrain is the scene's, and vehicles stand on it."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from wsim.errors import UserError
+from wsim.plan.layout import LayoutError, layout
+from wsim.plan.layout.bodies import local_size
+from wsim.plan.layout.land import set_down, survey
+from wsim.plan.schema import Plan, PlanObject
+from wsim.plan.schema.constructions import VehicleKind
+from wsim.scene import Hill, Level, Noise, Road, Scene
+from wsim.scene.vehicle_spec import preset, presets
+
+LAND = {
+    "name": "land", "role": "terrain", "state": "static", "material": {"name": "soil", "density": 1600},
+    "construction": {
+        "kind": "terrain", "extent": [40.0, 30.0], "layers": [
+            {"kind": "noise", "amplitude": 0.5, "wavelength": 12.0, "octaves": 3, "seed": 3},
+            {"kind": "hill", "position": [5.0, 2.0], "radius": 8.0, "height": 2.0},
+            {"kind": "level", "position": [-10.0, 0.0], "radius": 3.0},
+            {"kind": "road", "points": [[-18.0, 8.0], [0.0, 6.0], [18.0, 8.0]], "width": 4.0},
+        ],
+    },
+}  # fmt: skip
+CAR = {"name": "car", "role": "vehicle", "construction": {"kind": "vehicle", "vehicle": "car"}}
+PLACES = [(-10.0, 0.0), (5.0, 2.0), (0.0, 6.0), (-3.3, -9.1), (17.2, 13.9)]
+
+
+def a_plan(*objects: dict) -> Plan:
+    return Plan.model_validate({"title": "", "prompt": "", "objects": list(objects)})
+
+
+def test_it_is_as_high_as_the_scenes() -> None:
+    land = Scene().terrain(
+        "land", size=(40.0, 30.0),
+        layers=[Noise(0.5, 12.0, octaves=3, seed=3), Hill((5.0, 2.0), 8.0, 2.0), Level((-10.0, 0.0), 3.0),
+                Road([(-18.0, 8.0), (0.0, 6.0), (18.0, 8.0)], width=4.0)],
+    )  # fmt: skip
+    ground = survey(PlanObject.model_validate(LAND))
+    assert [ground.height(*at) for at in PLACES] == [land.height(*at) for at in PLACES]
+    x, y = zip(*PLACES, strict=True)
+    # Between the corners of a cell triangles and even steps differ by a quarter of its twist at most.
+    assert ground.heights(np.array(x), np.array(y)) == pytest.approx([land.height(*at) for at in PLACES], abs=0.02)
+
+
+@pytest.mark.parametrize("at", PLACES)
+def test_a_vehicle_stands_on_it_whatever_height_it_is_given(at: tuple[float, float]) -> None:
+    put = {**CAR, "pose": {"position": [*at, 7.0], "rotation_deg": [0.0, 0.0, 30.0]}}
+    placed = set_down(a_plan(LAND, put))
+    assert placed.objects[1].pose.position == pytest.approx((*at, survey(placed.objects[0]).height(*at)), abs=1e-6)
+    assert placed.objects[1].pose.rotation_deg == (0.0, 0.0, 30.0)
+    assert set_down(placed) == placed
+
+
+def test_rows_place_a_vehicle_and_the_ground_its_height() -> None:
+    put = {**CAR, "topology": {"relation": [{"predicate": "PLACE-ON-BASE"}]}}
+    placed = layout(a_plan(LAND, put))
+    x, y, z = placed.objects[1].pose.position
+    assert z == pytest.approx(survey(placed.objects[0]).height(x, y), abs=1e-6)
+    level = layout(a_plan({**CAR, "pose": {"position": [1.0, 2.0, 0.0]}}))
+    assert level.objects[0].pose.position == (1.0, 2.0, 0.0)
+
+
+def test_beside_the_terrain_there_is_nothing_to_stand_on() -> None:
+    with pytest.raises(LayoutError, match=r"car starts at \(30, 0\) m, where land is not; move it, or extend that"):
+        set_down(a_plan(LAND, {**CAR, "pose": {"position": [30.0, 0.0, 0.0]}}))
+
+
+def test_what_the_scene_refuses_is_refused_in_its_words() -> None:
+    rough = {"kind": "noise", "amplitude": 0.5, "wavelength": 2.0, "octaves": 4}
+    land = {**LAND, "construction": {**LAND["construction"], "layers": [rough]}}
+    with pytest.raises(UserError, match=r"octaves = 4: the finest bumps are 0\.25 m wide, cells 0\.5 m; take fewer"):
+        survey(PlanObject.model_validate(land))
+
+
+def test_the_kinds_and_sizes_of_vehicles_are_the_scenes() -> None:
+    assert get_args(VehicleKind) == presets()
+    for kind in presets():
+        item = PlanObject.model_validate({**CAR, "construction": {"kind": "vehicle", "vehicle": kind}})
+        spec = preset(kind)
+        assert local_size(item)[0] == spec.length and local_size(item)[2] == spec.height
+        assert local_size(item)[1] >= max(spec.width, spec.track + spec.wheel_width)
+
+
+ROCKS = {"name": "rock", "role": "background", "state": "static", "construction": {"kind": "scatter", "on": "land",
+         "count": 2}}  # fmt: skip
+DRIVER = {"kind": "driver", "route": [[10.0, 0.0]], "speed": 5.0}
+
+
+def driven(**actuation: object) -> dict:
+    return {**CAR, "pose": {"position": [-10.0, 0.0, 0.0]}, "registration": {"actuation": [{**DRIVER, **actuation}]}}
+
+
+@pytest.mark.parametrize(
+    ("objects", "problem"),
+    [
+        ([LAND, {**ROCKS, "construction": {**ROCKS["construction"], "on": "car"}}, CAR], "'car' is no terrain"),
+        ([LAND, ROCKS, {**CAR, "name": "rock_1"}], "rock_1 would be a part of rock_1 and of rock; rename one"),
+        ([LAND, {**LAND, "name": "more"}], "land and more are both the ground; keep one"),
+        ([{**LAND, "pose": {"position": [0, 0, 1]}}], "land: terrain lies about the origin; remove its pose"),
+        ([{**LAND, "material": None}], 'land: terrain needs a "material"'),
+        ([LAND, {**CAR, "material": {"name": "tin", "density": 900}}], "car: a vehicle has materials of its own"),
+        ([LAND, {**CAR, "topology": {"relation": [{"predicate": "PLACE-ON", "ref": "land"}]}}],
+         "land is a terrain, which has no sides and no top; give car a pose"),
+        ([LAND, driven(speed=None)], "a driver is a vehicle's, with its \"speed\""),
+        ([LAND, driven(route=[])], 'a driver follows a "route" from where the vehicle starts; it has none'),
+        ([LAND, driven(kind="drive")], 'what is driven straight on, or in a circle, has no route'),
+        ([LAND, driven(steer_deg=5.0)], 'steer_deg is of the kind "drive"; this is of \'driver\''),
+        ([{**driven(), "role": "rigid_body", "construction": {"kind": "proxy", "primitive": "box", "size": [1, 1, 1]},
+           "material": {"name": "tin", "density": 900}}], "car: a driver is of a vehicle"),
+        ([{**CAR, "construction": {"kind": "vehicle", "vehicle": "tank"}}], "Input should be 'hmmwv', 'polaris'"),
+        ([{**CAR, "state": "static"}], 'state of a vehicle is dynamic or kinematic; it is "static"'),
+    ],
+)  # fmt: skip
+def test_each_mistake_is_refused_with_a_way_out(objects: list[dict], problem: str) -> None:
+    with pytest.raises(ValueError, match=problem.replace("(", r"\(").replace(")", r"\)")):
+        a_plan(*objects)
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ({"extent": [600.0, 30.0]}, "each at most 500 m"),
+        ({"cell": 0.01}, "makes 12,000,000 cells; at most 250,000: make it larger"),
+        ({"areas": [{"name": "geometry", "points": [[0, 0], [1, 0]], "material": {"name": "a", "density": 1}}]},
+         'none be "geometry"'),
+        ({"layers": []}, "at least 1 item"),
+        ({"layers": [{"kind": "road", "points": [[-600, 0], [600, 0]]}]}, "points are 1200 m long"),
+        ({"layers": [{"kind": "road", "points": [[0, 0], [0, 0]]}]}, "are in one place; leave one out"),
+    ],
+)  # fmt: skip
+def test_terrain_that_would_be_too_much_is_refused(change: dict, problem: str) -> None:
+    with pytest.raises(ValueError, match=problem):
+        a_plan({**LAND, "construction": {**LAND["construction"], **change}})
+
+
+def test_what_is_laid_out_reads_as_it_was_written() -> None:
+    made = a_plan(LAND, ROCKS, driven())
+    assert Plan.model_validate_json(made.model_dump_json()) == made
+    assert "size" in made.objects[1].construction.model_dump()
+    trees = {**ROCKS, "construction": {**ROCKS["construction"], "what": ["conifer"]}}
+    assert "size" not in a_plan(LAND, trees).objects[1].construction.model_dump()

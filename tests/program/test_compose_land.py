@@ -1,0 +1,54 @@
+"""Vehicles, terrain and what is scattered, as a program makes them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.plan.layout.test_land import CAR, LAND, ROCKS, a_plan, driven
+from wsim.errors import UserError
+from wsim.program.compose import compose
+from wsim.program.validator import validate
+from wsim.scene import Scene
+
+
+def test_a_program_lays_the_land_and_drives_over_it() -> None:
+    """Its driver leads the rear axle from where that starts, which is half a wheelbase behind the car's middle."""
+    trees = {**ROCKS, "name": "tree", "construction": {"kind": "scatter", "on": "land", "count": 1, "what": ["conifer"],
+             "clear": [{"points": [[0, 0]], "by": 4.0}, {"points": [[0, 0], [9, 0]], "by": 2.0}]}}  # fmt: skip
+    made = a_plan(driven(), trees, LAND)
+    text = compose(made)
+    assert text.index("scene.terrain(") < text.index("scene.scatter(") and text.index("scene.terrain(") < text.index(
+        "scene.vehicle("
+    )
+    assert "from wsim.scene import Driver, Hill, Level, Noise, Road, Scene\n" in text
+    assert "    (-11.3, 0.0),\n    (10.0, 0.0),\n]" in text
+    assert 'Driver("car", "car", path=Road(' in text and "speed=5.0)" in text
+    assert 'scene.vehicle("car", "car", position=land.place(-10.0, 0.0))' in text
+    assert "clear=[((0.0, 0.0), 4.0), (WAY" in text
+    assert [problem.message for problem in validate(text, made)] == []
+    space: dict = {}
+    exec(compile(text, "program.py", "exec"), space)  # what it is, is known here
+    scene = Scene()
+    space["build"](scene)
+    names = {str(prim.GetPath()).split("/")[2] for prim in scene.stage.Traverse() if str(prim.GetPath()).count("/") > 1}
+    assert {prim for item in made.objects for prim in item.prims} <= names
+    assert callable(space["control"])
+
+
+def test_a_vehicle_of_its_own_speed_starts_its_driver_with_it() -> None:
+    text = compose(a_plan({**driven(), "velocity": [4.0, 0.0, 0.0]}))
+    assert "position=(-10.0, 0.0, 0.0), speed=4.0)" in text and "start_speed=4.0" in text
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ({"velocity": [1.0, 3.0, 0.0]}, r"its velocity \[1.0, 3.0, 0.0\] m/s is not along its heading; turn one"),
+        ({"registration": {"mass": 900.0}}, "stands on its wheels with its own registration.mass or .density; remove"),
+        ({"state": "kinematic"}, 'stands on its wheels with its own state "kinematic"'),
+        ({"pose": {"position": [0, 0, 0], "rotation_deg": [5.0, 0, 0]}}, "with its own roll or pitch; remove it"),
+    ],
+)
+def test_what_a_vehicle_has_of_its_own_is_refused(change: dict, problem: str) -> None:
+    with pytest.raises(UserError, match=problem):
+        compose(a_plan({**CAR, "pose": {"position": [0, 0, 0]}, **change}))
