@@ -147,7 +147,7 @@ def _asked(cast: Cast, thing: Thing) -> _Drive:
 def _sort(asked: _Drive, other: Thing) -> None:
     """Take in what else there is, if it is country."""
     category = get(other.noun.asset).category if other.noun.asset is not None else ""
-    kinds = {"rough_ground": asked.rough, "road": asked.roads, "hill": asked.hills}
+    kinds = {"terrain": asked.rough, "road": asked.roads, "hill": asked.hills}
     kinds |= dict.fromkeys(ROCKS, asked.rocks) | dict.fromkeys(TREES, asked.trees)
     found = kinds.get(category or other.kind)
     phrase = other.phrase
