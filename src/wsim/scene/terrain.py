@@ -40,7 +40,7 @@ class Terrain(Handle):
         return self._plane(x, y)[0]
 
     def heights(self, x: Floats, y: Floats) -> Floats:
-        """Of the ground at many places on it, between the corners of a cell in even steps [m]."""
+        """Of the ground at each x and y (arrays of one shape), bilinear within a cell, in the world [m]."""
         rows, columns = self._heights.shape
         u = ((x - self._middle[0]) / self._size[0] + 0.5) * (columns - 1)
         v = ((y - self._middle[1]) / self._size[1] + 0.5) * (rows - 1)
