@@ -338,12 +338,18 @@ def _drive(reader: Reader, thing: Thing, action: Action) -> None:
     """Drive so far, over what there is."""
     if thing.noun.family != "vehicle":
         raise NotUnderstood([f"{thing.words} {action.words}"], "lets a vehicle drive, but not this:")
+    if "drive" in thing.does:
+        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a vehicle drive once, not this as well:")
     for place in action.places:
         if place.preposition == "way":
             thing.way = place.length
         elif place.preposition in ("over", "on", "along", "past", "in") and place.phrase is not None:
             over = where(reader, place.phrase)
             if isinstance(over, Thing):
+                land = over.noun.family == "land"
+                if land is (place.preposition == "past") or (not land and place.preposition != "along"
+                                                             and place.preposition != "past"):  # fmt: skip
+                    raise NotUnderstood([place.words], "lets a vehicle drive over land and past things, not there:")
                 put(over, "ground")
             elif over != "ground":
                 raise NotUnderstood([place.words], "lets a vehicle drive over land, not there:")

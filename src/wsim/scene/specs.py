@@ -40,5 +40,8 @@ def put(
 def apply(prim: Sdf.PrimSpec, *schemas: str) -> None:
     """Apply API schemas to a prim, after those that are."""
     listed = prim.GetInfo("apiSchemas") if prim.HasInfo("apiSchemas") else Sdf.TokenListOp()
-    listed.prependedItems = [*(name for name in listed.prependedItems if name not in schemas), *schemas]
+    if listed.isExplicit:
+        listed.explicitItems = [*(name for name in listed.explicitItems if name not in schemas), *schemas]
+    else:
+        listed.prependedItems = [*(name for name in listed.prependedItems if name not in schemas), *schemas]
     prim.SetInfo("apiSchemas", listed)

@@ -73,9 +73,9 @@ class Terrain(Handle):
         return all(abs(each) <= 0.5 * edge - kept for each, edge in zip(off, self._size, strict=True))
 
     @property
-    def lowest(self) -> float:
-        """Height of its lowest place [m]."""
-        return self._middle[2] + float(self._heights.min())
+    def count(self) -> int:
+        """How many corners its surface has."""
+        return int(self._heights.size)
 
     @property
     def reach(self) -> float:

@@ -83,7 +83,11 @@ def thrown(evidence: Evidence, laws: Laws) -> Floats:
             + 2.0 * motion.kinetic[:-1, rows].sum(axis=1) / max(drive.stiffness, 1e-12)
         )
         most = (drive.stiffness + drive.damping * np.sqrt(drive.stiffness * laws.loose(joint)[:-1])) * far
-        sizes = given if drive.stiffness <= 0.0 else np.minimum(most, drive.max_effort or np.inf) * motion.h
+        sizes = (
+            given
+            if drive.stiffness <= 0.0
+            else np.minimum(most, np.inf if drive.max_effort is None else drive.max_effort) * motion.h
+        )
         found[:, rows] += np.where(law[0].known, 0.0, 0.5 * (np.maximum(sizes, given) + given))[:, None]
     return found
 

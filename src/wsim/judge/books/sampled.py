@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+FASTEST = 0.5  # of a step: a damper's greatest c dt / m for which the sums' error is known
+
+
 def sampled(evidence: Evidence, laws: Laws) -> Floats:
     """What the sums of joints' forces and torques may miss, over the mass and over m R, (T - 1, B, 2) [m/s^2]."""
     motion = evidence.motion
@@ -41,7 +44,7 @@ def sampled(evidence: Evidence, laws: Laws) -> Floats:
         assert drive is not None
         effort = np.abs(laws.effort(joint))
         changes = drive.stiffness * np.abs(np.diff(laws.rate(joint)))
-        changes += drive.damping * mobility * (effort[1:] + effort[:-1])
+        changes += min(drive.damping * mobility, FASTEST / motion.step) * (effort[1:] + effort[:-1])
         missed = np.minimum(motion.step, motion.h) ** 2 / 12.0 * changes / motion.h
         rows = motion.unit == motion.unit[evidence.index(joint.child)]
         found[:, rows] += np.sqrt(mobility) * missed[:, None, None] * share[rows]

@@ -108,7 +108,7 @@ def _most(evidence: Evidence, ties: RecordedTies, k: int) -> Floats:
     """The most that joint k's drive can have done, (T - 1,) [J], however fast it came and went."""
     joint, h = ties.joints[k], ties.intervals
     drive, at = joint.drive, evidence.joint(joint)
-    if drive is None or at is None:
+    if drive is None or at is None or not drive.told or evidence.recording.metadata.get("controlled"):
         return np.full(len(h), np.inf)
     way, u = np.diff(at.position), drive.velocity
     damper = u * way - way**2 / h if drive.max_effort is None else 0.25 * u**2 * h

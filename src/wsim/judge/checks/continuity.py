@@ -322,17 +322,50 @@ def _swings(evidence: Evidence, joint: Joint) -> NDArray[np.bool_]:
 def _reached(evidence: Evidence, joint: Joint, position: Floats) -> NDArray[np.bool_]:
     """Whether a driven joint is as far from what its drive is set to as it may swing, (T - 1,).
 
-    With what it held and how fast all that hangs together was, and about where it bears a load.
+    With what it held and how fast all that hangs together moved against itself, and about where it bears a load.
     """
     assert joint.drive is not None
     motion, stiffness = evidence.motion, max(joint.drive.stiffness, 1e-12)
     rows = np.flatnonzero(motion.unit == motion.unit[evidence.index(joint.child)])
     off, moving = np.abs(position - joint.drive.position), motion.kinetic[:-1, rows].sum(axis=1)
+    rows, held = _hung(evidence, joint, rows)
+    if not held:  # what it does as one holds nothing
+        every = motion.unit == motion.unit[evidence.index(joint.child)]
+        mass = motion.mass[every]
+        mean = np.einsum("b,tbi->ti", mass, motion.v[:-1, every]) / mass.sum()
+        moving = moving - 0.5 * mass.sum() * np.sum(mean**2, axis=1)
     far = np.ones(len(rows))
     if joint.kind == "revolute":
         far = lengths(motion.com[:, rows] - anchors_of(evidence, joint).below[:, None]).max(axis=0)
     sags = evidence.gravity * float(motion.mass[rows] @ far) / stiffness
-    return np.asarray(off[1:] <= np.sqrt(off[:-1] ** 2 + 2.0 * moving / stiffness) + 2.0 * sags)
+    return np.asarray(off[1:] <= np.sqrt(off[:-1] ** 2 + 2.0 * np.maximum(moving, 0.0) / stiffness) + 2.0 * sags)
+
+
+def _hung(evidence: Evidence, joint: Joint, rows: NDArray[np.intp]) -> tuple[NDArray[np.intp], bool]:
+    """Which bodies of a mechanism hang on one of its joints, and whether the mechanism is held by something still.
+
+    Those on the side that nothing holds; of two such the lighter one. All of them where the joint closes a loop.
+    """
+    motion, names = evidence.motion, [body.prim for body in evidence.world.bodies]
+    links = [each for each in evidence.world.joints if each.child in {names[row] for row in rows}]
+    still = {body.prim for body in evidence.world.bodies if body.kinematic}
+    fixed = {each.child for each in links if each.parent is None or each.parent in still}
+    near, grown = {joint.child}, True
+    while grown:
+        reached = {
+            end for each in links if each.prim != joint.prim and near & {each.child, each.parent}
+            for end in (each.child, each.parent) if end is not None
+        }  # fmt: skip
+        grown, near = not reached <= near, near | reached
+    if joint.parent in near:
+        return rows, bool(fixed)
+    inside = np.array([names[row] in near for row in rows])
+    held = [bool((fixed - ({joint.child} if joint.parent is None else set())) & near), bool(fixed - near)]
+    held[1] |= joint.parent is None or joint.parent in still
+    if held[0] == held[1]:
+        light = motion.mass[rows[inside]].sum() <= motion.mass[rows[~inside]].sum()
+        return (rows if held[0] else rows[inside if light else ~inside]), bool(fixed)
+    return rows[~inside if held[0] else inside], bool(fixed)
 
 
 CHECKS: Checks = (CheckContinuity,)

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 SPEC = "the plan's kind of vehicle"
+STEER = 0.1  # [deg]
 
 
 @dataclass
@@ -102,7 +103,23 @@ class CheckPlanVehicles(Check):
         if axle.friction > 0.0:
             yield self._wrong(axle.prim, f"is braked by {axle.friction:.4g} N m; the plan brakes no wheel", "friction")
         asked = next((each for each in item.registration.actuation if each.kind == "drive"), None)
+        if steer is not None:
+            yield from self._steered(steer, spec.wheel_angle_deg(corner, asked.steer_deg or 0.0 if asked else 0.0))
         yield from self._engine(axle, spec, corner, asked)
+
+    def _steered(self, steer: Joint, wanted: float) -> Iterator[Finding]:
+        """The drive of a steered wheel: it holds the plan's angle [deg]."""
+        if steer.drive is None or steer.drive.stiffness <= 0.0:
+            yield self._wrong(steer.prim, "is held by nothing", "drive", "add")
+            return
+        angle = math.degrees(steer.drive.position)
+        if abs(angle - wanted) > STEER:
+            yield self.between(
+                f"{steer.prim} is steered to {angle:.3g} degrees; the plan has {wanted:.3g}",
+                angle, (wanted - STEER, wanted + STEER), "deg", expected=wanted, prim=steer.prim, time=0.0,
+                limit_from=SPEC, target=RepairTarget(kind="drive", prim=steer.prim, parameter="drive.position",
+                                                     suggested=wanted, unit="deg"),
+            )  # fmt: skip
 
     def _engine(self, axle: Joint, spec: VehicleSpec, corner: str, asked: Actuation | None) -> Iterator[Finding]:
         """The drive of an axle: that of an engine which holds the plan's speed, or none."""
@@ -118,7 +135,10 @@ class CheckPlanVehicles(Check):
         turns, torque = spec.wheel_speed(corner, wanted, steer) / spec.wheel_radius, spec.wheel_torque(wanted)
         yield from self._number(axle.prim, "a speed", axle.drive.velocity, turns, "rad/s", "drive.velocity")
         most = axle.drive.max_effort
-        yield from self._number(axle.prim, "a torque of at most", most or math.inf, torque, "N m", "drive.max_force")
+        if most is None:
+            yield self._wrong(axle.prim, f"has no greatest torque; the plan's kind has {torque:.4g} N m", "drive")
+        else:
+            yield from self._number(axle.prim, "a torque of at most", most, torque, "N m", "drive.max_force")
 
     def _placed(self, evidence: Evidence, item: PlanObject, body: Body, spec: VehicleSpec) -> Iterator[Finding]:
         if item.pose is None or evidence.varied:
@@ -136,7 +156,7 @@ class CheckPlanVehicles(Check):
         ahead, wanted = (rotate(q, np.array([1.0, 0.0, 0.0])) for q in
                          (np.array(body.rotation), quaternion(item.pose.rotation_deg)))  # fmt: skip
         level = [each[:2] / max(float(np.linalg.norm(each[:2])), 1e-9) for each in (ahead, wanted)]
-        off = math.degrees(math.acos(min(1.0, float(level[0] @ level[1]))))
+        off = math.degrees(math.acos(max(-1.0, min(1.0, float(level[0] @ level[1])))))
         if off > self.turn:
             yield self.measured(
                 f"{body.prim} heads {off:.3g} degrees off the plan's", off, self.turn, "deg", expected=0.0,
@@ -219,11 +239,18 @@ class CheckPlanTerrain(Check):
         if abs(covered / area - 1.0) > self.share:
             yield self._differs(made, f"{made.prim} covers {covered:.4g} m^2; the plan's terrain {area:.4g} m^2")
             return
+        named = {each.prim.rsplit("/", 1)[-1] for each in solid}
+        for lacking in (each.name for each in item.built.areas if each.name not in named):
+            yield self._differs(made, f"{made.prim} has no area {lacking}, which the plan's terrain has")
         if evidence.varied:
             return
         ground = survey(item)
-        every = np.concatenate(corners)
-        top = every[every[:, 2] > ground.lowest - self.height]
+        top = np.concatenate([_upper(at, shape) for at, shape in zip(corners, solid, strict=True)])
+        if len(np.unique(top[:, :2].round(6), axis=0)) < ground.count:
+            yield self._differs(
+                made, f"{made.prim} has fewer corners than the plan's terrain, which has {ground.count}"
+            )
+            return
         x, y = (np.clip(top[:, k], -0.5 * edge, 0.5 * edge) for k, edge in enumerate(item.built.extent))
         off = np.abs(top[:, 2] - ground.heights(x, y))
         worst = int(off.argmax()) if len(off) else 0
@@ -260,9 +287,18 @@ def _in_world(shape: Shape) -> Floats:
 
 def _from_above(corners: Floats, shape: Shape) -> float:
     """Area of a mesh's upward triangles as seen from above [m^2]."""
+    return float(0.5 * np.maximum(_twice(corners, shape), 0.0).sum())
+
+
+def _upper(corners: Floats, shape: Shape) -> Floats:
+    """Those of a mesh's corners that an upward triangle has."""
+    return corners[np.unique(np.asarray(shape.triangles)[_twice(corners, shape) > 0.0])]
+
+
+def _twice(corners: Floats, shape: Shape) -> Floats:
+    """Twice the area of each triangle as seen from above, below 0 of those that face down [m^2]."""
     a, b, c = (corners[np.asarray(shape.triangles)[:, k]] for k in range(3))
-    twice = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    return float(0.5 * np.maximum(twice, 0.0).sum())
+    return np.asarray((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
 
 
 CHECKS: Checks = (CheckPlanVehicles, CheckPlanTerrain)

@@ -169,12 +169,12 @@ class CheckRecordedForces(Check):
             rubs = -np.einsum("ni,ni->n", (contacts.track.impulse - contacts.track.along)[own].astype(np.float64), way)
             change = np.linalg.norm(across[own, 1] - across[own, 0], axis=1) / speed[own].min(axis=1)
             turned = np.arcsin(np.minimum(change, 1.0)) + contacts.swing(normal, speed.min(axis=1))[own]
-            lost = float((most[own] * (1.0 - np.cos(np.minimum(turned, np.pi)))).sum()) / total
+            lost = float((most[own] * (1.0 - np.cos(np.minimum(turned, 0.5 * np.pi)))).sum()) / total
             share, k = float(rubs.sum()) / total, int(own[np.argmax(most[own])])
             found.append(
                 self._of_row(
                     evidence, contacts, k, f"and all that slips as they do rub with {share:.3g} of their friction",
-                    abs(1.0 - share), self.edge + self.cone + lost, "1",
+                    max(share - 1.0, 1.0 - share - lost, 0.0), self.edge + self.cone, "1",
                     "What slips on joints rubs with all its friction",
                     f"{self.edge:g} of the friction, and how far slips turn between two frames",
                 )

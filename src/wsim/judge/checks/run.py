@@ -183,6 +183,10 @@ class CheckPlanObjects(Check):
                 actual = next((name for name, prims in has.items() if prim in prims), "something else")
                 message = f"{prim} is {actual}; the plan has it as {kind}"
                 found.append(self.failed(message, prim=prim))
+            elif item.primitive == "vehicle" and (
+                lacks := [p for p in map(evidence.prim, item.prims) if p not in has[kind]]
+            ):
+                found.append(self.failed(f"{lacks[0]} is no {kind} body, as of a vehicle it is", prim=lacks[0]))
             elif item.primitive == "robot" and not _linked(evidence, prim):
                 found.append(self.failed(f"{prim} has no links that joints hold together, as a robot has", prim=prim))
         planned = {evidence.prim(name) for item in evidence.plan.objects for name in item.prims}

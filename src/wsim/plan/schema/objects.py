@@ -95,6 +95,8 @@ class Actuation(Strict):
             raise ValueError(f'a {self.kind} is a vehicle\'s, with its "speed"; it takes no joint, target or policy')
         if self.kind == "driver" and not self.route:
             raise ValueError('a driver follows a "route" from where the vehicle starts; it has none')
+        if self.kind == "driver" and any(len(point) > 2 for point in self.route):
+            raise ValueError("a driver passes a route's points as its way goes; leave their headings out")
         if self.kind == "drive" and self.route:
             raise ValueError('what is driven straight on, or in a circle, has no route; a "driver" follows one')
         return self
