@@ -76,6 +76,12 @@ SET = 'p("{}").GetAttribute("{}").Set({})'
          f"{BUGGY}_spring_rear_left"),
         (SET.format("/World/Looks/polaris_wheel_front_left", "physics:dynamicFriction", 0.0), ("", ""),
          "CheckPlanVehicles", f"{BUGGY}_wheel_front_left"),
+        (SET.format(f"{BUGGY}_steer_front_left", "drive:angular:physics:targetPosition", 20.0), ("", ""),
+         "CheckPlanVehicles", f"{BUGGY}_steer_front_left"),
+        (SET.format(f"{BUGGY}_steer_front_right", "drive:angular:physics:stiffness", 0.0), ("", ""),
+         "CheckPlanVehicles", f"{BUGGY}_steer_front_right"),
+        (f'p("{BUGGY}_wheel_rear_left").GetAttribute("physics:kinematicEnabled").Set(True)', ("", ""),
+         "CheckPlanObjects", f"{BUGGY}_wheel_rear_left"),
         ("", ("friction=0.85", "friction=0.0"), "CheckPlanLooks", GROUND),
         ("", ("Noise(0.6", "Noise(0.4"), "CheckPlanTerrain", GROUND),
         ("", ("seed=4", "seed=7"), "CheckPlanTerrain", GROUND),
@@ -108,6 +114,22 @@ def test_an_engine_that_is_set_once_holds_the_plans_speed() -> None:
         ("CheckPlanVehicles", f"/World/cart_axle_{corner}") for corner in preset("cart").driven_corners
     }
     assert ("CheckPlanVehicles", "/World/cart_axle_rear_left") in wrong(once, change=("cart.drive(3.0)", "pass"))
+
+
+def test_ground_without_the_plans_hill_or_its_road_is_found() -> None:
+    """A mesh of a few corners is right at each of them; what an area is made of has nothing to say where it is not."""
+    over, along = make_plan("A car drives 60 m over a hill."), make_plan("A car drives 50 m along a road and stops.")
+    assert wrong(over) == set()
+    assert ("CheckPlanTerrain", GROUND) in wrong(over, change=("areas=ground", "cell=9.0,\n        areas=ground"))
+    assert ("CheckPlanTerrain", GROUND) in wrong(along, change=("areas=ground_areas", "areas=()"))
+
+
+def test_a_vehicle_that_heads_the_other_way_is_told_by_how_much() -> None:
+    made = make_plan("A golf cart drives 10 m at 2 m/s.")
+    for turn in range(150, 211, 4):
+        assert ("CheckPlanVehicles", "/World/cart") in wrong(
+            made, change=("(-5.0, 0.0, 0.0)", f"(-5.0, 0.0, 0.0), yaw_deg={turn}")
+        )
 
 
 # ---- in the simulator

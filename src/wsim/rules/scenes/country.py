@@ -121,16 +121,17 @@ def _of(thing: Thing, what: str) -> tuple[str, ...]:
 
 
 def views(way: Way) -> list[CameraPlan]:
-    """From behind the start, and from the side: the whole way, or of a long one each half."""
+    """From the side, which films the whole way, of a long one each half besides; and from behind the start."""
     (ax, ay), (bx, _) = way[0], way[-1]
-    parts = 2 if bx - ax > LONG else 1
-    half = 0.5 * (bx - ax) / parts
-    back = (half + ASIDE) / math.tan(math.radians(FIELD_OF_VIEW / 2))
+    between = 0.5 * (ax + bx)
+    spans = [("side", ax, bx)]
+    if bx - ax > LONG:
+        spans += [("first_half", ax, between), ("second_half", between, bx)]
     sides = []
-    for k in range(parts):
-        middle = round(ax + (2 * k + 1) * half, 2)
+    for name, begin, end in spans:
+        middle = round(0.5 * (begin + end), 2)
+        back = (0.5 * (end - begin) + ASIDE) / math.tan(math.radians(FIELD_OF_VIEW / 2))
         eye = (middle, round(-0.88 * back, 2), round(0.47 * back, 2))
-        name = "side" if parts == 1 else ("first_half", "second_half")[k]
         sides.append(CameraPlan(name=name, eye=eye, target=(middle, 0.0, 0.0)))
     start = CameraPlan(name="start", eye=(ax - 9.0, ay - 5.0, 4.0), target=(ax + 12.0, ay, 1.0))
     return [*sides, start]
