@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.books import arms, jolts
-from wsim.judge.books.driven import thrown
 from wsim.judge.books.laws import RESOLVED, Laws
 from wsim.judge.books.ropes import Ropes
+from wsim.judge.books.thrown import thrown
 from wsim.judge.evidence.cords import track_of_spring
 from wsim.judge.evidence.joints import anchors_of, broken
 from wsim.judge.evidence.motion import FLOAT32
