@@ -189,12 +189,13 @@ def test_cost_of_a_tank_is_its_volume_over_the_spacing_cubed(tank: Plan) -> None
     assert "no fluid" in cost_of(made(body("box", "box", (1.0, 1.0, 1.0), (0, 0, 0.5)))).sentence()
 
 
-def test_there_are_six_plans_written_by_hand() -> None:
+def test_there_are_seven_plans_written_by_hand() -> None:
     assert [path.stem for path in EXAMPLES] == [
         "buggy_floating_bridge",
         "go2_office",
         "hmmwv_offroad",
         "offroad_vehicle",
+        "polaris_crossing",
         "quadruped_office",
         "wood_afloat",
     ]
