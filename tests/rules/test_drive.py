@@ -117,3 +117,23 @@ def test_its_kinds_are_those_of_the_scene() -> None:
     assert {*nouns} == {*presets()}
     for kind, noun in nouns.items():
         assert noun.size == (preset(kind).length, preset(kind).width, preset(kind).height)
+
+
+@pytest.mark.parametrize(
+    ("says", "why"),
+    [
+        ("A truck drives 30 m over a rock.", "over land"),
+        ("A car drives 50 m on a tree.", "over land"),
+        ("A car drives 50 m past a hill.", "past things"),
+        ("A car drives 30 m and then drives 40 m.", "once"),
+        ("A car drives 30 m. It drives 20 m.", "once"),
+        ("A truck drives 100 m for 3 s and stops.", "too short"),
+    ],
+)
+def test_what_it_would_not_do_is_refused_and_not_read_otherwise(says: str, why: str) -> None:
+    with pytest.raises((NotUnderstood, UserError), match=why):
+        plan(says)
+
+
+def test_a_time_that_suffices_is_kept() -> None:
+    assert plan("A truck drives 100 m for 60 s and stops.").simulation.duration == 60.0

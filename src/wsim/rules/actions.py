@@ -346,9 +346,8 @@ def _drive(reader: Reader, thing: Thing, action: Action) -> None:
         elif place.preposition in ("over", "on", "along", "past", "in") and place.phrase is not None:
             over = where(reader, place.phrase)
             if isinstance(over, Thing):
-                land = over.noun.family == "land"
-                if land is (place.preposition == "past") or (not land and place.preposition != "along"
-                                                             and place.preposition != "past"):  # fmt: skip
+                fits = ("over", "on", "along", "in") if over.noun.family == "land" else ("along", "past")
+                if place.preposition not in fits:
                     raise NotUnderstood([place.words], "lets a vehicle drive over land and past things, not there:")
                 put(over, "ground")
             elif over != "ground":

@@ -92,6 +92,8 @@ SET = 'p("{}").GetAttribute("{}").Set({})'
         ('scene.contact("polaris_wheel_front_left", "ground", friction=0.1)', ("", ""), "CheckPlanContacts",
          "/World/Contacts/polaris_wheel_front_left_ground"),
         ('scene.joint_fixed("weld", None, "polaris")', ("", ""), "CheckPlanJoints", "/World/weld"),
+        ('a = p("/World/ground/geometry").GetAttribute("points"); '
+         "a.Set([(x, y, -3.0 if 0.0 < x < 4.0 else z) for x, y, z in a.Get()])", ("", ""), "CheckPlanTerrain", GROUND),
     ],
 )  # fmt: skip
 def test_what_is_built_otherwise_is_found(
@@ -114,6 +116,10 @@ def test_an_engine_that_is_set_once_holds_the_plans_speed() -> None:
         ("CheckPlanVehicles", f"/World/cart_axle_{corner}") for corner in preset("cart").driven_corners
     }
     assert ("CheckPlanVehicles", "/World/cart_axle_rear_left") in wrong(once, change=("cart.drive(3.0)", "pass"))
+
+
+def test_how_thick_ground_is_says_nothing_of_its_height(rough: Plan) -> None:
+    assert wrong(rough, change=("areas=ground_areas", "thickness=0.04, areas=ground_areas")) == set()
 
 
 def test_ground_without_the_plans_hill_or_its_road_is_found() -> None:

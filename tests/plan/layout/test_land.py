@@ -145,3 +145,15 @@ def test_what_is_laid_out_reads_as_it_was_written() -> None:
     assert "size" in made.objects[1].construction.model_dump()
     trees = {**ROCKS, "construction": {**ROCKS["construction"], "what": ["conifer"]}}
     assert "size" not in a_plan(LAND, trees).objects[1].construction.model_dump()
+
+
+def test_terrain_that_the_scene_refuses_is_refused_without_a_vehicle() -> None:
+    steep = {**LAND["construction"]["layers"][0], "amplitude": 1e6}
+    with pytest.raises(LayoutError, match="amplitude"):
+        layout(a_plan({**LAND, "construction": {**LAND["construction"], "layers": [steep]}}))
+
+
+def test_a_driver_is_given_no_headings() -> None:
+    driver = {"kind": "driver", "route": [[5.0, 0.0, 90.0]], "speed": 3.0}
+    with pytest.raises(ValueError, match="leave their headings out"):
+        a_plan({**CAR, "registration": {"actuation": [driver]}})

@@ -326,13 +326,12 @@ def _reached(evidence: Evidence, joint: Joint, position: Floats) -> NDArray[np.b
     """
     assert joint.drive is not None
     motion, stiffness = evidence.motion, max(joint.drive.stiffness, 1e-12)
-    rows = np.flatnonzero(motion.unit == motion.unit[evidence.index(joint.child)])
-    off, moving = np.abs(position - joint.drive.position), motion.kinetic[:-1, rows].sum(axis=1)
-    rows, held = _hung(evidence, joint, rows)
-    if not held:  # what it does as one holds nothing
-        every = motion.unit == motion.unit[evidence.index(joint.child)]
-        mass = motion.mass[every]
-        mean = np.einsum("b,tbi->ti", mass, motion.v[:-1, every]) / mass.sum()
+    unit = np.flatnonzero(motion.unit == motion.unit[evidence.index(joint.child)])
+    off, moving = np.abs(position - joint.drive.position), motion.kinetic[:-1, unit].sum(axis=1)
+    rows, held = _hung(evidence, joint, unit)
+    if not held:  # what it does as one brings no joint anywhere
+        mass = motion.mass[unit]
+        mean = np.einsum("b,tbi->ti", mass, motion.v[:-1, unit]) / mass.sum()
         moving = moving - 0.5 * mass.sum() * np.sum(mean**2, axis=1)
     far = np.ones(len(rows))
     if joint.kind == "revolute":

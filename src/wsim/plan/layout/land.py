@@ -53,10 +53,13 @@ def set_down(plan: Plan) -> Plan:
     """The plan with its vehicles at the height of the ground under the middle between their axles.
 
     Raises:
-        LayoutError: A vehicle stands beside the terrain.
+        LayoutError: A vehicle stands beside the terrain, or the scene would refuse one.
     """
+    for item in plan.objects:
+        if isinstance(item.built, FromTerrain):
+            survey(item)
     land = terrain_of(plan)
-    if land is None or not any(item.primitive == "vehicle" for item in plan.objects):
+    if land is None:
         return plan
     return plan.model_copy(update={"objects": [_stood(item, land) for item in plan.objects]})
 

@@ -83,7 +83,8 @@ def build_drive(cast: Cast, taken: set[str]) -> Part:
 
     Raises:
         NotUnderstood: There is a vehicle that does not drive, or country and no vehicle.
-        UserError: More is to be in it than one vehicle and its country, or it is to go too far or too fast.
+        UserError: More is to be in it than one vehicle and its country, or it is to go too far, too fast or in too
+            short a time.
     """
     known = cast.family("vehicle", "land")
     if not known:
@@ -94,6 +95,12 @@ def build_drive(cast: Cast, taken: set[str]) -> Part:
     asked = _asked(cast, driving[0])
     spec, way = asked.spec, asked.way
     start, yaw = _ahead(way, 0, 0.5 * spec.wheelbase)
+    takes = _duration(asked, way)
+    if cast.duration is not None and cast.duration < takes:
+        raise UserError(
+            f"{cast.duration:g} s are too short for {asked.distance:g} m at {asked.speed:g} m/s, with {SETTLES:g} s to "
+            f"come to rest; give it {takes:g} s, or no time"
+        )
     made = _country(asked, cast) if asked.country else None
     ground = survey(made.land) if made is not None else None
 
@@ -115,7 +122,7 @@ def build_drive(cast: Cast, taken: set[str]) -> Part:
     names |= {id(thing): [item.name] for item, thing in zip(objects[1:], (*asked.rocks, *asked.trees), strict=True)}
     return Part(
         posed=[*objects, vehicle], objectives=_objectives(name, asked, points, hill), frame_rate=FRAME_RATE,
-        duration=_duration(asked, way), names={**names, id(asked.thing): [name]}, cameras=views(way),
+        duration=takes, names={**names, id(asked.thing): [name]}, cameras=views(way),
     )  # fmt: skip
 
 
@@ -216,13 +223,12 @@ def _objectives(name: str, asked: _Drive, points: list[Vec3], hill: Vec3 | None)
     visits = tuple(Reaches(object=name, target=point, within=NEAR) for point in points)
     lean = LEAN_ROUGH if asked.rough or asked.hills else LEAN
     rest = Finally(of=SpeedBetween(object=name, low=0.0, high=STILL), seconds=STANDS)
-    on = "road" if asked.roads else "ground"
     beside = " and ".join(
         what for what, there in (("rocks", asked.rocks), ("trees", asked.trees)) if there
     )  # fmt: skip
     found = [
         (f"It drives {asked.distance:g} m.", Moves(object=name, least=asked.distance, direction="front")),
-        (f"It touches the {on} alone" + (f", none of the {beside}." if beside else "."),
+        ("It touches the ground alone" + (f", none of the {beside}." if beside else "."),
          TouchesOnly(object=name, objects=("ground",))),
         ("It stays on its wheels.", Upright(object=name, within=lean)),
         ("It stands at the end.", rest),
