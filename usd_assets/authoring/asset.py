@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
 
+from wsim.scene.principal import principal
 from wsim.scene.usd_shapes import solid
 from wsim.scene.world import Shape
 
@@ -24,6 +25,7 @@ from .matter import Paint
 from .parts import Array, Collider, Mesh, Point
 
 DIGITS = 5  # of a coordinate [m]: a hundredth of a millimetre, and a file that can be read
+_NEARLY = 1e-3  # of the trace, beside the diagonal: a thing that is round but for its handle keeps its own axes
 
 
 @dataclass
@@ -250,26 +252,12 @@ def _body(stage: Usd.Stage, path: str, body: Body, materials: dict[Paint, UsdSha
 def _author_mass(prim: Usd.Prim, body: Body) -> None:
     """State the mass properties of what is seen; what collides is simpler, and would weigh otherwise."""
     mass, com, inertia = body.mass_properties()
-    diagonal, axes = _principal(inertia)
+    diagonal, axes = principal(inertia, _NEARLY)
     api = UsdPhysics.MassAPI.Apply(prim)
     api.CreateMassAttr(mass)
     api.CreateCenterOfMassAttr(Gf.Vec3f(_vector(com)))
     api.CreateDiagonalInertiaAttr(Gf.Vec3f(*(float(f"{v:.5g}") for v in diagonal)))
     api.CreatePrincipalAxesAttr(axes)
-
-
-def _principal(inertia: Array) -> tuple[Array, Gf.Quatf]:
-    """Principal moments, and the rotation of their axes."""
-    off = np.abs(inertia - np.diag(np.diag(inertia))).max()
-    if off < 1e-3 * np.trace(inertia):
-        # Nearly so already; of a round thing any two axes would do, and which come out would be chance.
-        return np.diag(inertia), Gf.Quatf(1.0)
-    moments, axes = np.linalg.eigh(inertia)
-    axes = axes * np.sign(axes[np.abs(axes).argmax(axis=0), range(3)])  # of two opposite axes always the same one
-    axes[:, 2] *= np.linalg.det(axes)
-    quat = Gf.Matrix3d(*axes.T.reshape(-1).tolist()).ExtractRotation().GetQuat()
-    imaginary = [round(v, DIGITS) + 0.0 for v in quat.GetImaginary()]
-    return moments, Gf.Quatf(round(quat.GetReal(), DIGITS), *imaginary).GetNormalized()
 
 
 def _mesh(stage: Usd.Stage, path: str, mesh: Mesh) -> UsdGeom.Mesh:

@@ -57,7 +57,9 @@ def football() -> Asset:
     seams, dots = [], []
     around = np.array(tips) / math.hypot(1.0, golden)
     for k, tip in enumerate(around):
-        near = max((other for other in around if other is not tip), key=lambda other: float(other @ tip) % 0.999)
+        near = max(
+            (other for other in around if other is not tip), key=lambda other: round(float(other @ tip), 9) % 0.999
+        )
         dots.append(_patch(tip, radius, 22.0, 5, near))
         for other in around[k + 1 :]:
             if tip @ other > 0.4:

@@ -19,6 +19,7 @@ import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
 
 from wsim.intake.robot_model import Form, Link, Robot, RobotJoint
+from wsim.scene.principal import principal
 from wsim.scene.robot_drives import ROBOT, JointLaw, write_drive
 
 JOINTS = "joints"
@@ -102,14 +103,12 @@ def _quatd(turn: np.ndarray) -> Gf.Quatd:
 
 
 def _mass(prim: Usd.Prim, link: Link) -> None:
-    moments, axes = np.linalg.eigh(link.inertia)
-    axes[:, 2] *= np.linalg.det(axes)
-    frame = Gf.Matrix3d(*axes.T.ravel().tolist())  # rows, as USD turns rows
+    moments, axes = principal(link.inertia)
     api = UsdPhysics.MassAPI.Apply(prim)
     api.CreateMassAttr(link.mass)
     api.CreateCenterOfMassAttr(Gf.Vec3f(*link.com.tolist()))
     api.CreateDiagonalInertiaAttr(Gf.Vec3f(*moments.tolist()))
-    api.CreatePrincipalAxesAttr(Gf.Quatf(frame.ExtractRotation().GetQuat()))
+    api.CreatePrincipalAxesAttr(axes)
 
 
 def _form(stage: Usd.Stage, path: str, form: Form) -> UsdGeom.Gprim:

@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 from wsim.intake.lattice import hull_of
 from wsim.intake.model import Array, Collider, Color, Joint, Mesh
 from wsim.intake.weigh import Weight
+from wsim.scene.principal import principal
 from wsim.scene.static_mesh import smooth_normals
 
 KINK = np.radians(30.0)  # below it two faces stand for a curve
@@ -120,16 +121,12 @@ def _part(
 
 
 def _mass(prim: Usd.Prim, weight: Weight, origin: Array, turn: Array) -> None:
-    inertia = turn.T @ weight.inertia @ turn
-    moments, axes = np.diag(inertia), np.eye(3)
-    if np.abs(inertia - np.diag(moments)).max() > 1e-6 * np.trace(inertia):
-        moments, axes = np.linalg.eigh(inertia)
-        axes[:, 2] *= np.linalg.det(axes)
+    moments, axes = principal(turn.T @ weight.inertia @ turn)
     api = UsdPhysics.MassAPI.Apply(prim)
     api.CreateMassAttr(weight.mass)
     api.CreateCenterOfMassAttr(Gf.Vec3f(_vector((weight.com - origin) @ turn)))
     api.CreateDiagonalInertiaAttr(Gf.Vec3f(*(float(f"{v:.6g}") for v in moments)))
-    api.CreatePrincipalAxesAttr(_quat(axes))
+    api.CreatePrincipalAxesAttr(axes)
 
 
 def _mesh(stage: Usd.Stage, path: str, mesh: Mesh, *, smooth: bool = False) -> UsdGeom.Mesh:

@@ -18,6 +18,7 @@ from wsim.scene import schema
 from wsim.scene.authoring import LOOKS
 from wsim.scene.contact import within
 from wsim.scene.describe import describe
+from wsim.scene.principal import principal
 from wsim.scene.world import Static, World
 
 MOST_FRICTION = 10.0  # as `scene.material` has it
@@ -78,14 +79,12 @@ def _set_mass(stage: Usd.Stage, world: World, target: str, value: float, times: 
     if body.kinematic:
         raise UserError(f"{what}: {target} goes its way whatever its mass; name a body that forces move")
     mass = value * body.mass if times else value
-    moments, axes = np.linalg.eigh(np.reshape(body.inertia, (3, 3)) * (mass / body.mass))
-    axes[:, 0] *= np.linalg.det(axes)  # a rotation, no mirror
-    turn = Gf.Matrix3d(*axes.T.reshape(-1).tolist()).ExtractRotation().GetQuat()  # USD multiplies rows from the left
+    moments, axes = principal(np.reshape(body.inertia, (3, 3)) * (mass / body.mass))
     api = UsdPhysics.MassAPI.Apply(changeable(stage, body.prim, what))
     api.CreateMassAttr(mass)
     api.CreateCenterOfMassAttr(Gf.Vec3f(*body.com))
     api.CreateDiagonalInertiaAttr(Gf.Vec3f(*moments.tolist()))
-    api.CreatePrincipalAxesAttr(Gf.Quatf(turn))
+    api.CreatePrincipalAxesAttr(axes)
 
 
 def _set_friction(stage: Usd.Stage, world: World, target: str, value: float, times: bool) -> None:

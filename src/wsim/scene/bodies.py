@@ -12,6 +12,7 @@ from pxr import Gf, Usd, UsdGeom, UsdPhysics
 from wsim.defaults import BODY_DENSITY
 from wsim.scene.authoring import Handle, note_line, rotation, set_extent, set_pose
 from wsim.scene.materials import Material, Materials, bind
+from wsim.scene.principal import principal
 from wsim.scene.rolling import RollingStart, Round
 from wsim.scene.validate import Call, Vec3, shown
 
@@ -60,16 +61,8 @@ class MassProperties:
     @classmethod
     def of(cls, mass: float, com: NDArray[np.float64], inertia: NDArray[np.float64]) -> MassProperties:
         """From a mass [kg], its centre (3,) [m] and the inertia about it (3, 3) [kg m^2]."""
-        principal, vectors = np.linalg.eigh(inertia)
-        if np.linalg.det(vectors) < 0.0:
-            vectors[:, 0] *= -1.0
-        matrix = Gf.Matrix3d(*(float(v) for v in vectors.T.reshape(-1)))  # USD multiplies rows
-        return cls(
-            mass=mass,
-            com=Gf.Vec3f(*(float(v) for v in com)),
-            inertia=Gf.Vec3f(*(float(v) for v in principal)),
-            axes=Gf.Quatf(matrix.ExtractRotation().GetQuat()),
-        )
+        moments, axes = principal(inertia)
+        return cls(mass, Gf.Vec3f(*com.tolist()), Gf.Vec3f(*moments.tolist()), axes)
 
 
 class Bodies(Materials):
