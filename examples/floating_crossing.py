@@ -33,7 +33,7 @@ def build(scene: Scene) -> None:
     density = scene.param("block_density", 250.0, low=100.0, high=1000.0, unit="kg/m^3")
     spacing = scene.param("spacing", SPACING, low=0.02, high=0.2, unit="m")
     scene.ground(color=(0.3, 0.32, 0.28))
-    basin = scene.tank("basin", inner_size=BASIN, wall=WALL)
+    basin = scene.tank("basin", inner_size=BASIN, wall=WALL, friction=0.3)
     water = scene.fluid("water", fills=basin, level=LEVEL, spacing=spacing)
     foam = scene.material("foam", density=density, friction=0.9, color=(0.85, 0.62, 0.03))
     bottom = water.surface - density / 1000.0 * BLOCK[2]

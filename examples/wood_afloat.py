@@ -17,8 +17,8 @@ def build(scene: Scene) -> None:
     density = scene.param("density", 400.0, low=250.0, high=1000.0, unit="kg/m^3")
     level = scene.param("level", 0.08, low=0.04, high=0.12, unit="m")  # of the water without the block
     spacing = scene.param("spacing", 0.02, low=0.005, high=0.02, unit="m")
-    scene.ground()
-    tank = scene.tank("tank", inner_size=(WIDTH, WIDTH, 0.4), wall=WALL)
+    scene.ground(friction=0.7)
+    tank = scene.tank("tank", inner_size=(WIDTH, WIDTH, 0.4), wall=WALL, friction=0.3)
 
     # Where the block is, whole layers of particles are left out: all but the lowest two, over which it starts.
     def filled(layers: int) -> float:

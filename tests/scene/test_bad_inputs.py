@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Iterator
 from dataclasses import fields
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -377,6 +377,7 @@ FIELDS = {  # of what a call takes whole: each has a bad value in its kind
 }  # fmt: skip
 
 
+@cache
 def calls() -> dict[str, inspect.Signature]:
     public = {name: each for name, each in inspect.getmembers(Scene) if not name.startswith("_")}
     made = {name: inspect.signature(each) for name, each in public.items() if callable(each)}
@@ -388,18 +389,21 @@ def take(scene: Scene, method: str, arguments: dict[str, Any]) -> None:
     call(**arguments)
 
 
-def cases() -> Iterator[tuple[str, str, object]]:
+@cache
+def values() -> dict[tuple[str, str], list[object]]:
+    """What each argument of each call does not take."""
     signatures = calls()
+    found: dict[tuple[str, str], list[object]] = {}
     for method, (_, arguments) in TABLE.items():
         for argument, kind in arguments.items():
-            for value in KINDS[kind]:
-                yield method, argument, value
+            bad = found[method, argument] = list(KINDS[kind])
             if (
                 argument in signatures[method].parameters
                 and needed(method, argument)
                 and not any(value is None for value in KINDS[kind])
             ):
-                yield method, argument, None
+                bad.append(None)
+    return found
 
 
 def needed(method: str, argument: str) -> bool:
@@ -452,7 +456,7 @@ def test_a_call_takes_what_the_table_says_is_good(scene: Scene, method: str) -> 
 def test_a_bad_argument_is_named_in_one_line(scene: Scene, method: str, argument: str) -> None:
     before = {str(prim.GetPath()) for prim in scene.stage.Traverse()}
     missed = []
-    for value in (value for m, a, value in cases() if (m, a) == (method, argument)):
+    for value in values()[method, argument]:
         try:
             take(scene, method, {**TABLE[method][0], argument: value})
         except SceneError as error:

@@ -28,10 +28,10 @@ from wsim.judge.checks.mass import CheckMass
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_joints import CheckPlanJoints
 from wsim.judge.language import ObjectiveCheck
-from wsim.plan.schema import Objective, Plan
+from wsim.plan.schema import Objective, Plan, PlanObject
 from wsim.plan.schema.formula_place import Crosses
 from wsim.recording.recording import SeenTrack
-from wsim.scene.world import Motor, Parameter
+from wsim.scene.world import Motor, Parameter, Shape, Static
 
 SIZE = (0.4, 0.2, 0.1)
 BOX_KG, BALL_KG = 500.0 * math.prod(SIZE), 2.0
@@ -211,6 +211,25 @@ def test_another_colour_or_surface_is_found(change, unit):
     assert not finding.passed and finding.prim == "/World/box" and unit in finding.message
     near = {"box__shape__color": (0.85, 0.1, 0.15), "box__shape__friction": 0.53}
     assert only(ask(CheckPlanLooks(), a_world(**near), a_plan())).passed
+
+
+@pytest.mark.parametrize(("primitive", "size"), [("ground", ()), ("tank", (0.4, 0.4, 0.3))])
+@pytest.mark.parametrize(("friction", "passes"), [(0.5, True), (0.53, True), (0.3, False), (0.0, False)])
+def test_the_ground_and_every_wall_of_a_tank_are_of_the_plans_material(primitive, size, friction, passes):
+    world, plan = a_world(), a_plan()
+    under = PlanObject.model_validate(
+        {"name": "ground", "role": "container" if size else "terrain", "state": "static",
+         "material": plan.objects[1].material,
+         "construction": {"kind": "proxy", "primitive": primitive, "size": size}}
+    )  # fmt: skip
+    plan = plan.model_copy(update={"objects": [under, *plan.objects[1:]]})
+    walls = [Shape(prim=f"/World/ground/{k}", kind="box", size=(0.4, 0.4, 0.02), friction=mu, color=RED)
+             for k, mu in enumerate([0.5, friction, 0.5])]  # fmt: skip
+    plane = [ground(friction).shapes[0].model_copy(update={"color": RED})]
+    static = Static(prim="/World/ground", shapes=walls if size else plane)
+    finding = only(ask(CheckPlanLooks(), with_world(world, statics=[static]), plan))
+    assert finding.passed == passes
+    assert passes or (finding.prim == "/World/ground" and finding.value == friction)
 
 
 def test_without_a_plan_nothing_is_compared():

@@ -19,7 +19,7 @@ from wsim.plan.schema import FromTerrain
 from wsim.scene.contact import friction_of, restitution_of, rolling_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -287,8 +287,8 @@ def pairs(evidence: Evidence) -> Iterator[tuple[PlanObject, Body | Static]]:
 def _seen(evidence: Evidence) -> Iterator[tuple[Body | Static, Shape, Material]]:
     """The shapes that the plan has a material for, of terrain each of its areas' too, and of rocks each one's."""
     for item, made in pairs(evidence):
-        if item.material is not None and item.primitive in PRIMITIVES and made.shapes:
-            yield made, made.shapes[0], item.material
+        if item.material is not None and item.primitive in (*PRIMITIVES, "ground", "tank"):
+            yield from ((made, shape, item.material) for shape in _surfaces(made))
         if item.material is not None and isinstance(item.built, FromTerrain):
             areas = {area.name: area.material for area in item.built.areas}
             for shape in made.shapes:
@@ -297,6 +297,11 @@ def _seen(evidence: Evidence) -> Iterator[tuple[Body | Static, Shape, Material]]
         item_of = evidence.planned(static.prim)
         if item_of is not None and item_of.rocks and item_of.material is not None and static.shapes:
             yield static, static.shapes[0], item_of.material
+
+
+def _surfaces(made: Body | Static) -> Iterable[Shape]:
+    """One shape for each surface that it has: a tank's walls are of one."""
+    return {(friction_of(it), restitution_of(it), rolling_of(it), it.color): it for it in made.shapes}.values()
 
 
 def _turned(item: PlanObject, turn: Floats, shape: Shape) -> float:

@@ -53,12 +53,6 @@ class CheckPlanVehicles(Check):
         items = evidence.plan.objects if evidence.plan is not None else []
         vehicles = [item for item in items if item.primitive == "vehicle" and _whole(evidence, item)]
         found = [finding for item in vehicles for finding in self._vehicle(evidence, item)]
-        grounds = {evidence.prim(item.name): item.material for item in items if vehicles and item.primitive == "ground"}
-        for made in evidence.world.statics:  # level ground: of what it has by itself other plans say nothing
-            material = grounds.get(made.prim)
-            if material is not None and made.shapes:
-                limit = self.grip * material.friction
-                found += self._near(made.prim, "friction", friction_of(made.shapes[0]), material.friction, limit)
         return found or ([self.passed("Vehicles are of the plan's kinds, and driven as it has it")] if vehicles else [])
 
     def _vehicle(self, evidence: Evidence, item: PlanObject) -> Iterator[Finding]:
