@@ -100,7 +100,8 @@ class ContactLawC:
         rows = mujoco.mjtConstraint
         self.stops = StopsC(mujoco, model, config)
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
-        self.jumping = (*self.stops.kinds, int(rows.mjCNSTR_FRICTION_DOF), *(int(kind) for kind in touches))
+        self._jumping = np.zeros(len(rows.__members__), dtype=bool)  # of each kind of row
+        self._jumping[[*self.stops.kinds, int(rows.mjCNSTR_FRICTION_DOF), *map(int, touches)]] = True
         self._groups = tied_groups(mujoco, model)
         moves_as_one = np.zeros(model.nbody, dtype=int)
         if smooth:
@@ -252,7 +253,7 @@ class ContactLawC:
         their causes."""
         self._position(data)
         self.closing.begin(data)
-        touching = bool(np.isin(data.efc_type, self.jumping).any())
+        touching = bool(self._jumping[data.efc_type].any())
         if self.drives is not None:
             self.drives.choose(data, are_rows=not self._is_whole(touching))
         self._answer(data, touching, at_once=self.breaking is not None)

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from wsim.geometry.rotations import cross
 from wsim.kernels.smooth_steps import count_touching, find_touching, keep_where_touched
 from wsim.solvers.closing import ClosingC
 from wsim.solvers.drives import DrivesC
@@ -28,6 +29,7 @@ from wsim.solvers.led import Led
 Array = np.ndarray
 LARGEST_TURN, MOST_PARTS = 0.05, 32  # of a joint in each part of a step [rad]
 REVERSAL_PARTS = 16  # of a step in which dry friction ends a motion or turns
+NO_ROWS = np.zeros(0, dtype=int)
 STILL = 1e-3  # of the speed that dry friction takes away in a step
 Rows = tuple[Array, Array, Array, Array]  # of the constraints: kind, number, force, place
 # Told of what acts, for how long [s], and of the rows held beside that.
@@ -89,6 +91,7 @@ class SmoothStepsC:
         self._beside: Any = mujoco.MjData(model) if owners.count > 1 else None
         turns = np.isin(model.jnt_type, [int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_BALL)])
         self._led = Led(model, owners.of_geom)
+        self._has_stops, self._has_friction = bool(model.jnt_limited.any()), bool(model.dof_frictionloss.any())
         self._turning = turns[model.dof_jntid] & (owners.of_dof > 0)
         self.since = np.zeros(owners.count, dtype=int)  # steps of the first order since the last smooth one
 
@@ -111,6 +114,8 @@ class SmoothStepsC:
 
     def stops(self, data: Any) -> Array:
         """Rows of the stops of mechanisms that are near."""
+        if not self._has_stops:
+            return NO_ROWS
         rows = np.flatnonzero(data.efc_type == self._stop)
         return np.asarray(rows[self._owners.of_joint[data.efc_id[rows]] > 0])
 
@@ -163,6 +168,8 @@ class SmoothStepsC:
             rate: Accelerations of its coordinates in the step, (nv,).
             which: Of the mechanisms, (mechanisms,).
         """
+        if not self._has_friction:
+            return 1
         rows = np.flatnonzero(data.efc_type == self._rubs[0][0])
         rows = rows[which[self._owners.of_dof[data.efc_id[rows]]]]
         dofs, h = data.efc_id[rows], self._model.opt.timestep
@@ -314,14 +321,14 @@ class SmoothStepsC:
     def _pushes(self, data: Any, force: Array, rows: Array) -> Array:
         """What some contacts give each body, about its centre of mass, (bodies, 6)."""
         contact, found = data.contact, np.zeros((self._model.nbody, 6))
+        if not len(rows):
+            return found
         at = contact.efc_address[rows, None] + np.arange(6)
         each = np.where(np.arange(6) < contact.dim[rows, None], force[np.minimum(at, len(force) - 1)], 0.0)
-        push, spin = np.moveaxis(
-            np.einsum("nri,nsr->nsi", contact.frame[rows].reshape(-1, 3, 3), each.reshape(-1, 2, 3)), 1, 0
-        )
+        push, spin = np.einsum("nri,nsr->sni", contact.frame[rows].reshape(-1, 3, 3), each.reshape(-1, 2, 3))
         for side, sign in ((0, -1.0), (1, 1.0)):
             bodies = self._model.geom_bodyid[contact.geom[rows, side]]
-            turn = np.cross(contact.pos[rows] - data.xipos[bodies], push) + spin
+            turn = cross(contact.pos[rows] - data.xipos[bodies], push) + spin
             np.add.at(found, bodies, sign * np.concatenate([push, turn], axis=1))
         return found
 

@@ -30,10 +30,13 @@ class StopsC:
         self._model, self._config, self.at_once = model, config, False
         rows = mujoco.mjtConstraint
         self.kinds = (int(rows.mjCNSTR_LIMIT_JOINT), int(rows.mjCNSTR_LIMIT_TENDON))
+        self._none = not model.jnt_limited.any() and not model.tendon_limited.any()
         self._ropes = RopesC(mujoco, model) if model.tendon_limited.any() else None
 
     def aim(self, data: Any) -> None:
         """Ask for the speeds."""
+        if self._none:
+            return
         rows, goal, excess = self._goals(data)
         h = self._model.opt.timestep
         if self.at_once:
@@ -51,7 +54,7 @@ class StopsC:
     def _goals(self, data: Any) -> tuple[Array, Array, Array]:
         """Their rows, what they should end a step with, and by how much they approach faster, (rows,) each: of ropes,
         than what swings on a taut one."""
-        rows = np.flatnonzero(np.isin(data.efc_type, self.kinds))
+        rows = np.flatnonzero((data.efc_type == self.kinds[0]) | (data.efc_type == self.kinds[1]))
         h, speed = self._model.opt.timestep, data.efc_vel[rows]
         goal, bend = settling(data.efc_pos[rows], h, self._config), np.zeros(len(rows))
         taut = data.efc_type[rows] == self.kinds[1]
