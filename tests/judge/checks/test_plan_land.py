@@ -14,17 +14,17 @@ from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSiz
 from wsim.judge.checks.plan_closed import CheckPlanClosed
 from wsim.judge.checks.plan_contacts import CheckPlanContacts
 from wsim.judge.checks.plan_joints import CheckPlanJoints
-from wsim.judge.checks.plan_land import CheckPlanTerrain, CheckPlanVehicles
+from wsim.judge.checks.plan_land import CheckPlanTerrain
 from wsim.judge.checks.plan_motion import CheckPlanMotion
+from wsim.judge.checks.plan_vehicles import CheckPlanVehicles
 from wsim.judge.checks.run import CheckPlanObjects
-from wsim.plan.schema import Actuation, Plan, Registration
+from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.program.control_world import OUTPUTS, ControlLayout
 from wsim.recording import read
 from wsim.rules.planner import plan as make_plan
 from wsim.scene import Scene
 from wsim.scene.describe import describe
-from wsim.scene.vehicle_spec import preset
 from wsim.sim import Simulation
 from wsim.sim.control import ArrayController, driven_joints
 
@@ -102,22 +102,6 @@ def test_what_is_built_otherwise_is_found(
     assert (check, prim) in wrong(rough, more, change)
 
 
-def test_an_engine_that_is_set_once_holds_the_plans_speed() -> None:
-    """Its axles turn at v / r of the bend; without the engine, or with another speed, that is found."""
-    made = make_plan("A cart drives 10 m.")
-    ask_for = Registration(actuation=[Actuation(kind="drive", speed=3.0, steer_deg=10.0)])
-    items = [each.model_copy(update={"registration": ask_for}) if each.primitive == "vehicle" else each
-             for each in made.objects]  # fmt: skip
-    once = made.model_copy(update={"objects": items})
-    assert "cart.drive(3.0)" in compose(once) and "cart.steer(10.0)" in compose(once)
-    assert "def control" not in compose(once)
-    assert wrong(once) == set()
-    assert wrong(once, change=("cart.drive(3.0)", "cart.drive(4.0)")) == {
-        ("CheckPlanVehicles", f"/World/cart_axle_{corner}") for corner in preset("cart").driven_corners
-    }
-    assert ("CheckPlanVehicles", "/World/cart_axle_rear_left") in wrong(once, change=("cart.drive(3.0)", "pass"))
-
-
 def test_how_thick_ground_is_says_nothing_of_its_height(rough: Plan) -> None:
     assert wrong(rough, change=("areas=ground_areas", "thickness=0.04, areas=ground_areas")) == set()
 
@@ -128,14 +112,6 @@ def test_ground_without_the_plans_hill_or_its_road_is_found() -> None:
     assert wrong(over) == set()
     assert ("CheckPlanTerrain", GROUND) in wrong(over, change=("areas=ground", "cell=9.0,\n        areas=ground"))
     assert ("CheckPlanTerrain", GROUND) in wrong(along, change=("areas=ground_areas", "areas=()"))
-
-
-def test_a_vehicle_that_heads_the_other_way_is_told_by_how_much() -> None:
-    made = make_plan("A golf cart drives 10 m at 2 m/s.")
-    for turn in range(150, 211, 4):
-        assert ("CheckPlanVehicles", "/World/cart") in wrong(
-            made, change=("(-5.0, 0.0, 0.0)", f"(-5.0, 0.0, 0.0), yaw_deg={turn}")
-        )
 
 
 # ---- in the simulator

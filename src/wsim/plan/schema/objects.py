@@ -237,6 +237,12 @@ class PlanObject(Strict):
         return (self.name,)
 
     @property
+    def speed_ahead(self) -> float:
+        """Of its start, along its heading [m/s]."""
+        yaw = math.radians(self.pose.rotation_deg[2]) if self.pose is not None else 0.0
+        return self.velocity[0] * math.cos(yaw) + self.velocity[1] * math.sin(yaw)
+
+    @property
     def relations(self) -> list[Relation]:
         """Its rows of the topology."""
         return self.topology.relation
