@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from wsim.plan.schema import FromVehicle, PlanObject
 
 if TYPE_CHECKING:
-    from wsim.scene.world import Vec3, World
+    from wsim.scene.world import Shape, Vec3, World
 
 
 def vehicle_of(item: PlanObject, gravity: Vec3) -> World:
@@ -39,3 +39,18 @@ def _vehicle(given: str, gravity: Vec3) -> World:
             made.drive(each.speed or 0.0)
             made.steer(each.steer_deg or 0.0)
     return describe(scene.stage)
+
+
+@lru_cache(maxsize=64)
+def asset_of(asset: str) -> list[Shape]:
+    """The shapes of a thing of the catalogue that never moves, upright at the origin; none of what there is not."""
+    from wsim.assets import AssetError  # with USD, as above
+    from wsim.scene import Scene, SceneError
+    from wsim.scene.describe import describe
+
+    scene = Scene()
+    try:
+        scene.asset("thing", asset, static=True)
+    except (AssetError, SceneError):
+        return []
+    return [shape for static in describe(scene.stage).statics for shape in static.shapes]

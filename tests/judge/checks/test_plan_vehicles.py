@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+import numpy as np
 import pytest
 
 from tests.judge.checks.test_plan_closed import scene_of, still
 from tests.judge.theory import ask
+from wsim.judge import judge
 from wsim.judge.checks.plan_vehicles import CheckPlanVehicles
 from wsim.plan.schema import Actuation, Plan, Registration
 from wsim.program.compose import compose
+from wsim.program.control_world import OUTPUTS, ControlLayout
+from wsim.recording import read
 from wsim.rules.planner import plan as make_plan
+from wsim.scene import Scene
 from wsim.scene.describe import describe
 from wsim.scene.vehicle_spec import CORNERS, VehicleSpec, preset, presets
+from wsim.sim import Simulation
+from wsim.sim.control import ArrayController, driven_joints
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 CART = "/World/cart"
 HUB, KNUCKLE, WHEEL = (f"{CART}_{part}_front_left" for part in ("hub", "knuckle", "wheel"))
@@ -129,3 +141,57 @@ def test_an_engine_that_is_set_once_holds_the_plans_speed(cart: Plan) -> None:
 def test_a_vehicle_that_heads_the_other_way_is_told_by_how_much(cart: Plan) -> None:
     for turn in (150, 180, 210):
         assert CART in wrong(cart, change=("(-5.0, 0.0, 0.0)", f"(-5.0, 0.0, 0.0), yaw_deg={turn}"))
+
+
+# ---- in the simulator
+@pytest.fixture(scope="module")
+def short() -> Plan:
+    """A metre, in so short a time that three runs of it are bearable."""
+    data = make_plan("A golf cart drives 10 m.").model_dump(mode="json")
+    (cart,) = [item for item in data["objects"] if item["name"] == "cart"]
+    cart["registration"]["actuation"][0]["route"] = [[-4.8, 0.0]]  # of its rear axle, which starts at -5.825 m
+    data["objectives"][0]["formula"]["least"] = 0.8
+    data["simulation"]["duration"] = 2.75
+    return Plan.model_validate(data)
+
+
+def failed(plan: Plan, path: Path, change: tuple[str, str] = ("", ""), drives: bool = True) -> set[str]:
+    """The checks that fail of a plan's program, as it runs; `drives`: its control does what it says."""
+    text, space = compose(plan).replace(*change), {}
+    exec(compile(text, "program.py", "exec"), space)
+    scene = Scene()
+    space["build"](scene)
+    arrays: dict[str, np.ndarray] = {}
+
+    def exchange(t, state):
+        for name, values in state.items():
+            arrays[name][...] = values
+        arrays["joint_force"][...] = 0.0
+        if drives:
+            space["control"](world, t)
+        return {name: arrays[name].copy() for name in OUTPUTS}
+
+    simulation = Simulation(scene.save(path / "v.usda"), device="cpu", controller=ArrayController(exchange))
+    layout = ControlLayout([body.prim for body in simulation.world.bodies], driven_joints(simulation.world))
+    arrays |= {name: np.zeros(shape, np.float32) for name, shape in layout.shapes().items() if name != "t"}
+    (world,) = layout.worlds(arrays)
+    simulation.run(path / "r.rrd")
+    verdict = judge(read(path / "r.rrd"), plan)
+    assert verdict.crashes == []
+    return {finding.check for finding in verdict.failures} - {"CheckSeen", "CheckInFrame"}  # no pictures are taken
+
+
+def test_a_drive_is_accepted(short: Plan, tmp_path: Path) -> None:
+    assert failed(short, tmp_path) == set()
+
+
+def test_on_ice_it_is_rejected_for_its_friction_and_for_what_comes_of_that(short: Plan, tmp_path: Path) -> None:
+    friction = next(item.material.friction for item in short.objects if item.name == "ground")
+    assert failed(short, tmp_path, (f"friction={friction}", "friction=0.0")) == {
+        "CheckPlanVehicles",
+        "ObjectiveFormula",
+    }
+
+
+def test_with_its_motor_off_it_is_rejected_for_not_coming_there(short: Plan, tmp_path: Path) -> None:
+    assert failed(short, tmp_path, drives=False) == {"ObjectiveFormula"}

@@ -5,10 +5,14 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from wsim.plan.layout.errors import LayoutError
 from wsim.plan.schema import FromTerrain, HillLayer, LevelLayer, NoiseLayer, Plan, PlanObject, Pose
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from wsim.scene.terrain import Terrain
 
 
@@ -49,6 +53,32 @@ def _survey(name: str, construction: str) -> Terrain:
         raise LayoutError(str(error)) from error
 
 
+def divided(item: PlanObject) -> NDArray[np.int64]:
+    """Which of terrain's areas each of its cells is in, from 1 on, 0 for none: (rows along +Y, columns along +X).
+
+    Raises:
+        LayoutError: The scene would refuse it; in the scene's words.
+    """
+    assert isinstance(item.built, FromTerrain)
+    return _divided(item.name, item.built.model_dump_json())
+
+
+@lru_cache(maxsize=8)
+def _divided(name: str, construction: str) -> NDArray[np.int64]:
+    from wsim.scene import Area, Road, SceneError  # with USD, and few plans have terrain
+    from wsim.scene.areas import divided
+    from wsim.scene.validate import Call
+
+    made = FromTerrain.model_validate_json(construction)
+    cells = _survey(name, construction).cells
+    y, x = (edge * ((np.arange(n) + 0.5) / n - 0.5) for edge, n in zip(made.extent[::-1], cells, strict=True))
+    areas = [Area(area.name, road=Road(area.points, width=area.width)) for area in made.areas]
+    try:
+        return divided(Call("terrain", name), areas, *np.meshgrid(x, y))[1]
+    except SceneError as error:
+        raise LayoutError(str(error)) from error
+
+
 def set_down(plan: Plan) -> Plan:
     """The plan with its vehicles at the height of the ground under the middle between their axles.
 
@@ -58,6 +88,7 @@ def set_down(plan: Plan) -> Plan:
     for item in plan.objects:
         if isinstance(item.built, FromTerrain):
             survey(item)
+            divided(item)
     land = terrain_of(plan)
     if land is None:
         return plan
