@@ -32,7 +32,13 @@ def _vehicle(given: str, gravity: Vec3) -> World:
     scene.simulation(gravity=gravity)
     place, turn = (item.pose.position, item.pose.rotation_deg) if item.pose is not None else ((0.0, 0.0, 0.0),) * 2
     made = scene.vehicle(
-        item.name, item.built.vehicle, position=place, yaw_deg=turn[2], pitch_deg=turn[1], speed=item.speed_ahead
+        item.name,
+        item.built.vehicle,
+        position=place,
+        yaw_deg=turn[2],
+        pitch_deg=turn[1],
+        roll_deg=turn[0],
+        speed=item.speed_ahead,
     )
     for each in item.registration.actuation:
         if each.kind == "drive":

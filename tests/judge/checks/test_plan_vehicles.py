@@ -11,6 +11,7 @@ from tests.judge.checks.test_plan_closed import scene_of, still
 from tests.judge.theory import ask
 from wsim.judge import judge
 from wsim.judge.checks.plan_vehicles import CheckPlanVehicles
+from wsim.plan.layout.land import set_down
 from wsim.plan.schema import Actuation, Plan, Registration
 from wsim.program.compose import compose
 from wsim.program.control_world import OUTPUTS, ControlLayout
@@ -141,6 +142,21 @@ def test_an_engine_that_is_set_once_holds_the_plans_speed(cart: Plan) -> None:
 def test_a_vehicle_that_heads_the_other_way_is_told_by_how_much(cart: Plan) -> None:
     for turn in (150, 180, 210):
         assert CART in wrong(cart, change=("(-5.0, 0.0, 0.0)", f"(-5.0, 0.0, 0.0), yaw_deg={turn}"))
+
+
+def test_on_a_slope_it_leans_and_a_level_one_is_found() -> None:
+    hill = {"kind": "hill", "position": [30.0, 20.0], "radius": 80.0, "height": 14.0}
+    land = {"name": "land", "role": "terrain", "state": "static", "material": {"name": "soil", "density": 1600},
+            "construction": {"kind": "terrain", "extent": [20.0, 20.0], "layers": [hill]}}  # fmt: skip
+    cart = {"name": "cart", "role": "vehicle", "construction": {"kind": "vehicle", "vehicle": "cart"},
+            "pose": {"position": [0.0, 0.0, 0.0], "rotation_deg": [0.0, 0.0, 20.0]},
+            "velocity": [1.8793852, 0.6840403, 0.0]}  # fmt: skip
+    plan = set_down(Plan.model_validate({"title": "", "prompt": "", "objects": [land, cart]}))
+    roll, pitch, _ = plan.objects[1].pose.rotation_deg
+    assert abs(roll) > 2.0 and pitch < -8.0
+    assert wrong(plan) == {}
+    assert "starts turned" in wrong(plan, change=(f"pitch_deg={pitch}", "pitch_deg=0.0"))[CART]
+    assert wrong(plan, change=("speed=2.0", "speed=0.0")) != {}
 
 
 # ---- in the simulator
