@@ -14,6 +14,7 @@ MAX_DENSITY = 1e5  # [kg/m^3]
 MAX_FRICTION = 10.0
 MAX_SPEED = 1e4  # [m/s]
 MAX_SPIN = 1e6  # [deg/s]
+MAX_DRIVE_SPEED = 100.0  # [m/s], of a vehicle
 MAX_PATH_SPEED = 100.0  # [m/s], of a kinematic body on its path; faster is a jump
 MAX_PATH_SPIN = 100.0  # [rad/s]
 MAX_STIFFNESS = 1e9  # [N/m], of a spring

@@ -5,17 +5,20 @@ from __future__ import annotations
 import json
 import re
 from hashlib import sha256
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
-from tests.agents.flies import BALL, GROUND, MOVES, PROMPT, answer
+from tests.agents.flies import BALL, CAMERA, GROUND, MOVES, PROMPT, answer
 from tests.agents.scripted import Server, text
-from wsim.agents.ask import RETRIES, Desk
+from wsim.agents.ask import RETRIES, Desk, instructions
 from wsim.agents.failures import ModelError
 from wsim.agents.planner import HINTS, plan_with, read_plan
 from wsim.errors import UserError
 from wsim.plan.schema import Plan
+from wsim.plan.schema.constructions import Construction
+from wsim.plan.schema.examples import EXAMPLES
+from wsim.plan.schema.objects import ROLE_PRIMITIVES
 from wsim.program.compose import compose
 from wsim.tools.plan import plan_lines
 
@@ -164,3 +167,41 @@ def test_a_planner_that_gives_none_is_a_model_error(server: Server, desk: Desk) 
     assert caught.value.kind == "unusable"
     assert "objectives: none" in str(caught.value)
     assert len(server.requests) == RETRIES + 1
+
+
+def constructions() -> list[Any]:
+    """Every model that a construction may be, as the schema has it."""
+
+    def models(annotation: Any) -> list[Any]:
+        return [annotation] if isinstance(annotation, type) else [m for a in get_args(annotation) for m in models(a)]
+
+    return [model for model in models(Construction) if hasattr(model, "model_fields")]
+
+
+def test_the_prompt_names_every_construction_and_role_with_their_fields() -> None:
+    told = instructions("planner")
+    assert {model.model_fields["kind"].default for model in constructions()} == {*EXAMPLES}
+    assert all(f'"{role}"' in told for role in ROLE_PRIMITIVES)
+    assert not re.search(r"\{[A-Z]+\}", told)
+    for model in constructions():
+        kind = model.model_fields["kind"].default
+        (line,) = [line for line in told.splitlines() if line.startswith(f"- {kind}: ")]
+        assert all(name in line for name in model.model_fields if name != "kind")
+        assert json.dumps(EXAMPLES[kind], separators=(",", ":")) in told
+
+
+def test_the_examples_of_the_prompt_are_a_plan_that_a_program_builds() -> None:
+    goal = "finally (reaches(truck, (20, 0, 0), within 3 m))"
+    told = {"title": "all", "objects": list(EXAMPLES.values()), "cameras": [CAMERA],
+            "objectives": [{"kind": "formula", "object": "truck", "sentence": goal}],
+            "simulation": {"duration": 14}}  # fmt: skip
+    plan = read_plan(json.loads(json.dumps(told)), "A truck drives over a hill.")
+    assert [item.construction.kind for item in plan.objects] == [*EXAMPLES]
+    text = compose(plan)
+    assert all(call in text for call in ("scene.vehicle(", "scene.terrain(", "scene.scatter(", "scene.robot("))
+
+
+def test_a_model_is_told_of_the_robots_that_there_are(server: Server, desk: Desk) -> None:
+    server.script["planner"] = [text(json.dumps(answer()))]
+    plan_with(desk, PROMPT)
+    assert re.search(r"Robots: .*desk_arm; .*go2, [\d. x]+ m, policies go2_walk", server.asked("planner")[0])

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
-from tests.plan.layout.test_land import CAR, LAND, ROCKS, a_plan, driven
-from wsim.errors import UserError
+from tests.plan.layout.test_land import LAND, ROCKS, a_plan, driven
 from wsim.program.compose import compose
 from wsim.program.validator import validate
 from wsim.scene import Scene
@@ -23,7 +20,7 @@ def test_a_program_lays_the_land_and_drives_over_it() -> None:
     assert "from wsim.scene import Driver, Hill, Level, Noise, Road, Scene\n" in text
     assert "    (-11.3, 0.0),\n    (10.0, 0.0),\n]" in text
     assert 'Driver("car", "car", path=Road(' in text and "speed=5.0)" in text
-    assert 'scene.vehicle("car", "car", position=land.place(-10.0, 0.0))' in text
+    assert 'scene.vehicle("car", "car", position=land.place(-10.0, 0.0, above=' in text
     assert "clear=[((0.0, 0.0), 4.0), (WAY" in text
     assert [problem.message for problem in validate(text, made)] == []
     space: dict = {}
@@ -38,17 +35,3 @@ def test_a_program_lays_the_land_and_drives_over_it() -> None:
 def test_a_vehicle_of_its_own_speed_starts_its_driver_with_it() -> None:
     text = compose(a_plan({**driven(), "velocity": [4.0, 0.0, 0.0]}))
     assert "position=(-10.0, 0.0, 0.0), speed=4.0)" in text and "start_speed=4.0" in text
-
-
-@pytest.mark.parametrize(
-    ("change", "problem"),
-    [
-        ({"velocity": [1.0, 3.0, 0.0]}, r"its velocity \[1.0, 3.0, 0.0\] m/s is not along its heading; turn one"),
-        ({"registration": {"mass": 900.0}}, "stands on its wheels with its own registration.mass or .density; remove"),
-        ({"state": "kinematic"}, 'stands on its wheels with its own state "kinematic"'),
-        ({"pose": {"position": [0, 0, 0], "rotation_deg": [5.0, 0, 0]}}, "with its own roll or pitch; remove it"),
-    ],
-)
-def test_what_a_vehicle_has_of_its_own_is_refused(change: dict, problem: str) -> None:
-    with pytest.raises(UserError, match=problem):
-        compose(a_plan({**CAR, "pose": {"position": [0, 0, 0]}, **change}))

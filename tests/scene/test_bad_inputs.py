@@ -241,7 +241,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     "vehicle": (
         {"name": "new"},
         {"name": "new name", "spec": "vehicle", "position": "three numbers", "yaw_deg": "number",
-         "pitch_deg": "number", "speed": "number"},
+         "pitch_deg": "number", "roll_deg": "number", "speed": "number"},
     ),
     "tank": (
         {"name": "new", "inner_size": (1.0, 1.0, 1.0)},

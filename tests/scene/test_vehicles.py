@@ -118,3 +118,15 @@ def test_what_meets_nothing_weighs_what_it_states(tmp_path):
     hub = describe(scene.save(tmp_path / "v.usda")).body("/World/v_hub_rear_left")
     assert not any(shape.collides for shape in hub.shapes)
     assert hub.mass == pytest.approx(69.975) and hub.inertia[0] == pytest.approx(69.975 * (0.4 * 0.467) ** 2)
+
+
+def test_it_leans_with_its_left_side_up(tmp_path):
+    """Turned left by 90 degrees, then: its left is -X. All its parts turn about the point between its axles."""
+    scene = Scene()
+    scene.vehicle("v", "cart", position=(1.0, 2.0, 3.0), yaw_deg=90.0, roll_deg=10.0)
+    world = describe(scene.save(tmp_path / "v.usda"))
+    at = {name: np.array(world.body(f"/World/v_wheel_{name}").position) for name in ("front_left", "front_right")}
+    apart = at["front_left"] - at["front_right"]
+    lean = math.radians(10.0)
+    track = preset("cart").track
+    assert apart == pytest.approx((-track * math.cos(lean), 0.0, track * math.sin(lean)), abs=1e-5)

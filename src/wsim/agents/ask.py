@@ -16,6 +16,7 @@ from wsim.agents.models import Models, connect
 from wsim.agents.transcript import Transcript
 from wsim.errors import UserError
 from wsim.judge.language.sentence import vocabulary
+from wsim.plan.schema.examples import constructions, roles
 
 if TYPE_CHECKING:
     from wsim.agents.relay import Replay
@@ -143,9 +144,11 @@ def _schema(schema: dict[str, Any]) -> dict[str, Any]:
 
 @cache
 def instructions(role: str) -> str:
-    """The prompt of a role; what objectives may say is from the language's own table."""
+    """The prompt of a role; what objectives and objects may be is from the language's and the schema's own tables."""
     text = (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
-    return text.replace("{PREDICATES}", vocabulary())
+    for place, table in (("PREDICATES", vocabulary), ("CONSTRUCTIONS", constructions), ("ROLES", roles)):
+        text = text.replace(f"{{{place}}}", table())
+    return text
 
 
 def object_in(text: str) -> dict[str, Any]:

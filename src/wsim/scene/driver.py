@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wsim.defaults import GRAVITY
+from wsim.limits import MAX_DRIVE_SPEED
 from wsim.scene.layers import polyline
 from wsim.scene.validate import Call, shown
 from wsim.scene.vehicle_spec import CORNERS, VehicleSpec, spec_of
@@ -105,8 +106,8 @@ class Driver:
             call.fail(f"vehicle = {shown(vehicle)} must be the name of a vehicle")
         self.vehicle, self.spec = vehicle, spec_of(call, spec)
         points = polyline(call, path, "path")
-        top = call.positive("speed", speed, 100.0, "m/s")
-        begins = call.within("start_speed", start_speed, 0.0, 100.0, "m/s")
+        top = call.positive("speed", speed, MAX_DRIVE_SPEED, "m/s")
+        begins = call.within("start_speed", start_speed, 0.0, MAX_DRIVE_SPEED, "m/s")
         self._stop = call.flag("stop", stop)
         limits = [call.positive(name, value, 20.0, "m/s^2") for name, value in
                   (("acceleration", acceleration), ("braking", braking), ("lateral", lateral))]  # fmt: skip

@@ -78,6 +78,12 @@ class Terrain(Handle):
         return int(self._heights.size)
 
     @property
+    def cells(self) -> tuple[int, int]:
+        """How many there are along y, and along x."""
+        rows, columns = self._heights.shape
+        return rows - 1, columns - 1
+
+    @property
     def reach(self) -> float:
         """From its middle to its nearest edge [m]."""
         return 0.5 * min(self._size)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from pxr import Gf, Usd, UsdPhysics
 
-from wsim.limits import MAX_POSITION
+from wsim.limits import MAX_DRIVE_SPEED, MAX_POSITION
 from wsim.scene.authoring import Handle, rotation
 from wsim.scene.bodies import MassProperties
 from wsim.scene.compounds import Compounds, Part
@@ -21,7 +21,6 @@ from wsim.scene.vehicle_looks import Piece, body_pieces, wheel_pieces
 from wsim.scene.vehicle_spec import CORNERS, VehicleSpec, spec_of
 
 _HERE = (0.0, 0.0, 0.0)
-_FASTEST = 100.0  # [m/s]
 _SLIP = 1.0  # [rad/s]: an engine gives its full torque to a wheel that lags by so much
 _STEER_STEP = 0.625e-3  # [s]: the time step that the stiffness of the steering leaves
 _STEER_SHARE = 0.25  # of 1 / omega, that a step may be
@@ -48,7 +47,7 @@ class Vehicle(Handle):
         Its torque at a driven wheel is at most what the engine gives at this speed, by its torque and its power.
         """
         call = Call("vehicle.drive", self.name)
-        self._asked["speed"] = call.within("speed", speed, -_FASTEST, _FASTEST, "m/s")
+        self._asked["speed"] = call.within("speed", speed, -MAX_DRIVE_SPEED, MAX_DRIVE_SPEED, "m/s")
         for corner in CORNERS:
             if self._prim(self.axles[corner]).HasAttribute("newton:friction"):
                 self._prim(self.axles[corner]).GetAttribute("newton:friction").Set(0.0)
@@ -118,6 +117,7 @@ class Vehicles(Compounds, Joints, Contacts):
         position: Sequence[float] = _HERE,
         yaw_deg: float = 0.0,
         pitch_deg: float = 0.0,
+        roll_deg: float = 0.0,
         speed: float = 0.0,
     ) -> Vehicle:
         """Make a vehicle that stands on its wheels: body, springs and dampers with stops, Ackermann steering, brakes.
@@ -132,6 +132,7 @@ class Vehicles(Compounds, Joints, Contacts):
             position: Of the point of the ground between the axles [m].
             yaw_deg: To the left [deg].
             pitch_deg: Nose down [deg]: that of the ground, on a slope up ahead negative.
+            roll_deg: Left side up [deg]: that of the ground, too.
             speed: Forward at the start, with wheels that roll [m/s].
 
         Raises:
@@ -140,7 +141,7 @@ class Vehicles(Compounds, Joints, Contacts):
         call = Call("vehicle", name)
         self._path(call)
         made = spec_of(call, spec)
-        frame = self._frame(call, position, yaw_deg, pitch_deg, speed)
+        frame = self._frame(call, position, (roll_deg, pitch_deg, yaw_deg), speed)
         body = self._vehicle_body(name, made, frame)
         tyre = self.material(f"{name}_tyre", friction=made.friction, rolling=made.rolling, color=(0.04, 0.04, 0.045))
         wheels, steering, axles = {}, {}, {}
@@ -154,16 +155,14 @@ class Vehicles(Compounds, Joints, Contacts):
             )
         return Vehicle(body.name, body.path, body.kind, made, wheels, steering, axles, self._stage)
 
-    def _frame(
-        self, call: Call, position: Sequence[float], yaw_deg: float, pitch_deg: float, speed: float
-    ) -> _Frame:  # fmt: skip
+    def _frame(self, call: Call, position: Sequence[float], turns_deg: Vec3, speed: float) -> _Frame:
         place = call.position("position", position)
         turns = (
-            0.0,
-            call.within("pitch_deg", pitch_deg, -60.0, 60.0, "deg"),
-            call.within("yaw_deg", yaw_deg, -MAX_POSITION, MAX_POSITION, "deg"),
+            call.within("roll_deg", turns_deg[0], -60.0, 60.0, "deg"),
+            call.within("pitch_deg", turns_deg[1], -60.0, 60.0, "deg"),
+            call.within("yaw_deg", turns_deg[2], -MAX_POSITION, MAX_POSITION, "deg"),
         )
-        fast = call.within("speed", speed, -_FASTEST, _FASTEST, "m/s")
+        fast = call.within("speed", speed, -MAX_DRIVE_SPEED, MAX_DRIVE_SPEED, "m/s")
         turn = rotation(turns)
         return _Frame(Gf.Vec3d(*place), turn, turns, _tuple(turn.Transform(Gf.Vec3d(fast, 0.0, 0.0))), fast)
 

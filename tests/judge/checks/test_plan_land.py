@@ -1,39 +1,32 @@
-"""Vehicles and terrain of a plan: what is composed of it is it, and what is built otherwise is found out."""
+"""Terrain of a plan and what is on it: what is composed of it is it, and what is built otherwise is found out."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 
 from tests.judge.checks.test_plan_closed import scene_of, still
 from tests.judge.theory import ask
-from wsim.judge import judge
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_closed import CheckPlanClosed
 from wsim.judge.checks.plan_contacts import CheckPlanContacts
 from wsim.judge.checks.plan_joints import CheckPlanJoints
-from wsim.judge.checks.plan_land import CheckPlanTerrain, CheckPlanVehicles
+from wsim.judge.checks.plan_land import CheckPlanScatter, CheckPlanTerrain
 from wsim.judge.checks.plan_motion import CheckPlanMotion
+from wsim.judge.checks.plan_vehicles import CheckPlanVehicles
 from wsim.judge.checks.run import CheckPlanObjects
-from wsim.plan.schema import Actuation, Plan, Registration
-from wsim.program.compose import compose
-from wsim.program.control_world import OUTPUTS, ControlLayout
-from wsim.recording import read
+from wsim.plan.schema import Plan
 from wsim.rules.planner import plan as make_plan
-from wsim.scene import Scene
 from wsim.scene.describe import describe
-from wsim.scene.vehicle_spec import preset
-from wsim.sim import Simulation
-from wsim.sim.control import ArrayController, driven_joints
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    pass
 
 CHECKS = (
     CheckPlanObjects, CheckPlanClosed, CheckPlanSizes, CheckPlanPlaces, CheckPlanLooks, CheckPlanJoints,
     CheckPlanContacts, CheckPlanMotion, CheckPlanVehicles, CheckPlanTerrain,
+    CheckPlanScatter,
 )  # fmt: skip
 ROUGH = "A Polaris drives 10 m over rough ground with 3 rocks and a tree."
 BUGGY, GROUND = "/World/polaris", "/World/ground"
@@ -44,10 +37,15 @@ def rough() -> Plan:
     return make_plan(ROUGH)
 
 
+def faults(plan: Plan, more: str = "", change: tuple[str, str] = ("", "")) -> dict[tuple[str, str | None], str]:
+    """What is found, by check and prim."""
+    recording = still(describe(scene_of(plan, more, change).stage))
+    return {(f.check, f.prim): f.message for check in CHECKS for f in ask(check(), recording, plan) if not f.passed}
+
+
 def wrong(plan: Plan, more: str = "", change: tuple[str, str] = ("", "")) -> set[tuple[str, str | None]]:
     """Check and prim of what is found."""
-    recording = still(describe(scene_of(plan, more, change).stage))
-    return {(f.check, f.prim) for check in CHECKS for f in ask(check(), recording, plan) if not f.passed}
+    return {*faults(plan, more, change)}
 
 
 @pytest.mark.parametrize("says", ["A car drives 50 m along a road and stops.", "A golf cart drives 10 m at 2 m/s."])
@@ -86,7 +84,7 @@ SET = 'p("{}").GetAttribute("{}").Set({})'
         ("", ("Noise(0.6", "Noise(0.4"), "CheckPlanTerrain", GROUND),
         ("", ("seed=4", "seed=7"), "CheckPlanTerrain", GROUND),
         ("", ("size=(53.0, 40.0)", "size=(53.0, 44.0)"), "CheckPlanTerrain", GROUND),
-        ("", ("size=(0.3, 1.2)", "size=(2.0, 3.0)"), "CheckPlanTerrain", "/World/rock_0"),
+        ("", ("size=(0.3, 1.2)", "size=(2.0, 3.0)"), "CheckPlanScatter", "/World/rock_0"),
         ("", ("count=3", "count=2"), "CheckPlanObjects", "/World/rock_2"),
         ('scene.box("wall", size=(1, 1, 1), static=True)', ("", ""), "CheckPlanObjects", "/World/wall"),
         ('scene.contact("polaris_wheel_front_left", "ground", friction=0.1)', ("", ""), "CheckPlanContacts",
@@ -102,22 +100,6 @@ def test_what_is_built_otherwise_is_found(
     assert (check, prim) in wrong(rough, more, change)
 
 
-def test_an_engine_that_is_set_once_holds_the_plans_speed() -> None:
-    """Its axles turn at v / r of the bend; without the engine, or with another speed, that is found."""
-    made = make_plan("A cart drives 10 m.")
-    ask_for = Registration(actuation=[Actuation(kind="drive", speed=3.0, steer_deg=10.0)])
-    items = [each.model_copy(update={"registration": ask_for}) if each.primitive == "vehicle" else each
-             for each in made.objects]  # fmt: skip
-    once = made.model_copy(update={"objects": items})
-    assert "cart.drive(3.0)" in compose(once) and "cart.steer(10.0)" in compose(once)
-    assert "def control" not in compose(once)
-    assert wrong(once) == set()
-    assert wrong(once, change=("cart.drive(3.0)", "cart.drive(4.0)")) == {
-        ("CheckPlanVehicles", f"/World/cart_axle_{corner}") for corner in preset("cart").driven_corners
-    }
-    assert ("CheckPlanVehicles", "/World/cart_axle_rear_left") in wrong(once, change=("cart.drive(3.0)", "pass"))
-
-
 def test_how_thick_ground_is_says_nothing_of_its_height(rough: Plan) -> None:
     assert wrong(rough, change=("areas=ground_areas", "thickness=0.04, areas=ground_areas")) == set()
 
@@ -130,57 +112,48 @@ def test_ground_without_the_plans_hill_or_its_road_is_found() -> None:
     assert ("CheckPlanTerrain", GROUND) in wrong(along, change=("areas=ground_areas", "areas=()"))
 
 
-def test_a_vehicle_that_heads_the_other_way_is_told_by_how_much() -> None:
-    made = make_plan("A golf cart drives 10 m at 2 m/s.")
-    for turn in range(150, 211, 4):
-        assert ("CheckPlanVehicles", "/World/cart") in wrong(
-            made, change=("(-5.0, 0.0, 0.0)", f"(-5.0, 0.0, 0.0), yaw_deg={turn}")
-        )
+@pytest.mark.parametrize(
+    ("more", "change", "check", "prim", "says"),
+    [
+        # where the ground is, and its areas
+        ("", ("areas=ground_areas,", "areas=ground_areas, position=(2.0, 0.0, 0.0),"), "CheckPlanTerrain", GROUND,
+         "ends up to 2 m from where"),
+        ("", ("WAY_2, width=2.2", "WAY_2, width=5.0"), "CheckPlanTerrain", GROUND, "its area track is not where"),
+        ("", ("Road(WAY_2, width", "Road([(x, y + 4.0) for x, y in WAY_2], width"), "CheckPlanTerrain", GROUND,
+         "its area track is not where"),
+        ("", ("Road(WAY_2, width", "Road([(x, y) for x, y in WAY_2[:3]], width"), "CheckPlanTerrain", GROUND,
+         "its area track is not where"),
+        ("", ('"track",\n        friction=0.85', '"track",\n        friction=0.1'), "CheckPlanLooks", GROUND,
+         "a friction of 0.1"),
+        # what is scattered
+        ("", ("size=(0.3, 1.2)", "size=(0.05, 0.1)"), "CheckPlanScatter", "/World/rock_0", "m long; the plan's rocks"),
+        ('p("/World/rock_1").GetAttribute("xformOp:translate").Set((2.0, 1.0, 0.0))', ("", ""), "CheckPlanScatter",
+         "/World/rock_1", "m from a line of clear; the plan keeps 1.92 m clear"),
+        ('p("/World/tree_0").GetAttribute("xformOp:translate").Set((0.0, 4.0, 0.0))', ("", ""), "CheckPlanScatter",
+         "/World/tree_0", "the plan keeps 2.73 m clear"),
+        ('p("/World/rock_0").GetAttribute("xformOp:translate").Set((60.0, 0.0, 0.0))',
+         ("", ""), "CheckPlanScatter", "/World/rock_0", "m beyond ground"),
+        ('p("/World/rock_0").GetAttribute("xformOp:translate").Set((9.0, 12.0, 5.0))',
+         ("", ""), "CheckPlanScatter", "/World/rock_0", "m over ground"),
+        ('p("/World/rock_0").GetAttribute("xformOp:translate").Set((9.0, 12.0, -9.0))',
+         ("", ""), "CheckPlanScatter", "/World/rock_0", "m deep in ground"),
+        ('a, b = (p(f"/World/rock_{k}").GetAttribute("xformOp:translate") for k in (0, 1)); b.Set(a.Get())', ("", ""),
+         "CheckPlanScatter", "/World/rock_1", "lies over /World/rock_0"),
+        ("", ('["conifer", "deciduous_tree"]', '"bush"'), "CheckPlanScatter", "/World/tree_0",
+         "is no conifer or deciduous_tree as the catalogue has it"),
+        ('from pxr import UsdPhysics; [each.RemoveAPI(UsdPhysics.CollisionAPI) for each in '
+         'p("/World/rock_0").GetChildren()]', ("", ""), "CheckPlanScatter", "/World/rock_0", "is no rock"),
+    ],
+)  # fmt: skip
+def test_land_that_is_laid_otherwise_is_found(
+    rough: Plan, more: str, change: tuple[str, str], check: str, prim: str, says: str
+) -> None:
+    assert says in faults(rough, more, change).get((check, prim), "")
 
 
-# ---- in the simulator
-@pytest.fixture(scope="module")
-def short() -> Plan:
-    return make_plan("A golf cart drives 10 m.")
+def test_another_seed_scatters_as_the_plan_allows(rough: Plan) -> None:
+    assert wrong(rough, change=("seed=2,", "seed=3,")) == set()
 
 
-def failed(plan: Plan, path: Path, change: tuple[str, str] = ("", ""), drives: bool = True) -> set[str]:
-    """The checks that fail of a plan's program, as it runs; `drives`: its control does what it says."""
-    text, space = compose(plan).replace(*change), {}
-    exec(compile(text, "program.py", "exec"), space)
-    scene = Scene()
-    space["build"](scene)
-    arrays: dict[str, np.ndarray] = {}
-
-    def exchange(t, state):
-        for name, values in state.items():
-            arrays[name][...] = values
-        arrays["joint_force"][...] = 0.0
-        if drives:
-            space["control"](world, t)
-        return {name: arrays[name].copy() for name in OUTPUTS}
-
-    simulation = Simulation(scene.save(path / "v.usda"), device="cpu", controller=ArrayController(exchange))
-    layout = ControlLayout([body.prim for body in simulation.world.bodies], driven_joints(simulation.world))
-    arrays |= {name: np.zeros(shape, np.float32) for name, shape in layout.shapes().items() if name != "t"}
-    (world,) = layout.worlds(arrays)
-    simulation.run(path / "r.rrd")
-    verdict = judge(read(path / "r.rrd"), plan)
-    assert verdict.crashes == []
-    return {finding.check for finding in verdict.failures} - {"CheckSeen", "CheckInFrame"}  # no pictures are taken
-
-
-def test_a_drive_is_accepted(short: Plan, tmp_path: Path) -> None:
-    assert failed(short, tmp_path) == set()
-
-
-def test_on_ice_it_is_rejected_for_its_friction_and_for_what_comes_of_that(short: Plan, tmp_path: Path) -> None:
-    friction = next(item.material.friction for item in short.objects if item.name == "ground")
-    assert failed(short, tmp_path, (f"friction={friction}", "friction=0.0")) == {
-        "CheckPlanVehicles",
-        "ObjectiveFormula",
-    }
-
-
-def test_with_its_motor_off_it_is_rejected_for_not_coming_there(short: Plan, tmp_path: Path) -> None:
-    assert failed(short, tmp_path, drives=False) == {"ObjectiveFormula"}
+def test_finer_cells_keep_the_areas(rough: Plan) -> None:
+    assert wrong(rough, change=("areas=ground_areas", "cell=0.25, areas=ground_areas")) == set()

@@ -31,6 +31,7 @@ from wsim.judge.checks import (
     plan_joints,
     plan_land,
     plan_motion,
+    plan_vehicles,
     recorded,
     recorded_state,
     recorded_ties,
@@ -49,7 +50,7 @@ RUN = (run,)
 PHYSICS = (
     physics, settled, stated, continuity, motion, forces, recorded, recorded_state, recorded_ties, impacts, rolling,
     catches, energy, contact, rest, joint, cord, mass, plan, plan_closed, plan_joints, plan_contacts, plan_motion,
-    plan_land,
+    plan_vehicles, plan_land,
     fluid, fluid_books, fluid_push, lift, fluid_height, water, camera,
 )  # fmt: skip
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 CAUSES = (
     "build", "stage", "control", "CheckPlanObjects", "CheckPlanClosed", "CheckPlanJoints", "CheckPlanControl",
     "CheckPlanSizes", "CheckPlanPlaces", "CheckGravity", "CheckPlanFluid", "CheckMass", "CheckPlanMotion",
-    "CheckPlanTerrain", "CheckPlanVehicles", "CheckPlanLooks", "CheckPlanContacts", "CheckComplete",
+    "CheckPlanTerrain", "CheckPlanScatter", "CheckPlanVehicles", "CheckPlanLooks", "CheckPlanContacts", "CheckComplete",
 )  # fmt: skip
 # What follows the motion, and is put right after it.
 LAST = ("CheckInFrame", "CheckSeen")

@@ -237,6 +237,17 @@ class PlanObject(Strict):
         return (self.name,)
 
     @property
+    def ahead(self) -> Vec3:
+        """Its own +X at the start, in the world, of length 1."""
+        _, pitch, yaw = map(math.radians, self.pose.rotation_deg if self.pose is not None else (0.0, 0.0, 0.0))
+        return math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), -math.sin(pitch)
+
+    @property
+    def speed_ahead(self) -> float:
+        """Of its start, along its heading [m/s]."""
+        return sum(v * way for v, way in zip(self.velocity, self.ahead, strict=True))
+
+    @property
     def relations(self) -> list[Relation]:
         """Its rows of the topology."""
         return self.topology.relation
@@ -302,6 +313,7 @@ class PlanObject(Strict):
             raise ValueError(f'{self.name}: a {driven[0]} is of a vehicle; it is no construction of kind "vehicle"')
         if len(driven) > 1:
             raise ValueError(f"{self.name}: it has {', '.join(driven)}; one drives it, leave the others out")
+        self._is_its_own()
         if self.primitive in SPREAD and (self.pose is not None or self.relations):
             raise ValueError(f"{self.name}: {self.primitive} lies about the origin; remove its pose and its rows")
         if self.primitive == "terrain" and self.material is None:
@@ -311,3 +323,22 @@ class PlanObject(Strict):
         ):
             raise ValueError(f"{self.name}: a {self.primitive} has materials of its own; remove this one")
         return self
+
+    def _is_its_own(self) -> None:
+        """What vehicles, terrain and scatters are of themselves is given in no other way.
+
+        Raises:
+            ValueError: It is.
+        """
+        if self.primitive not in ("vehicle", *SPREAD):
+            return
+        moves = self.primitive == "vehicle"
+        for field, value, given in (
+            ("registration.mass", self.registration.mass, self.registration.mass is not None),
+            ("registration.density", self.registration.density, self.registration.density is not None),
+            ("registration.collision", self.registration.collision, self.registration.collision != "shape"),
+            ("angular_velocity_deg", self.angular_velocity_deg, any(self.angular_velocity_deg or ())),
+            ("state", self.state, moves and self.state == "kinematic"),
+        ):
+            if given:
+                raise ValueError(f"{self.name}: {field} {value!r}: a {self.primitive} has its own; leave it out")

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, get_args
 
 from wsim.limits import MAX_DURATION, MAX_FRAME_RATE, MAX_FRICTION, bad_stops, bad_time_step
-from wsim.plan.schema.constructions import FromScatter
 from wsim.plan.schema.draft import KindOfTwo
+from wsim.plan.schema.land import land_problems
 from wsim.plan.schema.supports import support_problems
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def problems(plan: Draft) -> list[str]:
         *_joints(plan),
         *_contacts(plan),
         *_actuation(plan),
-        *_land(plan),
+        *land_problems(plan),
         *_others(plan),
     ]
 
@@ -206,21 +206,6 @@ def _actuation(plan: Draft) -> Iterator[str]:
                 yield f"{where}: no joint {actuation.joint!r}; the plan has {', '.join(joints) or 'none'}"
             elif actuation.joint is not None and joints[actuation.joint].drive is not None:
                 yield f"{where}: {actuation.joint} has a drive; remove it, or this actuation: one thing drives a joint"
-
-
-def _land(plan: Draft) -> Iterator[str]:
-    """Terrain is there once, and what is scattered lies on it; its prims' names are nobody else's."""
-    items = {item.name: item for item in plan.objects}
-    lands = [item.name for item in plan.objects if item.primitive in ("terrain", "ground")]
-    if len(lands) > 1 and any(items[name].primitive == "terrain" for name in lands):
-        yield f"objects: {' and '.join(lands)} are both the ground; keep one of them"
-    owner: dict[str, str] = {}
-    for i, item in enumerate(plan.objects):
-        if isinstance(item.built, FromScatter) and items.get(item.built.on, item).primitive != "terrain":
-            yield f"objects.{i}.construction.on: {item.built.on!r} is no terrain of the plan; scatter it on one"
-        for prim in item.prims:
-            if owner.setdefault(prim, item.name) != item.name:
-                yield f"objects.{i}.name: {prim} would be a part of {item.name} and of {owner[prim]}; rename one"
 
 
 def _others(plan: Draft) -> Iterator[str]:

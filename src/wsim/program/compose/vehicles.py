@@ -2,67 +2,36 @@
 
 from __future__ import annotations
 
-import math
-
-from wsim.errors import UserError
-from wsim.plan.layout.land import terrain_of
+from wsim.plan.layout.drives import rear_axle
+from wsim.plan.layout.land import survey, terrain_of
 from wsim.plan.schema import Actuation, FromVehicle, PlanObject
 from wsim.program.compose.draft import Draft
 from wsim.program.compose.poses import position
 from wsim.program.source import call, number, tuple_of
-from wsim.scene.vehicle_spec import preset
 
-LEVEL = 1e-6  # [deg]: as far as a vehicle may lean
-ALONG = 1e-3  # of its speed: as far as its velocity may point aside
+LEVEL = 1e-6  # [deg], [m/s]: less is none
+DUST = 2e-6  # [m]: to which a pose is rounded
 
 
 def arguments(draft: Draft, item: PlanObject) -> list[str]:
-    """All arguments but the name; on terrain it stands where that is under it.
-
-    Raises:
-        UserError: If the plan gives it what is its own, leans it, or starts it aside.
-    """
-    turn = item.pose.rotation_deg if item.pose is not None else (0.0, 0.0, 0.0)
-    for what, given in (
-        ("angular_velocity_deg", any(item.angular_velocity_deg or ())),
-        ("registration.mass or .density", item.registration.mass or item.registration.density),
-        ('state "kinematic"', item.state == "kinematic"),
-        ("roll or pitch", max(abs(turn[0]), abs(turn[1])) > LEVEL),
-    ):
-        if given:
-            raise UserError(f"{item.name}: a vehicle stands on its wheels with its own {what}; remove it")
+    """All arguments but the name; on terrain it stands where that is under it, and leans as it does."""
     assert isinstance(item.built, FromVehicle)
-    at, land = position(item), terrain_of(draft.plan)
-    place = f"{draft.handles[land.name]}.place({number(at[0])}, {number(at[1])})" if land else tuple_of(at)
-    speed = start_speed(item)
+    roll, pitch, yaw = item.pose.rotation_deg if item.pose is not None else (0.0, 0.0, 0.0)
+    turns = (("yaw_deg", yaw), ("pitch_deg", pitch), ("roll_deg", roll), ("speed", item.speed_ahead))
     return [
-        f'"{item.built.vehicle}"', f"position={place}", *([f"yaw_deg={number(turn[2])}"] if turn[2] else []),
-        *([f"speed={number(speed)}"] if speed else []),
+        f'"{item.built.vehicle}"', f"position={_place(draft, item)}",
+        *(f"{name}={number(value)}" for name, value in turns if abs(value) > LEVEL),
     ]  # fmt: skip
 
 
-def start_speed(item: PlanObject) -> float:
-    """Forward at the start [m/s].
-
-    Raises:
-        UserError: If its velocity is not along its heading.
-    """
-    yaw = math.radians(item.pose.rotation_deg[2]) if item.pose is not None else 0.0
-    x, y, z = item.velocity
-    ahead, aside = x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw)
-    if math.hypot(aside, z) > ALONG * max(abs(ahead), 1e-9) and any(item.velocity):
-        raise UserError(
-            f"{item.name}: its velocity {list(item.velocity)} m/s is not along its heading; turn one of them"
-        )
-    return ahead
-
-
-def rear_axle(item: PlanObject) -> tuple[float, float]:
-    """Where the middle of its rear axle starts, (x, y) [m]: that is what a driver leads along the route."""
-    assert isinstance(item.built, FromVehicle) and item.pose is not None
-    (x, y, _), yaw = item.pose.position, math.radians(item.pose.rotation_deg[2])
-    back = 0.5 * preset(item.built.vehicle).wheelbase
-    return round(x - back * math.cos(yaw), 3), round(y - back * math.sin(yaw), 3)
+def _place(draft: Draft, item: PlanObject) -> str:
+    """The point between its axles: of terrain, or straight above it."""
+    at, land = position(item), terrain_of(draft.plan)
+    if land is None:
+        return tuple_of(at)
+    above = at[2] - survey(land).height(at[0], at[1])
+    given = [number(at[0]), number(at[1]), *([f"above={number(above)}"] if abs(above) > DUST else [])]
+    return f"{draft.handles[land.name]}.place({', '.join(given)})"
 
 
 def driven(item: PlanObject) -> Actuation | None:
@@ -95,8 +64,7 @@ def drivers(draft: Draft) -> list[str]:
         draft.drivers.append(name)
         path = f"Road({draft.way((rear_axle(item), *((x, y) for x, y, *_ in each.route)))}).line()"
         given = [f'"{item.name}"', f'"{item.built.vehicle}"', f"path={path}", f"speed={number(each.speed or 0.0)}"]
-        speed = start_speed(item)
-        given += [f"start_speed={number(speed)}"] if speed else []
+        given += [f"start_speed={number(item.speed_ahead)}"] if item.speed_ahead > LEVEL else []
         lines += call(f"{name} = Driver", given, depth=0)
     return lines
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from itertools import pairwise
 from typing import TYPE_CHECKING, get_args
 
 from wsim.assets import get
 from wsim.errors import UserError
+from wsim.plan.layout.drives import drive_time
 from wsim.plan.layout.land import survey
 from wsim.plan.schema import Actuation, FromVehicle, Objective, PlanObject, Pose, Registration, Vec3
 from wsim.plan.schema.constructions import VehicleKind
@@ -191,17 +191,8 @@ def _ahead(way: Way, end: int, by: float) -> tuple[tuple[float, float], float]:
 
 
 def _duration(asked: _Drive, way: Way) -> float:
-    """What its driver takes, by its own speeds along the way [s], and time to settle."""
-    from wsim.scene import Driver, Road  # as above
-
-    line = Road(way).line()
-    driver = Driver(asked.kind, asked.kind, path=line, speed=asked.speed)
-    steps = [math.dist(a, b) for a, b in pairwise(line)]
-    along = [0.0]
-    for step in steps:
-        along.append(along[-1] + step)
-    mean = [0.5 * (driver.speed_at(a) + driver.speed_at(b)) for a, b in pairwise(along)]
-    return float(math.ceil(sum(step / max(speed, 0.1) for step, speed in zip(steps, mean, strict=True)) + SETTLES))
+    """What its driver takes along the way [s], and time to settle."""
+    return float(math.ceil(drive_time(asked.kind, way, asked.speed) + SETTLES))
 
 
 def _assume(cast: Cast, asked: _Drive, way: Way) -> None:

@@ -1,0 +1,65 @@
+"""How long a plan's drivers take: a run that ends before their way does is refused."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+from wsim.plan.layout.errors import LayoutError
+from wsim.plan.schema import FromVehicle, Plan, PlanObject
+
+Spot = tuple[float, float]
+SLOWEST = 0.1  # [m/s]: where it sets off and stops
+
+
+def rear_axle(item: PlanObject) -> Spot:
+    """Where the middle of its rear axle starts, (x, y) [m]: that is what a driver leads along the route."""
+    from wsim.scene.vehicle_spec import preset  # with USD, and few plans have a vehicle
+
+    assert isinstance(item.built, FromVehicle) and item.pose is not None
+    (x, y, _), (ahead, aside, _) = item.pose.position, item.ahead
+    back = 0.5 * preset(item.built.vehicle).wheelbase
+    return round(x - back * ahead, 3), round(y - back * aside, 3)
+
+
+def drive_time(kind: str, way: Sequence[Spot], speed: float, start_speed: float = 0.0) -> float:
+    """What a driver takes along a smooth line through points, by its own speeds [s].
+
+    Raises:
+        LayoutError: The scene would refuse the driver; in the scene's words.
+    """
+    from wsim.scene import Driver, Road, SceneError  # with USD, as above
+
+    try:
+        line = Road(way).line()
+        driver = Driver(kind, kind, path=line, speed=speed, start_speed=max(0.0, start_speed))
+    except SceneError as error:
+        raise LayoutError(str(error)) from error
+    steps = [math.dist(a, b) for a, b in pairwise(line)]
+    along = [0.0]
+    for step in steps:
+        along.append(along[-1] + step)
+    mean = [0.5 * (driver.speed_at(a) + driver.speed_at(b)) for a, b in pairwise(along)]
+    return sum(step / max(fast, SLOWEST) for step, fast in zip(steps, mean, strict=True))
+
+
+def check_drives(plan: Plan) -> None:
+    """Whether each driver comes to the end of its route in the time that there is.
+
+    Raises:
+        LayoutError: One does not, or the scene would refuse it.
+    """
+    for item in plan.objects:
+        for each in item.registration.actuation:
+            if each.kind != "driver" or each.speed is None or not isinstance(item.built, FromVehicle):
+                continue
+            if item.pose is None:
+                continue
+            way = [rear_axle(item), *((x, y) for x, y, *_ in each.route)]
+            takes = drive_time(item.built.vehicle, way, each.speed, item.speed_ahead)
+            if takes > plan.simulation.duration:
+                raise LayoutError(
+                    f"simulation.duration: {plan.simulation.duration:g} s: {item.name} takes {takes:.3g} s along its "
+                    f"route at {each.speed:g} m/s; give it {math.ceil(takes + 1.0)} s, or a shorter route"
+                )
