@@ -345,6 +345,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {
             "name": "new name", "eye": "three numbers", "target": "three numbers", "fov": "number > 0",
             "width": "whole number", "height": "whole number",
+            "follows": "body that moves, or the world", "turns": "flag",
         },
     ),
     "light": (

@@ -60,7 +60,7 @@ class Sensors(Author):
         """
         call = Call("sensor_imu", name)
         path = self._path(call)
-        prim = self._carrier(call, body)
+        prim = self._rigid_body(call, "body", body)
         names = Sdf.ValueTypeNames
         values: Values = {}
         for part, noise, bias, unit in (
@@ -149,7 +149,9 @@ class Sensors(Author):
         """
         call = Call("sensor_range", name)
         path = self._path(call)
-        prim = None if body is None else self._carrier(call, body, ", or give None and a position in the world")
+        prim = (
+            None if body is None else self._rigid_body(call, "body", body, ", or give None and a position in the world")
+        )
         across, up = call.integer("rays", rays, 1, MAX_RAYS), call.integer("layers", layers, 1, MAX_RAYS)
         if across * up > MAX_RAYS:
             call.fail(f"rays = {across} in layers = {up} are {across * up}; at most {MAX_RAYS}")
@@ -202,7 +204,7 @@ class Sensors(Author):
         """
         call = Call("sensor_contact", name)
         path = self._path(call)
-        prim = self._carrier(call, body)
+        prim = self._rigid_body(call, "body", body)
         if not any(part.HasAPI(UsdPhysics.CollisionAPI) for part in Usd.PrimRange(prim)):
             call.fail(f"body = {shown(prim.GetName())} has nothing that collides; name a solid")
         names = Sdf.ValueTypeNames
@@ -219,15 +221,6 @@ class Sensors(Author):
         schema.apply(made, kind, values)
         note_line(made)
         return made
-
-    def _carrier(self, call: Call, body: Handle | str, otherwise: str = "") -> Usd.Prim:
-        prim = self._find(call, "body", body)
-        if not prim.HasAPI(UsdPhysics.RigidBodyAPI):
-            call.fail(
-                f"body = {shown(prim.GetName())} is nothing that moves; name a body, or of a robot or a vehicle one of "
-                f"its links{otherwise}"
-            )
-        return prim
 
     def _freedoms(self, call: Call, field: str, joint: Handle | str) -> list[Usd.Prim]:
         """A hinge or a slider, or those of a robot."""
