@@ -149,7 +149,7 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
         yield from joint_problems(stage)
         yield from policy_problems(ours)
         yield from sensor_problems(ours)
-        yield from camera_problems(ours)
+        yield from camera_problems(prims)
         if any(schema.has(prim, schema.CONTACT) for prim in ours):
             yield from contact_problems(prims)
         wrong = list(motion_problems(stage))

@@ -18,7 +18,7 @@ from wsim.scene import schema
 from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.describe_joints import read_gears, read_joints
 from wsim.scene.errors import one_line
-from wsim.scene.usd_cameras import read_camera
+from wsim.scene.usd_cameras import is_view, read_camera
 from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
@@ -73,7 +73,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         springs=springs(ours),
         ropes=ropes(ours),
         contacts=read_contacts(ours),
-        cameras=[read_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
+        cameras=[read_camera(prim) for prim in prims if is_view(prim)],
         lights=list(_lights(prims)),
         parameters=[_parameter(prim) for prim in ours if schema.has(prim, schema.PARAMETER)],
     )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from wsim.geometry.rotations import conjugate, multiply, rotate
 from wsim.scene.world import Camera, Vec3, World
+from wsim.scene.world_sensors import SensorCamera
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +35,20 @@ def camera_at(camera: Camera, world: World, pose: ArrayLike) -> Camera:
     return camera.model_copy(
         update={"eye": eye, "target": target, "up": _vec3(rotate(turned, np.array(camera.up, dtype=np.float64)))}
     )
+
+
+def view_of(sensor: SensorCamera, world: World) -> Camera:
+    """The camera that a sensor is, as its world starts: it looks along +X of its frame, +Z up."""
+    place, turn = np.array(sensor.position), np.array(sensor.rotation)
+    if sensor.body is not None:
+        body = world.body(sensor.body)
+        turned = np.array(body.rotation)
+        place, turn = np.array(body.position) + rotate(turned, place), multiply(turned, turn)
+    ahead, up = (rotate(turn, axis) for axis in (np.array((1.0, 0.0, 0.0)), np.array((0.0, 0.0, 1.0))))
+    return Camera(
+        prim=sensor.prim, eye=_vec3(place), target=_vec3(place + ahead), up=_vec3(up), fov=sensor.fov,
+        width=sensor.width, height=sensor.height, follows=sensor.body, turns=sensor.body is not None,
+    )  # fmt: skip
 
 
 def way_of(camera: Camera, world: World, poses: ArrayLike) -> tuple[Floats, Floats]:

@@ -68,11 +68,8 @@ class Views(Author):
         prim = camera.GetPrim()
         note_line(prim)
         set_pose(prim, place, _look_at(place, aim))
-        camera.CreateHorizontalApertureAttr(_APERTURE)
-        camera.CreateVerticalApertureAttr(_APERTURE * rows / columns)
-        camera.CreateFocalLengthAttr(_APERTURE / 2 / math.tan(math.radians(angle) / 2))
+        write_lens(camera, angle, columns, rows)
         camera.CreateFocusDistanceAttr(distance)
-        camera.CreateClippingRangeAttr(Gf.Vec2f(0.01, MAX_POSITION))
         schema.apply(
             prim,
             schema.CAMERA,
@@ -141,6 +138,14 @@ class Views(Author):
         light.CreateIntensityAttr(strength)
         light.CreateColorAttr(Gf.Vec3f(*tint))
         return Handle(name=name, path=path, kind="light")
+
+
+def write_lens(camera: UsdGeom.Camera, angle: float, columns: int, rows: int) -> None:
+    """Author a pinhole lens that sees `angle` [deg] across, for square pixels."""
+    camera.CreateHorizontalApertureAttr(_APERTURE)
+    camera.CreateVerticalApertureAttr(_APERTURE * rows / columns)
+    camera.CreateFocalLengthAttr(_APERTURE / 2 / math.tan(math.radians(angle) / 2))
+    camera.CreateClippingRangeAttr(Gf.Vec2f(0.01, MAX_POSITION))
 
 
 def _look_at(eye: Vec3, target: Vec3) -> Gf.Quatd:
