@@ -26,7 +26,7 @@ from wsim.scene.world import World
 from wsim.skills import Skill, skills
 
 PATTERNS = {
-    "cameras-and-light", "containers-and-fluid", "control-functions", "conveyors-and-lifts", "floating-bodies",
+    "camera-sensors", "cameras-and-light", "containers-and-fluid", "control-functions", "conveyors-and-lifts", "floating-bodies",
     "joints-and-mechanisms",
     "objectives", "parameters", "pendulums-and-springs", "projectiles-and-collisions", "raw-usd", "repairing",
     "rigid-bodies", "robots", "ropes-and-pulleys", "stacks-and-contact", "time-step-and-stability",

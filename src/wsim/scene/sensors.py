@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
+from wsim.defaults import PIXEL_CHANNELS
 from wsim.limits import MAX_PIXELS, MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose, world_pose
-from wsim.scene.usd_shapes import to_vec3
 from wsim.scene.validate import Call, shown
 from wsim.scene.views import write_lens
-from wsim.scene.world_sensors import PIXEL_CHANNELS
 
 _MOST_NOISE = 1e3  # [m/s^2/sqrt(Hz)], [rad/s/sqrt(Hz)]
 _MOST_BIAS = 1e3  # [m/s^2], [rad/s]
@@ -246,7 +245,7 @@ class Sensors(Author):
             made.CreateRelationship("wsim:body", custom=False).SetTargets([prim.GetPath()])
             begin, turned = world_pose(prim)
             place, turn = begin + turned.Transform(place), turned * turn
-        set_pose(made, to_vec3(place), turn * _LENS)
+        set_pose(made, (place[0], place[1], place[2]), turn * _LENS)
         note_line(made)
         return Handle(made.GetName(), path, "sensor")
 

@@ -10,7 +10,6 @@ from pydantic import BaseModel, ConfigDict, Field
 _Vec3: TypeAlias = tuple[float, float, float]
 _Quat: TypeAlias = tuple[float, float, float, float]
 Shape: TypeAlias = tuple[int, ...]
-PIXEL_CHANNELS = ("color", "depth", "segmentation")
 
 
 class _Sensor(BaseModel):
