@@ -240,7 +240,7 @@ class Sensors(Author):
         made = camera.GetPrim()
         schema.apply(made, schema.SENSOR_CAMERA, values)
         write_lens(camera, angle, columns, rows)
-        place, turn = (mounting[key][1] for key in ("position", "rotation"))
+        place, turn = Gf.Vec3d(mounting["position"][1]), Gf.Quatd(mounting["rotation"][1])
         if prim is not None:
             made.CreateRelationship("wsim:body", custom=False).SetTargets([prim.GetPath()])
             begin, turned = world_pose(prim)
