@@ -57,7 +57,7 @@ OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terr
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
          "body", "joints", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
-         "layers", "areas", "on", "count", "clear")  # fmt: skip
+         "layers", "areas", "on", "count", "clear", "follows", "turns")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip
