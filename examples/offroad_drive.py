@@ -25,10 +25,12 @@ def build(scene: Scene) -> None:
         color=(0.15, 0.22, 0.08),
     )
     # Its rear axle stands where the track begins, its nose along it.
-    scene.vehicle("truck", "hmmwv", position=land.place(START[0] + 1.56, START[1] + 0.65), yaw_deg=22.8)
+    truck = scene.vehicle("truck", "hmmwv", position=land.place(START[0] + 1.56, START[1] + 0.65), yaw_deg=22.8)
     scene.scatter("rock", on=land, count=70, size=(0.3, 1.6), clear=[(TRACK, 1.0), (START, 6.0), (GOAL, 6.0)], seed=2)
     scene.scatter("tree", ["conifer", "deciduous_tree"], on=land, count=22, clear=[(TRACK, 2.5)], seed=5)
     scene.light("sun", direction=(-0.4, 0.5, -1.0))
+    behind, ahead = (-66.5, -2.5, 5.0), (-55.0, 0.65, 1.0)
+    scene.camera("follow", eye=behind, target=ahead, fov=60.0, width=1280, height=720, follows=truck)
     scene.camera("side", eye=(-1.0, -68.0, 40.0), target=(-1.0, 4.0, 0.0), fov=82.0, width=1280, height=720)
     scene.camera("start", eye=(-68.0, -10.0, 6.0), target=(-30.0, 0.0, 0.0), fov=70.0, width=960, height=540)
     scene.camera("goal", eye=(66.0, -14.0, 7.0), target=(15.0, 0.0, 1.0), fov=60.0, width=960, height=540)

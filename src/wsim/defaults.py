@@ -16,3 +16,4 @@ FLUID_VISCOSITY = 0.001  # of water [Pa s]
 FRICTION = 0.5
 FIELD_OF_VIEW = 50.0  # of a camera, horizontal [deg]
 SENSOR_RATE = 100.0  # samples a second [Hz]
+PIXEL_CHANNELS = ("color", "depth", "segmentation")  # of a camera that is a sensor

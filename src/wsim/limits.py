@@ -28,6 +28,7 @@ MAX_DURATION = 3600.0  # [s]
 MAX_FRAME_RATE = 1000.0  # [1/s]
 MIN_RATE, MAX_RATE = 1e-3, 1e4  # [Hz], of a sensor
 MAX_RAYS = 100_000  # of a sensor, in a sample
+MAX_PIXELS = 640 * 480  # of a camera that is a sensor
 SHORTEST_WAY = 1e-6  # [m] or [deg] between a joint's stops
 MIN_TIME_STEP = 1e-5  # [s], of a step that is asked for, or that a spring needs
 MAX_TIME_STEP = 1.0  # [s]

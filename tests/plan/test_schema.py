@@ -316,6 +316,10 @@ MISTAKES = {
         lambda d: d.update(cameras=[{"name": "side", "view": "from_above"}]),
         ["cameras.0.view: Input should be 'side_minus_x'"],
     ),
+    "camera that follows what stands": (
+        lambda d: d.update(cameras=[{"name": "side", "view": "top_down", "follows": "tank"}]),
+        ["cameras.0.follows: 'tank' is no body that moves; the plan has "],
+    ),
     "camera of nothing": (
         lambda d: d.update(cameras=[{"name": "side", "view": "top_down", "of": "whale"}]),
         ["cameras.0.of: no object 'whale'"],

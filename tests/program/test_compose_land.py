@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from tests.plan.layout.test_land import LAND, ROCKS, a_plan, driven
+from wsim.plan.schema import Plan
 from wsim.program.compose import compose
 from wsim.program.validator import validate
 from wsim.scene import Scene
+from wsim.scene.describe import describe
 
 
 def test_a_program_lays_the_land_and_drives_over_it() -> None:
@@ -30,6 +32,19 @@ def test_a_program_lays_the_land_and_drives_over_it() -> None:
     names = {str(prim.GetPath()).split("/")[2] for prim in scene.stage.Traverse() if str(prim.GetPath()).count("/") > 1}
     assert {prim for item in made.objects for prim in item.prims} <= names
     assert callable(space["control"])
+
+
+def test_a_camera_follows_a_vehicle() -> None:
+    follow = {"name": "follow", "eye": [-19.0, -2.0, 5.0], "target": [-9.0, 0.0, 1.0], "follows": "car"}
+    plan = Plan.model_validate(a_plan(driven()).model_dump() | {"cameras": [follow]})
+    assert plan.model_dump()["cameras"][0]["follows"] == "car"
+    text = compose(plan)
+    assert validate(text, plan) == []
+    space: dict = {}
+    exec(compile(text, "program.py", "exec"), space)  # what it is, is known here
+    scene = Scene()
+    space["build"](scene)
+    assert [camera.follows for camera in describe(scene.stage).cameras] == ["/World/car"]
 
 
 def test_a_vehicle_of_its_own_speed_starts_its_driver_with_it() -> None:

@@ -220,6 +220,22 @@ def test_a_sensor_tells_what_it_has_alone() -> None:
         world.sensor("imu").gyroscope[:] = 1.0
 
 
+def test_a_camera_tells_numbers_of_what_its_labels_name() -> None:
+    channels = [
+        ("/World/eye", "color", (2, 3, 3)),
+        ("/World/eye", "depth", (2, 3)),
+        ("/World/eye", "segmentation", (2, 3)),
+    ]
+    layout = ControlLayout([], world_count=2, channels=channels, labels=["", "/World/ball", "/World/arm"])
+    arrays = layout.views(bytearray(layout.size))
+    arrays["sensed"][:] = np.arange(2 * 30).reshape(2, 30)
+    eye = ControlWorld(layout, arrays).sensor("eye")
+    assert eye.labels == ["", "ball", "arm"]
+    assert (eye.color.shape, eye.color.dtype) == ((2, 2, 3, 3), np.uint8) and eye.color[0, 0, 1].tolist() == [3, 4, 5]
+    assert (eye.depth.shape, eye.depth[1, 0, 0]) == ((2, 2, 3), 48.0)
+    assert (eye.segmentation.dtype, eye.segmentation[0, 1].tolist()) == (np.int32, [27, 28, 29])
+
+
 def test_a_name_that_two_prims_have_needs_its_path() -> None:
     layout = ControlLayout(["/World/a/wheel", "/World/b/wheel"])
     world = ControlWorld(layout, layout.views(bytearray(layout.size)))

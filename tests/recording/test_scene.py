@@ -75,6 +75,29 @@ def test_the_camera_looks_at_its_target(drawn, world):
     np.testing.assert_allclose(project(eye + edge), [160, 45], atol=1e-3)
 
 
+def test_the_poses_of_a_camera_that_follows_come_with_the_frames(tmp_path, world, make_frame):
+    block = world.bodies[0]
+    camera = world.cameras[0].model_copy(update={"follows": block.prim})
+    with RecordingWriter(tmp_path / "r.rrd", world.model_copy(update={"cameras": [camera]})) as writer:
+        frames = [make_frame(k) for k in range(2)]
+        for k, frame in enumerate(frames):
+            writer.frame(0.1 * k, frame)
+    found = static_columns(tmp_path / "r.rrd")
+    assert ("/World/side", "Pinhole:resolution") in found and ("/World/side", "Transform3D:translation") not in found
+    poses = {}
+    for chunk in RrdReader(tmp_path / "r.rrd").stream():
+        if chunk.entity_path == "/World/side" and not chunk.is_static:
+            batch = chunk.to_record_batch()
+            for name in ("translation", "quaternion"):
+                index = batch.schema.get_field_index(f"Transform3D:{name}")
+                if index >= 0:
+                    poses[name] = np.array([row[0] for row in batch.column(index).to_pylist()])
+    offset = np.subtract(camera.eye, block.position)
+    np.testing.assert_allclose(poses["translation"], [frame.body_q[0, :3] + offset for frame in frames], atol=1e-5)
+    np.testing.assert_allclose(np.abs([rotate(q, np.array((0.0, 0.0, 1.0))) for q in poses["quaternion"]]),
+                               np.abs([look_at(camera)[:, 2]] * 2), atol=1e-5)  # fmt: skip
+
+
 @pytest.mark.parametrize("target", [(0, 0, -1), (0, 0, 1), (1, 0, 0), (-1, 2, 0.5)])
 def test_camera_axes_are_a_rotation(target):
     axes = look_at(Camera(prim="/World/c", eye=(0, 0, 0), target=target))

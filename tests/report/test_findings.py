@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from wsim.judge.verdict import Finding, RepairTarget
 from wsim.recording import read
 from wsim.report.chart import Limit
 from wsim.report.fixes import command, describe, make_fixes
-from wsim.report.locate import ring_of, where_is
+from wsim.report.locate import camera_then, ring_of, where_is
 from wsim.report.moments import moment_chart
 from wsim.report.signals import find_signal
 from wsim.report.source import statement
@@ -143,6 +144,17 @@ def test_a_prim_is_ringed_where_the_camera_sees_it(recording) -> None:
     center, reach = where_is(recording, BALL, 0.0)
     assert center == pytest.approx((0.25, 0.0, 0.58)) and reach == pytest.approx(0.06)
     assert where_is(recording, WATER, 0.0) is None
+
+
+def test_a_prim_is_ringed_by_a_camera_that_follows_it(recording) -> None:
+    """It stands as far from its body at any time as at the start."""
+    camera = Camera(prim="/World/c", eye=(0.25, -2.0, 0.58), target=(0.25, 0.0, 0.58), fov=90.0, follows=BALL)
+    last = float(recording.time[-1])
+    (before, _), (after, _) = (where_is(recording, BALL, time) for time in (0.0, last))
+    assert math.dist(before, after) > 0.05
+    seen = ring_of(camera_then(recording, camera, last), after, 0.2)
+    assert seen == pytest.approx(ring_of(camera_then(recording, camera, 0.0), before, 0.2))
+    assert seen != pytest.approx(ring_of(camera, after, 0.2))
 
 
 def lower(prim: str, current: float = 2500.0) -> RepairTarget:

@@ -145,6 +145,7 @@ KINDS: dict[str, tuple[object, ...]] = {
     ),
     "file": (None, 7, "", "gone.obj", "model.docx", ".", b"a.obj", [], "/dev/null"),
     "scale": (*POSITIVE[:8], -1.0, 0.0, (1.0, 1.0), (1.0, 0.0, 1.0), (1.0, NAN, 1.0), None, {1.0, 2.0, 3.0}),
+    "channels": ("color", 1.0, None, [], ["normals"], [None], {"color"}, [["color"]], NAN),
     "vehicle": (None, 1.0, "hmwv", "", True, VehicleSpec(mass=-1.0), VehicleSpec(wheelbase=0.1), ["car"]),
     "robot": ("unicorn", "", 7, None, NAN, [], object(), "gone.urdf"),
     "robot's pose": ("nobody", "", 7, NAN, [], object()),
@@ -237,6 +238,11 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {"name": "new name", "body": "body that moves, or the world", **POSE, **RATE, "rays": "whole number",
          "fan_deg": "span", "layers": "whole number", "tilt_deg": "span", "nearest": "number >= 0",
          "farthest": "number > 0", "noise": "number >= 0", "seed": "seed"},
+    ),
+    "sensor_camera": (
+        {"name": "new", "body": "ball"},
+        {"name": "new name", "body": "body that moves, or the world", **POSE, **RATE, "width": "whole number",
+         "height": "whole number", "fov": "number > 0", "farthest": "number > 0", "channels": "channels"},
     ),
     "vehicle": (
         {"name": "new"},
@@ -345,6 +351,7 @@ TABLE: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
         {
             "name": "new name", "eye": "three numbers", "target": "three numbers", "fov": "number > 0",
             "width": "whole number", "height": "whole number",
+            "follows": "body that moves, or the world", "turns": "flag",
         },
     ),
     "light": (

@@ -127,6 +127,14 @@ CASES: list[tuple[Callable[[Scene], object], str]] = [
     (lambda s: s.joint_prismatic("j", None, "block", anchor=(0, NAN, 0)), "anchor[1] = nan"),
     (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 1)), "the camera looks at itself"),
     (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), fov=180), "fov = 180 must be <= 170 deg"),
+    (
+        lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), follows="tank"),
+        'follows = "tank" is nothing that moves; name a body, or of a robot or a vehicle one of its links',
+    ),
+    (
+        lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), turns=True),
+        "turns = True needs follows, the body that it turns with",
+    ),
     (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), width=0), "width = 0 must be >= 16 pixel"),
     (lambda s: s.camera("c", eye=(0, 0, 1), target=(0, 0, 0), width=99.5), "width = 99.5 must be a whole number"),
     (lambda s: s.light("l", "laser"), 'kind = "laser" must be one of distant, dome, sphere'),

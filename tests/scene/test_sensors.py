@@ -6,13 +6,16 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
-from pxr import Gf, Usd, UsdPhysics
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
+from wsim.geometry.rotations import rotate
 from wsim.scene import Scene, SceneError
 from wsim.scene.check import check_stage
 from wsim.scene.describe import describe
-from wsim.scene.world_sensors import SensorContact, SensorIMU, SensorJoints, SensorRange
+from wsim.scene.following import view_of
+from wsim.scene.world_sensors import SensorCamera, SensorContact, SensorIMU, SensorJoints, SensorRange
 
 
 @pytest.fixture
@@ -74,6 +77,26 @@ def test_a_contact_sensor_is_read_back(scene: Scene, tmp_path: Path) -> None:
     assert skin.rotation == pytest.approx((0.0, 0.0, 1.0, 0.0))
 
 
+def test_a_camera_is_read_back_and_is_none_that_films(scene: Scene, tmp_path: Path) -> None:
+    scene.sensor_camera("eye", "door", position=(0.4, 0.0, 0.1), rotation_deg=(0.0, 0.0, 90.0), width=64, height=48,
+                        fov=90.0, farthest=12.0, rate=5.0, channels=["depth", "color"])  # fmt: skip
+    path = scene.save(tmp_path / "stage.usda")
+    assert check_stage(path, [tmp_path]) == []
+    world = describe(path)
+    (eye,) = world.sensors
+    assert isinstance(eye, SensorCamera) and eye.channels == {"color": (48, 64, 3), "depth": (48, 64)}
+    assert (eye.body, eye.fov, eye.farthest, eye.rate) == ("/World/door", pytest.approx(90.0), 12.0, 5.0)
+    assert not any(camera.prim == eye.prim for camera in world.cameras)
+    # Who looks through the prim in a USD viewer sees what it sees at the start: USD's cameras look along -Z, +Y up.
+    frame = UsdGeom.Xformable(scene.stage.GetPrimAtPath("/World/eye")).ComputeLocalToWorldTransform(0)
+    view, door = view_of(eye, world), world.body("/World/door")
+    assert tuple(frame.ExtractTranslation()) == pytest.approx(view.eye)
+    assert tuple(frame.TransformDir(Gf.Vec3d(0, 0, -1))) == pytest.approx(np.subtract(view.target, view.eye), abs=1e-6)
+    assert tuple(frame.TransformDir(Gf.Vec3d(0, 1, 0))) == pytest.approx(view.up, abs=1e-6)
+    sideways = rotate(np.array(door.rotation), np.array((0.0, 1.0, 0.0)))
+    np.testing.assert_allclose(np.subtract(view.target, view.eye), sideways, atol=1e-6)
+
+
 def test_a_robot_stands_for_its_hinges_and_sliders(tmp_path: Path) -> None:
     scene = Scene()
     arm = scene.robot("arm", "desk_arm", fixed=True)
@@ -97,6 +120,23 @@ REFUSED: dict[str, tuple[Callable[[Scene], object], str]] = {
     "many rays": (
         lambda s: s.sensor_range("new", None, rays=1000, layers=101),
         "rays = 1000 in layers = 101 are 101000",
+    ),
+    "many pixels": (
+        lambda s: s.sensor_camera("new", None, width=1000, height=1000),
+        "width = 1000 by height = 1000 are 1000000 pixels; at most 307200",
+    ),
+    "a lens": (lambda s: s.sensor_camera("new", None, fov=180.0), "fov = 180 must be <= 170 deg"),
+    "no channel": (
+        lambda s: s.sensor_camera("new", None, channels=[]),
+        r"channels = \[\] has none; name some of color",
+    ),
+    "a channel": (
+        lambda s: s.sensor_camera("new", None, channels=["normals"]),
+        'channels = "normals" must be one of color, depth, segmentation',
+    ),
+    "a wall that looks": (
+        lambda s: s.sensor_camera("new", s.ground("floor")),
+        'body = "floor" is nothing that moves; .*, or give None and a place in the world',
     ),
     "nothing between": (lambda s: s.sensor_range("new", None, nearest=3.0, farthest=2.0), "nearest = 3 m is not below"),
     "more than a turn": (lambda s: s.sensor_range("new", None, fan_deg=(-200.0, 200.0)), "more than a turn"),
@@ -165,6 +205,22 @@ WRONG: dict[str, tuple[Callable[[Usd.Prim, Usd.Prim], object], str]] = {
         lambda *_: _[0].GetStage().GetPrimAtPath("/World/scan").GetAttribute("wsim:nearest").Set(40.0),
         "scan.wsim:farthest: 30 m must be above nearest, 40 m",
     ),
+    "too many pixels": (
+        lambda imu, _: imu.GetStage().GetPrimAtPath("/World/eye").GetAttribute("wsim:width").Set(10**6),
+        "eye.wsim:width: 1000000 by 120 pixels must be 1 to 307200 together",
+    ),
+    "a channel": (
+        lambda imu, _: imu.GetStage().GetPrimAtPath("/World/eye").GetAttribute("wsim:channels").Set(["depth", "x"]),
+        "eye.wsim:channels: 'x' must be one of color, depth, segmentation, once",
+    ),
+    "no depth": (
+        lambda imu, _: imu.GetStage().GetPrimAtPath("/World/eye").GetAttribute("wsim:farthest").Set(0.0),
+        "eye.wsim:farthest: 0 m must be above 0",
+    ),
+    "no lens": (
+        lambda imu, _: imu.GetStage().GetPrimAtPath("/World/eye").GetAttribute("focalLength").Set(0.0),
+        "eye.focalLength: 0 of an aperture of 20.955 must see at most 175 deg",
+    ),
     "two kinds": (lambda imu, _: imu.AddAppliedSchema("WsimSensorJointsAPI"), "imu: it is WsimSensorIMUAPI and Wsim"),
 }  # fmt: skip
 
@@ -174,6 +230,7 @@ def test_what_a_stage_says_wrong_is_told(scene: Scene, tmp_path: Path, case: str
     scene.sensor_imu("imu", "door", seed=1)
     scene.sensor_joints("encoder", "hinge")
     scene.sensor_range("scan", "door")
+    scene.sensor_camera("eye", "door")
     path = scene.save(tmp_path / "stage.usda")
     stage = Usd.Stage.Open(str(path))
     change, said = WRONG[case]

@@ -232,6 +232,30 @@ def test_camera_that_looks_at_itself_is_refused() -> None:
         render_views.camera_pose(Camera(prim="/World/c", eye=(1, 1, 1), target=(1, 1, 1)))
 
 
+@pytest.mark.parametrize("turns", [False, True])
+def test_a_camera_that_follows_keeps_its_body_where_it_was_in_the_picture(turns: bool) -> None:
+    """A box that is 30 m away and has turned by 90 degrees: one that turns too sees the same face of it."""
+    box = stages.body("box", Shape(prim="", kind="box", size=(1.0, 0.4, 0.2), color=(0.6, 0.2, 0.1)), (0.0, 0.0, 1.0))
+    behind = Camera(prim="/World/c", eye=(-3.0, 0.0, 1.0), target=(0.0, 0.0, 1.0), width=96, height=54, turns=turns)
+    world = World(bodies=[box], cameras=[behind.model_copy(update={"follows": box.prim})])
+    model = stages.model_of(world)
+    state, renderer = model.state(), CameraRenderer(model, world, style=PLAIN)
+    before = renderer.render(state)[behind.prim].shape_index >= 0
+    half = math.sqrt(0.5)
+    state.body_q.assign(np.array([(30.0, -7.0, 2.0, 0.0, 0.0, half, half)], dtype=np.float32))
+    after = renderer.render(state)[behind.prim].shape_index >= 0
+    middle = np.argwhere(after).mean(axis=0) - np.argwhere(before).mean(axis=0)
+    assert np.abs(middle).max() <= 0.5
+    if turns:
+        assert (before != after).mean() < 0.01
+    else:  # its long side, at 2.8 m of its nearest face, in place of its short one at 2.5 m
+        wide = [int(np.ptp(np.nonzero(seen.any(axis=0))[0])) + 1 for seen in (before, after)]
+        focal = 48.0 / math.tan(math.radians(25.0))
+        assert wide == pytest.approx([focal * 0.4 / 2.5, focal * 1.0 / 2.8], abs=1.5)
+    state.body_q.assign(np.array([(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)], dtype=np.float32))
+    assert (renderer.render(state)[behind.prim].shape_index >= 0).tolist() == before.tolist()
+
+
 def test_shape_colors_come_from_the_world_and_flags_stay() -> None:
     world, _ = stages.aquarium()
     model = stages.model_of(world)

@@ -41,6 +41,7 @@ CASES = {
     "Honey fills a glass.": {FLUID},
     "A drone hovers at 1 m by feedback control.": {CONTROL},
     "What an IMU on the trolley measures, and a lidar that scans the room.": {SENSE},
+    "A robot with a depth camera sees a ball and follows it by its images.": {"camera-sensors"},
     "A cart follows a sine path along a rail.": {CONTROL, JOINT},
     "Show it from above, with a close camera and sunlight from the left.": {CAMERA},
     "Sweep the friction from 0.1 to 0.9.": {PARAM},

@@ -26,8 +26,8 @@ from wsim.scene.world import World
 from wsim.skills import Skill, skills
 
 PATTERNS = {
-    "cameras-and-light", "containers-and-fluid", "control-functions", "conveyors-and-lifts", "floating-bodies",
-    "joints-and-mechanisms",
+    "camera-sensors", "cameras-and-light", "containers-and-fluid", "control-functions", "conveyors-and-lifts",
+    "floating-bodies", "joints-and-mechanisms",
     "objectives", "parameters", "pendulums-and-springs", "projectiles-and-collisions", "raw-usd", "repairing",
     "rigid-bodies", "robots", "ropes-and-pulleys", "stacks-and-contact", "time-step-and-stability",
     "sensors", "terrain", "tracks-terrain-compounds", "vehicles", "waves-and-dam-breaks",

@@ -34,6 +34,7 @@ class ControlLayout:
         joints: Prim paths of the joints with one degree of freedom, in the order of `joint_q`.
         world_count: Worlds that run side by side: the leading axis of every array.
         channels: Of sensors, in the order of `sensed`: prim path, channel, and shape of what it tells.
+        labels: Prim paths of what a camera's segmentation has numbers for, in the order of those.
         apart: Each world has the program to itself, loaded for it alone, and is asked by itself as the only one;
             without, one call is asked about all of them.
     """
@@ -43,6 +44,7 @@ class ControlLayout:
     world_count: int = 1
     apart: bool = False
     channels: list[tuple[str, str, tuple[int, ...]]] = field(default_factory=list)
+    labels: list[str] = field(default_factory=list)
 
     def shapes(self) -> dict[str, tuple[int, ...]]:
         """The shape of each array by name; all are float32, but for `t`, float64."""
@@ -143,8 +145,8 @@ class ControlJoint:
 class ControlSensor:
     """What a sensor told last, in all worlds, W of them; the arrays are for reading, and each kind has some of them."""
 
-    def __init__(self, prim: str, channels: dict[str, Floats]) -> None:
-        self._prim, self._channels = prim, channels
+    def __init__(self, prim: str, channels: dict[str, Floats], labels: Sequence[str] = ()) -> None:
+        self._prim, self._channels, self._labels = prim, channels, list(labels)
 
     @property
     def accelerometer(self) -> Floats:
@@ -186,6 +188,26 @@ class ControlSensor:
         """(W,) 1 where anything touches a contact sensor's body, else 0."""
         return self._channel("touching")
 
+    @property
+    def color(self) -> NDArray[np.uint8]:
+        """(W, H, W, 3) sRGB of a camera's newest picture: worlds, rows from the top, columns from the left."""
+        return self._channel("color").astype(np.uint8)
+
+    @property
+    def depth(self) -> Floats:
+        """(W, H, W) of a camera's pixels [m], along its axis; infinite where nothing is met."""
+        return self._channel("depth")
+
+    @property
+    def segmentation(self) -> NDArray[np.int32]:
+        """(W, H, W) number of the object that each of a camera's pixels is of, an index of `labels`; 0 is nothing."""
+        return self._channel("segmentation").astype(np.int32)
+
+    @property
+    def labels(self) -> list[str]:
+        """Names of the objects by the number that `segmentation` has for them; that of 0, nothing, is empty."""
+        return self._labels
+
     def _channel(self, name: str) -> Floats:
         if name not in self._channels:
             raise AttributeError(f"the sensor {self._prim} tells no {name}; it tells {', '.join(self._channels)}")
@@ -200,6 +222,7 @@ class ControlWorld:
         self._bodies, self._joints = _names(layout.bodies), _names(layout.joints)
         self._prims = list(dict.fromkeys(prim for prim, _, _ in layout.channels))
         self._sensors, self._channels = _names(self._prims), layout.channels
+        self._labels = [label.rsplit("/", 1)[-1] for label in layout.labels]
         self._arrays = dict(arrays)
         for name in INPUTS:
             self._arrays[name] = arrays[name].view()
@@ -241,7 +264,7 @@ class ControlWorld:
             if owner == prim:
                 found[channel] = self._arrays["sensed"][:, start:end].reshape(self.world_count, *shape)
             start = end
-        return ControlSensor(prim, found)
+        return ControlSensor(prim, found, self._labels)
 
     def apply_force(self, name: str, force: ArrayLike, torque: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         """Push a body until the next call, on top of what was applied in this one.

@@ -40,6 +40,11 @@ def make_blueprint(world: World, *, paused: bool = False, entity: str | None = N
         rrb.Spatial2DView(name=camera.prim.rsplit("/", 1)[-1], origin=entity_path(camera.prim))
         for camera in world.cameras
     ]
+    cameras += [
+        rrb.Spatial2DView(name=sensor.prim.rsplit("/", 1)[-1], origin=entity_path(f"{SENSOR_ROOT}{sensor.prim}/color"))
+        for sensor in world.sensors
+        if "color" in sensor.channels
+    ]
     if cameras:
         views.append(rrb.Horizontal(*cameras) if len(cameras) <= 3 else rrb.Tabs(*cameras))
     left = rrb.Vertical(*views, row_shares=[2, 1][: len(views)])

@@ -13,7 +13,7 @@ import rerun as rr
 
 from wsim.recording import columns as names
 from wsim.recording.contacts import columns_of
-from wsim.recording.shapes import ROOT_FRAME, is_nested, rgba
+from wsim.recording.shapes import ROOT_FRAME, camera_poses, is_nested, rgba
 from wsim.recording.ties import columns_of_ties
 from wsim.scene.cord_lines import cord_lines
 
@@ -43,6 +43,8 @@ class BodyBuffer:
         self._stream, self._world = stream, world
         self._entities = [names.entity_path(body.prim) for body in world.bodies]
         self._nested = [is_nested(body.prim, world) for body in world.bodies]
+        rows = {body.prim: i for i, body in enumerate(world.bodies)}
+        self._followers = [(camera, rows[camera.follows]) for camera in world.cameras if camera.follows in rows]
         self._heights = [names.entity_path(names.HEIGHT_ROOT + _short(b.prim)) for b in world.bodies[:MAX_HEIGHT_PLOTS]]
         self._times: list[int] = []
         self._seconds: list[float] = []
@@ -99,6 +101,9 @@ class BodyBuffer:
         for i, entity in enumerate(self._entities):
             own = [*_motion(qd[i], force[i]), *(names.column(name, array[i]) for name, array in causes.items())]
             self._stream.send_columns(entity, [index], [*self._pose(q[i], self._nested[i]), *own], strict=True)
+        for camera, i in self._followers:
+            seen_from = self._pose(camera_poses(camera, self._world, q[i]), is_nested(camera.prim, self._world))
+            self._stream.send_columns(names.entity_path(camera.prim), [index], seen_from, strict=True)
         for i, entity in enumerate(self._heights):
             height = names.column(names.SCALARS, q[i, :, 2].astype(np.float64))
             self._stream.send_columns(entity, [index], [height], strict=True)

@@ -46,6 +46,7 @@ APPLIED_TURN = "wsim.Body:applied_turn"  # angular impulse
 LEAD = "wsim.Body:lead"  # momentum and angular momentum that velocities gained beside all impulses
 CONTROLLED = "wsim.Body:controlled"  # impulse of control, which is part of the applied one
 SENSED = "wsim.Sensor:values"
+SEGMENTATION = "wsim.Sensor:segmentation"  # a PNG
 SEEN = "wsim.Camera:seen"
 SEEN_OBJECTS = "wsim.Camera:objects"
 PARTICLE_VELOCITY = "wsim.Fluid:velocity"
@@ -60,6 +61,7 @@ SCALARS = "Scalars:scalars"
 LOG_TEXT = "TextLog:text"
 LOG_LEVEL = "TextLog:level"
 IMAGE = "EncodedImage:blob"
+DEPTH_IMAGE = "EncodedDepthImage:blob"
 
 # What the viewer knows Rerun's own columns by.
 _BUILTIN = {

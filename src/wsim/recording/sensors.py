@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +11,16 @@ import numpy as np
 import rerun as rr
 
 from wsim.recording import columns as names
+from wsim.recording.sensor_pictures import PictureBuffer, read_pictures
+from wsim.scene.labels import labels_of
+from wsim.scene.world_sensors import SensorCamera
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.recording.table import Clock, Table
     from wsim.scene.world import World
+    from wsim.scene.world_sensors import Sensor
 
     Times = NDArray[np.float64]
 
@@ -30,9 +34,10 @@ class SensorTrack:
     """One sensor through time, S samples at its own rate."""
 
     time: Times  # (S,) [s]
-    channels: Mapping[str, Times]  # by name, (S, ...) of the shape that `World.sensors` says
+    channels: Mapping[str, NDArray[Any]]  # by name, (S, ...) of the shape that `World.sensors` says
+    labels: Sequence[str] = ()  # of a camera: prims of the objects by the number that its segmentation has for them
 
-    def __getitem__(self, channel: str) -> Times:
+    def __getitem__(self, channel: str) -> NDArray[Any]:
         """One of its channels; KeyError naming those there are."""
         if channel not in self.channels:
             raise KeyError(f"no channel {channel!r}; the sensor tells {list(self.channels)}")
@@ -48,6 +53,11 @@ class SensorBuffer:
         self._times: dict[str, list[int]] = {prim: [] for prim in self._shapes}
         self._rows: dict[tuple[str, str], list[Times]] = {}
         self._points: dict[str, list[NDArray[np.float32]]] = {}
+        self._pictures = {
+            sensor.prim: PictureBuffer(stream, sensor, world, _entities(sensor))
+            for sensor in world.sensors
+            if isinstance(sensor, SensorCamera)
+        }
 
     def add(self, ns: int, prim: str, sample: Mapping[str, NDArray[Any]], points: NDArray[Any] | None = None) -> None:
         """Keep one sample [ns], and points in the world [m] that are drawn for it, (n, 3).
@@ -57,10 +67,13 @@ class SensorBuffer:
         """
         if prim not in self._shapes:
             raise ValueError(f"sample: no sensor {prim!r}; the world has {sorted(self._shapes)}")
-        given = {name: np.array(part, dtype=np.float64) for name, part in sample.items()}
-        if {name: part.shape for name, part in given.items()} != self._shapes[prim]:
-            told = {name: part.shape for name, part in given.items()}
+        told = {name: np.shape(part) for name, part in sample.items()}
+        if told != self._shapes[prim]:
             raise ValueError(f"sample of {prim}: it has {told}, the world says {self._shapes[prim]}")
+        if prim in self._pictures:
+            self._pictures[prim].add(ns, sample)
+            return
+        given = {name: np.array(part, dtype=np.float64) for name, part in sample.items()}
         self._times[prim].append(ns)
         for name, part in given.items():
             self._rows.setdefault((prim, name), []).append(part.reshape(-1))
@@ -74,6 +87,8 @@ class SensorBuffer:
         """Write the samples that wait."""
         for prim in self._shapes:
             self._flush(prim)
+        for pictures in self._pictures.values():
+            pictures.flush()
 
     def _flush(self, prim: str) -> None:
         if not self._times[prim]:
@@ -99,10 +114,18 @@ def entity_of(prim: str, channel: str) -> str:
     return names.entity_path(f"{names.SENSOR_ROOT}{prim}/{channel}")
 
 
+def _entities(sensor: Sensor) -> dict[str, str]:
+    return {channel: entity_of(sensor.prim, channel) for channel in sensor.channels}
+
+
 def read_sensors(table: Table, world: World, clock: Clock) -> dict[str, SensorTrack]:
     """The tracks of a world's sensors, by prim."""
     found = {}
     for sensor in world.sensors:
+        if isinstance(sensor, SensorCamera):
+            ns, pictures = read_pictures(table, sensor, _entities(sensor))
+            found[sensor.prim] = SensorTrack(clock.seconds(ns), pictures, labels_of(world))
+            continue
         columns = {
             name: table.get(entity_of(sensor.prim, name), column_of(shape), shape, np.float64)
             for name, shape in sensor.channels.items()

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import rerun as rr
+from scipy.spatial.transform import Rotation
 
 from wsim.geometry.colour import srgb_of
-from wsim.geometry.rotations import line_of_sight, rotate
+from wsim.geometry.rotations import line_of_sight, multiply, rotate
 from wsim.recording.columns import entity_path
 from wsim.scene.cord_lines import line_radii
+from wsim.scene.following import way_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,7 +56,10 @@ def log_cord(stream: Any, cord: Spring | Rope, nested: bool = False) -> None:
 
 
 def log_camera(stream: Any, camera: Camera, width: int, height: int, nested: bool = False) -> None:
-    """Log a camera's pose and pinhole, static; `width` and `height` [pixels] are those of its pictures."""
+    """Log a camera's pinhole, and its pose unless it follows a body, static.
+
+    Its pictures have the size `width` and `height` [pixels]. The poses of one that follows come with the frames.
+    """
     focal = 0.5 * width / math.tan(math.radians(camera.fov) / 2)
     distance = float(np.linalg.norm(np.subtract(camera.target, camera.eye)))
     pose = rr.Transform3D(
@@ -69,7 +74,15 @@ def log_camera(stream: Any, camera: Camera, width: int, height: int, nested: boo
         camera_xyz=rr.ViewCoordinates.RDF,
         image_plane_distance=max(0.15 * distance, 1e-3),
     )
-    stream.log(entity_path(camera.prim), pose, pinhole, static=True, strict=True)
+    stands = [pose] if camera.follows is None else []
+    stream.log(entity_path(camera.prim), *stands, pinhole, static=True, strict=True)
+
+
+def camera_poses(camera: Camera, world: World, poses: NDArray[Any]) -> NDArray[np.float32]:
+    """Poses of a camera that follows (F, 7), by those of its body (F, 7), of axes x right, y down, z forward."""
+    eyes, turned = way_of(camera, world, poses)
+    turns = multiply(turned, Rotation.from_matrix(look_at(camera)).as_quat())
+    return np.concatenate([eyes, turns], axis=1).astype(np.float32)
 
 
 def look_at(camera: Camera) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.geometry.shapes import kind_of
+from wsim.scene.following import camera_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,6 +36,14 @@ def where_is(recording: Recording, prim: str | None, time: float) -> Ball | None
                 x, y, z = (float(value) for value in position)
                 return (x, y, z), reach
     return None
+
+
+def camera_then(recording: Recording, camera: Camera, time: float) -> Camera:
+    """A camera where it was at a time [s]: that of the body that it follows, if it follows one."""
+    if camera.follows is None:
+        return camera
+    row = [body.prim for body in recording.world.bodies].index(camera.follows)
+    return camera_at(camera, recording.world, recording.body_q[recording.frame_index(time), row])
 
 
 def ring_of(camera: Camera, center: Sequence[float], reach: float) -> tuple[float, float, float] | None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from PIL import Image, ImageDraw
 
-from wsim.report.locate import ring_of, where_is
+from wsim.report.locate import camera_then, ring_of, where_is
 from wsim.report.numbers import quantity
 
 if TYPE_CHECKING:
@@ -77,7 +77,8 @@ def find_moment(recording: Recording, finding: Finding) -> Picture | None:
     if not cameras or finding.time is None:
         return None
     ball = where_is(recording, finding.prim, finding.time)
-    rings = [ring_of(camera, *ball) if ball is not None else None for camera in cameras]
+    there = [camera_then(recording, camera, finding.time) for camera in cameras]
+    rings = [ring_of(camera, *ball) if ball is not None else None for camera in there]
     camera, ring = next(((c, r) for c, r in zip(cameras, rings, strict=True) if r is not None), (cameras[0], None))
     track = recording.images[camera.prim]
     nearest = min(range(len(track)), key=lambda k: abs(float(track.time[k]) - float(finding.time or 0.0)))

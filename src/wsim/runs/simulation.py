@@ -12,6 +12,7 @@ from wsim.program.control import ControlLayout, ControlProcess, has_control
 from wsim.progress import Progress, silent
 from wsim.runs.settings import Settings
 from wsim.scene.describe import describe
+from wsim.scene.labels import labels_of
 from wsim.scene.world_sensors import channels
 from wsim.sim.control import ArrayController, driven_joints
 
@@ -54,6 +55,8 @@ def open_controller(
         yield None
         return
     bodies, joints = [body.prim for body in world.bodies], driven_joints(world)
-    layout = ControlLayout(bodies, joints, world_count, apart=True, channels=channels(world.sensors))
+    layout = ControlLayout(
+        bodies, joints, world_count, apart=True, channels=channels(world.sensors), labels=labels_of(world)
+    )
     with ControlProcess(program, layout, settings.limits(), settings.isolation) as process:
         yield ArrayController(process.step)

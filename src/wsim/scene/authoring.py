@@ -76,6 +76,16 @@ class Author:
             call.fail(f"{field} = {shown(name)} is not in the scene; {suggestion(name, self._object_names())}")
         return prim
 
+    def _rigid_body(self, call: Call, field: str, what: object, otherwise: str = "") -> Usd.Prim:
+        """The body that an argument means."""
+        prim = self._find(call, field, what)
+        if not prim.HasAPI(UsdPhysics.RigidBodyAPI):
+            call.fail(
+                f"{field} = {shown(prim.GetName())} is nothing that moves; name a body, or of a robot or a vehicle one "
+                f"of its links{otherwise}"
+            )
+        return prim
+
     def _object_names(self) -> list[str]:
         reserved = {LOOKS, PARAMETERS, CONTACTS, PHYSICS_SCENE}
         children = self._stage.GetPrimAtPath(WORLD).GetAllChildren()

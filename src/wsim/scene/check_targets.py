@@ -111,6 +111,7 @@ _KINDS: dict[str, tuple[Callable[[Usd.Prim], bool], str]] = {
     "physics:simulationOwner": (lambda prim: prim.IsA(UsdPhysics.Scene), "a PhysicsScene"),
     "wsim:container": (lambda prim: schema.has(prim, schema.CONTAINER), "a container"),
     "wsim:body": (lambda prim: bool(prim.HasAPI(UsdPhysics.RigidBodyAPI)), "a rigid body"),
+    "wsim:follows": (lambda prim: bool(prim.HasAPI(UsdPhysics.RigidBodyAPI)), "a rigid body"),
     "wsim:joints": (lambda prim: prim.IsA(UsdPhysics.Joint), "a joint"),
     "wsim:first": (_solid, "something that collides"),
     "wsim:second": (_solid, "something that collides"),

@@ -18,6 +18,7 @@ from wsim.scene import schema
 from wsim.scene.describe_cords import ropes, springs
 from wsim.scene.describe_joints import read_gears, read_joints
 from wsim.scene.errors import one_line
+from wsim.scene.usd_cameras import is_view, read_camera
 from wsim.scene.usd_contacts import read_contacts
 from wsim.scene.usd_mass import mass_of
 from wsim.scene.usd_motion import curve_of, path_of, with_surface_velocity
@@ -27,7 +28,6 @@ from wsim.scene.usd_sensors import read_sensors
 from wsim.scene.usd_shapes import collides_as_hull, collides_exactly, read_shape, to_quat, to_vec3
 from wsim.scene.world import (
     Body,
-    Camera,
     Container,
     Fluid,
     Gear,
@@ -73,7 +73,7 @@ def describe(stage: Usd.Stage | str | Path) -> World:
         springs=springs(ours),
         ropes=ropes(ours),
         contacts=read_contacts(ours),
-        cameras=[_camera(prim) for prim in prims if prim.IsA(UsdGeom.Camera)],
+        cameras=[read_camera(prim) for prim in prims if is_view(prim)],
         lights=list(_lights(prims)),
         parameters=[_parameter(prim) for prim in ours if schema.has(prim, schema.PARAMETER)],
     )
@@ -223,28 +223,6 @@ def _fluid(prim: Usd.Prim) -> Fluid:
 
 def _look(prim: Usd.Prim) -> Shape | None:
     return read_shape(prim, Gf.Matrix4d(1.0))
-
-
-def _camera(prim: Usd.Prim) -> Camera:
-    lens = UsdGeom.Camera(prim)
-    frame = rigid_frame(prim)
-    eye = frame.ExtractTranslation()
-    forward = frame.TransformDir(Gf.Vec3d(0.0, 0.0, -1.0))
-    target = Gf.Vec3d(value_of(prim, "target", eye))
-    if Gf.Dot((target - eye).GetNormalized(), forward) < 1.0 - 1e-6:
-        # No target was written, or the camera was moved since.
-        target = eye + forward * (float(lens.GetFocusDistanceAttr().Get()) or 1.0)
-    across, down = lens.GetHorizontalApertureAttr().Get(), lens.GetVerticalApertureAttr().Get()
-    width = int(value_of(prim, "width", 640))
-    return Camera(
-        prim=str(prim.GetPath()),
-        eye=to_vec3(eye),
-        target=to_vec3(target),
-        up=to_vec3(frame.TransformDir(Gf.Vec3d(0.0, 1.0, 0.0))),
-        fov=math.degrees(2.0 * math.atan(across / 2.0 / lens.GetFocalLengthAttr().Get())),
-        width=width,
-        height=int(value_of(prim, "height", round(width * down / across))),
-    )
 
 
 def _lights(prims: list[Usd.Prim]) -> Iterator[Light]:

@@ -174,12 +174,17 @@ def _of(values: Numbers | None, k: int) -> float | None:
 
 
 def _base(call: Call, robot: Usd.Prim) -> Usd.Prim:
-    """The body that no joint hangs on another."""
+    base = base_of(robot)
+    if base is None:
+        call.fail(f"robot = {shown(robot.GetName())} has no one base that is free to move, by which a policy feels it")
+    return base
+
+
+def base_of(robot: Usd.Prim) -> Usd.Prim | None:
+    """The one link of a robot that no joint hangs on another, if it is free to move."""
     hung = {path for joint in robot.GetChild("joints").GetChildren() for path in _ends(joint)}
     links = [child for child in robot.GetChildren() if child.IsA(UsdGeom.Xform) and child.GetPath() not in hung]
-    if len(links) != 1 or not links[0].HasAPI(UsdPhysics.RigidBodyAPI):
-        call.fail(f"robot = {shown(robot.GetName())} has no one base that is free to move, by which a policy feels it")
-    return links[0]
+    return links[0] if len(links) == 1 and links[0].HasAPI(UsdPhysics.RigidBodyAPI) else None
 
 
 def _ends(joint: Usd.Prim) -> list[Sdf.Path]:

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pxr import Gf, Sdf, Usd, UsdPhysics, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
-from wsim.limits import MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
+from wsim.defaults import PIXEL_CHANNELS
+from wsim.limits import MAX_PIXELS, MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
 from wsim.scene import schema
-from wsim.scene.authoring import Author, Handle, note_line, rotation
+from wsim.scene.authoring import Author, Handle, note_line, rotation, set_pose, world_pose
 from wsim.scene.validate import Call, shown
+from wsim.scene.views import write_lens
 
 _MOST_NOISE = 1e3  # [m/s^2/sqrt(Hz)], [rad/s/sqrt(Hz)]
 _MOST_BIAS = 1e3  # [m/s^2], [rad/s]
 _MOST_FORCE = 1e9  # [N]
 _MAX_SEED = 2**31 - 1
 _HERE = (0.0, 0.0, 0.0)
+# From a sensor's frame, which looks along +X with +Z up, to USD's, along -Z with +Y up.
+_LENS = Gf.Matrix3d(0, -1, 0, 0, 0, 1, -1, 0, 0).ExtractRotation().GetQuat()
 Values = dict[str, tuple[Sdf.ValueTypeName, object]]
 
 
@@ -60,7 +64,7 @@ class Sensors(Author):
         """
         call = Call("sensor_imu", name)
         path = self._path(call)
-        prim = self._carrier(call, body)
+        prim = self._rigid_body(call, "body", body)
         names = Sdf.ValueTypeNames
         values: Values = {}
         for part, noise, bias, unit in (
@@ -149,7 +153,9 @@ class Sensors(Author):
         """
         call = Call("sensor_range", name)
         path = self._path(call)
-        prim = None if body is None else self._carrier(call, body, ", or give None and a position in the world")
+        prim = (
+            None if body is None else self._rigid_body(call, "body", body, ", or give None and a position in the world")
+        )
         across, up = call.integer("rays", rays, 1, MAX_RAYS), call.integer("layers", layers, 1, MAX_RAYS)
         if across * up > MAX_RAYS:
             call.fail(f"rays = {across} in layers = {up} are {across * up}; at most {MAX_RAYS}")
@@ -174,6 +180,73 @@ class Sensors(Author):
         )
         if prim:
             made.CreateRelationship("wsim:body", custom=False).SetTargets([prim.GetPath()])
+        return Handle(made.GetName(), path, "sensor")
+
+    def sensor_camera(
+        self,
+        name: str,
+        body: Handle | str | None,
+        *,
+        position: Sequence[float] = _HERE,
+        rotation_deg: Sequence[float] = _HERE,
+        width: int = 160,
+        height: int = 120,
+        fov: float = 60.0,
+        farthest: float = 100.0,
+        rate: float = 10.0,
+        channels: Sequence[str] = PIXEL_CHANNELS,
+    ) -> Handle:
+        """Fix a camera to a body whose pictures are measurements: what it sees, how far that is, and what it is.
+
+        It looks along +X of the sensor's frame, with +Z up in the picture. A pinhole, pixels square, the first row on
+        top: what is y to the left and z above the axis at a depth x is (W - 1) / 2 - f y / x from the left and
+        (H - 1) / 2 - f z / x from the top, f = W / (2 tan(fov / 2)). `color` is sRGB; `depth` is along the axis, not
+        along the ray; `segmentation` is an index into `labels`. The last two are of opaque solids, springs and ropes:
+        glass and fluids are looked through. The body that carries it is not in its pictures.
+
+        Args:
+            name: Of its prim.
+            body: That carries it, a handle or a name; None: it stands in the world.
+            position: Of the sensor, in the body's frame, or the world's [m].
+            rotation_deg: Roll, pitch, yaw of its frame, likewise [deg]; a positive pitch looks down.
+            width: Of a picture [pixel].
+            height: Of a picture [pixel].
+            fov: Field of view from left to right [deg].
+            farthest: A depth beyond it is told as infinite [m].
+            rate: Pictures a second [Hz]; the time between is rounded to whole steps, one at least.
+            channels: Which of "color", "depth" and "segmentation" it tells.
+
+        Raises:
+            SceneError: If the body never moves, there are too many pixels, a channel is unknown, or a number is out of
+                range.
+        """
+        call = Call("sensor_camera", name)
+        path = self._path(call)
+        prim = None if body is None else self._rigid_body(call, "body", body, ", or give None and a place in the world")
+        columns, rows = (call.integer(*each, 1, MAX_PIXELS, "pixel") for each in (("width", width), ("height", height)))
+        if columns * rows > MAX_PIXELS:
+            call.fail(f"width = {columns} by height = {rows} are {columns * rows} pixels; at most {MAX_PIXELS}")
+        angle = call.within("fov", fov, 1.0, 170.0, "deg")
+        names = Sdf.ValueTypeNames
+        values: Values = {
+            "width": (names.Int, columns),
+            "height": (names.Int, rows),
+            "farthest": (names.Double, call.size("farthest", farthest)),
+            "channels": (names.TokenArray, Vt.TokenArray(_channels(call, channels))),
+        }
+        mounting = _mounting(call, position, rotation_deg)
+        values |= mounting | _rate(call, rate)
+        camera = UsdGeom.Camera.Define(self._stage, path)
+        made = camera.GetPrim()
+        schema.apply(made, schema.SENSOR_CAMERA, values)
+        write_lens(camera, angle, columns, rows)
+        place, turn = Gf.Vec3d(mounting["position"][1]), Gf.Quatd(mounting["rotation"][1])
+        if prim is not None:
+            made.CreateRelationship("wsim:body", custom=False).SetTargets([prim.GetPath()])
+            begin, turned = world_pose(prim)
+            place, turn = begin + turned.Transform(place), turned * turn
+        set_pose(made, (place[0], place[1], place[2]), turn * _LENS)
+        note_line(made)
         return Handle(made.GetName(), path, "sensor")
 
     def sensor_contact(
@@ -202,7 +275,7 @@ class Sensors(Author):
         """
         call = Call("sensor_contact", name)
         path = self._path(call)
-        prim = self._carrier(call, body)
+        prim = self._rigid_body(call, "body", body)
         if not any(part.HasAPI(UsdPhysics.CollisionAPI) for part in Usd.PrimRange(prim)):
             call.fail(f"body = {shown(prim.GetName())} has nothing that collides; name a solid")
         names = Sdf.ValueTypeNames
@@ -219,15 +292,6 @@ class Sensors(Author):
         schema.apply(made, kind, values)
         note_line(made)
         return made
-
-    def _carrier(self, call: Call, body: Handle | str, otherwise: str = "") -> Usd.Prim:
-        prim = self._find(call, "body", body)
-        if not prim.HasAPI(UsdPhysics.RigidBodyAPI):
-            call.fail(
-                f"body = {shown(prim.GetName())} is nothing that moves; name a body, or of a robot or a vehicle one of "
-                f"its links{otherwise}"
-            )
-        return prim
 
     def _freedoms(self, call: Call, field: str, joint: Handle | str) -> list[Usd.Prim]:
         """A hinge or a slider, or those of a robot."""
@@ -259,6 +323,16 @@ def _rate(call: Call, rate: float) -> Values:
 
 def _seed(call: Call, seed: int | None) -> Values:
     return {} if seed is None else {"seed": (Sdf.ValueTypeNames.Int, call.integer("seed", seed, 0, _MAX_SEED))}
+
+
+def _channels(call: Call, given: object) -> list[str]:
+    """Which channels of pictures are told, in their own order."""
+    asked = call.listed("channels", given, f"some of {', '.join(PIXEL_CHANNELS)}, in a list")
+    for each in asked:
+        call.one_of("channels", each, PIXEL_CHANNELS)
+    if not asked:
+        call.fail(f"channels = {shown(given)} has none; name some of {', '.join(PIXEL_CHANNELS)}")
+    return [each for each in PIXEL_CHANNELS if each in asked]
 
 
 def _divided(low: float, high: float, count: int) -> list[float]:

@@ -5,19 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
-from pxr import Gf, Usd, UsdPhysics
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
-from wsim.defaults import SENSOR_RATE
-from wsim.limits import MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
+from wsim.defaults import PIXEL_CHANNELS, SENSOR_RATE
+from wsim.limits import MAX_PIXELS, MAX_POSITION, MAX_RATE, MAX_RAYS, MIN_RATE
 from wsim.scene import schema
 from wsim.scene.sensors import is_of_one_freedom
+from wsim.scene.usd_cameras import field_of_view
 from wsim.scene.usd_prims import line_of, targets_of, value_of
 from wsim.scene.usd_shapes import to_quat, to_vec3
-from wsim.scene.world_sensors import Sensor, SensorContact, SensorIMU, SensorJoints, SensorRange
+from wsim.scene.world_sensors import (
+    Sensor,
+    SensorCamera,
+    SensorContact,
+    SensorIMU,
+    SensorJoints,
+    SensorRange,
+)
 
-_KINDS = (schema.SENSOR_IMU, schema.SENSOR_JOINTS, schema.SENSOR_RANGE, schema.SENSOR_CONTACT)
+_KINDS = (
+    schema.SENSOR_IMU, schema.SENSOR_JOINTS, schema.SENSOR_RANGE, schema.SENSOR_CONTACT, schema.SENSOR_CAMERA,
+)  # fmt: skip
 _LARGEST = 1e6  # of noise and bias
 _FARTHEST = 30.0  # [m]
+_DEEPEST = 100.0  # [m]
 _THRESHOLD = 1e-3  # [N]
 _UNIT = 1e-6  # by which a quaternion's length may be off
 
@@ -41,6 +52,14 @@ def read_sensors(prims: Iterable[Usd.Prim]) -> Iterator[Sensor]:
                 farthest=value_of(prim, "farthest", _FARTHEST),
                 noise=value_of(prim, "noise", 0.0),
                 seed=value_of(prim, "seed", None),
+            )
+        elif schema.has(prim, schema.SENSOR_CAMERA):
+            yield SensorCamera(
+                **_mounted(prim),
+                **dict(zip(("width", "height"), _pixels(prim), strict=True)),
+                fov=field_of_view(UsdGeom.Camera(prim)),
+                farthest=value_of(prim, "farthest", _DEEPEST),
+                tells=_told(prim),
             )
         elif schema.has(prim, schema.SENSOR_CONTACT):
             felt = {key: value for key, value in _mounted(prim).items() if key != "position"}
@@ -97,6 +116,8 @@ def _problems(prim: Usd.Prim, kind: str) -> Iterator[str]:
         yield f"seed: {seed} must be at least 0"
     if kind == schema.SENSOR_RANGE:
         yield from _range_problems(prim)
+    elif kind == schema.SENSOR_CAMERA:
+        yield from _camera_problems(prim)
     elif not targets_of(prim, "body"):
         yield "body: it must be one rigid body"
     if kind == schema.SENSOR_IMU:
@@ -122,6 +143,31 @@ def _range_problems(prim: Usd.Prim) -> Iterator[str]:
         yield f"farthest: {far:g} m must be above nearest, {near:g} m, and at most {MAX_POSITION:g} m"
     if not 0.0 <= (noise := value_of(prim, "noise", 0.0)) <= _LARGEST:
         yield f"noise: {noise:g} must be at least 0 and at most {_LARGEST:g}"
+
+
+def _camera_problems(prim: Usd.Prim) -> Iterator[str]:
+    if not prim.IsA(UsdGeom.Camera):
+        yield f"width: a {prim.GetTypeName() or 'prim'} has no lens; make it a Camera"
+    width, height = _pixels(prim)
+    if min(width, height) < 1 or width * height > MAX_PIXELS:
+        yield f"width: {width} by {height} pixels must be 1 to {MAX_PIXELS} together"
+    if not 0.0 < (far := value_of(prim, "farthest", _DEEPEST)) <= MAX_POSITION:
+        yield f"farthest: {far:g} m must be above 0 and at most {MAX_POSITION:g} m"
+    told = _told(prim)
+    for name in told:
+        if name not in PIXEL_CHANNELS or told.count(name) > 1:
+            yield f"channels: {name!r} must be one of {', '.join(PIXEL_CHANNELS)}, once"
+    if not told:
+        yield f"channels: none is named; name some of {', '.join(PIXEL_CHANNELS)}"
+
+
+def _pixels(prim: Usd.Prim) -> tuple[int, int]:
+    """Width and height."""
+    return int(value_of(prim, "width", 160)), int(value_of(prim, "height", 120))
+
+
+def _told(prim: Usd.Prim) -> list[str]:
+    return [str(name) for name in value_of(prim, "channels", PIXEL_CHANNELS)]
 
 
 def _rays(prim: Usd.Prim) -> tuple[list[float], list[float]]:

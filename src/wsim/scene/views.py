@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from pxr import Gf, Sdf, UsdGeom, UsdLux
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux
 
 from wsim.limits import MAX_POSITION
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, set_pose
+from wsim.scene.policies import base_of
 from wsim.scene.validate import Call, Vec3
 
 _APERTURE = 20.955  # [tenths of a unit], USD's own
@@ -28,8 +29,13 @@ class Views(Author):
         fov: float = 50.0,
         width: int = 640,
         height: int = 360,
+        follows: Handle | str | None = None,
+        turns: bool = False,
     ) -> Handle:
         """Make a camera that stands at `eye` and looks at `target`, Z up in its picture.
+
+        One that follows a body is there when the world starts, and keeps its offset from the body's place: its picture
+        keeps the body where it was.
 
         Args:
             name: Name of the prim.
@@ -38,9 +44,12 @@ class Views(Author):
             fov: Horizontal field of view [deg].
             width: Of the picture [pixel].
             height: Of the picture [pixel].
+            follows: A body that moves, a handle or a name; a robot stands for its base.
+            turns: Whether it turns with that body too, as if it was fixed to it.
 
         Raises:
-            SceneError: If eye and target are one point, the name is taken or a number is out of range.
+            SceneError: If eye and target are one point, what it follows never moves, the name is taken or a number is
+                out of range.
         """
         call = Call("camera", name)
         path = self._path(call)
@@ -51,16 +60,16 @@ class Views(Author):
         angle = call.within("fov", fov, 1.0, 170.0, "deg")
         columns = call.integer("width", width, 16, 8192, "pixel")
         rows = call.integer("height", height, 16, 8192, "pixel")
+        body = None if follows is None else self._followed(call, follows)
+        if call.flag("turns", turns) and body is None:
+            call.fail("turns = True needs follows, the body that it turns with")
 
         camera = UsdGeom.Camera.Define(self._stage, path)
         prim = camera.GetPrim()
         note_line(prim)
         set_pose(prim, place, _look_at(place, aim))
-        camera.CreateHorizontalApertureAttr(_APERTURE)
-        camera.CreateVerticalApertureAttr(_APERTURE * rows / columns)
-        camera.CreateFocalLengthAttr(_APERTURE / 2 / math.tan(math.radians(angle) / 2))
+        write_lens(camera, angle, columns, rows)
         camera.CreateFocusDistanceAttr(distance)
-        camera.CreateClippingRangeAttr(Gf.Vec2f(0.01, MAX_POSITION))
         schema.apply(
             prim,
             schema.CAMERA,
@@ -69,9 +78,17 @@ class Views(Author):
                 "target": (Sdf.ValueTypeNames.Double3, Gf.Vec3d(*aim)),
                 "width": (Sdf.ValueTypeNames.Int, columns),
                 "height": (Sdf.ValueTypeNames.Int, rows),
+                **({"turns": (Sdf.ValueTypeNames.Bool, True)} if turns else {}),
             },
         )
+        if body is not None:
+            prim.CreateRelationship("wsim:follows", custom=False).SetTargets([body.GetPath()])
         return Handle(name=name, path=path, kind="camera")
+
+    def _followed(self, call: Call, what: Handle | str) -> Usd.Prim:
+        prim = self._find(call, "follows", what)
+        base = base_of(prim) if prim.GetChild("joints") else None
+        return base or self._rigid_body(call, "follows", prim)
 
     def light(
         self,
@@ -121,6 +138,14 @@ class Views(Author):
         light.CreateIntensityAttr(strength)
         light.CreateColorAttr(Gf.Vec3f(*tint))
         return Handle(name=name, path=path, kind="light")
+
+
+def write_lens(camera: UsdGeom.Camera, angle: float, columns: int, rows: int) -> None:
+    """Author a pinhole lens that sees `angle` [deg] across, for square pixels."""
+    camera.CreateHorizontalApertureAttr(_APERTURE)
+    camera.CreateVerticalApertureAttr(_APERTURE * rows / columns)
+    camera.CreateFocalLengthAttr(_APERTURE / 2 / math.tan(math.radians(angle) / 2))
+    camera.CreateClippingRangeAttr(Gf.Vec2f(0.01, MAX_POSITION))
 
 
 def _look_at(eye: Vec3, target: Vec3) -> Gf.Quatd:

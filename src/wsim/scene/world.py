@@ -258,7 +258,7 @@ class Foreign(_Model):
 
 
 class Camera(_Model):
-    """A pinhole camera that looks from `eye` to `target`."""
+    """A pinhole camera that looks from `eye` to `target`, as the world starts (`wsim.scene.following`)."""
 
     prim: str
     eye: Vec3
@@ -267,6 +267,8 @@ class Camera(_Model):
     fov: float = FIELD_OF_VIEW  # horizontal [deg]
     width: int = 640
     height: int = 360
+    follows: str | None = None  # prim of the body from whose place it keeps its offset
+    turns: bool = False  # with that body, as if it was fixed to it
 
 
 class Light(_Model):

@@ -86,7 +86,26 @@ class SensorContact(_Sensor):
         return {"force": (3,), "touching": ()}
 
 
-Sensor: TypeAlias = Annotated[SensorIMU | SensorJoints | SensorRange | SensorContact, Field(discriminator="kind")]
+class SensorCamera(_Mounted):
+    """A pinhole camera along +X of its own frame, +Z up, whose pixels are measurements."""
+
+    kind: Literal["camera"] = "camera"
+    width: int  # [pixel]
+    height: int  # [pixel]
+    fov: float  # from left to right [deg]
+    farthest: float  # [m]: depth beyond it is infinite
+    tells: list[Literal["color", "depth", "segmentation"]]
+
+    @property
+    def channels(self) -> dict[str, Shape]:
+        """Shape of what it tells, by name."""
+        size = (self.height, self.width)
+        return {name: (*size, 3) if name == "color" else size for name in self.tells}
+
+
+Sensor: TypeAlias = Annotated[
+    SensorIMU | SensorJoints | SensorRange | SensorContact | SensorCamera, Field(discriminator="kind")
+]
 
 
 def channels(sensors: Iterable[Sensor]) -> list[tuple[str, str, Shape]]:

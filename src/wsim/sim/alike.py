@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from wsim.errors import UserError
 from wsim.scene.validate import shown
 from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Policy, Rope, Shape, Spring, World
-from wsim.scene.world_sensors import SensorContact, SensorIMU, SensorRange
+from wsim.scene.world_sensors import SensorCamera, SensorContact, SensorIMU, SensorRange
 
 # Numbers that each world of a batch has of its own.
 FREE: dict[type[BaseModel], frozenset[str]] = {
@@ -30,6 +30,7 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     ),
     SensorRange: frozenset({"position", "rotation", "nearest", "farthest", "noise"}),
     SensorContact: frozenset({"rotation", "threshold"}),
+    SensorCamera: frozenset({"position", "rotation", "fov", "farthest"}),
     Guide: frozenset({"position", "axis", "side"}),
     Spring: frozenset({"stiffness", "damping", "rest_length"}),
     Rope: frozenset({"length"}),

@@ -15,6 +15,7 @@ from newton.sensors import SensorCamera
 
 from wsim.kernels.render import composite, display, faces, sky
 from wsim.progress import silent
+from wsim.scene.following import camera_at
 from wsim.sim import render_materials, render_views
 from wsim.sim.cord_shapes import CordShapes
 from wsim.sim.render_surface import FluidMesh
@@ -100,7 +101,7 @@ class CameraRenderer:
         self.style = style or Style()
         self.cameras = [render_views.resized(c, width, height) for c in _cameras_of(world)]
         self.shape_prims = [str(label) for label in model.shape_label]
-        self._device = model.device
+        self._device, self._world_index = model.device, world_index
         self._world_indices = wp.array([world_index], dtype=wp.int32, device=self._device)
         self._init_shapes(world_index)
         self._init_fluids(world_index)
@@ -129,7 +130,17 @@ class CameraRenderer:
         self.model.bvh_refit_shapes(state)
         self._fluid_mesh.update(fluids or {})
         wanted = [v for v in self._views if cameras is None or v.camera.prim in cameras]
+        self._follow(wanted, state)
         return {view.camera.prim: self._draw(view, state) for view in wanted}
+
+    def _follow(self, views: Sequence[_View], state: Any) -> None:
+        """Bring the cameras that follow bodies to where those are."""
+        if any(view.follows is not None for view in views):
+            poses = state.body_q.numpy()
+            for view in views:
+                if view.follows is not None:
+                    moved = camera_at(view.camera, self.world, poses[view.follows])
+                    view.pose.assign(np.array([render_views.camera_pose(moved)], dtype=np.float32))
 
     def _init_shapes(self, world_index: int) -> None:
         model = self.model
@@ -168,6 +179,7 @@ class CameraRenderer:
         fov = render_views.vertical_fov(camera)
         return _View(
             camera=camera,
+            follows=self._body(camera.follows),
             rays=SensorCamera.compute_camera_rays_pinhole(w, h, camera_fov=fov, device=device),
             pose=wp.array([render_views.camera_pose(camera)], dtype=wp.transformf, device=device),
             look=self._look(camera),
@@ -180,6 +192,16 @@ class CameraRenderer:
             depth=wp.zeros((h, w), dtype=wp.float32, device=device),
             shape=wp.zeros((h, w), dtype=wp.int32, device=device),
         )
+
+    def _body(self, prim: str | None) -> int | None:
+        """The model's index of a body of the world that is drawn."""
+        if prim is None:
+            return None
+        worlds = self.model.body_world.numpy()
+        for k, label in enumerate(self.model.body_label):
+            if str(label).endswith(prim) and worlds[k] in (-1, self._world_index):
+                return k
+        raise ValueError(f"the model has no body {prim} for a camera to follow")
 
     def _look(self, camera: Camera) -> Any:
         style = self.style
@@ -268,6 +290,7 @@ class _View:
     """A camera with its rays and its buffers."""
 
     camera: Camera
+    follows: int | None  # the model's index of the body that it follows
     rays: wp.array
     pose: wp.array
     look: Any

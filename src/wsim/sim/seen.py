@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from wsim.scene.labels import object_of
+
 QUICK = 1  # of zlib's levels: a sixth of the time that its default takes, for a fifth more bytes
 
 
@@ -20,7 +22,7 @@ class ObjectPixels:
 
     def __init__(self, shape_prims: Sequence[str]) -> None:
         names, self._object_of = np.unique(
-            np.array([_object_of(prim) for prim in shape_prims], dtype=str), return_inverse=True
+            np.array([object_of(prim) for prim in shape_prims], dtype=str), return_inverse=True
         )
         self.objects = [str(name) for name in names]
 
@@ -42,8 +44,3 @@ def write_png(path: Path, rgb: np.ndarray) -> None:
 def still_name(camera: str, time: float) -> str:
     """The file name of a camera's picture at a time [s]."""
     return f"{camera.rsplit('/', 1)[-1]}_{time:06.3f}s.png"
-
-
-def _object_of(prim: str) -> str:
-    """/World/tank/floor -> /World/tank: the plan's objects are the children of the root."""
-    return "/".join(prim.split("/")[:3])

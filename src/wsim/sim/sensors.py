@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wsim.scene.world_sensors import Sensor, SensorContact, SensorIMU, SensorJoints, SensorRange
+from wsim.scene.world_sensors import Sensor, SensorCamera, SensorContact, SensorIMU, SensorJoints, SensorRange
+from wsim.sim.sensor_camera import Camera
 from wsim.sim.sensor_contact import Contact
 from wsim.sim.sensor_imu import IMU
 from wsim.sim.sensor_joints import Joints
@@ -21,18 +22,25 @@ from wsim.sim.sensor_range import Range
 from wsim.sim.turns import Controller, Turns
 
 if TYPE_CHECKING:
+    from wsim.scene.world import World
     from wsim.sim.model import Built
 
 Floats = NDArray[np.float64]
-Sample = dict[str, Floats]  # by channel, each (W, ...)
+Sample = dict[str, NDArray[Any]]  # by channel, each (W, ...)
 # Time [s], prim, what the first world's tells, and points in the world that it met, if it meets any.
-Kept = Callable[[float, str, Mapping[str, Floats], Floats | None], None]
+Kept = Callable[[float, str, Mapping[str, NDArray[Any]], Floats | None], None]
 KINDS: dict[type[Any], Callable[[Built, int, float, Sequence[int]], Any]] = {
     SensorIMU: IMU,
     SensorJoints: Joints,
     SensorRange: Range,
     SensorContact: Contact,
+    SensorCamera: Camera,
 }
+
+
+def sees(world: World) -> bool:
+    """Whether a world has a camera among its sensors."""
+    return any(isinstance(sensor, SensorCamera) for sensor in world.sensors)
 
 
 class Sensors:
@@ -68,8 +76,9 @@ class Sensors:
 
     def flat(self) -> NDArray[np.float32]:
         """The last sample of all, side by side in the order of `World.sensors` and of their channels, (W, n)."""
-        rows = [part.reshape(self._worlds, -1) for sample in self._last.values() for part in sample.values()]
-        return np.concatenate([np.zeros((self._worlds, 0)), *rows], axis=1).astype(np.float32)
+        parts = [part for sample in self._last.values() for part in sample.values()]
+        rows = [part.reshape(self._worlds, -1).astype(np.float32, copy=False) for part in parts]
+        return np.concatenate([np.zeros((self._worlds, 0), np.float32), *rows], axis=1)
 
     def _reading(self, sensor: Sensor, reader: Any) -> Controller:
         def turn(t: float, simulation: Any) -> None:

@@ -33,7 +33,7 @@ from wsim.sim.policies import PolicyController
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
-from wsim.sim.sensors import Sensors
+from wsim.sim.sensors import Sensors, sees
 from wsim.sim.starts import start
 from wsim.sim.turns import Controller, Turns
 from wsim.solvers.solver_sph import SolverSPH
@@ -97,7 +97,7 @@ class Simulation:
         self.device = wp.get_device(pick_device(device, described[0], world_count, progress))
         self._draws = draws
         self.compiled = compiling.compile_first(
-            self.device, described[0], steps_in_c(self.device, world_count), draws, progress
+            self.device, described[0], steps_in_c(self.device, world_count), draws or sees(described[0]), progress
         )
         if len(stages) > 1:
             self.built = build_batch(stages, described, self.device, time_step, processes, skeletons, progress)

@@ -204,12 +204,12 @@ def _cameras(plan: Plan, name: str) -> list[str]:
     rows = [
         [
             camera.name, camera.view or "", camera.of or "", numbers(camera.eye) if camera.eye else "",
-            numbers(camera.target) if camera.target else "",
+            numbers(camera.target) if camera.target else "", camera.follows or "",
         ]
         for camera in plan.cameras
         if _about(name, camera.of)
     ]  # fmt: skip
-    return table(("camera", "view", "of", "eye [m]", "target [m]"), rows) if rows else []
+    return table(("camera", "view", "of", "eye [m]", "target [m]", "follows"), rows) if rows else []
 
 
 def _assumptions(plan: Plan, name: str) -> list[str]:

@@ -351,6 +351,24 @@ def test_what_is_asked_for_and_gone_most_of_the_time_is_found(asked, passes):
     assert {f.prim for f in found if not f.passed} == (set() if passes else {"/World/ball"})
 
 
+@pytest.mark.parametrize(("follows", "out"), [("/World/ball", set()), ("/World/box", {"/World/ball"}), (None, None)])
+def test_a_camera_that_follows_has_what_goes_far_in_frame(follows, out):
+    """A ball goes 60 m, to be asked about: one that goes with it shows it all the time, one that stays does not."""
+    t = times(2.0)
+    place = np.tile(np.array(((0.0, 0.0, 0.05), (1.0, 0.0, 0.1))), (len(t), 1, 1))
+    place[:, 1, 0] += 30.0 * t
+    bodies = [box(size=SIZE, mass=BOX_KG), ball(mass=BALL_KG)]
+    goes = record(bodies, place, np.gradient(place, t, axis=0), t, statics=[ground()])
+    goes = with_world(goes, bodies=[bodies[0], bodies[1].model_copy(update={"position": (1.0, 0.0, 0.1)})])
+    plan = a_plan().model_copy(update={"objectives": [Objective(kind="settles", object="ball")]})
+    seen_by = camera().model_copy(update={"follows": follows})
+    found = ask(CheckInFrame(), with_world(goes, cameras=[seen_by]), plan)
+    assert {f.prim for f in found if not f.passed} == (out if out is not None else {"/World/ball"})
+    both = [seen_by, camera(target=(0.0, -10.0, 1.0), name="other")]
+    away = next(f for f in ask(CheckInFrame(), with_world(goes, cameras=both), plan) if f.prim == "/World/other")
+    assert not away.passed and away.target.prim == "/World/other"
+
+
 @pytest.mark.parametrize(("at", "passes"), [(1.0, True), (3.0, False)])
 def test_what_happens_is_in_the_picture_as_it_does(at, passes):
     """Seen for most of the time, a ball crosses x = 3 m out of a picture that ends 2.3 m to the right."""

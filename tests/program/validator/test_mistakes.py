@@ -248,6 +248,45 @@ def test_mistakes_in_control(statement: str, code: str, said: str) -> None:
     assert said in problem.message
 
 
+CAMERAS = """\
+def build(scene):
+    for k in range(int(scene.param("count", 2.0))):
+        scene.camera(f"aside_{k}", eye=(0, -3 - k, 1), target=(0, 0, 0))
+    scene.box("block", size=(0.2, 0.2, 0.2), position=(0, 0, 1))
+    scene.camera("chase", eye=(-2, 0, 1), target=(0, 0, 1), follows="block", turns=True)
+    scene.sensor_camera("eye", "block", width=64, height=48, channels=["depth"])
+
+
+def control(world, t):
+    eye = world.sensor("eye")
+    return eye.depth.min(), eye.color.mean(), eye.segmentation == eye.labels.index("block")
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "said"),
+    [
+        ('follows="block"', 'follow="block"', "follow"),
+        ("width=64", "width=0", "width = 0 must be >= 1 pixel"),
+        ('channels=["depth"]', 'channels=["deep"]', 'channels = "deep" must be one of color, depth, segmentation'),
+        ("eye.labels", "eye.names", "names"),
+    ],
+)
+def test_mistakes_with_cameras(right: str, wrong: str, said: str) -> None:
+    """Of a program whose scene is not known prim for prim: each argument is tried by itself."""
+    assert validate(CAMERAS) == []
+    (problem,) = validate(CAMERAS.replace(right, wrong))
+    assert said in problem.message
+
+
+def test_a_camera_follows_what_is_there() -> None:
+    text = 'def build(scene):\n    scene.box("block", size=(1, 1, 1))\n'
+    text += '    scene.camera("c", eye=(0, 0, 3), target=(0, 0, 0), '
+    assert validate(text + 'follows="block")\n') == []
+    (problem,) = validate(text + 'follows="blok")\n')
+    assert (problem.line, problem.code) == (3, "prim") and 'follows = "blok" is not in the scene' in problem.message
+
+
 def test_problems_come_in_the_order_of_the_lines() -> None:
     found = validate("import socket\n\n\ndef build(scene):\n    scene.boxx()\n    scene.bal()\n    x = nowhere\n")
     assert [p.line for p in found] == [1, 5, 6, 7]

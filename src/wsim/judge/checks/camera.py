@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wsim.judge.checks.check import Check, Checks
-from wsim.judge.evidence.framing import framed, in_frame
+from wsim.judge.evidence.framing import as_seen, framed, in_frame
 from wsim.judge.evidence.strands import strands
 from wsim.judge.language.kinds import formula_of
 from wsim.judge.language.objective import ObjectiveCheck, conjuncts
@@ -57,10 +57,11 @@ class CheckInFrame(Check):
             target = _reframed(evidence, camera)
             found += self._out(evidence, frames, anything, camera.prim, "has nothing that moves in frame", target)
         anywhere: Bools = np.asarray(np.any(list(inside.values()), axis=0))
+        standing = next((camera for camera in world.cameras if camera.follows is None), world.cameras[0])
         plan = evidence.plan
         asked = {evidence.prim(objective.object) for objective in plan.objectives} if plan is not None else set()
         for prim, shown in zip(things, anywhere.T, strict=True):
-            target = _reframed(evidence, world.cameras[0])
+            target = _reframed(evidence, standing)
             found += self._out(evidence, frames, shown, prim, "is in frame of no camera", target)
             if prim in asked and shown.any():
                 found += self._briefly(evidence, frames, shown, prim, target)
@@ -109,7 +110,8 @@ class CheckInFrame(Check):
             if not any(bool(_inside(evidence, camera, about)[:, rows[prim]].any()) for camera in cameras):
                 told.add(prim)
                 why = "what the plan asks for happens out of the picture: frame that place too"
-                target = _reframed(evidence, cameras[0]).model_copy(update={"why": why})
+                standing = next((each for each in cameras if each.follows is None), cameras[0])
+                target = _reframed(evidence, standing).model_copy(update={"why": why})
                 yield self.measured(
                     f"{prim} is in frame of no camera at {time:.3f} s, when it comes true: {sentence}",
                     0.0, 1.0, "frames", at_most=False, prim=prim, time=time, limit_from=ASKED, target=target,
@@ -214,7 +216,8 @@ def _things(evidence: Evidence) -> list[str]:
 def _reframed(evidence: Evidence, camera: Camera) -> RepairTarget:
     """Where a camera is to stand and look, so that it sees all that moves, all the time."""
     frames = _moments(len(evidence.time))
-    points = np.concatenate([each.reshape(-1, 3) for each in _points(evidence, frames)])
+    seen = [as_seen(evidence, camera, frames, each) for each in _points(evidence, frames)]
+    points = np.concatenate([each.reshape(-1, 3) for each in seen])
     points = points[np.isfinite(points).all(axis=1)]
     sizes = evidence.motion.radius[np.isfinite(evidence.motion.radius)]
     found = framed(camera, points, float(sizes.max(initial=0.0))) if len(points) else None
@@ -233,7 +236,7 @@ def _moments(frames: int) -> NDArray[np.intp]:
 
 def _inside(evidence: Evidence, camera: Camera, frames: NDArray[np.intp]) -> Bools:
     """Whether each thing is in a camera's picture, (frames, things): a body's centre, some of a fluid's particles."""
-    bodies, *fluids = _points(evidence, frames)
+    bodies, *fluids = (as_seen(evidence, camera, frames, each) for each in _points(evidence, frames))
     return np.column_stack([in_frame(camera, bodies), *(in_frame(camera, some).any(axis=1) for some in fluids)])
 
 

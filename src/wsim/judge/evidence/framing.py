@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.scene.following import as_at_start
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from wsim.judge.evidence.recorded import Recorded
     from wsim.scene.world import Camera
 
     Floats = NDArray[np.float64]
@@ -36,6 +39,14 @@ def in_frame(camera: Camera, points: Floats) -> Bools:
     inside: Bools = (depth > 0.0) & (np.abs(local @ right) <= half * depth)
     inside &= np.abs(local @ np.cross(right, ahead)) <= tall * depth
     return inside
+
+
+def as_seen(evidence: Recorded, camera: Camera, frames: NDArray[np.intp], points: Floats) -> Floats:
+    """Points (F, n, 3) [m] at frames (F,), where a camera that follows a body would have to see them at its start."""
+    if camera.follows is None:
+        return points
+    row = [body.prim for body in evidence.world.bodies].index(camera.follows)
+    return as_at_start(camera, evidence.world, evidence.recording.body_q[frames, row], points)
 
 
 def framed(camera: Camera, points: Floats, radius: float) -> tuple[Floats, Floats] | None:

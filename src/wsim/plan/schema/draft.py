@@ -111,6 +111,12 @@ class CameraPlan(Strict):
     target: Vec3 | None = None  # [m]
     view: View | None = None
     of: Name | None = None
+    follows: Name | None = None  # an object that moves: it keeps its offset from that, which is where it starts
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without `follows` where it stands, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if name != "follows" or value}
 
     @model_validator(mode="after")
     def _one_way(self) -> CameraPlan:

@@ -208,6 +208,10 @@ def _actuation(plan: Draft) -> Iterator[str]:
                 yield f"{where}: {actuation.joint} has a drive; remove it, or this actuation: one thing drives a joint"
 
 
+def _goes(item: PlanObject) -> bool:
+    return item.state != "static" and item.primitive not in ("fluid", "ground", "terrain", "scatter")
+
+
 def _others(plan: Draft) -> Iterator[str]:
     names = {item.name for item in plan.objects}
     cameras = {camera.name for camera in plan.cameras}
@@ -224,6 +228,9 @@ def _others(plan: Draft) -> Iterator[str]:
     for i, camera in enumerate(plan.cameras):
         if camera.of is not None and camera.of not in names:
             yield f"cameras.{i}.of: no object {camera.of!r}; the plan has {_known(plan)}"
+        if camera.follows is not None and not any(item.name == camera.follows and _goes(item) for item in plan.objects):
+            goers = ", ".join(item.name for item in plan.objects if _goes(item)) or "none"
+            yield f"cameras.{i}.follows: {camera.follows!r} is no body that moves; the plan has {goers}"
     for i, sensor in enumerate(plan.sensors):
         if sensor.mount is not None and sensor.mount not in names:
             yield f"sensors.{i}.mount: no object {sensor.mount!r}; the plan has {_known(plan)}"

@@ -73,7 +73,7 @@ def _refers_wrongly(reader: State, world: World, bound: dict[str, Any]) -> bool:
     """Whether an argument names a prim that is not there yet."""
     if world.open or world.others:
         return False
-    for field in ("parent", "child", "a", "b", "fills", "container", "body"):
+    for field in ("parent", "child", "a", "b", "fills", "container", "body", "follows"):
         value, node = bound.get(field, (UNKNOWN, None))
         text = value.value if isinstance(value, Const) else None
         if not isinstance(text, str):

@@ -44,12 +44,12 @@ _NEEDS: dict[str, dict[str, Any]] = {
     "terrain": {"size": (0.2, 0.2), "cell": 1000.0, "layers": [_level]}, "scatter": {"count": 1},
     "gear": {"ratio": 1.0}, "robot": {"file_or_id": "desk_arm"}, "vehicle": {},
     "policy": {}, "sensor_imu": {}, "sensor_joints": {}, "sensor_range": {"body": None},
-    "sensor_contact": {},
+    "sensor_contact": {}, "sensor_camera": {"body": None},
 }  # fmt: skip
 MANY = ("cable", "robot", "vehicle", "scatter")  # whose bodies and joints have names of their own
 BODIES = ("box", "sphere", "cylinder", "capsule", "mesh", "compound", "asset")
 JOINTS = ("joint_fixed", "joint_revolute", "joint_prismatic", "joint_spherical")
-SENSORS = ("sensor_imu", "sensor_joints", "sensor_range", "sensor_contact")
+SENSORS = ("sensor_imu", "sensor_joints", "sensor_range", "sensor_contact", "sensor_camera")
 ABOUT = ("surface_velocity", "path")  # what says more of a body that is there
 CORDS = ("spring", "rope", "cable")
 OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terrain", "scatter", "tank", "fluid")
@@ -57,7 +57,7 @@ OBJECTS = (*BODIES, "robot", "vehicle", "ground", "track", "height_field", "terr
 _TIED = ("name", "parent", "child", "fills", "container", "material", "level", "spacing", "file", "low", "high",
          "a", "b", "anchor_a", "anchor_b", "rest_length", "length", "around", "through", "loose", "links",
          "body", "joints", "times", "positions", "rotations_deg", "joint_a", "joint_b", "points",
-         "layers", "areas", "on", "count", "clear")  # fmt: skip
+         "layers", "areas", "on", "count", "clear", "follows", "turns")  # fmt: skip
 # Arguments that say nothing when they are tried alone, and are kept as they are when all are tried together.
 _TOGETHER = ("mass", "density", "static", "kinematic", "velocity", "angular_velocity_deg", "low", "high", "default",
              "eye", "target")  # fmt: skip

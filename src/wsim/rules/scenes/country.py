@@ -18,6 +18,7 @@ from wsim.plan.schema import (
     NoiseLayer,
     PlanObject,
     RoadLayer,
+    Vec3,
 )
 from wsim.rules.cast import Cast, Thing
 
@@ -32,6 +33,7 @@ EVEN = 1.0  # beyond what stands on it, that ground is level at both ends [m]
 CLEAR_ROCKS, CLEAR_TREES, CLEAR_ENDS = 1.2, 2.0, 3.0  # beside what drives, and beyond it at both ends [m]
 A_ROCK_PER, A_TREE_PER = 1.6, 4.0  # metres of way, where the prompt gives no number
 MOST = 60
+BEHIND = 2.2  # of its length: how far behind a vehicle the camera is that follows it
 LONG, ASIDE = 40.0, 8.0  # a way that is seen by halves, and what is seen beyond its ends [m]
 _SOIL = Material(name="soil", density=1600.0, friction=0.85, color=(0.15, 0.22, 0.08))
 _MUD = Material(name="track", density=1600.0, friction=0.85, rolling=0.03, color=(0.27, 0.19, 0.11))
@@ -120,8 +122,14 @@ def _of(thing: Thing, what: str) -> tuple[str, ...]:
     return ("conifer", "deciduous_tree") if asset == "deciduous_tree" else (asset,)
 
 
-def views(way: Way) -> list[CameraPlan]:
-    """From the side, which films the whole way, of a long one each half besides; and from behind the start."""
+def views(way: Way, vehicle: str, start: Vec3, length: float) -> list[CameraPlan]:
+    """From behind a vehicle of a length [m] that it follows; from the side, of a long way each half besides; its start.
+
+    The first one films the vehicle, as large at the end as where it starts [m].
+    """
+    x, y, z = start
+    behind = (round(x - BEHIND * length, 2), round(y - 0.5 * length, 2), round(z + 1.1 * length, 2))
+    follow = CameraPlan(name="follow", eye=behind, target=(round(x + 1.0, 2), y, round(z + 1.0, 2)), follows=vehicle)
     (ax, ay), (bx, _) = way[0], way[-1]
     between = 0.5 * (ax + bx)
     spans = [("side", ax, bx)]
@@ -133,5 +141,5 @@ def views(way: Way) -> list[CameraPlan]:
         back = (0.5 * (end - begin) + ASIDE) / math.tan(math.radians(FIELD_OF_VIEW / 2))
         eye = (middle, round(-0.88 * back, 2), round(0.47 * back, 2))
         sides.append(CameraPlan(name=name, eye=eye, target=(middle, 0.0, 0.0)))
-    start = CameraPlan(name="start", eye=(ax - 9.0, ay - 5.0, 4.0), target=(ax + 12.0, ay, 1.0))
-    return [*sides, start]
+    at_start = CameraPlan(name="start", eye=(ax - 9.0, ay - 5.0, 4.0), target=(ax + 12.0, ay, 1.0))
+    return [follow, *sides, at_start]

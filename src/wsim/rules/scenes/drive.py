@@ -122,7 +122,8 @@ def build_drive(cast: Cast, taken: set[str]) -> Part:
     names |= {id(thing): [item.name] for item, thing in zip(objects[1:], (*asked.rocks, *asked.trees), strict=True)}
     return Part(
         posed=[*objects, vehicle], objectives=_objectives(name, asked, points, hill), frame_rate=FRAME_RATE,
-        duration=takes, names={**names, id(asked.thing): [name]}, cameras=views(way),
+        duration=takes, names={**names, id(asked.thing): [name]},
+        cameras=views(way, name, on_ground(start), spec.length),
     )  # fmt: skip
 
 

@@ -26,6 +26,7 @@ SENSOR_IMU = "WsimSensorIMUAPI"
 SENSOR_JOINTS = "WsimSensorJointsAPI"
 SENSOR_RANGE = "WsimSensorRangeAPI"
 SENSOR_CONTACT = "WsimSensorContactAPI"
+SENSOR_CAMERA = "WsimSensorCameraAPI"
 
 
 def register() -> None:
