@@ -205,8 +205,8 @@ class ControlSensor:
 
     @property
     def labels(self) -> list[str]:
-        """Names of the objects by the number that `segmentation` has for them; that of 0, nothing, is empty."""
-        return self._labels
+        """Names of the objects by the number that `segmentation` has for them; that of 0, nothing, is empty. A copy."""
+        return list(self._labels)
 
     def _channel(self, name: str) -> Floats:
         if name not in self._channels:

@@ -1,13 +1,12 @@
 """What cameras that are sensors told, in a recording: compressed pictures, as many as a file can bear.
 
 Colour is JPEG. Depth is a PNG of 16 bits in steps of `farthest` / 65534, 0 where it is infinite; segmentation is a PNG
-of 16 bits of the labels' numbers. Of all pictures the recording has every n-th.
+of 16 bits of the labels' numbers. Of all pictures the recording has those that are far enough apart.
 """
 
 from __future__ import annotations
 
 import io
-import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,7 @@ import rerun as rr
 from PIL import Image
 
 from wsim.recording import columns as names
+from wsim.scene.labels import labels_of
 from wsim.scene.world_sensors import SensorCamera
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 MOST_PICTURES = 600  # of a sensor in a file
 JPEG_QUALITY = 90
 DEPTHS = 65534  # steps of depth: with 0 for what is infinite they fill 16 bits
+MOST_OBJECTS = 65535  # of segmentation: 0 is nothing
 CHUNK_BYTES = 4 * 1024 * 1024
 COLUMNS = {"color": names.IMAGE, "depth": names.DEPTH_IMAGE, "segmentation": names.SEGMENTATION}
 _TYPES = {"color": np.uint8, "depth": np.float32, "segmentation": np.int32}
@@ -54,35 +55,41 @@ class Pictures(Mapping[str, "NDArray[Any]"]):
 
 
 class PictureBuffer:
-    """The pictures of one sensor, every n-th of them, until there are enough of them to write.
+    """The pictures of one sensor that a file can bear, until there are enough of them to write.
 
     Args:
         stream: Rerun's.
         sensor: Which one.
         world: That it is in: no more pictures are kept than it has frames, nor than `MOST_PICTURES`.
         entities: Of each channel.
+
+    Raises:
+        ValueError: Of more objects than 16 bits number.
     """
 
     def __init__(self, stream: Any, sensor: SensorCamera, world: World, entities: Mapping[str, str]) -> None:
         self._stream, self._sensor, self._entities = stream, sensor, entities
         frames = max(1.0, world.frame_rate * world.duration)
-        self._every = max(1, math.ceil(sensor.rate * world.duration / min(MOST_PICTURES, frames) - 1e-9))
-        self._count = self._bytes = 0
+        self._apart = round(1e9 * world.duration / min(MOST_PICTURES, frames)) - 1000  # [ns], to the clock's rounding
+        self._next = self._bytes = 0
         self._times: list[int] = []
         self._blobs: dict[str, list[NDArray[np.uint8]]] = {channel: [] for channel in sensor.channels}
+        objects = len(labels_of(world)) - 1
+        if "segmentation" in entities and objects > MOST_OBJECTS:
+            raise ValueError(f"{sensor.prim}: segmentation of {objects} objects; at most {MOST_OBJECTS} have numbers")
         if "depth" in entities:
             scale = rr.EncodedDepthImage.from_fields(media_type="image/png", meter=DEPTHS / sensor.farthest)
             stream.log(entities["depth"], scale, static=True, strict=True)
 
     def add(self, ns: int, sample: Mapping[str, NDArray[Any]]) -> None:
         """Take one sample [ns], of checked shapes."""
-        if self._count % self._every == 0:
+        if ns >= self._next:
+            self._next = ns + self._apart
             self._times.append(ns)
             for channel, picture in sample.items():
                 blob = np.frombuffer(_encoded(self._sensor, channel, picture), np.uint8)
                 self._blobs[channel].append(blob)
                 self._bytes += len(blob)
-        self._count += 1
         if self._bytes >= CHUNK_BYTES:
             self.flush()
 

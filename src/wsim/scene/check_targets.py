@@ -26,6 +26,8 @@ def check_targets(prim: Usd.Prim) -> Iterator[str]:
                 yield f"{relation.GetPath()}: <{path}> is not there"
             elif fits is not None and (path.IsPropertyPath() or not fits(target)):
                 yield f"{relation.GetPath()}: <{path}> is a {target.GetTypeName() or 'prim'}; it must be {kind}"
+            elif parts[0] == "wsim" and not Usd.PrimDefaultPredicate(target):
+                yield f"{relation.GetPath()}: <{path}> is not in the world: inactive, a class or an over; name another"
     if prim.IsA(UsdPhysics.Joint):
         yield from _joint(UsdPhysics.Joint(prim))
     if prim.IsA(UsdGeom.PointInstancer):

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
-from pxr import Gf, Usd, UsdGeom
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene import schema
-from wsim.scene.usd_prims import owner_of, rigid_frame, targets_of, value_of
+from wsim.scene.usd_prims import rigid_frame, targets_of, value_of
 from wsim.scene.usd_shapes import to_vec3
 from wsim.scene.world import Camera
 
@@ -29,7 +29,7 @@ def read_camera(prim: Usd.Prim) -> Camera:
         # No target was written, or the camera was moved since.
         target = eye + forward * (float(lens.GetFocusDistanceAttr().Get()) or 1.0)
     across, down = lens.GetHorizontalApertureAttr().Get(), lens.GetVerticalApertureAttr().Get()
-    followed, above = targets_of(prim, "follows"), owner_of(prim)
+    followed, above = targets_of(prim, "follows"), _carrier(prim)
     width = int(value_of(prim, "width", 640))
     return Camera(
         prim=str(prim.GetPath()),
@@ -42,6 +42,18 @@ def read_camera(prim: Usd.Prim) -> Camera:
         follows=str(followed[0].GetPath()) if followed else above,
         turns=bool(value_of(prim, "turns", False)) if followed else above is not None,
     )
+
+
+def _carrier(prim: Usd.Prim) -> str | None:
+    """Path of the body that a camera is fixed to: the nearest above it, unless its frame is the world's (`!reset...!`)."""
+    each = prim
+    while each and not each.IsPseudoRoot():
+        if each.HasAPI(UsdPhysics.RigidBodyAPI):
+            return str(each.GetPath())
+        if each.IsA(UsdGeom.Xformable) and UsdGeom.Xformable(each).GetResetXformStack():
+            return None
+        each = each.GetParent()
+    return None
 
 
 def field_of_view(lens: UsdGeom.Camera) -> float:
@@ -67,7 +79,7 @@ def camera_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
             yield f"{prim.GetPath()}.focalLength: {said}"
         if not is_view(prim):
             continue
-        followed, above = targets_of(prim, "follows"), owner_of(prim)
+        followed, above = targets_of(prim, "follows"), _carrier(prim)
         if len(followed) > 1:
             yield f"{prim.GetPath()}.wsim:follows: it names {len(followed)} bodies; name one"
         if followed and above is not None:

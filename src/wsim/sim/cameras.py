@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from wsim.scene.world import Camera, World
 
 Color = tuple[float, float, float]
+REACH = 1000.0  # [m] along a ray that a film shows
 FRAMED = 0.8  # of half of what a camera has in its frame, which a scene that fills it takes up
 
 
@@ -68,14 +69,16 @@ class CameraRenderer:
     """Renders every camera of a world.
 
     Args:
-        model: Newton model made from the world's stage; `model.shape_label` has the prim paths. Its shape colours are
-            set from the world, and its shape BVH is rebuilt without the glass.
+        model: Newton model made from the world's stage; `model.shape_label` has the prim paths. The colours of the
+            world's shapes are set, and its shape BVH is rebuilt without the world's glass.
         world: What the stage says: cameras, colours, glass, fluids. Without a camera, a three-quarter view that has
             everything in frame is used, with prim `/World/default_camera`.
         width: Picture width [px] for all cameras, in place of their own.
         height: Picture height [px], likewise; one of the two keeps the aspect ratio.
         world_index: Which of the model's worlds is drawn.
         style: Light and sky.
+        looks: What shapes look like, of a model that has their colours already and hides what is hidden.
+        reach: How far along a ray anything is drawn [m]; kernels are compiled for each.
         progress: Told about the compilation of kernels, which a first use needs.
 
     Attributes:
@@ -92,6 +95,8 @@ class CameraRenderer:
         *,
         world_index: int = 0,
         style: Style | None = None,
+        looks: render_materials.ShapeLooks | None = None,
+        reach: float = REACH,
         progress: Progress = silent,
     ) -> None:
         if not 0 <= world_index < max(int(model.world_count), 1):
@@ -103,9 +108,9 @@ class CameraRenderer:
         self.shape_prims = [str(label) for label in model.shape_label]
         self._device, self._world_index = model.device, world_index
         self._world_indices = wp.array([world_index], dtype=wp.int32, device=self._device)
-        self._init_shapes(world_index)
+        self._init_shapes(looks)
         self._init_fluids(world_index)
-        self._init_sensor()
+        self._init_sensor(reach)
         self._views = [self._view(camera) for camera in self.cameras]
         self._compile(progress)
 
@@ -142,13 +147,13 @@ class CameraRenderer:
                     moved = camera_at(view.camera, self.world, poses[view.follows])
                     view.pose.assign(np.array([render_views.camera_pose(moved)], dtype=np.float32))
 
-    def _init_shapes(self, world_index: int) -> None:
+    def _init_shapes(self, looks: render_materials.ShapeLooks | None) -> None:
         model = self.model
         self._cords = CordShapes(model, self.world)
-        looks = render_materials.shape_looks(model, self.world, world_index)
-        if model.shape_count:
-            model.shape_color.assign(looks.color.astype(np.float32))
-        render_materials.hide(model, model.state(), looks.hidden)
+        if looks is None:
+            looks = render_materials.shape_looks(model, self.world, self._world_index)
+            render_materials.paint(model, [looks])
+            render_materials.hide(model, model.state(), looks.hidden)
         self._glass = render_materials.Glass(looks.panes, self._device)
         self._shape_is_ground = wp.array(looks.ground, dtype=wp.int32, device=self._device)
 
@@ -162,7 +167,7 @@ class CameraRenderer:
         gaps = [1.6 * f.spacing for f in fluids] or [0.0]
         self._fluid_gap = wp.array(gaps, dtype=wp.float32, device=self._device)
 
-    def _init_sensor(self) -> None:
+    def _init_sensor(self, reach: float) -> None:
         style = self.style
         self._sun = _unit(_sun_direction(self.world, style))
         self._sensor = SensorCamera(self.model, load_textures=False)
@@ -171,7 +176,10 @@ class CameraRenderer:
         )
         self._sensor.set_ambient_light(style.ambient_up, style.ambient_down)
         self._config = SensorCamera.RenderConfig(
-            enable_shadows=style.shadows, enable_particles=False, enable_backface_culling=False
+            enable_shadows=style.shadows,
+            enable_particles=False,
+            enable_backface_culling=False,
+            max_distance=reach,
         )
 
     def _view(self, camera: Camera) -> _View:
@@ -199,7 +207,7 @@ class CameraRenderer:
             return None
         worlds = self.model.body_world.numpy()
         for k, label in enumerate(self.model.body_label):
-            if str(label).endswith(prim) and worlds[k] in (-1, self._world_index):
+            if str(label) == prim and worlds[k] in (-1, self._world_index):
                 return k
         raise ValueError(f"the model has no body {prim} for a camera to follow")
 

@@ -37,10 +37,7 @@ class SolidFill:
 
     def __init__(self, model: Any, world: World, spacing: float, world_index: int) -> None:
         points, owners = [np.zeros((0, 3))], [np.zeros(0, dtype=np.int32)]
-        worlds = model.shape_world.numpy() if model.shape_count else []
-        for index, shape, is_ground in shapes_by_label(model, world):
-            if worlds[index] not in (-1, world_index):
-                continue
+        for index, shape, is_ground in shapes_by_label(model, world, world_index):
             if is_ground or shape.opacity < OPAQUE or not shape.collides or shape.kind == "plane":
                 continue
             inner = _points_inside(model, index, spacing)

@@ -14,7 +14,7 @@ from wsim.scene.world import Shape
 from wsim.sim.render_views import is_ground
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from wsim.scene.world import Fluid, World
 
@@ -79,50 +79,63 @@ class Glass:
 
 @dataclass
 class ShapeLooks:
-    """How each of the model's shapes is to be drawn."""
+    """How the model's shapes of one world are to be drawn."""
 
     panes: list[Pane]
     hidden: list[int]  # shapes that no picture shows: glass (drawn apart) and boxes of fluid
     ground: np.ndarray  # (shape_count,) 1 for ground
-    color: np.ndarray  # (shape_count, 3) sRGB
+    color: dict[int, tuple[float, float, float]]  # sRGB, by index in the model
 
 
 def shape_looks(model: Any, world: World, world_index: int) -> ShapeLooks:
-    """Match the model's shapes with the world's by prim path."""
-    labels = [str(label) for label in model.shape_label]
+    """Match the model's shapes of a world with its description's by prim path. Glass that is not VISIBLE is no pane."""
+    labels = {int(index): str(model.shape_label[index]) for index in _shapes_of(model, world_index)}
     fluids = tuple(f"{f.prim}/" for f in world.fluids)
     looks = ShapeLooks(
         panes=[],
-        hidden=[i for i, label in enumerate(labels) if any(prim in f"{label}/" for prim in fluids)],
-        ground=np.zeros(max(len(labels), 1), dtype=np.int32),
-        color=model.shape_color.numpy().copy() if labels else np.zeros((0, 3)),
+        hidden=[i for i, label in labels.items() if any(prim in f"{label}/" for prim in fluids)],
+        ground=np.zeros(max(model.shape_count, 1), dtype=np.int32),
+        color={},
     )
-    worlds = model.shape_world.numpy() if labels else []
-    for index, shape, ground in shapes_by_label(model, world):
+    flags = model.shape_flags.numpy() if labels else []
+    for index, shape, ground in shapes_by_label(model, world, world_index):
         looks.color[index] = srgb_of(shape.color)
         looks.ground[index] = int(ground)
         if shape.opacity < OPAQUE and index not in looks.hidden:
             looks.hidden.append(index)
-            if worlds[index] in (-1, world_index):
+            if flags[index] & int(newton.ShapeFlags.VISIBLE):
                 looks.panes.append(Pane.of(model, index, shape))
     return looks
 
 
-def shapes_by_label(model: Any, world: World) -> Iterator[tuple[int, Shape, bool]]:
+def shapes_by_label(model: Any, world: World, world_index: int) -> Iterator[tuple[int, Shape, bool]]:
     """Index in the model, the world's description, and whether it is ground, of each shape that the world knows."""
     described = {shape.prim: (shape, is_ground(shape)) for static in world.statics for shape in static.shapes}
     described |= {shape.prim: (shape, False) for body in world.bodies for shape in body.shapes}
     for cord in world.cords:
         drawn = Shape(prim=cord.prim, kind="capsule", size=(cord.radius, 0.0), color=cord.color, collides=False)
         described[cord.prim] = (drawn, False)
-    for index, label in enumerate(model.shape_label):
-        path = str(label)
-        # A batched world's label has a prefix; a decomposed mesh's parts lie below its prim.
-        path = path[max(path.find("/World/"), 0) :]
-        while path and path not in described:
+    for index in _shapes_of(model, world_index):
+        path = str(model.shape_label[index])
+        while path and path not in described:  # a decomposed mesh's parts lie below its prim
             path = path.rpartition("/")[0]
         if path:
-            yield index, *described[path]
+            yield int(index), *described[path]
+
+
+def _shapes_of(model: Any, world_index: int) -> np.ndarray:
+    """Indices of a world's shapes, and of those that all worlds have: other worlds' have the same labels."""
+    worlds = model.shape_world.numpy() if model.shape_count else np.zeros(0, dtype=np.int32)
+    return np.flatnonzero((worlds == -1) | (worlds == world_index))
+
+
+def paint(model: Any, looks: Sequence[ShapeLooks]) -> None:
+    """Give the model's shapes of some worlds their colours."""
+    color = {index: rgb for each in looks for index, rgb in each.color.items()}
+    if color:
+        colors = model.shape_color.numpy().copy()
+        colors[list(color)] = list(color.values())
+        model.shape_color.assign(colors)
 
 
 def hide(model: Any, state: Any, hidden: list[int]) -> None:
@@ -130,11 +143,16 @@ def hide(model: Any, state: Any, hidden: list[int]) -> None:
     if not hidden:
         return
     flags = model.shape_flags.numpy().copy()
-    shown = flags.copy()
-    shown[hidden] &= ~int(newton.ShapeFlags.VISIBLE)
-    model.shape_flags.assign(shown)
+    model.shape_flags.assign(without(flags, hidden))
     model.bvh_build_shapes(state)
     model.shape_flags.assign(flags)
+
+
+def without(flags: np.ndarray, hidden: Sequence[int] | np.ndarray) -> np.ndarray:
+    """Newton's flags of shapes (S,), some of which are to be VISIBLE no more, by index or by mask."""
+    shown = flags.copy()
+    shown[hidden] &= ~int(newton.ShapeFlags.VISIBLE)
+    return shown
 
 
 def mesh_of(model: Any, index: int) -> wp.Mesh:

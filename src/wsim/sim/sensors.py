@@ -51,13 +51,13 @@ class Sensors:
         dt: The time step [s].
         seeds: One for each world, of what its sensors' noise differs by from another's; by default copies of one stage
             are counted.
-
-    Attributes:
-        keep: Told of each sample of the first world; None: nobody is.
+        wanted: Whether a controller asks what they told; else they are of use from `tell` on.
     """
 
-    def __init__(self, built: Built, dt: float, seeds: Sequence[int] = ()) -> None:
-        self.keep: Kept | None = None
+    def __init__(self, built: Built, dt: float, seeds: Sequence[int] = (), wanted: bool = True) -> None:
+        self._keep: Kept | None = None
+        self._wanted = wanted
+        self._cameras: list[Camera] = []
         self._worlds = max(1, built.model.world_count)
         own = seeds or (range(self._worlds) if len(built.worlds) == 1 else [0] * self._worlds)
         self._turns = Turns(dt)
@@ -65,10 +65,25 @@ class Sensors:
         for k, sensor in enumerate(built.world.sensors):
             steps = max(1, round(1.0 / (sensor.rate * dt)))
             reader = KINDS[type(sensor)](built, k, steps * dt, own)
+            if isinstance(reader, Camera):
+                self._cameras.append(reader)
             self._turns.add(self._reading(sensor, reader), steps * dt)
 
+        if wanted:
+            self._prepare()
+
     def __bool__(self) -> bool:
-        return bool(self._turns)
+        """Whether there are any that somebody wants to hear."""
+        return bool(self._turns) and (self._wanted or self._keep is not None)
+
+    def tell(self, keep: Kept) -> None:
+        """Have somebody told of each sample of the first world from now on."""
+        self._keep = keep
+        self._prepare()
+
+    def _prepare(self) -> None:
+        for camera in self._cameras:
+            camera.prepare()
 
     def ask(self, step: int, simulation: Any) -> int:
         """Read those whose turn is at a step; the steps until the next turn of any."""
@@ -83,8 +98,8 @@ class Sensors:
     def _reading(self, sensor: Sensor, reader: Any) -> Controller:
         def turn(t: float, simulation: Any) -> None:
             sample = self._last[sensor.prim] = reader(t, simulation)
-            if self.keep is not None and (t > 0.0 or not reader.spans):
+            if self._keep is not None and (t > 0.0 or not reader.spans):
                 first = {name: part[0] for name, part in sample.items()}
-                self.keep(t, sensor.prim, first, getattr(reader, "points", None))
+                self._keep(t, sensor.prim, first, getattr(reader, "points", None))
 
         return turn

@@ -129,7 +129,7 @@ class Simulation:
         self.control_force = wp.zeros_like(self.state.body_f) if self.rigid else None
         if self.rigid and self.rigid.ledger and controller is not None:
             self.rigid.ledger.control = self.control_force
-        self.sensors = Sensors(self.built, self.dt, seeds)
+        self.sensors = Sensors(self.built, self.dt, seeds, wanted=controller is not None)
         self._steered, self._turns = controller is not None, Turns(self.dt)
         for k in range(len(self.world.policies)):
             policy = PolicyController(self.model, self.built.worlds, self.built.bodies, k)
@@ -306,7 +306,8 @@ class Simulation:
                     )
                 pictures = stack.enter_context(drawn)
             writer.log(0.0, "INFO", self._summary())
-            events, self.sensors.keep = Events(self.built, self.fluid), writer.sample
+            events = Events(self.built, self.fluid)
+            self.sensors.tell(writer.sample)
             for frame in range(frames + 1):
                 with phases.phase("simulate"):
                     if frame:
