@@ -231,6 +231,8 @@ def test_a_camera_tells_numbers_of_what_its_labels_name() -> None:
     arrays["sensed"][:] = np.arange(2 * 30).reshape(2, 30)
     eye = ControlWorld(layout, arrays).sensor("eye")
     assert eye.labels == ["", "ball", "arm"]
+    eye.labels.clear()
+    assert eye.labels == ["", "ball", "arm"]  # a copy
     assert (eye.color.shape, eye.color.dtype) == ((2, 2, 3, 3), np.uint8) and eye.color[0, 0, 1].tolist() == [3, 4, 5]
     assert (eye.depth.shape, eye.depth[1, 0, 0]) == ((2, 2, 3), 48.0)
     assert (eye.segmentation.dtype, eye.segmentation[0, 1].tolist()) == (np.int32, [27, 28, 29])

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
 
 from wsim.recording import RecordingWriter, read
 from wsim.scene.world import World
-from wsim.scene.world_sensors import SensorIMU, SensorJoints, SensorRange
+from wsim.scene.world_sensors import SensorCamera, SensorIMU, SensorJoints, SensorRange
 
 
 @pytest.fixture
@@ -71,3 +72,31 @@ def test_what_the_world_does_not_say_is_refused(tmp_path: Path, sensed: World) -
             writer.sample(0.0, "/World/lidar", {})
         with pytest.raises(ValueError, match=r"sample of /World/imu: it has .* the world says"):
             writer.sample(0.0, "/World/imu", {"accelerometer": np.zeros(2), "gyroscope": np.zeros(3)})
+
+
+def camera(rate: float, channel: Literal["depth", "segmentation"]) -> SensorCamera:
+    return SensorCamera(
+        prim="/World/eye", rate=rate, body=None, width=4, height=3, fov=60.0, farthest=100.0, tells=[channel]
+    )
+
+
+@pytest.mark.parametrize(("asked", "apart"), [(1e4, 0.001), (1e4, 0.0125), (30.0, 1.0 / 30.0), (7.0, 0.125)])
+def test_pictures_are_thinned_by_when_they_were_taken(tmp_path: Path, world: World, asked: float, apart: float) -> None:
+    """At 20 frames a second at most each 50 ms, whatever the rate that was asked for: steps may be longer."""
+    eye = camera(asked, "depth")
+    eyed = world.model_copy(update={"sensors": [eye], "duration": 0.5, "frame_rate": 20.0})
+    times = np.arange(round(0.5 / apart) + 1) * apart
+    with RecordingWriter(tmp_path / "r.rrd", eyed) as writer:
+        for time in times:
+            writer.sample(time, "/World/eye", {"depth": np.full((3, 4), 1.0 + time, np.float32)})
+    every = int(np.ceil(0.05 / apart - 1e-9))
+    track = read(tmp_path / "r.rrd").sensors["/World/eye"]
+    np.testing.assert_allclose(track.time, times[::every], atol=1e-8)
+    np.testing.assert_allclose(track["depth"][:, 0, 0], 1.0 + times[::every], atol=1e-2)
+
+
+def test_more_objects_than_a_picture_has_numbers_for_are_refused(tmp_path: Path, world: World, monkeypatch) -> None:
+    eye = camera(10.0, "segmentation")
+    monkeypatch.setattr("wsim.recording.sensor_pictures.MOST_OBJECTS", 1)
+    with pytest.raises(ValueError, match=r"/World/eye: segmentation of \d objects; at most 1 have numbers"):
+        RecordingWriter(tmp_path / "r.rrd", world.model_copy(update={"sensors": [eye]}))

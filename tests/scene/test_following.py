@@ -79,6 +79,26 @@ def test_a_camera_below_a_body_is_fixed_to_it_as_usd_has_it() -> None:
                                atol=1e-6)  # fmt: skip
 
 
+def test_a_camera_below_a_body_with_a_frame_of_the_world_stands() -> None:
+    """`!resetXformStack!`: what its body does is none of its own, and it may follow another."""
+    made = scene()
+    lens = UsdGeom.Camera.Define(made.stage, "/World/box/lens")
+    lens.SetResetXformStack(True)
+    lens.AddTranslateOp().Set(Gf.Vec3d(0.0, 0.0, 5.0))
+    camera = next(each for each in describe(made.stage).cameras if each.prim == "/World/box/lens")
+    assert (camera.follows, camera.turns, camera.eye) == (None, False, (0.0, 0.0, 5.0))
+
+
+def test_with_a_robot_whose_base_is_held_a_camera_stands() -> None:
+    made = scene()
+    arm = made.robot("arm", "desk_arm", position=(0.0, 0.0, 0.0))
+    for k, what in enumerate((arm, arm.link("turret"))):
+        made.camera(f"of_{k}", eye=(3.0, 0.0, 1.0), target=(0.0, 0.0, 1.0), follows=what, turns=True)
+    found = {camera.prim: (camera.follows, camera.turns) for camera in describe(made.stage).cameras}
+    assert found["/World/of_0"] == (None, False)
+    assert found["/World/of_1"] == ("/World/arm/turret", True)
+
+
 def _twice(stage: Usd.Stage) -> None:
     UsdGeom.Xform.Define(stage, "/World/none")
     stage.GetPrimAtPath("/World/cam").GetRelationship("wsim:follows").SetTargets(["/World/none"])
@@ -92,9 +112,14 @@ def _gone(stage: Usd.Stage) -> None:
     stage.GetPrimAtPath("/World/cam").GetRelationship("wsim:follows").SetTargets(["/World/away"])
 
 
+def _off(stage: Usd.Stage) -> None:
+    stage.GetPrimAtPath("/World/box").SetActive(False)
+
+
 @pytest.mark.parametrize(
     ("change", "problem"),
     [
+        (_off, "/World/cam.wsim:follows: </World/box> is not in the world: inactive, a class or an over; name another"),
         (_twice, "/World/cam.wsim:follows: </World/none> is a Xform; it must be a rigid body"),
         (_gone, "/World/cam.wsim:follows: </World/away> is not there"),
         (_alone, "/World/cam.wsim:turns: it needs wsim:follows, the body that the camera turns with"),

@@ -159,6 +159,12 @@ WRONG: dict[str, tuple[Callable[[Usd.Prim, Usd.Prim], object], str]] = {
         lambda imu, _: imu.GetRelationship("wsim:body").SetTargets(["/World/hinge"]),
         "imu.wsim:body: </World/hinge> is a PhysicsRevoluteJoint; it must be a rigid body",
     ),
+    "a body that is off": (
+        lambda imu, _: UsdGeom.Xform.Define(imu.GetStage(), "/World/off").GetPrim().ApplyAPI(UsdPhysics.RigidBodyAPI)
+        and imu.GetStage().GetPrimAtPath("/World/off").SetActive(False)
+        and imu.GetStage().GetPrimAtPath("/World/eye").GetRelationship("wsim:body").SetTargets(["/World/off"]),
+        "eye.wsim:body: </World/off> is not in the world: inactive",
+    ),
     "a number as body": (
         lambda imu, _: imu.GetStage().GetPrimAtPath("/World/scan").GetRelationship("wsim:body").SetTargets(
             ["/World/door.physics:mass"]

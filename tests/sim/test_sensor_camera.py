@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+import warp as wp
 from numpy.typing import NDArray
 
 from wsim.recording import read
 from wsim.recording.sensor_pictures import MOST_PICTURES
 from wsim.scene import Scene
 from wsim.sim import Simulation
+from wsim.sim.collect import follow
+from wsim.sim.sensor_camera import Camera
 
 Build = Callable[[Scene], object]
 WIDTH, HEIGHT, FOV = 121, 81, 60.0  # odd: a pixel in the middle looks along the axis
@@ -195,3 +198,133 @@ def test_worlds_of_a_batch_see_each_their_own(tmp_path: Path) -> None:
         assert depth[20, 30] == pytest.approx(away, rel=1e-5)
         focal = 61.0 / (2.0 * math.tan(math.radians(fov) / 2.0))
         assert np.count_nonzero((part == 2).any(axis=0)) == pytest.approx(focal / away, abs=1.0)
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: pytest.TempPathFactory) -> Simulation:
+    """Two worlds: a red wall behind something opaque to the left of the middle, and a blue one behind glass."""
+
+    def build(color: tuple[float, float, float], opacity: float) -> Build:
+        def made(scene: Scene) -> None:
+            pane = scene.material("pane", density=1000.0, opacity=opacity)
+            scene.box("wall", size=(0.2, 9.0, 9.0), position=(6.1, 0.0, 0.0), static=True, color=color)
+            scene.box("pane", size=(0.2, 3.0, 3.0), position=(3.1, 1.5, 0.0), static=True, material=pane)
+            car = scene.box("car", size=(0.4, 0.4, 0.4), position=(0.0, 0.0, 0.0))
+            scene.sensor_camera("eye", car, width=41, height=31, fov=60.0)
+
+        return made
+
+    folder = tmp_path_factory.mktemp("pair")
+    looks = (((0.8, 0.02, 0.02), 1.0), ((0.02, 0.02, 0.8), 0.2))
+    stages = [stage(folder, build(*each), name=f"stage_{k}") for k, each in enumerate(looks)]
+    return Simulation(stages, device="cpu")
+
+
+def test_worlds_of_a_batch_have_their_own_colours_and_glass(pair: Simulation) -> None:
+    before = pair.model.shape_color.numpy().copy()
+    pair.sensors.ask(0, pair)
+    seen = pair.sensors._last["/World/eye"]
+    red, blue = seen["color"][:, 15, 30].astype(int)
+    assert red[0] > 3 * red[2] and blue[2] > 3 * blue[0]
+    np.testing.assert_allclose(seen["depth"][:, 15, 10], (3.0, 6.0), rtol=1e-5)
+    np.testing.assert_array_equal(seen["segmentation"][:, 15, [10, 30]], [[3, 2], [2, 2]])
+    np.testing.assert_array_equal(pair.model.shape_color.numpy(), before)  # films have their own
+
+
+@pytest.mark.parametrize("place", [np.nan, 1e20])
+def test_a_world_that_is_lost_tells_nothing_and_the_other_tells_on(pair: Simulation, place: float) -> None:
+    pair.sensors.ask(0, pair)
+    before = pair.sensors._last["/World/eye"]
+    kept = pair.state.body_q.numpy().copy()
+    lost = kept.copy()
+    lost[1, 0] = place
+    try:
+        pair.state.body_q.assign(lost)
+        pair.sensors.ask(0, pair)
+    finally:
+        pair.state.body_q.assign(kept)
+    after = pair.sensors._last["/World/eye"]
+    for channel, nothing in (("color", 0), ("depth", np.inf), ("segmentation", 0)):
+        np.testing.assert_array_equal(after[channel][0], before[channel][0])
+        assert (after[channel][1] == nothing).all() and (before[channel][1] != nothing).any()
+
+
+def test_a_run_whose_numbers_break_says_so(tmp_path: Path) -> None:
+    def build(scene: Scene) -> None:
+        box = scene.box("box", size=(0.4, 0.4, 0.4), position=(0.0, 0.0, 1.0))
+        scene.sensor_camera("eye", box, rate=100.0, width=8, height=6)
+
+    simulation = Simulation(stage(tmp_path, build), device="cpu")
+    simulation.state.body_q.fill_(wp.nan)
+    problems = simulation.run(tmp_path / "recording.rrd").problems
+    assert any("not finite" in problem or "MuJoCo" in problem for problem in problems)
+
+
+def test_a_carrier_of_glass_is_no_more_seen_than_another(tmp_path: Path) -> None:
+    """Two cameras far apart before one plain wall, each inside its own car."""
+
+    def build(scene: Scene) -> None:
+        glass = scene.material("glass", density=1000.0, opacity=0.5)
+        scene.box("wall", size=(0.2, 90.0, 9.0), position=(6.1, 0.0, 0.0), static=True, color=(0.8, 0.8, 0.8))
+        for name, left, look in (("bare", 20.0, {}), ("glazed", -20.0, {"material": glass})):
+            car = scene.box(
+                f"{name}_car", size=(2.0, 2.0, 2.0), position=(0.0, left, 0.0), color=(1.0, 0.0, 0.0), **look
+            )
+            scene.sensor_camera(name, car, width=21, height=15, channels=("color",))
+
+    simulation = Simulation(stage(tmp_path, build), device="cpu")
+    simulation.sensors.ask(0, simulation)
+    bare, glazed = (simulation.sensors._last[f"/World/{name}"]["color"][0].astype(int) for name in ("bare", "glazed"))
+    assert np.abs(bare - glazed).max() <= 1
+
+
+def test_depth_goes_as_deep_in_the_corner_as_in_the_middle(tmp_path: Path) -> None:
+    """To 1000 m along the axis, which in the corner is 1216 m along the ray."""
+
+    def build(scene: Scene) -> None:
+        scene.box("wall", size=(0.2, 1000.0, 1000.0), position=(990.1, 0.0, 0.0), static=True)
+        scene.sensor_camera("eye", None, width=21, height=15, fov=50.0, farthest=1000.0, channels=("depth",))
+
+    depth = told(tmp_path, build)["depth"]
+    np.testing.assert_allclose(depth, 990.0, rtol=1e-5)
+
+
+def test_objects_are_known_whatever_the_root_of_the_stage(tmp_path: Path) -> None:
+    """`/Env/World` in place of `/World`: its one object is `/Env/World`, and the wall has its colour."""
+
+    def build(scene: Scene) -> None:
+        scene.box("wall", size=(0.2, 9.0, 9.0), position=(3.1, 0.0, 0.0), static=True, color=(0.8, 0.02, 0.02))
+        scene.sensor_camera("eye", None, width=9, height=7)
+
+    text = stage(tmp_path, build).read_text(encoding="utf-8").replace("/World", "/Env/World")
+    text = text.replace('defaultPrim = "World"', 'defaultPrim = "Env"')
+    text = text.replace('def Xform "World"', 'def Xform "Env"\n{\ndef Xform "World"') + "}\n"
+    path = tmp_path / "env.usda"
+    path.write_text(text, encoding="utf-8")
+    simulation = Simulation(path, device="cpu")
+    simulation.sensors.ask(0, simulation)
+    seen = simulation.sensors._last["/Env/World/eye"]
+    assert (seen["segmentation"] == 1).all()
+    assert seen["color"][0, 3, 4, 0] > 3 * seen["color"][0, 3, 4, 2].astype(int)
+
+
+def test_pictures_are_drawn_where_somebody_wants_them_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not in a sweep without `control`; there once at each of its turns."""
+
+    def build(scene: Scene) -> None:
+        box = scene.box("box", size=(0.4, 0.4, 0.4), position=(0.0, 0.0, 1.0))
+        scene.sensor_camera("eye", box, rate=20.0, width=8, height=6)
+
+    drawn: list[float] = []
+    made: list[object] = []
+    call, prepare = Camera.__call__, Camera.prepare
+    monkeypatch.setattr(Camera, "__call__", lambda self, t, sim: drawn.append(t) or call(self, t, sim))
+    monkeypatch.setattr(Camera, "prepare", lambda self: made.append(self) or prepare(self))
+    path = stage(tmp_path, build)
+    follow(Simulation(path, device="cpu", world_count=2))
+    assert not drawn and not made
+    follow(Simulation(path, device="cpu", world_count=2, controller=lambda t, simulation: None))
+    assert drawn == pytest.approx([0.0, 0.05]) and len(made) == 1
+    drawn.clear()
+    assert Simulation(path, device="cpu").run(tmp_path / "recording.rrd").problems == []
+    assert drawn == pytest.approx([0.0, 0.05, 0.1]) and len(made) == 2

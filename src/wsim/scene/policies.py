@@ -182,9 +182,19 @@ def _base(call: Call, robot: Usd.Prim) -> Usd.Prim:
 
 def base_of(robot: Usd.Prim) -> Usd.Prim | None:
     """The one link of a robot that no joint hangs on another, if it is free to move."""
+    bases = _bases_of(robot)
+    return bases[0] if len(bases) == 1 and bases[0].HasAPI(UsdPhysics.RigidBodyAPI) else None
+
+
+def is_held(robot: Usd.Prim) -> bool:
+    """Whether a robot begins with links that are part of the world."""
+    bases = _bases_of(robot)
+    return bool(bases) and not any(base.HasAPI(UsdPhysics.RigidBodyAPI) for base in bases)
+
+
+def _bases_of(robot: Usd.Prim) -> list[Usd.Prim]:
     hung = {path for joint in robot.GetChild("joints").GetChildren() for path in _ends(joint)}
-    links = [child for child in robot.GetChildren() if child.IsA(UsdGeom.Xform) and child.GetPath() not in hung]
-    return links[0] if len(links) == 1 and links[0].HasAPI(UsdPhysics.RigidBodyAPI) else None
+    return [child for child in robot.GetChildren() if child.IsA(UsdGeom.Xform) and child.GetPath() not in hung]
 
 
 def _ends(joint: Usd.Prim) -> list[Sdf.Path]:

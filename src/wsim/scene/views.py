@@ -10,7 +10,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdLux
 from wsim.limits import MAX_POSITION
 from wsim.scene import schema
 from wsim.scene.authoring import Author, Handle, note_line, set_pose
-from wsim.scene.policies import base_of
+from wsim.scene.policies import base_of, is_held
 from wsim.scene.validate import Call, Vec3
 
 _APERTURE = 20.955  # [tenths of a unit], USD's own
@@ -44,7 +44,8 @@ class Views(Author):
             fov: Horizontal field of view [deg].
             width: Of the picture [pixel].
             height: Of the picture [pixel].
-            follows: A body that moves, a handle or a name; a robot stands for its base.
+            follows: A body that moves, a handle or a name; a robot stands for its base, and where
+                that is held to the world the camera stands, too.
             turns: Whether it turns with that body too, as if it was fixed to it.
 
         Raises:
@@ -61,7 +62,7 @@ class Views(Author):
         columns = call.integer("width", width, 16, 8192, "pixel")
         rows = call.integer("height", height, 16, 8192, "pixel")
         body = None if follows is None else self._followed(call, follows)
-        if call.flag("turns", turns) and body is None:
+        if call.flag("turns", turns) and follows is None:
             call.fail("turns = True needs follows, the body that it turns with")
 
         camera = UsdGeom.Camera.Define(self._stage, path)
@@ -78,16 +79,20 @@ class Views(Author):
                 "target": (Sdf.ValueTypeNames.Double3, Gf.Vec3d(*aim)),
                 "width": (Sdf.ValueTypeNames.Int, columns),
                 "height": (Sdf.ValueTypeNames.Int, rows),
-                **({"turns": (Sdf.ValueTypeNames.Bool, True)} if turns else {}),
+                **({"turns": (Sdf.ValueTypeNames.Bool, True)} if turns and body is not None else {}),
             },
         )
         if body is not None:
             prim.CreateRelationship("wsim:follows", custom=False).SetTargets([body.GetPath()])
         return Handle(name=name, path=path, kind="camera")
 
-    def _followed(self, call: Call, what: Handle | str) -> Usd.Prim:
+    def _followed(self, call: Call, what: Handle | str) -> Usd.Prim | None:
+        """The body that is meant; None for a robot whose base is held, with which a camera stands."""
         prim = self._find(call, "follows", what)
-        base = base_of(prim) if prim.GetChild("joints") else None
+        has_joints = bool(prim.GetChild("joints"))
+        if has_joints and is_held(prim):
+            return None
+        base = base_of(prim) if has_joints else None
         return base or self._rigid_body(call, "follows", prim)
 
     def light(
