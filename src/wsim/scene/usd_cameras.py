@@ -16,6 +16,7 @@ from wsim.scene.usd_shapes import to_vec3
 from wsim.scene.world import Camera
 
 _WIDEST = 175.0  # [deg]
+_MOST = 8192  # pixels across a film, or down
 
 
 def read_camera(prim: Usd.Prim) -> Camera:
@@ -28,9 +29,8 @@ def read_camera(prim: Usd.Prim) -> Camera:
     if Gf.Dot((target - eye).GetNormalized(), forward) < 1.0 - 1e-6:
         # No target was written, or the camera was moved since.
         target = eye + forward * (float(lens.GetFocusDistanceAttr().Get()) or 1.0)
-    across, down = lens.GetHorizontalApertureAttr().Get(), lens.GetVerticalApertureAttr().Get()
+    width, height = _pixels(prim)
     followed, above = targets_of(prim, "follows"), _carrier(prim)
-    width = int(value_of(prim, "width", 640))
     return Camera(
         prim=str(prim.GetPath()),
         eye=to_vec3(eye),
@@ -38,14 +38,21 @@ def read_camera(prim: Usd.Prim) -> Camera:
         up=to_vec3(frame.TransformDir(Gf.Vec3d(0.0, 1.0, 0.0))),
         fov=field_of_view(lens),
         width=width,
-        height=int(value_of(prim, "height", round(width * down / across))),
+        height=height,
         follows=str(followed[0].GetPath()) if followed else above,
         turns=bool(value_of(prim, "turns", False)) if followed else above is not None,
     )
 
 
+def _pixels(prim: Usd.Prim) -> tuple[int, int]:
+    """Width and height of a picture; where no height is stated, the lens's."""
+    lens, width = UsdGeom.Camera(prim), int(value_of(prim, "width", 640))
+    across, down = lens.GetHorizontalApertureAttr().Get(), lens.GetVerticalApertureAttr().Get()
+    return width, int(value_of(prim, "height", round(width * down / across) if across > 0.0 else 0))
+
+
 def _carrier(prim: Usd.Prim) -> str | None:
-    """Path of the body that a camera is fixed to: the nearest above it, unless its frame is the world's (`!reset...!`)."""
+    """Path of the body that a camera is fixed to: the nearest above it, from where no `!resetXformStack!` parts it."""
     each = prim
     while each and not each.IsPseudoRoot():
         if each.HasAPI(UsdPhysics.RigidBodyAPI):
@@ -79,6 +86,9 @@ def camera_problems(prims: Iterable[Usd.Prim]) -> Iterator[str]:
             yield f"{prim.GetPath()}.focalLength: {said}"
         if not is_view(prim):
             continue
+        if across > 0.0 and not all(1 <= each <= _MOST for each in _pixels(prim)):
+            width, height = _pixels(prim)
+            yield f"{prim.GetPath()}.wsim:width: {width} by {height} pixels must be 1 to {_MOST} each"
         followed, above = targets_of(prim, "follows"), _carrier(prim)
         if len(followed) > 1:
             yield f"{prim.GetPath()}.wsim:follows: it names {len(followed)} bodies; name one"
