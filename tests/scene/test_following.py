@@ -117,14 +117,13 @@ def _off(stage: Usd.Stage) -> None:
 
 
 def _flat(stage: Usd.Stage) -> None:
-    stage.GetPrimAtPath("/World/cam").RemoveProperty("wsim:height")
-    UsdGeom.Camera.Get(stage, "/World/cam").CreateVerticalApertureAttr(0.0)
+    UsdGeom.Camera.Define(stage, "/World/lens").CreateVerticalApertureAttr(0.0)
 
 
 @pytest.mark.parametrize(
     ("change", "problem"),
     [
-        (_flat, "/World/cam.wsim:width: 640 by 0 pixels must be 1 to 8192 each"),
+        (_flat, "/World/lens.wsim:width: 640 by 0 pixels must be 1 to 8192 each"),
         (_off, "/World/cam.wsim:follows: </World/box> is not in the world: inactive, a class or an over; name another"),
         (_twice, "/World/cam.wsim:follows: </World/none> is a Xform; it must be a rigid body"),
         (_gone, "/World/cam.wsim:follows: </World/away> is not there"),

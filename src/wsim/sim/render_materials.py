@@ -84,7 +84,7 @@ class ShapeLooks:
     panes: list[Pane]
     hidden: list[int]  # shapes that no picture shows: glass (drawn apart) and boxes of fluid
     ground: np.ndarray  # (shape_count,) 1 for ground
-    color: dict[int, tuple[float, float, float]]  # sRGB, by index in the model
+    color: dict[int, np.ndarray]  # (3,) sRGB, by index in the model
 
 
 def shape_looks(model: Any, world: World, world_index: int) -> ShapeLooks:
