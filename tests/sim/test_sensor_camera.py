@@ -33,11 +33,16 @@ def stage(folder: Path, build: Build, duration: float = 0.1, name: str = "stage"
     return scene.save(folder / f"{name}.usda")
 
 
+def samples(simulation: Simulation) -> dict[str, dict[str, NDArray[Any]]]:
+    """What the sensors of all worlds tell as they stand, by prim, to somebody who wants it."""
+    simulation.sensors.tell(lambda *_: None)
+    simulation.sensors.ask(0, simulation)
+    return dict(simulation.sensors._last)
+
+
 def told(folder: Path, build: Build) -> dict[str, NDArray[Any]]:
     """What the one sensor of a world tells at the start."""
-    simulation = Simulation(stage(folder, build), device="cpu")
-    simulation.sensors.ask(0, simulation)
-    (sample,) = simulation.sensors._last.values()
+    (sample,) = samples(Simulation(stage(folder, build), device="cpu")).values()
     return {channel: value[0] for channel, value in sample.items()}
 
 
@@ -160,8 +165,7 @@ def test_what_a_recording_keeps_is_exact_to_its_steps_and_bounded(tmp_path: Path
 
     path = stage(tmp_path, build, duration=0.5)
     simulation = Simulation(path, device="cpu")
-    simulation.sensors.ask(0, simulation)
-    first = {channel: value[0] for channel, value in simulation.sensors._last["/World/eye"].items()}
+    first = {channel: value[0] for channel, value in samples(simulation)["/World/eye"].items()}
     assert simulation.run(tmp_path / "recording.rrd").problems == []
     track = read(tmp_path / "recording.rrd").sensors["/World/eye"]
     np.testing.assert_allclose(track.time, np.arange(11) * 0.05, atol=1e-9)
@@ -189,8 +193,7 @@ def test_worlds_of_a_batch_see_each_their_own(tmp_path: Path) -> None:
     lenses = ((3.0, 60.0), (5.0, 40.0))
     stages = [stage(tmp_path, build(*lens), name=f"stage_{k}") for k, lens in enumerate(lenses)]
     simulation = Simulation(stages, device="cpu")
-    simulation.sensors.ask(0, simulation)
-    seen = simulation.sensors._last["/World/eye"]
+    seen = samples(simulation)["/World/eye"]
     assert seen["color"].shape == (2, 41, 61, 3)
     assert simulation.sensors.flat().shape == (2, 41 * 61 * 5)
     for depth, part, (away, fov) in zip(seen["depth"], seen["segmentation"], lenses, strict=True):
@@ -221,8 +224,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Simulation:
 
 def test_worlds_of_a_batch_have_their_own_colours_and_glass(pair: Simulation) -> None:
     before = pair.model.shape_color.numpy().copy()
-    pair.sensors.ask(0, pair)
-    seen = pair.sensors._last["/World/eye"]
+    seen = samples(pair)["/World/eye"]
     red, blue = seen["color"][:, 15, 30].astype(int)
     assert red[0] > 3 * red[2] and blue[2] > 3 * blue[0]
     np.testing.assert_allclose(seen["depth"][:, 15, 10], (3.0, 6.0), rtol=1e-5)
@@ -232,17 +234,15 @@ def test_worlds_of_a_batch_have_their_own_colours_and_glass(pair: Simulation) ->
 
 @pytest.mark.parametrize("place", [np.nan, 1e20])
 def test_a_world_that_is_lost_tells_nothing_and_the_other_tells_on(pair: Simulation, place: float) -> None:
-    pair.sensors.ask(0, pair)
-    before = pair.sensors._last["/World/eye"]
+    before = samples(pair)["/World/eye"]
     kept = pair.state.body_q.numpy().copy()
     lost = kept.copy()
     lost[1, 0] = place
     try:
         pair.state.body_q.assign(lost)
-        pair.sensors.ask(0, pair)
+        after = samples(pair)["/World/eye"]
     finally:
         pair.state.body_q.assign(kept)
-    after = pair.sensors._last["/World/eye"]
     for channel, nothing in (("color", 0), ("depth", np.inf), ("segmentation", 0)):
         np.testing.assert_array_equal(after[channel][0], before[channel][0])
         assert (after[channel][1] == nothing).all() and (before[channel][1] != nothing).any()
@@ -261,8 +261,8 @@ def test_a_carrier_of_glass_is_no_more_seen_than_another(tmp_path: Path) -> None
             scene.sensor_camera(name, car, width=21, height=15, channels=("color",))
 
     simulation = Simulation(stage(tmp_path, build), device="cpu")
-    simulation.sensors.ask(0, simulation)
-    bare, glazed = (simulation.sensors._last[f"/World/{name}"]["color"][0].astype(int) for name in ("bare", "glazed"))
+    seen = samples(simulation)
+    bare, glazed = (seen[f"/World/{name}"]["color"][0].astype(int) for name in ("bare", "glazed"))
     assert np.abs(bare - glazed).max() <= 1
 
 
@@ -290,8 +290,7 @@ def test_objects_are_known_whatever_the_root_of_the_stage(tmp_path: Path) -> Non
     path = tmp_path / "env.usda"
     path.write_text(text, encoding="utf-8")
     simulation = Simulation(path, device="cpu")
-    simulation.sensors.ask(0, simulation)
-    seen = simulation.sensors._last["/Env/World/eye"]
+    seen = samples(simulation)["/Env/World/eye"]
     assert (seen["segmentation"] == 1).all()
     assert seen["color"][0, 3, 4, 0] > 3 * seen["color"][0, 3, 4, 2].astype(int)
 

@@ -51,7 +51,7 @@ class Sensors:
         dt: The time step [s].
         seeds: One for each world, of what its sensors' noise differs by from another's; by default copies of one stage
             are counted.
-        wanted: Whether a controller asks what they told; else they are of use from `tell` on.
+        wanted: Whether a controller asks what they told; else cameras draw nothing until `tell` is called.
     """
 
     def __init__(self, built: Built, dt: float, seeds: Sequence[int] = (), wanted: bool = True) -> None:
@@ -68,13 +68,12 @@ class Sensors:
             if isinstance(reader, Camera):
                 self._cameras.append(reader)
             self._turns.add(self._reading(sensor, reader), steps * dt)
-
         if wanted:
             self._prepare()
 
     def __bool__(self) -> bool:
-        """Whether there are any that somebody wants to hear."""
-        return bool(self._turns) and (self._wanted or self._keep is not None)
+        """Whether any are read."""
+        return bool(self._turns)
 
     def tell(self, keep: Kept) -> None:
         """Have somebody told of each sample of the first world from now on."""
@@ -82,6 +81,7 @@ class Sensors:
         self._prepare()
 
     def _prepare(self) -> None:
+        self._wanted = True
         for camera in self._cameras:
             camera.prepare()
 
@@ -97,6 +97,8 @@ class Sensors:
 
     def _reading(self, sensor: Sensor, reader: Any) -> Controller:
         def turn(t: float, simulation: Any) -> None:
+            if isinstance(reader, Camera) and not self._wanted:
+                return
             sample = self._last[sensor.prim] = reader(t, simulation)
             if self._keep is not None and (t > 0.0 or not reader.spans):
                 first = {name: part[0] for name, part in sample.items()}
