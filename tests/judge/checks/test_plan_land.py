@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
+from tests.agents.flies import CAMERA
 from tests.judge.checks.test_plan_closed import scene_of, still
 from tests.judge.theory import ask
+from wsim.agents.planner import read_plan
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_closed import CheckPlanClosed
 from wsim.judge.checks.plan_contacts import CheckPlanContacts
@@ -23,6 +26,7 @@ from wsim.program.compose import compose
 from wsim.rules.planner import plan as make_plan
 from wsim.scene import Scene
 from wsim.scene.describe import describe
+from wsim.scene.world import World
 
 CHECKS = (
     CheckPlanObjects, CheckPlanClosed, CheckPlanSizes, CheckPlanPlaces, CheckPlanLooks, CheckPlanJoints,
@@ -40,7 +44,12 @@ def rough() -> Plan:
 
 def faults(plan: Plan, more: str = "", change: tuple[str, str] = ("", "")) -> dict[tuple[str, str | None], str]:
     """What is found, by check and prim."""
-    recording = still(describe(scene_of(plan, more, change).stage))
+    return found(plan, describe(scene_of(plan, more, change).stage))
+
+
+def found(plan: Plan, world: World) -> dict[tuple[str, str | None], str]:
+    """As `faults`, of a world."""
+    recording = still(world)
     return {(f.check, f.prim): f.message for check in CHECKS for f in ask(check(), recording, plan) if not f.passed}
 
 
@@ -239,16 +248,16 @@ def test_things_of_the_catalogue_stand_on_the_lowest_ground_about_them() -> None
 
 def test_the_examples_of_the_prompt_are_accepted() -> None:
     """A robot has joints and gears of its own, the first of them to its base; what is added to it is found."""
-    plan = made({"title": "", "prompt": "", "objects": [*EXAMPLES.values()], "simulation": {"duration": 30.0}},
-                Path("plan"))  # fmt: skip
-    assert wrong(plan) == set()
-    held = """
-from pxr import UsdPhysics
-held = UsdPhysics.FixedJoint.Define(scene.stage, "/World/held")
-held.CreateBody0Rel().SetTargets(["/World/arm"])
-held.CreateBody1Rel().SetTargets(["/World/arm/hand"])
-"""
-    assert ("CheckPlanJoints", "/World/held") in wrong(plan, held)
+    reaches = {"kind": "formula", "object": "truck", "sentence": "finally (reaches(truck, (20, 0, 0), within 3 m))"}
+    told = {"title": "", "objects": [*EXAMPLES.values()], "cameras": [CAMERA], "objectives": [reaches],
+            "simulation": {"duration": 14}}  # fmt: skip
+    plan = read_plan(json.loads(json.dumps(told)), "A truck drives over a hill.")
+    world = describe(scene_of(plan).stage)
+    assert found(plan, world) == {}
+    (pan,) = (joint for joint in world.joints if joint.fixture is not None)
+    held = pan.model_copy(update={"prim": "/World/held", "child": "/World/arm/hand"})
+    more = world.model_copy(update={"joints": [*world.joints, held]})
+    assert found(plan, more).keys() == {("CheckPlanJoints", "/World/held")}
 
 
 @pytest.mark.parametrize(
@@ -267,5 +276,4 @@ def test_what_a_parameter_changes_is_not_held_to_the_plan(says: str, change: tup
     exec(compile(text.replace(*change), "program.py", "exec"), space)
     scene = Scene(params={"a": value})
     space["build"](scene)
-    recording = still(describe(scene.stage))
-    assert [f.message for check in CHECKS for f in ask(check(), recording, plan) if not f.passed] == []
+    assert found(plan, describe(scene.stage)) == {}
