@@ -11,7 +11,8 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _JITTER = 0.16  # of an edge of the sphere's net, that a corner is moved by
-_FLATTEST = 0.6  # of its length, a rock's height or width at least
+FLATTEST = 0.6  # of its length, a rock's height or width at least
+STANDS = 0.3  # [m] about its middle, within which a thing of the catalogue goes down to the lowest ground
 
 
 @cache
@@ -50,5 +51,5 @@ def rock(length: float, random: np.random.Generator) -> tuple[Floats, Integers]:
     points, faces = _net()
     moved = points + _JITTER * random.uniform(-1.0, 1.0, points.shape)
     moved /= np.linalg.norm(moved, axis=1, keepdims=True)
-    axes = np.array([1.0, *random.uniform(_FLATTEST, 1.0, 2)])
+    axes = np.array([1.0, *random.uniform(FLATTEST, 1.0, 2)])
     return 0.5 * length * axes * moved, faces

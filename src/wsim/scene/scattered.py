@@ -15,7 +15,7 @@ from wsim.scene.bodies import Bodies, finish_collider
 from wsim.scene.catalogued import Catalogued
 from wsim.scene.layers import Floats, nearest, point, polyline
 from wsim.scene.roads import Road
-from wsim.scene.rocks import rock
+from wsim.scene.rocks import STANDS, rock
 from wsim.scene.static_mesh import define_mesh
 from wsim.scene.terrain import Terrain
 from wsim.scene.validate import Call, Vec3, shown
@@ -24,7 +24,6 @@ ROCKS = "rocks"
 _MOST = 1000
 _TRIES = 500  # places that are looked at for each thing
 _SUNK = 0.2  # of a rock's height, under the lowest ground at its middle
-_STANDS = 0.3  # [m] about its middle, within which a thing of the catalogue goes down to the lowest ground
 _AROUND = [(math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)) for k in range(8)]
 _STONE = (0.33, 0.31, 0.28)
 
@@ -91,12 +90,12 @@ class Scattered(Catalogued, Bodies):
         entries = self._entries(call, what)
         for entry in entries:
             across = max(entry.size[:2])
-            _fits(call, on, f"what = {shown(entry.id)}", across, max(0.5 * across, _STANDS))
+            _fits(call, on, f"what = {shown(entry.id)}", across, max(0.5 * across, STANDS))
         chosen = [entries[k] for k in random.integers(0, len(entries), many)]
         wide = np.array([0.5 * max(entry.size[:2]) for entry in chosen])
         made = []
         for k, (x, y) in enumerate(_places(call, on, many, wide, away, random)):
-            low_ground = min(on.height(x + _STANDS * c, y + _STANDS * s) for c, s in _AROUND)
+            low_ground = min(on.height(x + STANDS * c, y + STANDS * s) for c, s in _AROUND)
             turn = (0.0, 0.0, float(random.uniform(0.0, 360.0)))
             made.append(self.asset(f"{name}_{k}", chosen[k].id, position=(x, y, low_ground), rotation_deg=turn,
                                    static=True))  # fmt: skip
@@ -179,7 +178,7 @@ def _places(
     for k in np.argsort(-radius, kind="stable"):
         reach = float(radius[k])
         for _ in range(_TRIES):
-            x, y = on.anywhere(random, max(reach, _STANDS))
+            x, y = on.anywhere(random, max(reach, STANDS))
             if all(_far(line, x, y) >= margin + reach for line, margin in away) and all(
                 math.hypot(x - a, y - b) >= reach + radius[j] for j, (a, b) in found.items()
             ):

@@ -37,6 +37,9 @@ VARIED = (
     "CheckPlanContacts",
     "CheckPlanJoints",
     "CheckPlanMotion",
+    "CheckPlanVehicles",
+    "CheckPlanTerrain",
+    "CheckPlanScatter",
 )
 FAILURES = (ValueError, RuntimeError, LookupError, ArithmeticError, MemoryError, OSError, UserError, ControlError)
 

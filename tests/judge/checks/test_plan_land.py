@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+from pathlib import Path
 
 import pytest
 
+from tests.agents.flies import CAMERA
 from tests.judge.checks.test_plan_closed import scene_of, still
 from tests.judge.theory import ask
+from wsim.agents.planner import read_plan
 from wsim.judge.checks.plan import CheckPlanLooks, CheckPlanPlaces, CheckPlanSizes
 from wsim.judge.checks.plan_closed import CheckPlanClosed
 from wsim.judge.checks.plan_contacts import CheckPlanContacts
@@ -17,11 +20,13 @@ from wsim.judge.checks.plan_motion import CheckPlanMotion
 from wsim.judge.checks.plan_vehicles import CheckPlanVehicles
 from wsim.judge.checks.run import CheckPlanObjects
 from wsim.plan.schema import Plan
+from wsim.plan.schema.examples import EXAMPLES
+from wsim.plan.store import made
+from wsim.program.compose import compose
 from wsim.rules.planner import plan as make_plan
+from wsim.scene import Scene
 from wsim.scene.describe import describe
-
-if TYPE_CHECKING:
-    pass
+from wsim.scene.world import World
 
 CHECKS = (
     CheckPlanObjects, CheckPlanClosed, CheckPlanSizes, CheckPlanPlaces, CheckPlanLooks, CheckPlanJoints,
@@ -39,7 +44,12 @@ def rough() -> Plan:
 
 def faults(plan: Plan, more: str = "", change: tuple[str, str] = ("", "")) -> dict[tuple[str, str | None], str]:
     """What is found, by check and prim."""
-    recording = still(describe(scene_of(plan, more, change).stage))
+    return found(plan, describe(scene_of(plan, more, change).stage))
+
+
+def found(plan: Plan, world: World) -> dict[tuple[str, str | None], str]:
+    """As `faults`, of a world."""
+    recording = still(world)
     return {(f.check, f.prim): f.message for check in CHECKS for f in ask(check(), recording, plan) if not f.passed}
 
 
@@ -57,6 +67,41 @@ def test_rough_ground_that_is_composed_is_the_plans(rough: Plan) -> None:
     assert wrong(rough) == set()
 
 
+HELPERS = """
+import numpy as np
+from pxr import Gf, UsdGeom, UsdPhysics, UsdShade
+def sheet(name, points):
+    made = UsdGeom.Mesh.Define(scene.stage, f"/World/ground/{name}")
+    made.CreatePointsAttr(points)
+    made.CreateFaceVertexCountsAttr([3, 3])
+    made.CreateFaceVertexIndicesAttr([0, 1, 2, 0, 2, 3])
+    UsdPhysics.CollisionAPI.Apply(made.GetPrim())
+    UsdPhysics.MeshCollisionAPI.Apply(made.GetPrim()).CreateApproximationAttr("none")
+    for purpose in ("physics", ""):
+        of = UsdShade.MaterialBindingAPI(p("/World/ground/geometry")).ComputeBoundMaterial(purpose)
+        UsdShade.MaterialBindingAPI.Apply(made.GetPrim()).Bind(of[0], materialPurpose=purpose)
+def rebuilt(part, points, faces):
+    mesh = UsdGeom.Mesh(p(f"/World/ground/{part}"))
+    mesh.GetPointsAttr().Set(points)
+    mesh.GetFaceVertexCountsAttr().Set([3] * len(faces))
+    mesh.GetFaceVertexIndicesAttr().Set(np.ravel(faces).tolist())
+    mesh.GetNormalsAttr().Clear()
+def parts():
+    for part in ("geometry", "track"):
+        mesh = UsdGeom.Mesh(p(f"/World/ground/{part}"))
+        points = np.array(mesh.GetPointsAttr().Get())
+        faces = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
+        yield part, points, faces
+def hole(low, high):
+    for part, points, faces in parts():
+        middle = points[faces].mean(axis=1)
+        inside = (middle[:, 0] > low[0]) & (middle[:, 0] < high[0]) & (middle[:, 1] > low[1]) & (middle[:, 1] < high[1])
+        rebuilt(part, points, faces[~inside])
+def beside(corners):
+    part, points, faces = next(parts())
+    n = len(points)
+    rebuilt(part, [*map(tuple, points.tolist()), *corners], [*faces.tolist(), [n, n + 1, n + 2], [n, n + 2, n + 3]])
+"""
 SET = 'p("{}").GetAttribute("{}").Set({})'
 
 
@@ -143,12 +188,40 @@ def test_ground_without_the_plans_hill_or_its_road_is_found() -> None:
          "is no conifer or deciduous_tree as the catalogue has it"),
         ('from pxr import UsdPhysics; [each.RemoveAPI(UsdPhysics.CollisionAPI) for each in '
          'p("/World/rock_0").GetChildren()]', ("", ""), "CheckPlanScatter", "/World/rock_0", "is no rock"),
+        # walls, roofs and holes
+        ('sheet("wall", [(3, -5, -1), (3, 5, -1), (3, 5, 3), (3, -5, 3)])', ("", ""), "CheckPlanTerrain", GROUND,
+         "has a part wall that"),
+        ('beside([(3, 0, 0), (3, 0.4, 0), (3, 0.4, 3), (3, 0, 3)])', ("", ""), "CheckPlanTerrain", GROUND,
+         "is not as high as the plan's layers make it: at (3, 0"),
+        ('beside([(3, -5, -1), (3, 5, -1), (3, 5, 3), (3, -5, 3)])', ("", ""), "CheckPlanTerrain", GROUND,
+         "has triangles of (0.5, 10)"),
+        ('beside([(3, 3, -1), (3.4, 3, -1), (3.4, 3.4, -1), (3, 3.4, -1)])', ("", ""), "CheckPlanTerrain", GROUND,
+         "has 2 surfaces to stand on at (3.1"),
+        ("hole((2.0, -4.0), (2.5, 4.0))", ("", ""), "CheckPlanTerrain", GROUND, "has 0 surfaces to stand on at (2.1"),
+        ("hole((2.0, -4.0), (6.0, 4.0))", ("areas=ground_areas", "cell=0.25, areas=ground_areas"),
+         "CheckPlanTerrain", GROUND, "has 0 surfaces to stand on at (2.1"),
+        (SET.format("/World/ground/geometry", "physics:approximation", '"convexHull"'), ("", ""), "CheckPlanTerrain",
+         GROUND, "is not solid ground whose triangles collide"),
+        # how a thing that is scattered is made
+        (SET.format("/World/rock_0/geometry", "physics:approximation", '"convexHull"'), ("", ""), "CheckPlanScatter",
+         "/World/rock_0", "is no rock"),
+        ('q = p("/World/rock_0/geometry").GetAttribute("points"); q.Set([Gf.Vec3f(x, 0.05 * y, z) for x, y, z in '
+         'q.Get()])', ("", ""), "CheckPlanScatter", "/World/rock_0", "m across where it is least"),
+        ('scene.surface_velocity("rock_0", velocity=(1.0, 0.0, 0.0))', ("", ""), "CheckPlanScatter", "/World/rock_0",
+         "a surface velocity of"),
+        ('q = p("/World/tree_0").GetAttribute("xformOp:orient"); q.Set(q.Get() * Gf.Quatd(0, 1, 0, 0))', ("", ""),
+         "CheckPlanScatter", "/World/tree_0", "leans 180 degrees"),
+        ('UsdGeom.Xformable(p("/World/tree_0/collision/trunk")).AddRotateXOp().Set(90.0)', ("", ""),
+         "CheckPlanScatter", "/World/tree_0", "trunk is turned 90 degrees off"),
+        ('[UsdPhysics.MaterialAPI(q).CreateRestitutionAttr().Set(0.95) for q in scene.stage.Traverse() if '
+         'str(q.GetPath()).startswith("/World/tree_0") and q.HasAPI(UsdPhysics.MaterialAPI)]', ("", ""),
+         "CheckPlanScatter", "/World/tree_0", "a restitution of 0.95"),
     ],
 )  # fmt: skip
 def test_land_that_is_laid_otherwise_is_found(
     rough: Plan, more: str, change: tuple[str, str], check: str, prim: str, says: str
 ) -> None:
-    assert says in faults(rough, more, change).get((check, prim), "")
+    assert says in faults(rough, HELPERS + more, change).get((check, prim), "")
 
 
 def test_another_seed_scatters_as_the_plan_allows(rough: Plan) -> None:
@@ -157,3 +230,50 @@ def test_another_seed_scatters_as_the_plan_allows(rough: Plan) -> None:
 
 def test_finer_cells_keep_the_areas(rough: Plan) -> None:
     assert wrong(rough, change=("areas=ground_areas", "cell=0.25, areas=ground_areas")) == set()
+
+
+def test_things_of_the_catalogue_stand_on_the_lowest_ground_about_them() -> None:
+    """On 45 degrees of slope that is 0.3 m under their middle, which is more than half of a small rock."""
+    hill = {"kind": "hill", "position": [0, 0], "radius": 16, "height": 8.0}
+    land = {"name": "land", "role": "terrain", "state": "static", "material": {"name": "soil", "density": 1600},
+            "construction": {"kind": "terrain", "extent": [40, 40], "cell": 1.0, "layers": [hill]}}  # fmt: skip
+    spread = [{"name": name, "role": "background", "state": "static",
+               "construction": {"kind": "scatter", "on": "land", "count": 12, "seed": 5, "what": [name]}}
+              for name in ("rock", "crate")]  # fmt: skip
+    plan = made({"title": "", "prompt": "", "objects": [land, *spread]}, Path("plan"))
+    assert wrong(plan) == set()
+    deep = 'a = p("/World/rock_1").GetAttribute("xformOp:translate"); x, y, z = a.Get(); a.Set((x, y, z - 0.12))'
+    assert wrong(plan, deep) == {("CheckPlanScatter", "/World/rock_1")}
+
+
+def test_the_examples_of_the_prompt_are_accepted() -> None:
+    """A robot has joints and gears of its own, the first of them to its base; what is added to it is found."""
+    reaches = {"kind": "formula", "object": "truck", "sentence": "finally (reaches(truck, (20, 0, 0), within 3 m))"}
+    told = {"title": "", "objects": [*EXAMPLES.values()], "cameras": [CAMERA], "objectives": [reaches],
+            "simulation": {"duration": 14}}  # fmt: skip
+    plan = read_plan(json.loads(json.dumps(told)), "A truck drives over a hill.")
+    world = describe(scene_of(plan).stage)
+    assert found(plan, world) == {}
+    (pan,) = (joint for joint in world.joints if joint.fixture is not None)
+    held = pan.model_copy(update={"prim": "/World/held", "child": "/World/arm/hand"})
+    more = world.model_copy(update={"joints": [*world.joints, held]})
+    assert found(plan, more).keys() == {("CheckPlanJoints", "/World/held")}
+
+
+@pytest.mark.parametrize(
+    ("says", "change", "value"),
+    [
+        (ROUGH, ("size=(53.0, 40.0)", 'size=(scene.param("a", 53.0, low=10, high=200), 40.0)'), 60.0),
+        (ROUGH, ("Noise(0.6", 'Noise(scene.param("a", 0.6, low=0.1, high=2)'), 0.9),
+        ("A golf cart drives 10 m at 2 m/s.",
+         ("    scene.simulation", '    cart.drive(scene.param("a", 2.0, low=1, high=9))\n    scene.simulation'), 6.0),
+    ],
+)  # fmt: skip
+def test_what_a_parameter_changes_is_not_held_to_the_plan(says: str, change: tuple[str, str], value: float) -> None:
+    plan, space = make_plan(says), {}
+    text = compose(plan)
+    assert change[0] in text
+    exec(compile(text.replace(*change), "program.py", "exec"), space)
+    scene = Scene(params={"a": value})
+    space["build"](scene)
+    assert found(plan, describe(scene.stage)) == {}

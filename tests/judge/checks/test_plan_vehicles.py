@@ -204,7 +204,7 @@ def test_a_drive_is_accepted(short: Plan, tmp_path: Path) -> None:
 def test_on_ice_it_is_rejected_for_its_friction_and_for_what_comes_of_that(short: Plan, tmp_path: Path) -> None:
     friction = next(item.material.friction for item in short.objects if item.name == "ground")
     assert failed(short, tmp_path, (f"friction={friction}", "friction=0.0")) == {
-        "CheckPlanVehicles",
+        "CheckPlanLooks",
         "ObjectiveFormula",
     }
 

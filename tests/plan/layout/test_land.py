@@ -123,6 +123,28 @@ def test_rows_place_a_vehicle_and_the_ground_its_height() -> None:
     assert level.objects[0].pose.position == (1.0, 2.0, 0.0)
 
 
+@pytest.mark.parametrize(("turn", "velocity"), [((0.0, 10.0, 30.0), (4.3301270, 2.5, 0.0)),
+                                                ((0.0, 0.0, 30.0), (-4.3301270, -2.5, 0.1))])  # fmt: skip
+def test_on_terrain_its_velocity_is_along_its_yaw_and_the_ground_leans_it(turn: tuple, velocity: tuple) -> None:
+    put = {**CAR, "pose": {"position": [8.0, 3.0, 0.0], "rotation_deg": turn}, "velocity": velocity}
+    placed = set_down(a_plan(LAND, put))
+    assert placed.objects[1].speed_ahead == pytest.approx(math.copysign(math.hypot(*velocity), velocity[0]))
+    assert set_down(placed) == placed
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("unheard_of", "rock is to scatter 'unheard_of': "),
+        ("seesaw", "rock is to scatter 'seesaw', whose parts move on a joint"),
+    ],
+)
+def test_what_no_scatter_takes_is_refused_in_a_line(what: str, says: str) -> None:
+    with pytest.raises(LayoutError, match=says) as caught:
+        set_down(a_plan(LAND, {**ROCKS, "construction": {**ROCKS["construction"], "what": ["crate", what]}}))
+    assert "\n" not in str(caught.value)
+
+
 def test_beside_the_terrain_there_is_nothing_to_stand_on() -> None:
     with pytest.raises(LayoutError, match=r"car starts at \(30, 0\) m with a wheel where land is not; move it, or"):
         set_down(a_plan(LAND, {**CAR, "pose": {"position": [30.0, 0.0, 0.0]}}))
@@ -181,6 +203,10 @@ def driven(**actuation: object) -> dict:
         ([LAND, {**ROCKS, "registration": {"density": 5.0}}], "rock: registration.density 5.0: a scatter has its own"),
         # how it starts, and is driven
         ([{**CAR, "velocity": [1.0, 3.0, 0.0]}], "velocity: [1.0, 3.0, 0.0] m/s of car is not along its heading"),
+        ([LAND, {**CAR, "velocity": [3.0, 1.0, 0.0]}], "velocity: [3.0, 1.0, 0.0] m/s of car is not along its heading"),
+        ([LAND, {**CAR, "velocity": [0.0, 0.0, 3.0]}], "velocity: [0.0, 0.0, 3.0] m/s of car is not along its heading"),
+        ([{**CAR, "registration": {"actuation": [{"kind": "velocity", "target": [3.0]}]}}],
+         "actuation.0.kind: 'velocity': car is a vehicle, which a \"driver\" or a \"drive\" moves; take one of these"),
         ([{**CAR, "velocity": [300.0, 0.0, 0.0]}], "velocity: 300 m/s of car must be <= 100 m/s; start it slower"),
         ([{**CAR, "pose": {"position": [0, 0, 0], "rotation_deg": [5.0, 0, 0]}}],
          "pose.rotation_deg: [5.0, 0.0, 0.0]: car stands level on the ground; give it a yaw alone"),

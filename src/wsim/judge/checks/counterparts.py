@@ -42,6 +42,11 @@ def paired(made: Sequence[Shape], wanted: Sequence[Shape]) -> Iterator[tuple[Sha
     yield from ((each, None) for each in free)
 
 
+def _collision(shape: Shape) -> str:
+    """What collides for a shape, of a mesh."""
+    return f"collides as its {'triangles' if shape.exact else 'convex hull' if shape.convex else 'convex parts'}"
+
+
 def _far(one: Shape, other: Shape) -> float:
     place, size = (np.subtract(getattr(one, field), getattr(other, field)) for field in ("position", "size"))
     return float(np.abs(place).sum() + np.abs(size).sum()) + (one.collides != other.collides)
@@ -84,8 +89,13 @@ class Comparing(Check):
             yield self.vector(has.prim, "a place", has.position, one.position, near, "m", source, "position")
         if (off := between_deg(has.rotation, one.rotation)) > self.turn:
             yield self.turned(has.prim, "is turned", off, source, "rotation_deg")
-        if not one.collides:
-            return
+        if one.collides:
+            if (has.exact, has.convex) != (one.exact, one.convex):
+                yield self.differs(has.prim, f"{_collision(has)}; that of {source} {_collision(one)}", source, "shape")
+            yield from self.surface(has, one, source)
+
+    def surface(self, has: Shape, one: Shape, source: str) -> Iterator[Finding]:
+        """How a surface that touches others differs: its friction, restitution, rolling resistance, and speed."""
         friction = friction_of(one)
         yield from self.number(
             has.prim, "a friction", friction_of(has), friction, self.grip * friction, "1", source, "friction"

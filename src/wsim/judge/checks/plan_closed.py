@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from wsim.judge.checks.check import Check, Checks
 from wsim.judge.verdict import RepairTarget
+from wsim.scene.world import Gear
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,6 +46,12 @@ def owner(evidence: Evidence, prim: str) -> PlanObject | None:
 def assembled(item: PlanObject | None) -> bool:
     """Whether what stands for an object may have parts and joints of its own: an asset of the catalogue, or a robot."""
     return item is not None and item.assembled
+
+
+def within(evidence: Evidence, *prims: str) -> bool:
+    """Whether all of these are of one object that is assembled, as a robot's own joints and gears are."""
+    item = owner(evidence, prims[0])
+    return assembled(item) and all(owner(evidence, prim) is item for prim in prims)
 
 
 @dataclass
@@ -86,7 +93,8 @@ class CheckPlanClosed(Check):
         world = evidence.world
         for what, things in (("gear", world.gears), ("spring", world.springs), ("rope", world.ropes)):
             for thing in things:
-                if not named(plan, what):
+                own = isinstance(thing, Gear) and within(evidence, thing.prim, thing.first, thing.second)
+                if not own and not named(plan, what):
                     yield self._extra(thing.prim, f"a {what}; nothing in the plan speaks of one", "joint", what)
 
     def _extra(self, prim: str, what: str, kind: str, parameter: str = "") -> Finding:

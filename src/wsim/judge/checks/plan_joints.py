@@ -11,7 +11,7 @@ import numpy as np
 from wsim.geometry.kinds import PRIMITIVES
 from wsim.geometry.rotations import multiply, rotate
 from wsim.judge.checks.check import Check, Checks, listed
-from wsim.judge.checks.plan_closed import assembled, named, owner
+from wsim.judge.checks.plan_closed import named, within
 from wsim.judge.verdict import RepairTarget
 
 if TYPE_CHECKING:
@@ -66,10 +66,10 @@ class CheckPlanJoints(Check):
     def _extra(self, evidence: Evidence, made: list[Joint]) -> Iterator[Finding]:
         """Joints that are none of the plan's; what is assembled has its own inside."""
         for joint in evidence.world.joints:
-            inside = owner(evidence, joint.child)
-            ends = (owner(evidence, end) for end in (joint.parent, joint.child) if end is not None)
-            if joint in made or (joint.parent is not None and assembled(inside) and all(end == inside for end in ends)):
+            if joint in made or (joint.parent is not None and within(evidence, joint.child, joint.parent)):
                 continue
+            if joint.fixture is not None and within(evidence, joint.prim, joint.child, joint.fixture):
+                continue  # to its own base, which never moves
             target = RepairTarget(kind="joint", prim=joint.prim, direction="remove", why="the plan has no such joint")
             held = joint.parent or joint.fixture or "the world"
             message = f"{joint.prim} is a {joint.kind} joint between {held} and {joint.child}; the plan has none there"

@@ -158,13 +158,15 @@ class CheckPlanVehicles(Comparing):
                 yield self.differs(one.child, f"is held by no {one.kind} joint to {one.parent}", source, "joint", "add")
                 continue
             free.remove(has)
-            yield from self._joint(has, one, near, source)
+            yield from self._placed_joint(has, one, near, source)
+            if not evidence.varied:
+                yield from self._held(has, one, source)
         for extra in free:
             says = f"is a {extra.kind} joint between {extra.parent} and {extra.child} that {source} has not"
             yield self.differs(extra.prim, says, source, "joint", "remove")
 
-    def _joint(self, has: Joint, one: Joint, near: float, source: str) -> Iterator[Finding]:
-        unit = "rad" if one.kind == "revolute" else "m"
+    def _placed_joint(self, has: Joint, one: Joint, near: float, source: str) -> Iterator[Finding]:
+        """Where a joint is on both its ends, and its axis there."""
         for end in ("parent", "child"):
             ways = [
                 rotate(np.array(getattr(each, f"{end}_turn")), np.eye(3)["XYZ".index(each.axis)]) for each in (has, one)
@@ -177,6 +179,12 @@ class CheckPlanVehicles(Comparing):
                 yield self.vector(
                     has.prim, f"a place on its {end}", at or (0.0,) * 3, to, near, "m", source, "anchor", "joint"
                 )
+        if has.may_break or has.closing:
+            yield self.differs(has.prim, "may break, or closes a loop", source, "break_force", "remove")
+
+    def _held(self, has: Joint, one: Joint, source: str) -> Iterator[Finding]:
+        """How far a joint goes, and what brakes and drives it: numbers that a program's parameter may set."""
+        unit = "rad" if one.kind == "revolute" else "m"
         stops, wanted = (_stops(each) for each in (has, one))
         limit = self.share * min(wanted[1] - wanted[0], FREE)
         if stops != wanted and math.dist(stops, wanted) > limit:
@@ -184,8 +192,6 @@ class CheckPlanVehicles(Comparing):
         if has.friction > one.friction:
             says = f"is braked by {has.friction:.4g} {'N m' if unit == 'rad' else 'N'}; the plan brakes no wheel"
             yield self.differs(has.prim, says, source, "friction")
-        if has.may_break or has.closing:
-            yield self.differs(has.prim, "may break, or closes a loop", source, "break_force", "remove")
         yield from self.shared(has.prim, "an armature", has.armature, one.armature, "kg m^2", source, "armature")
         yield from self._drive(has, _motor(has), _motor(one), unit, source)
 

@@ -8,9 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wsim.assets import AssetError, get
 from wsim.plan.layout.drives import check_drives
 from wsim.plan.layout.errors import LayoutError
-from wsim.plan.schema import FromTerrain, FromVehicle, HillLayer, LevelLayer, NoiseLayer, Plan, PlanObject, Pose
+from wsim.plan.schema import (
+    FromScatter,
+    FromTerrain,
+    FromVehicle,
+    HillLayer,
+    LevelLayer,
+    NoiseLayer,
+    Plan,
+    PlanObject,
+    Pose,
+)
+from wsim.plan.schema.constructions import ROCKS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,6 +33,7 @@ if TYPE_CHECKING:
 STEEPEST = 35.0  # [deg]: about where tyres slip
 _ROUND = np.linspace(-0.9, 0.9, 9)  # of a wheel's radius: places along it that are looked at
 _ROUNDS = 3
+_SAME = 1e-9  # [m/s]
 
 
 def terrain_of(plan: Plan) -> PlanObject | None:
@@ -91,9 +104,11 @@ def set_down(plan: Plan) -> Plan:
 
     Raises:
         LayoutError: A vehicle stands beside the terrain or where it is too steep, the scene would refuse the terrain
-            or a driver, or there is no time for a drive.
+            or a driver, what is scattered is no one body of the catalogue, or there is no time for a drive.
     """
     for item in plan.objects:
+        if isinstance(item.built, FromScatter):
+            _known(item.name, item.built)
         if isinstance(item.built, FromTerrain):
             survey(item)
             divided(item)
@@ -104,6 +119,17 @@ def set_down(plan: Plan) -> Plan:
     return plan
 
 
+def _known(name: str, scatter: FromScatter) -> None:
+    """LayoutError if what is scattered is neither rocks nor a thing of the catalogue that is one body."""
+    for what in scatter.what if scatter.what != (ROCKS,) else ():
+        try:
+            entry = get(what)
+        except AssetError as error:
+            raise LayoutError(f"{name} is to scatter {what!r}: {error}") from error
+        if entry.articulated:
+            raise LayoutError(f"{name} is to scatter {what!r}, whose parts move on a joint; take another")
+
+
 def _stood(item: PlanObject, land: PlanObject) -> PlanObject:
     """A vehicle on the plane that is nearest to the ground under its wheels, and so high that none is in it."""
     if not isinstance(item.built, FromVehicle) or item.pose is None:
@@ -111,10 +137,12 @@ def _stood(item: PlanObject, land: PlanObject) -> PlanObject:
     from wsim.scene.vehicle_spec import preset  # as above
 
     pose = _resting(item.name, preset(item.built.vehicle), item.pose, land)
-    if pose == item.pose:
-        return item
     stood = item.model_copy(update={"pose": pose})
-    return stood.model_copy(update={"velocity": tuple(item.speed_ahead * way for way in stood.ahead)})
+    speed = math.copysign(math.hypot(*item.velocity), item.speed_ahead)
+    moves = tuple(speed * way for way in stood.ahead)
+    if pose == item.pose and math.dist(moves, item.velocity) < _SAME:
+        return item
+    return stood.model_copy(update={"velocity": moves})
 
 
 def _resting(name: str, spec: VehicleSpec, pose: Pose, land: PlanObject) -> Pose:

@@ -28,7 +28,13 @@ def land_problems(plan: Draft) -> Iterator[str]:
         if isinstance(item.built, FromVehicle):
             yield from _starts(f"objects.{i}", item, terrain)
             for j, actuation in enumerate(item.registration.actuation):
-                yield from _driven(f"objects.{i}.registration.actuation.{j}", item.built, actuation, terrain)
+                where = f"objects.{i}.registration.actuation.{j}"
+                if actuation.kind not in ("driver", "drive"):
+                    yield (
+                        f'{where}.kind: {actuation.kind!r}: {item.name} is a vehicle, which a "driver" or a "drive" '
+                        "moves; take one of these, or leave it out"
+                    )
+                yield from _driven(where, item.built, actuation, terrain)
 
 
 def _scattered(plan: Draft) -> Iterator[str]:
@@ -55,18 +61,33 @@ def _scattered(plan: Draft) -> Iterator[str]:
 
 
 def _starts(where: str, item: PlanObject, terrain: PlanObject | None) -> Iterator[str]:
-    """How a vehicle stands and goes as it starts; on terrain the layout leans it."""
+    """How a vehicle stands and goes as it starts; on terrain, where the layout leans it, its yaw alone is asked."""
     turn = item.pose.rotation_deg if item.pose is not None else (0.0, 0.0, 0.0)
     if terrain is None and max(abs(turn[0]), abs(turn[1])) > LEVEL:
         yield f"{where}.pose.rotation_deg: {list(turn)}: {item.name} stands level on the ground; give it a yaw alone"
-    ahead = item.speed_ahead
-    if math.dist(item.velocity, [ahead * way for way in item.ahead]) > ALONG * abs(ahead):
+    ahead, aside = _going(item, turn[2] if terrain is not None else None)
+    if aside > ALONG * abs(ahead):
         yield (
             f"{where}.velocity: {list(item.velocity)} m/s of {item.name} is not along its heading, on which it rolls; "
             "turn one of them"
         )
     elif abs(ahead) > MAX_DRIVE_SPEED:
         yield f"{where}.velocity: {abs(ahead):g} m/s of {item.name} must be <= {MAX_DRIVE_SPEED:g} m/s; start it slower"
+
+
+def _going(item: PlanObject, yaw_deg: float | None) -> tuple[float, float]:
+    """How fast a vehicle starts along its heading, and aside of it [m/s]: as its yaw has it, whatever the slope.
+
+    Args:
+        item: It.
+        yaw_deg: On terrain, which is nowhere as steep as 45 degrees where it stays; None: as its pose has it.
+    """
+    if yaw_deg is None:
+        ahead = item.speed_ahead
+        return ahead, math.dist(item.velocity, [ahead * way for way in item.ahead])
+    (x, y, z), yaw = item.velocity, math.radians(yaw_deg)
+    ahead, left = x * math.cos(yaw) + y * math.sin(yaw), y * math.cos(yaw) - x * math.sin(yaw)
+    return math.copysign(math.hypot(x, y, z), ahead), abs(left) if abs(z) <= abs(ahead) else abs(z)
 
 
 def _driven(where: str, vehicle: FromVehicle, actuation: Actuation, terrain: PlanObject | None) -> Iterator[str]:
