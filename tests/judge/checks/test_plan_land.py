@@ -211,6 +211,8 @@ def test_ground_without_the_plans_hill_or_its_road_is_found() -> None:
          "a surface velocity of"),
         ('q = p("/World/tree_0").GetAttribute("xformOp:orient"); q.Set(q.Get() * Gf.Quatd(0, 1, 0, 0))', ("", ""),
          "CheckPlanScatter", "/World/tree_0", "leans 180 degrees"),
+        (SET.format("/World/tree_0/collision/trunk", "physics:approximation", '"none"'), ("", ""), "CheckPlanScatter",
+         "/World/tree_0", "trunk collides as its triangles; that of the catalogue's deciduous_tree collides as its"),
         ('UsdGeom.Xformable(p("/World/tree_0/collision/trunk")).AddRotateXOp().Set(90.0)', ("", ""),
          "CheckPlanScatter", "/World/tree_0", "trunk is turned 90 degrees off"),
         ('[UsdPhysics.MaterialAPI(q).CreateRestitutionAttr().Set(0.95) for q in scene.stage.Traverse() if '
