@@ -33,7 +33,7 @@ EVEN = 1.0  # beyond what stands on it, that ground is level at both ends [m]
 CLEAR_ROCKS, CLEAR_TREES, CLEAR_ENDS = 1.2, 2.0, 3.0  # beside what drives, and beyond it at both ends [m]
 A_ROCK_PER, A_TREE_PER = 1.6, 4.0  # metres of way, where the prompt gives no number
 MOST = 60
-BEHIND = 2.2  # of its length: how far behind a vehicle the camera is that follows it
+BEHIND, SHORT = 2.2, 3.6  # of its length, and of no less [m]: how far behind a vehicle the camera is that follows it
 LONG, ASIDE = 40.0, 8.0  # a way that is seen by halves, and what is seen beyond its ends [m]
 _SOIL = Material(name="soil", density=1600.0, friction=0.85, color=(0.15, 0.22, 0.08))
 _MUD = Material(name="track", density=1600.0, friction=0.85, rolling=0.03, color=(0.27, 0.19, 0.11))
@@ -127,9 +127,9 @@ def views(way: Way, vehicle: str, start: Vec3, length: float) -> list[CameraPlan
 
     The first one films the vehicle, as large at the end as where it starts [m].
     """
-    x, y, z = start
-    behind = (round(x - BEHIND * length, 2), round(y - 0.5 * length, 2), round(z + 1.1 * length, 2))
-    follow = CameraPlan(name="follow", eye=behind, target=(round(x + 1.0, 2), y, round(z + 1.0, 2)), follows=vehicle)
+    (x, y, z), size = start, max(length, SHORT)
+    behind = (round(x - BEHIND * size, 2), round(y - 0.5 * size, 2), round(z + 1.1 * size, 2))
+    follow = CameraPlan(name="follow", eye=behind, target=(round(x, 2), y, round(z + 0.8, 2)), follows=vehicle)
     (ax, ay), (bx, _) = way[0], way[-1]
     between = 0.5 * (ax + bx)
     spans = [("side", ax, bx)]
