@@ -319,3 +319,17 @@ def test_progress_is_told() -> None:
     CameraRenderer(stages.model_of(world), world, progress=lambda *step: told.append(step))
     assert told[0][1:] == (0.0, 1.0)
     assert told[-1][1:] == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("distance", [6.0, 17.0, 40.0, 150.0])
+@pytest.mark.parametrize(("kind", "size"), [("box", (2.0, 2.0, 2.0)), ("cylinder", (1.0, 2.0))])
+def test_a_flat_face_is_of_one_shade_from_any_distance(kind: str, size: tuple[float, ...], distance: float) -> None:
+    """A slanting view of a lit top: in single precision no face may be lost as distances grow."""
+    solid = stages.body("solid", Shape(prim="", kind=kind, size=size, color=(0.6, 0.6, 0.6)), (0.0, 0.0, 0.0))
+    eye = np.array((0.6, 0.0, 0.8)) * distance + (0.0, 0.0, 1.0)
+    fov = math.degrees(2.0 * math.atan(0.5 / distance))  # half a metre of the top about its middle, and no edge
+    camera = Camera(prim="/World/c", eye=tuple(eye), target=(0.0, 0.0, 1.0), fov=fov, width=64, height=48)
+    image = draw(World(bodies=[solid], cameras=[camera]))
+    np.testing.assert_array_equal(image.shape_index, world_index(World(bodies=[solid]), "/World/solid/geometry"))
+    assert np.ptp(image.rgb.reshape(-1, 3).astype(int), axis=0).max() <= 2
+    assert image.depth[24, 32] == pytest.approx(distance, rel=0.01)

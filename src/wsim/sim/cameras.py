@@ -16,7 +16,7 @@ from newton.sensors import SensorCamera
 from wsim.kernels.render import composite, display, faces, sky
 from wsim.progress import silent
 from wsim.scene.following import camera_at
-from wsim.sim import render_materials, render_views
+from wsim.sim import render_materials, render_near, render_views
 from wsim.sim.cord_shapes import CordShapes
 from wsim.sim.render_surface import FluidMesh
 from wsim.solvers.launch import launch_shared
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
     from wsim.progress import Progress
     from wsim.scene.world import Camera, World
+
+render_near.nearer()
 
 Color = tuple[float, float, float]
 REACH = 1000.0  # [m] along a ray that a film shows
