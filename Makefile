@@ -25,7 +25,7 @@ demo: install  ## A sentence becomes a judged world
 # Tests start hundreds of Pythons: where none may keep what it compiled, each compiles wsim anew. A worker that crashes
 # ends them: xdist would wait for ever for the group that it had.
 test: install  ## Run the tests
-	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadgroup --no-loadscope-reorder --max-worker-restart 0 $(PYTEST_ARGS)
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n $(TEST_JOBS) --dist loadscope --no-loadscope-reorder --max-worker-restart 0 $(PYTEST_ARGS)
 
 lint: install  ## Check format, lint, types and import directions
 	$(BIN)/ruff format --check .

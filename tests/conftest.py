@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from xdist.scheduler import LoadScopeScheduling
 
 from tests.agents.scripted import own_cache, server
 
@@ -25,9 +26,9 @@ settings.register_profile("any_machine", deadline=None, suppress_health_check=[H
 settings.load_profile("any_machine")
 
 
-# A worker takes a group at a time (`--dist loadgroup`): a file, or those that share a world of a session, which each
-# worker would make for itself. A long one that is taken last leaves the other cores idle. Left
-# to itself xdist begins with the files of most tests, which are quick ones: `make test` has it keep this order.
+# A worker takes a group at a time: a file, or those that share a world of a session, which each worker would make for
+# itself. A long one that is taken last leaves the other cores idle. Left to itself xdist begins with the files of most
+# tests, which are quick ones: `make test` has it keep this order.
 LONG = (
     "loop/test_transcripts.py", "benchmarks/test_sph", "program/test_hostile.py", "skills/", "sim/", "test_examples",
     "cli/", "sweep/", "runs/", "mcp/", "judge/checks/test_heaps.py", "loop/", "solvers/", "kernels/",
@@ -57,16 +58,25 @@ def group(path: Path) -> str:
     return next((files[0] for files in TOGETHER if inside(path) in files), inside(path))
 
 
+class ByGroup(LoadScopeScheduling):  # type: ignore[misc]
+    """xdist's own marks of groups are lost on pytest 9.2, which makes its tests' names anew: it split every file."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        return group(HERE.parent / nodeid.partition("::")[0])
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> ByGroup:
+    """By files, whatever `--dist` says."""
+    return ByGroup(config, log)
+
+
 def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
 
 
-@pytest.hookimpl(tryfirst=True)  # xdist reads the marks as it is asked
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: place(item.path))
-    for item in items:
-        item.add_marker(pytest.mark.xdist_group(group(item.path)))
     marked = [item for item in items if item.get_closest_marker("cuda")]
     if not marked:
         return
