@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from wsim.plan.schema import Plan
+from wsim.plan.schema import Material, Plan
 from wsim.recording.frames import LogLine
 from wsim.recording.recording import FluidTrack, Recording
-from wsim.rules.materials import material_named
+from wsim.rules.materials import GLASS_LOOK, GROUND_LOOK, material_named
 from wsim.rules.planner import plan as make_plan
 from wsim.scene.world import Body, Container, Fluid, Shape, Static, World
 
@@ -75,12 +75,16 @@ def body(prim: str, shape: Shape, volume: float, density: float, position: tuple
 
 
 def look(material: str) -> dict[str, Any]:
-    named = material_named(material)
+    return surface(material_named(material))
+
+
+def surface(named: Material) -> dict[str, Any]:
     return {"color": named.color, "friction": named.friction, "restitution": named.restitution}
 
 
 def ground() -> Static:
-    return Static(prim="/World/ground", shapes=[Shape(prim="/World/ground/geometry", kind="plane", size=())])
+    plane = Shape(prim="/World/ground/geometry", kind="plane", size=(), **surface(GROUND_LOOK))
+    return Static(prim="/World/ground", shapes=[plane])
 
 
 def tank() -> Static:
@@ -92,7 +96,8 @@ def tank() -> Static:
         "wall_minus_y": ((lx, WALL, lz), (0.0, -(ly + WALL) / 2, WALL + lz / 2)),
         "wall_plus_y": ((lx, WALL, lz), (0.0, (ly + WALL) / 2, WALL + lz / 2)),
     }
-    shapes = [Shape(prim=f"{TANK}/{n}", kind="box", size=s, position=p) for n, (s, p) in boxes.items()]
+    glass = surface(GLASS_LOOK)
+    shapes = [Shape(prim=f"{TANK}/{n}", kind="box", size=s, position=p, **glass) for n, (s, p) in boxes.items()]
     return Static(prim=TANK, shapes=shapes, line="program.py:6")
 
 
