@@ -65,6 +65,7 @@ class ByGroup(LoadScopeScheduling):  # type: ignore[misc]
         return group(HERE.parent / nodeid.partition("::")[0])
 
 
+@pytest.hookimpl(optionalhook=True)  # `-p no:xdist`
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> ByGroup:
     """By files, whatever `--dist` says."""
     return ByGroup(config, log)
