@@ -173,9 +173,26 @@ def test_after_a_lap_it_goes_straight_on():
     assert driver._way[0] == pytest.approx(length + 18.5, abs=0.2)
 
 
+def test_it_waits_where_it_is_to_and_goes_on():
+    """It comes to stand at 10 m and at 14 m, for 2 s and 1 s, and gets to the end as one that starts there does."""
+    driver = Driver("truck", "hmmwv", path=straight(30.0), speed=4.0, waits=[(10.0, 0.0, 2.0), (14.0, 0.0, 1.0)])
+    assert [driver.speed_at(place) for place in (10.0, 14.0, 30.0)] == [0.0, 0.0, 0.0]
+    found = driven(driver, 25.0)
+    step = 25.0 / len(found)
+    for place, seconds in ((10.0, 2.0), (14.0, 1.0)):
+        near = np.abs(found[:, 0] - place) < 0.1
+        assert step * np.count_nonzero(near & (np.abs(found[:, 2]) < 0.02)) == pytest.approx(seconds, abs=0.35)
+    assert found[-1, 0] == pytest.approx(30.0, abs=0.1) and abs(found[-1, 2]) < 0.02
+    assert found[:, 2].max() == pytest.approx(4.0, rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
+        ({"waits": [(5.0, 0.0)]}, "waits[0] = (5.0, 0.0) must be (x, y, seconds)"),
+        ({"waits": [(5.0, 0.5, 1.0)]}, "is not on the path"),
+        ({"waits": [(5.0, 0.0, 1.0), (3.0, 0.0, 1.0)]}, "waits[1] = (3.0, 0.0, 1.0) is not on the path, after"),
+        ({"waits": [(5.0, 0.0, -1.0)]}, "waits[0] = -1 must be >= 0 s"),
         ({"path": [(0.0, 0.0)]}, "path has 1 points; it must be 2"),
         ({"path": [(0.0, 0.0), (0.0, math.nan)]}, "path[1][1] = nan must be finite"),
         ({"speed": 0.0}, "speed = 0 must be > 0"),

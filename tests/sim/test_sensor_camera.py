@@ -202,6 +202,36 @@ def test_worlds_of_a_batch_see_each_their_own(tmp_path: Path) -> None:
         assert np.count_nonzero((part == 2).any(axis=0)) == pytest.approx(focal / away, abs=1.0)
 
 
+@pytest.mark.cuda
+def test_a_gpu_shows_what_a_cpu_shows(tmp_path: Path) -> None:
+    """Far flat faces, round ones, glass, two worlds: but for what lies on an edge, and a step of colour."""
+
+    def build(away: float) -> Build:
+        def made(scene: Scene) -> None:
+            scene.ground()
+            pane = scene.material("pane", density=1000.0, opacity=0.3)
+            scene.box("pane", size=(0.05, 1.0, 1.0), position=(3.0, 0.5, 0.6), static=True, material=pane)
+            scene.box("far", size=(6.0, 6.0, 6.0), position=(away, -6.0, 3.0), static=True)
+            scene.cylinder("drum", radius=2.0, height=4.0, position=(away, 5.0, 2.0), static=True)
+            scene.capsule("post", radius=0.4, height=0.8, position=(5.0, -1.0, 0.4), static=True)
+            scene.sphere("ball", radius=0.3, position=(4.0, 0.4, 0.3))
+            car = scene.box("car", size=(0.4, 0.4, 0.4), position=(0.0, 0.0, 0.2))
+            scene.sensor_camera("eye", car, position=(0.0, 0.0, 1.0), rotation_deg=(0.0, 5.0, 0.0), **SIZE)
+
+        return made
+
+    stages = [stage(tmp_path, build(away), name=f"stage_{k}") for k, away in enumerate((24.0, 48.0))]
+    here, there = (samples(Simulation(stages, device=device))["/World/eye"] for device in ("cpu", "cuda:0"))
+    same = here["segmentation"] == there["segmentation"]
+    assert np.count_nonzero(~same) <= 0.003 * same.size
+    assert len(np.unique(here["segmentation"])) >= 6
+    seen = same & np.isfinite(here["depth"]) & np.isfinite(there["depth"])
+    assert np.count_nonzero(seen) > 0.5 * same.size
+    assert np.quantile(np.abs(there["depth"][seen] / here["depth"][seen] - 1.0), 0.995) < 1e-4
+    shade = np.abs(here["color"].astype(int) - there["color"].astype(int)).max(axis=-1)
+    assert np.quantile(shade[same], 0.99) <= 2
+
+
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> Simulation:
     """Two worlds: a red wall behind something opaque to the left of the middle, and a blue one behind glass."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from wsim.errors import UserError
+from wsim.rules import wheels
 from wsim.rules.cast import CARRIERS, Beside, Thing
 from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
 from wsim.rules.lexicon import lexicon
@@ -333,33 +334,6 @@ def _return(_reader: Reader, thing: Thing, action: Action) -> None:
         raise NotUnderstood([f"{thing.words} {action.words}"], "lets a robot come back from a patrol, but not this:")
 
 
-# ---- on its wheels
-def _drive(reader: Reader, thing: Thing, action: Action) -> None:
-    """Drive so far, over what there is."""
-    if thing.noun.family != "vehicle":
-        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a vehicle drive, but not this:")
-    if "drive" in thing.does:
-        raise NotUnderstood([f"{thing.words} {action.words}"], "lets a vehicle drive once, not this as well:")
-    for place in action.places:
-        if place.preposition == "way":
-            thing.way = place.length
-        elif place.preposition in ("over", "on", "along", "past", "in") and place.phrase is not None:
-            over = where(reader, place.phrase)
-            if isinstance(over, Thing):
-                fits = ("over", "on", "along", "in") if over.noun.family == "land" else ("along", "past")
-                if place.preposition not in fits:
-                    raise NotUnderstood([place.words], "lets a vehicle drive over land and past things, not there:")
-                put(over, "ground")
-            elif over != "ground":
-                raise NotUnderstood([place.words], "lets a vehicle drive over land, not there:")
-        elif place.direction != "front" and (
-            place.preposition not in ("speed", "time") or not common(reader, thing, place)
-        ):
-            raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
-    put(thing, "ground")
-    do(thing, "drive")
-
-
 # ---- how it goes on
 def _stop(reader: Reader, thing: Thing, action: Action) -> None:
     """Slide towards something, and stand still before it; what drives comes to rest by its brakes."""
@@ -433,7 +407,8 @@ _RULES: dict[str, Callable[[Reader, Thing, Action], None]] = {
     "topple": _topple, "fall": _fall, "drop": _fall, "bounce": _bounce,
     "roll": _roll, "slide": _slide, "push": _push, "hit": _strike, "knock": _strike, "collide": _strike,
     "throw": _throw, "fly": _throw, "swing": _swing, "hang": _swing, "tilt": _tilt,
-    "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return, "drive": _drive,
+    "carry": _carry, "move": _move, "ride": _ride, "run": _run, "patrol": _patrol, "return": _return,
+    "drive": wheels.drive, "cross": wheels.cross, "leave": wheels.leave, "reach": wheels.leave,
     "stop": _stop, "climb": _come_again, "die": _come_again,
     "stack": _stack, "face": _face, "rest": _rest, "hold": _refused, "pour": _refused,
 }  # fmt: skip

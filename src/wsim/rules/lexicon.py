@@ -18,7 +18,20 @@ from wsim.errors import UserError
 from wsim.plan.schema import Material
 
 Family = Literal[
-    "solid", "furniture", "vessel", "tank", "ramp", "rod", "pendulum", "seesaw", "robot", "office", "vehicle", "land"
+    "solid",
+    "furniture",
+    "vessel",
+    "tank",
+    "ramp",
+    "rod",
+    "pendulum",
+    "seesaw",
+    "robot",
+    "office",
+    "vehicle",
+    "land",
+    "dock",
+    "pontoon",
 ]
 Words = tuple[str, ...]
 BALL = "sport/ball"  # the catalogue's category of what is round and rolls
@@ -297,6 +310,8 @@ def _name(made: Lexicon, key: str, words: Iterable[str], plurals: Iterable[str])
 def _plural(word: str) -> str:
     if word.endswith("shelf"):
         return word[:-1] + "ves"
+    if word.endswith("tty"):
+        return word[:-1] + "ies"
     return word + ("es" if word.endswith(("s", "x", "ch", "sh")) else "s")
 
 

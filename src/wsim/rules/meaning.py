@@ -113,7 +113,7 @@ def _settle(reader: Reader) -> None:
         moves = bool({*MOVES, "topple"} & {*thing.does}) or thing.group or thing.noun.family != "solid"
         wet = reader.cast.wet and not moves
         thing.place = "water" if wet else "ground"
-        if thing.noun.family in ("vehicle", "land"):
+        if thing.noun.family in ("vehicle", "land", "dock", "pontoon"):
             continue
         if ("drop" in thing.does or not thing.does) and thing.support is None and thing.inside is None:
             where = "in the tank of water" if wet else "on the ground"
@@ -142,7 +142,7 @@ def _check_water(cast: Cast) -> None:
 def _check_used(thing: Thing) -> None:
     """Refuse what no scene would use, rather than drop it."""
     phrase, family = thing.phrase, thing.noun.family
-    goes = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive"}
+    goes = {"roll", "slide", "push", "throw", "meet", "ride", "run", "patrol", "drive", "cross"}
     moving = thing.target is not None or goes & {*thing.does}
     carries = family in CARRIERS or (thing.support is not None and thing.support.noun.family == "belt")
     posed = thing.target or thing.meets or thing.path or thing.rod or thing.inside or thing.place == "water"

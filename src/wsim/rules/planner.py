@@ -23,6 +23,7 @@ from wsim.rules.lexicon import lexicon
 from wsim.rules.meaning import understand
 from wsim.rules.scenes.bounce import contacts
 from wsim.rules.scenes.carried import build_carried
+from wsim.rules.scenes.crossing import build_crossing
 from wsim.rules.scenes.drive import build_drive
 from wsim.rules.scenes.ground import build_ground
 from wsim.rules.scenes.incline import build_inclines
@@ -41,7 +42,7 @@ LONGEST = 60.0  # that a prompt may ask for [s]
 
 
 def plan(prompt: str) -> Plan:
-    """The plan for a prompt about things in a tank of water, on the ground, on tables, ramps, belts or hinges.
+    """The plan for a prompt about things in a tank of water, on the ground, on tables, ramps, belts, hinges or wheels.
 
     Raises:
         NotUnderstood: names the words that no rule took.
@@ -63,7 +64,7 @@ def plan(prompt: str) -> Plan:
     return Plan.model_validate(
         {
             **whole.model_dump(),
-            "contacts": contacts(cast, scene.names, whole),
+            "contacts": [*scene.contacts, *contacts(cast, scene.names, whole)],
             "objectives": scene.objectives,
             "cameras": scene.cameras or cameras(whole, above=scene.surface, goes=scene.goes),
             "steps": steps(whole),
@@ -75,6 +76,10 @@ def plan(prompt: str) -> Plan:
 def _scene(cast: Cast) -> Part:
     taken = {"ground", "side", "top", "pivot", "hold"}
     scene = Part(objects=[ground_object()])
+    crossing = build_crossing(cast, taken)
+    if crossing.objects:
+        scene.add(crossing)
+        return scene
     if cast.wet:
         scene.add(build_tank(cast, taken))
     for build in (build_pour, build_inclines, build_carried, build_pendulum, build_seesaw, build_patrol, build_drive):

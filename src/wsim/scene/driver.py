@@ -41,6 +41,9 @@ _AS_CLOSE = 0.5  # [m] more than the nearest place, that a place where it sets o
 _SLIP = (0.6, 0.12)  # [m/s], of the speed: a wheel that slips by more gets no torque until it grips
 _LONGEST = 0.5  # [m] between points of the line for which a speed is planned
 _TURNED = 60.0  # [deg/s] that the bicycle's angle changes by at most
+_ARRIVED = 0.02  # [m] before a place where it waits, that it is there
+_HOLDS = 0.2  # [m/s]: what is faster there is braked by all that it may
+_OFF = 0.1  # [m] of the path, that a place where it waits is away from it at most
 
 
 @dataclass(frozen=True)
@@ -60,12 +63,15 @@ class _Profile:
 class Driver:
     """Steers, drives and brakes a vehicle along a line by its steering's targets and torques on its axles.
 
-    Its `vehicle` is driven by nothing else: `drive` and `brake` of it are not called. Torques are bounded by the spec's
+    Where it waits it comes to stand, and sets off again after so long. Its `vehicle` is driven by nothing else: `drive`
+    and `brake` of it are not called. Torques are bounded by the spec's
     engine at the speed there is, and by its brakes; a wheel that slips by more than 0.6 m/s and 12 % of the speed gets
     none until it grips.
     """
 
     _way: Floats  # along the path in each world, (W,) [m]
+    _waited: Floats  # at the place where it waits next [s]
+    _left: NDArray[np.int64]  # places where it has waited
     _lack: Floats  # of speed, added up over time [m]
     _angle: Floats  # of the bicycle [rad]
     _fresh: bool
@@ -83,6 +89,7 @@ class Driver:
         braking: float = 3.0,
         lateral: float = 3.0,
         stop: bool = True,
+        waits: Sequence[Sequence[float]] = (),
     ) -> None:
         """Make a driver.
 
@@ -97,6 +104,7 @@ class Driver:
             braking: At most, for bends and the end [m/s^2].
             lateral: At most, in bends: the speed there is sqrt(lateral x radius) [m/s^2].
             stop: Whether to stop at the end of the path, or to go on straight.
+            waits: (x, y, seconds) in turn: places on the path [m] where it comes to stand, and for how long [s].
 
         Raises:
             SceneError: If the path is none, or a number is out of range.
@@ -111,7 +119,9 @@ class Driver:
         self._stop = call.flag("stop", stop)
         limits = [call.positive(name, value, 20.0, "m/s^2") for name, value in
                   (("acceleration", acceleration), ("braking", braking), ("lateral", lateral))]  # fmt: skip
-        self._profile = _profile(points, top, begins, *limits, stop=self._stop)
+        self._waits, self._braking = _waits(call, points, waits), limits[1]
+        stands = [place for place, _ in self._waits]
+        self._profile = _profile(points, top, begins, *limits, stop=self._stop, stands=stands)
         self._begin(1)
 
     def drive(self, world: Any, t: float) -> None:
@@ -125,6 +135,7 @@ class Driver:
         rear = np.asarray(body.position, dtype=np.float64) - 0.5 * self.spec.wheelbase * forward
         speed = np.einsum("wi,wi->w", np.asarray(body.velocity, dtype=np.float64), forward)
         self._way = self._nearest(rear[:, :2])
+        self._wait(step)
         self._steer(world, rear[:, :2], forward, speed, step)
         self._push(world, forward, speed, step)
 
@@ -140,8 +151,23 @@ class Driver:
     def _begin(self, worlds: int) -> None:
         self._way = np.zeros(worlds)
         self._lack = np.zeros(worlds)
+        self._waited, self._left = np.zeros(worlds), np.zeros(worlds, dtype=np.int64)
         self._angle = np.zeros(worlds)
         self._fresh, self._last = True, 0.0
+
+    @property
+    def _stands(self) -> NDArray[np.bool_]:
+        """Whether it is where it waits next, (W,)."""
+        places = np.array([*(place for place, _ in self._waits), np.inf])
+        return np.asarray(self._way >= places[self._left] - _ARRIVED)
+
+    def _wait(self, step: float) -> None:
+        """Count how long it has been where it waits; go on to the next such place after that."""
+        there = self._stands
+        self._waited = np.where(there, self._waited + step, 0.0)
+        over = there & (self._waited >= np.array([*(seconds for _, seconds in self._waits), np.inf])[self._left])
+        self._left = self._left + over
+        self._waited = np.where(over, 0.0, self._waited)
 
     def _nearest(self, at: Floats) -> Floats:
         """Along the path, the nearest place to each of (W, 2), near where it was; at first, the earliest close one.
@@ -192,10 +218,12 @@ class Driver:
         spec, line = self.spec, self._profile
         wanted = line.speed_at(self._way)
         here = np.clip(np.searchsorted(line.along, self._way, side="right") - 1, 0, len(line.gain) - 1)
-        gain = line.gain[here]
+        gain, stands = line.gain[here], self._stands
+        wanted = np.where(stands, 0.0, wanted)
         # To slow down from another speed within the same way takes (v / v_wanted)² of it.
         faster = np.minimum(np.abs(speed) / np.maximum(wanted, 1e-6), 1.5) ** 2
         gain = np.where(gain < 0.0, np.where(wanted > 0.0, gain * faster, 0.0), gain)
+        gain = np.where(stands, -self._braking * np.clip(speed / _HOLDS, -1.0, 1.0), gain)
         lack = wanted - speed
         weight = spec.mass * GRAVITY
         known = spec.effective_mass * gain + weight * (forward[:, 2] + spec.rolling * np.tanh(speed / 0.1))
@@ -207,7 +235,7 @@ class Driver:
         # The integral waits while a bound holds: else it would overshoot when that lets go.
         # And what a way took is not what standing takes.
         self._lack = np.where(bounded == force, self._lack + step * lack, self._lack)
-        self._lack = np.where((wanted <= 0.0) & self._stop, 0.0, self._lack)
+        self._lack = np.where(((wanted <= 0.0) & self._stop) | stands, 0.0, self._lack)
         for corner in CORNERS:
             axle = world.joint(f"{self.vehicle}_axle_{corner}")
             share = np.where(bounded >= 0.0, (corner in spec.driven_corners) / len(spec.driven_corners), 0.25)
@@ -222,11 +250,33 @@ def _forward(rotation: Floats) -> Floats:
     return np.stack([1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)], axis=1)
 
 
+def _waits(call: Call, points: Floats, given: Sequence[Sequence[float]]) -> list[tuple[float, float]]:
+    """Places along a line [m], and how long it stands at each [s]."""
+    begin, way = points[:-1], np.diff(points, axis=0)
+    length = np.linalg.norm(way, axis=1)
+    along = np.concatenate([[0.0], np.cumsum(length)])
+    found: list[tuple[float, float]] = []
+    for k, each in enumerate(given):
+        if len(each) != len("xyt"):
+            call.fail(f"waits[{k}] = {shown(each)} must be (x, y, seconds)")
+        x, y = (call.number(f"waits[{k}]", value) for value in each[:2])
+        seconds = call.within(f"waits[{k}]", each[2], 0.0, 3600.0, "s")
+        foot = np.clip(np.einsum("ni,ni->n", (x, y) - begin, way) / length**2, 0.0, 1.0)
+        place, away = along[:-1] + foot * length, np.linalg.norm(begin + foot[:, None] * way - (x, y), axis=1)
+        after = place > (found[-1][0] if found else 0.0)
+        if not (after & (away <= _OFF)).any():
+            call.fail(f"waits[{k}] = {shown(each)} is not on the path, after where it starts and waits before")
+        found.append((float(place[np.flatnonzero(after & (away <= away[after].min() + 1e-9))[0]]), seconds))
+    return found
+
+
 def _profile(
-    points: Floats, top: float, begins: float, acceleration: float, braking: float, lateral: float, *, stop: bool
+    points: Floats, top: float, begins: float, acceleration: float, braking: float, lateral: float, *, stop: bool,
+    stands: Sequence[float],
 ) -> _Profile:  # fmt: skip
     """The fastest speeds along a line within bounds: of bends first, then forwards, then backwards.
 
+    At places along it where it `stands` [m] they are none.
     Bends are those of the given points; between two that are far apart more are put, where speed may rise and fall.
     """
     gaps = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -235,11 +285,12 @@ def _profile(
     bend = np.zeros(len(points))
     bend[1:-1] = np.abs(np.diff(heading)) / (0.5 * (gaps[1:] + gaps[:-1]))
     along = np.unique(
-        np.concatenate([np.linspace(a, b, math.ceil((b - a) / _LONGEST) + 1) for a, b in pairwise(given)])
+        np.concatenate([np.linspace(a, b, math.ceil((b - a) / _LONGEST) + 1) for a, b in pairwise(given)] + [stands])
     )
     points = np.stack([np.interp(along, given, points[:, k]) for k in (0, 1)], axis=1)
     speed, gaps = np.full(len(along), top), np.diff(along)
     speed[np.searchsorted(along, given)] = np.minimum(top, np.sqrt(lateral / np.maximum(bend, 1e-9)))
+    speed[np.searchsorted(along, stands)] = 0.0
     speed[0] = min(speed[0], begins)
     for k, gap in enumerate(gaps):
         speed[k + 1] = min(speed[k + 1], math.sqrt(speed[k] ** 2 + 2.0 * acceleration * gap))

@@ -189,6 +189,8 @@ def driven(**actuation: object) -> dict:
         ([LAND, driven(speed=None)], "a driver is a vehicle's, with its \"speed\""),
         ([LAND, driven(route=[])], 'a driver follows a "route" from where the vehicle starts; it has none'),
         ([LAND, driven(kind="drive")], 'what is driven straight on, or in a circle, has no route'),
+        ([LAND, driven(waits=[1.0, 2.0])], "waits has 2 times for the route's 1 points"),
+        ([LAND, driven(kind="drive", route=[], waits=[1.0])], 'waits are of the kind "driver"; this is of \'drive\''),
         ([LAND, driven(steer_deg=5.0)], 'steer_deg is of the kind "drive"; this is of \'driver\''),
         ([{**driven(), "role": "rigid_body", "construction": {"kind": "proxy", "primitive": "box", "size": [1, 1, 1]},
            "material": {"name": "tin", "density": 900}}], "car: a driver is of a vehicle"),

@@ -23,8 +23,15 @@ def rear_axle(item: PlanObject) -> Spot:
     return round(x - back * ahead, 3), round(y - back * aside, 3)
 
 
-def drive_time(kind: str, way: Sequence[Spot], speed: float, start_speed: float = 0.0) -> float:
-    """What a driver takes along a smooth line through points, by its own speeds [s].
+def stops(route: Sequence[Sequence[float]], waits: Sequence[float]) -> list[tuple[float, float, float]]:
+    """A driver's (x, y, seconds), of a route's points where it waits."""
+    return [(point[0], point[1], seconds) for point, seconds in zip(route, waits, strict=False) if seconds > 0.0]
+
+
+def drive_time(
+    kind: str, way: Sequence[Spot], speed: float, start_speed: float = 0.0, waits: Sequence[float] = ()
+) -> float:  # fmt: skip
+    """What a driver takes along a smooth line through points, by its own speeds [s], and waits at all but the first.
 
     Raises:
         LayoutError: The scene would refuse the driver; in the scene's words.
@@ -33,7 +40,8 @@ def drive_time(kind: str, way: Sequence[Spot], speed: float, start_speed: float 
 
     try:
         line = Road(way).line()
-        driver = Driver(kind, kind, path=line, speed=speed, start_speed=max(0.0, start_speed))
+        driver = Driver(kind, kind, path=line, speed=speed, start_speed=max(0.0, start_speed),
+                        waits=stops(way[1:], waits))  # fmt: skip
     except SceneError as error:
         raise LayoutError(str(error)) from error
     steps = [math.dist(a, b) for a, b in pairwise(line)]
@@ -41,7 +49,7 @@ def drive_time(kind: str, way: Sequence[Spot], speed: float, start_speed: float 
     for step in steps:
         along.append(along[-1] + step)
     mean = [0.5 * (driver.speed_at(a) + driver.speed_at(b)) for a, b in pairwise(along)]
-    return sum(step / max(fast, SLOWEST) for step, fast in zip(steps, mean, strict=True))
+    return sum(step / max(fast, SLOWEST) for step, fast in zip(steps, mean, strict=True)) + sum(waits)
 
 
 def check_drives(plan: Plan) -> None:
@@ -57,7 +65,7 @@ def check_drives(plan: Plan) -> None:
             if item.pose is None:
                 continue
             way = [rear_axle(item), *((x, y) for x, y, *_ in each.route)]
-            takes = drive_time(item.built.vehicle, way, each.speed, item.speed_ahead)
+            takes = drive_time(item.built.vehicle, way, each.speed, item.speed_ahead, each.waits)
             if takes > plan.simulation.duration:
                 raise LayoutError(
                     f"simulation.duration: {plan.simulation.duration:g} s: {item.name} takes {takes:.3g} s along its "

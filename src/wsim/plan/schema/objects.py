@@ -68,7 +68,7 @@ class Pose(Strict):
 
 
 WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
-_OF_SOME = ("policy", "route", "speed", "steer_deg")  # kinds of actuation
+_OF_SOME = ("policy", "route", "speed", "steer_deg", "waits")  # kinds of actuation
 
 
 class Actuation(Strict):
@@ -84,11 +84,16 @@ class Actuation(Strict):
     route: tuple[WayPoint, ...] = Field((), max_length=1000)  # of a policy or a driver, one point after the other
     speed: Positive | None = None  # along the route, or of what is driven straight on [m/s]
     steer_deg: Number | None = None  # of the kind "drive": of the front wheels, to the left
+    waits: tuple[NotNegative, ...] = Field((), max_length=1000)  # of a driver: at each point of the route, in turn [s]
 
     @model_validator(mode="after")
     def _drives(self) -> Actuation:
         if self.steer_deg is not None and self.kind != "drive":
             raise ValueError(f'steer_deg is of the kind "drive"; this is of {self.kind!r}')
+        if self.waits and self.kind != "driver":
+            raise ValueError(f'waits are of the kind "driver"; this is of {self.kind!r}')
+        if len(self.waits) > len(self.route):
+            raise ValueError(f"waits has {len(self.waits)} times for the route's {len(self.route)} points")
         if self.kind not in ("driver", "drive"):
             return self
         if self.speed is None or self.joint or self.target or self.policy:

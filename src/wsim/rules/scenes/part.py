@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from wsim.defaults import GRAVITY
-from wsim.plan.schema import CameraPlan, Joint, Objective, PlanObject, Vec3
+from wsim.plan.schema import CameraPlan, Contact, Joint, Objective, PlanObject, Vec3
 
 MOST_SPEED = 50.0  # that the prompt may give [m/s]
 DIRECTIONS: dict[str, Vec3] = {
@@ -25,6 +25,7 @@ class Part:
         objects: To be laid out by their rows, or kept where their pose says.
         posed: With poses that no row could give, such as on an incline: added once the rest is laid out.
         joints: Between any of them.
+        contacts: Of pairs whose friction follows from none of their materials.
         objectives: What must happen to them.
         duration: That it takes [s].
         names: Of each thing's objects, lowest first, by the thing's identity.
@@ -38,6 +39,7 @@ class Part:
     objects: list[PlanObject] = field(default_factory=list)
     posed: list[PlanObject] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
+    contacts: list[Contact] = field(default_factory=list)
     objectives: list[Objective] = field(default_factory=list)
     duration: float = 0.0
     names: dict[int, list[str]] = field(default_factory=dict)
@@ -52,6 +54,7 @@ class Part:
         self.objects += other.objects
         self.posed += other.posed
         self.joints += other.joints
+        self.contacts += other.contacts
         self.objectives += other.objectives
         self.duration = max(self.duration, other.duration)
         self.names |= other.names

@@ -1,0 +1,389 @@
+"""A vehicle drives from a dock over a block that floats, waits on its middle, and drives on to the other dock.
+
+Archimedes says how far the block goes down, its metacentre how far it leans as the rear axle comes over its end, and
+both how thick it has to be. Held by nothing but the aprons of the docks, it goes up and down freely.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, get_args
+
+from wsim.defaults import FIELD_OF_VIEW, FLUID_DENSITY, GRAVITY
+from wsim.errors import UserError
+from wsim.plan.layout.drives import drive_time
+from wsim.plan.schema import (
+    Actuation,
+    CameraPlan,
+    Contact,
+    FromVehicle,
+    Material,
+    Objective,
+    PlanObject,
+    Pose,
+    Registration,
+    Relation,
+    Vec3,
+)
+from wsim.plan.schema.constructions import VehicleKind
+from wsim.plan.schema.formula import Mean
+from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, TiltBetween, Upright
+from wsim.plan.schema.nodes import Eventually, Finally, Then
+from wsim.rules.cast import Cast, Thing
+from wsim.rules.grammar import NotUnderstood
+from wsim.rules.materials import GLASS_LOOK, WATER, material_named
+from wsim.rules.scenes.part import Part, tidy
+
+if TYPE_CHECKING:
+    from wsim.scene.vehicle_spec import VehicleSpec
+
+FAMILIES = ("dock", "pontoon")
+DOCKS = 2
+LONG, WIDE = 1.25, 1.65  # of the vehicle's length and width: the block's
+THINNEST, THICKEST, STEP = 0.4, 2.0, 0.1  # of the block [m]
+FREE = 0.2  # of the block that stays above the water with an axle over its end, at least [m]
+GAP, OVER, BESIDE = 0.1, 0.3, 0.8  # between block and apron; of that over the water; beside it to the walls [m]
+SPACING, MOST_PARTICLES = 0.1, 24_000  # of the water [m]
+LEVEL, UNDER, RIM = 1.0, 0.4, 0.3  # of the water at least, under the leaning block, and of the walls above it [m]
+WALL, APRON = 0.1, 0.1  # thickness of the basin's walls, and of what of the docks is over its water [m]
+BELOW = 0.1  # that the docks are lower than the empty block, which the load takes down [m]
+STANDS_BACK = 0.75  # of its length on its dock, behind the vehicle's middle [m]
+SPEED, LEAST_SPEED, MOST_SPEED = 1.5, 0.5, 2.0  # [m/s]: usual, and what the prompt may give
+ADDED_MASS = 1.3  # of what heaves: of its own and the load's mass, what water goes along with a wide block
+SWINGS, ARRIVES, RECOVERS = 2.0, 0.5, 3.5  # its mean is over two swings, after a while; and to come to rest [s]
+CLOSE, HOME, SINKS, BACK = 0.15, 0.1, 0.1, 0.15  # [m], [m], of the way down, of a spacing
+LEANS, LEVELS, MOST_LEAN = 0.5, 3.0, 15.0  # of the lean at rest, at the end [deg], and at any time [deg]
+FRAME_RATE = 20.0  # [1/s]
+_FOAM = Material(name="foam", density=250.0, friction=0.9, color=(0.85, 0.62, 0.03))
+_CONCRETE = Material(name="concrete", density=2400.0, friction=0.9, color=(0.45, 0.44, 0.42))
+_FENDER = 0.1  # friction of the block on the aprons
+
+
+@dataclass(frozen=True)
+class Block:
+    """What floats, and the vehicle on it.
+
+    Attributes:
+        size: (X, Y, Z) [m].
+        material: Its own.
+        spec: Of the vehicle.
+    """
+
+    size: Vec3
+    material: Material
+    spec: VehicleSpec
+
+    @property
+    def area(self) -> float:
+        """Seen from above [m^2]."""
+        return self.size[0] * self.size[1]
+
+    @property
+    def mass(self) -> float:
+        """Without the load [kg]."""
+        return self.material.density * self.area * self.size[2]
+
+    @property
+    def draft(self) -> float:
+        """Without the load [m]."""
+        return self.mass / (FLUID_DENSITY * self.area)
+
+    @property
+    def loaded(self) -> float:
+        """Draft with the load in the middle [m]."""
+        return self.draft + self.spec.mass / (FLUID_DENSITY * self.area)
+
+    @property
+    def lean(self) -> float:
+        """At rest with the rear axle over an end [rad], by the metacentric height; a right angle where that is none."""
+        whole, height = self.mass + self.spec.mass, self.size[2]
+        centre = (self.mass * height / 2 + self.spec.mass * (height + self.spec.com_height)) / whole
+        metacentre = self.loaded / 2 + self.size[0] ** 2 / (12.0 * self.loaded)
+        arm = self.size[0] / 2 - self.spec.front_share * self.spec.wheelbase
+        if metacentre <= centre:
+            return math.pi / 2
+        return math.atan(self.spec.mass * max(arm, 0.0) / (whole * (metacentre - centre)))
+
+    @property
+    def free(self) -> float:
+        """How far the end under the axle is above the water then [m]."""
+        return self.size[2] - self.loaded - self.size[0] / 2 * math.tan(min(self.lean, 1.5))
+
+    @property
+    def period(self) -> float:
+        """Of its heave with the load [s]."""
+        stiffness = FLUID_DENSITY * GRAVITY * self.area
+        return 2.0 * math.pi * math.sqrt((1.0 + ADDED_MASS) * (self.mass + self.spec.mass) / stiffness)
+
+
+@dataclass(frozen=True)
+class Site:
+    """The basin, and the docks at its ends; the block's middle is at x = y = 0. All in metres."""
+
+    block: Block
+    level: float
+    spacing: float
+    dock: float  # length of one
+
+    @property
+    def inner(self) -> Vec3:
+        """The basin's hollow."""
+        length, width, height = self.block.size
+        rim = max(RIM, height - self.block.draft - BELOW - APRON)
+        return tidy(length + 2 * (GAP + OVER)), tidy(width + 2 * BESIDE), tidy(self.level + rim)
+
+    @property
+    def edge(self) -> float:
+        """Where the docks' aprons end, on both sides."""
+        return self.block.size[0] / 2 + GAP
+
+    @property
+    def wall(self) -> float:
+        """Where the basin's walls end, on both sides."""
+        return self.inner[0] / 2 + WALL
+
+    @property
+    def top(self) -> float:
+        """Of the docks."""
+        return tidy(WALL + self.inner[2] + APRON)
+
+    @property
+    def bottom(self) -> float:
+        """Of the empty block."""
+        return WALL + self.level - self.block.draft
+
+    @property
+    def stands(self) -> float:
+        """How far from the block's middle the vehicle starts and ends."""
+        return round(self.wall + self.dock - STANDS_BACK * self.block.spec.length, 1)
+
+    @property
+    def sinks(self) -> float:
+        """How far the load takes the block down over the basin's floor: what sinks in lifts the water."""
+        basin = self.inner[0] * self.inner[1]
+        return self.block.spec.mass / FLUID_DENSITY * (1.0 / self.block.area - 1.0 / basin)
+
+
+def build_crossing(cast: Cast, taken: set[str]) -> Part:
+    """The docks, the basin with the block between them, and the vehicle on its way.
+
+    Raises:
+        NotUnderstood: There is a dock or a floating block, and no vehicle that crosses it.
+        UserError: More is to be in it, the block is to be what it cannot be, or there is too little time.
+    """
+    known = cast.family(*FAMILIES)
+    if not known:
+        return Part()
+    thing, over = _asked(cast, known)
+    kind = next(each for each in get_args(VehicleKind) if each == thing.noun.key)
+    speed = SPEED if thing.speed is None else thing.speed
+    if not LEAST_SPEED <= speed <= MOST_SPEED:
+        raise UserError(f"{speed:g} m/s is outside {LEAST_SPEED:g} to {MOST_SPEED:g} m/s, at which vehicles cross")
+    from wsim.scene.vehicle_spec import preset  # with USD, and few prompts speak of vehicles
+
+    site = _site(_block(over, preset(kind), cast))
+    route, waits, arrives = _way(site, kind, speed)
+    duration = float(math.ceil(_takes(site, kind, speed, route, waits) + RECOVERS))
+    if cast.duration is not None and cast.duration < duration:
+        raise UserError(f"{cast.duration:g} s are too short to cross, wait and come to rest; give it {duration:g} s")
+    objects = [*_built(site, cast, over), _vehicle(site, kind, route, waits, speed, thing)]
+    taken |= {item.name for item in objects}
+    _assume(cast, thing, over, site, waits[0])
+    fenders = [Contact(object="block", ref=f"apron_{end}", friction=_FENDER) for end in ("near", "far")]
+    return Part(
+        objects=objects, contacts=fenders, objectives=_objectives(site, kind, arrives, waits[0]), duration=duration,
+        frame_rate=FRAME_RATE, spacing=site.spacing, cameras=_views(site),
+        names={id(each): ["block" if each is over else "dock_near"] for each in known} | {id(thing): [kind]},
+    )  # fmt: skip
+
+
+def _asked(cast: Cast, known: list[Thing]) -> tuple[Thing, Thing]:
+    """The vehicle, and the block that it crosses."""
+    crossing = [thing for thing in cast.family("vehicle") if "cross" in thing.does]
+    over = [thing for thing in known if thing.noun.family == "pontoon"]
+    if not crossing or not over:
+        raise NotUnderstood(
+            [known[0].words], "lets a vehicle cross a floating block between two docks, and needs both:"
+        )
+    docks = sum(thing.count for thing in known if thing.noun.family == "dock")
+    others = [thing.words for thing in cast.things if thing not in (crossing[0], *known)]
+    if others or docks > DOCKS or over[0].count > 1 or len(over) > 1 or cast.pour is not None:
+        what = others[0] if others else known[-1].words
+        raise UserError(f"{what!r}: the builtin planner lets a vehicle cross one block between two docks; leave it out")
+    adorned = [thing for thing in (crossing[0], *known) if thing is not over[0]]
+    for thing in adorned:
+        own = (thing.phrase.material, thing.phrase.color, thing.phrase.measures, thing.phrase.edges)
+        if any(own) or (crossing[0].count > 1):
+            raise UserError(f"{thing.words!r}: one vehicle crosses as it was made, between docks that fit it")
+    return crossing[0], over[0]
+
+
+def _block(over: Thing, spec: VehicleSpec, cast: Cast) -> Block:
+    """As the prompt has it; as thick as it has to be, where that is open."""
+    said = over.phrase
+    material = _FOAM if said.material is None else material_named(said.material)
+    if "density" in said.measures:
+        material = material.model_copy(update={"name": "block_material", "density": said.measures["density"]})
+    length, width = round(LONG * spec.length, 1), round(WIDE * spec.width, 1)
+    unknown = set(said.measures) - {"density", "z"}
+    if unknown or said.scale is not None or said.length is not None:
+        raise UserError(f"{over.words!r}: give the block a density, a thickness, or all of its edges")
+    if said.edges is not None:
+        given = Block(said.edges, material, spec)
+    elif "z" in said.measures:
+        given = Block((length, width, said.measures["z"]), material, spec)
+    else:
+        return _carries(Block((length, width, THINNEST), material, spec), over)
+    if given.free < 0.0:
+        better = _carries(given, over)
+        cast.assume(
+            over.words, f"warning: {given.size[2]:g} m of {material.density:g} kg/m^3 go under the axle over an end",
+            f"{given.free:.2g} m would stay above the water; {better.size[2]:g} m of "
+            f"{better.material.density:g} kg/m^3 would carry it, {better.free:.2g} m above the water",
+        )  # fmt: skip
+    return given
+
+
+def _carries(block: Block, over: Thing) -> Block:
+    """As thick as is needed to carry the load; of foam, if its own material never does."""
+    (length, width, _), steps = block.size, round((THICKEST - THINNEST) / STEP)
+    for material in dict.fromkeys((block.material.density, _FOAM.density)):
+        of = block.material if material == block.material.density else _FOAM
+        for k in range(steps + 1):
+            found = Block((length, width, round(THINNEST + k * STEP, 3)), of, block.spec)
+            if found.free >= FREE and found.size[2] - found.draft >= RIM + BELOW + APRON - 1e-9:
+                return found
+        if over.phrase.edges is None and "z" not in over.phrase.measures:
+            break
+    raise UserError(
+        f"{over.words!r}: no block of {block.material.density:g} kg/m^3, {length:g} x {width:g} m, that is up to "
+        f"{THICKEST:g} m thick carries {block.spec.mass:g} kg; give a lower density, or none"
+    )
+
+
+def _site(block: Block) -> Site:
+    down = block.loaded + block.size[0] / 2 * math.tan(min(block.lean, 0.3))
+    level = max(LEVEL, math.ceil(10.0 * (min(down, block.size[2]) + UNDER)) / 10.0)
+    site = Site(block, level, SPACING, round(block.spec.length + 1.5, 1))
+    volume = site.inner[0] * site.inner[1] * level - block.area * block.draft
+    return Site(block, level, max(SPACING, round((volume / MOST_PARTICLES) ** (1 / 3), 3)), site.dock)
+
+
+def _way(site: Site, kind: str, speed: float) -> tuple[tuple[tuple[float, float], ...], tuple[float, ...], float]:
+    """Points of the rear axle, how long it waits there [s], and when it comes to the first [s]."""
+    spec = site.block.spec
+    middle = _middle(spec) - spec.wheelbase / 2
+    route = ((tidy(round(middle, 3)), 0.0), (tidy(round(site.stands - spec.wheelbase / 2, 3)), 0.0))
+    arrives = _takes(site, kind, speed, route[:1], ())
+    wait = math.ceil(2.0 * (ARRIVES + SWINGS * site.block.period)) / 2.0
+    return route, (wait, 0.0), arrives
+
+
+def _middle(spec: VehicleSpec) -> float:
+    """Where the point between its axles is as its weight is over x = 0 [m]."""
+    return (0.5 - spec.front_share) * spec.wheelbase
+
+
+def _takes(
+    site: Site, kind: str, speed: float, route: tuple[tuple[float, float], ...], waits: tuple[float, ...]
+) -> float:  # fmt: skip
+    start = (-site.stands - site.block.spec.wheelbase / 2, 0.0)
+    return drive_time(kind, [start, *route], speed, waits=waits)
+
+
+def _built(site: Site, cast: Cast, over: Thing) -> list[PlanObject]:
+    """All that stands still or floats."""
+    height, inner_y = site.block.size[2], site.inner[1]
+    basin = PlanObject.proxy(
+        name="basin", role="container", primitive="tank", size=site.inner, material=GLASS_LOOK,
+        state="static", pose=Pose(position=(0.0, 0.0, 0.0)), words=cast.tank or "",
+    )  # fmt: skip
+    rows = [Relation(predicate="PLACE-IN", ref="basin"), Relation(predicate="FREE-SURFACE-AT", value=site.level)]
+    water = PlanObject.proxy(
+        name="water", role="fluid", primitive="fluid", material=WATER, state="fluid", relations=rows,
+        registration=Registration(spacing=site.spacing), words=cast.water or "",
+    )  # fmt: skip
+    block = PlanObject.proxy(
+        name="block", role="rigid_body", primitive="box", size=site.block.size, material=site.block.material,
+        pose=Pose(position=(0.0, 0.0, tidy(site.bottom + height / 2))), words=over.words,
+    )  # fmt: skip
+    wide = tidy(inner_y - 1.0)
+    found = [basin, water, block]
+    for end, side in (("near", -1.0), ("far", 1.0)):
+        for name, size, x, z in (
+            (f"dock_{end}", (site.dock, wide, site.top), site.wall + site.dock / 2, site.top / 2),
+            (f"apron_{end}", (site.wall - site.edge, wide, APRON), (site.wall + site.edge) / 2, site.top - APRON / 2),
+        ):
+            found.append(PlanObject.proxy(
+                name=name, role="background", primitive="box", size=tuple(tidy(edge) for edge in size),
+                material=_CONCRETE, state="static", pose=Pose(position=(tidy(side * x), 0.0, tidy(z))),
+            ))  # fmt: skip
+    return found
+
+
+def _vehicle(
+    site: Site, kind: VehicleKind, route: tuple[tuple[float, float], ...], waits: tuple[float, ...], speed: float,
+    thing: Thing,
+) -> PlanObject:  # fmt: skip
+    drive = Actuation(kind="driver", route=route, speed=speed, waits=waits[:1])
+    return PlanObject(
+        name=kind, role="vehicle", construction=FromVehicle(vehicle=kind), words=thing.words,
+        pose=Pose(position=(-site.stands, 0.0, site.top)), registration=Registration(actuation=[drive]),
+    )  # fmt: skip
+
+
+def _objectives(site: Site, kind: str, arrives: float, wait: float) -> list[Objective]:
+    """It crosses; the block goes down by what the load says, leans to both docks and comes up again; water stays."""
+    top, sinks, lean = site.top, site.sinks, round(LEANS * math.degrees(site.block.lean), 1)
+    at, goal = (round(_middle(site.block.spec), 3), 0.0, top), (site.stands, 0.0, top)
+    reached = Reaches(object=kind, target=at, within=CLOSE)
+    home = Finally(seconds=1.0, of=StaysWithin(object=kind, center=goal, radius=HOME))
+    begin = round(arrives + ARRIVES, 1)
+    window = (begin, round(begin + wait - ARRIVES, 1))
+    down = GoneBetween(
+        object="block", axis="z", low=round(-(1 + SINKS) * sinks, 4), high=round(-(1 - SINKS) * sinks, 4)
+    )
+    leans = [TiltBetween(object="block", axis="x", low=low, high=high) for low, high in
+             ((-MOST_LEAN, -lean), (lean, MOST_LEAN))]  # fmt: skip
+    level = Mean(seconds=2.0, of=Upright(object="block", within=LEVELS))
+    events = (Eventually(window=(0.0, window[0]), of=leans[0]), Eventually(of=leans[1]), level)
+    near = BACK * site.spacing
+    again = Mean(seconds=2.0, of=GoneBetween(object="block", axis="z", low=-near, high=near))
+    said = f"m / rho (1 / A - 1 / A') = {1e3 * sinks:.1f} mm"
+    formulas = [
+        (kind, "It waits on the block, and reaches the other dock.", Then(events=(reached, home), windows=(None,))),
+        ("block", f"Under the load it sinks by {said}, to 10 %, in the mean of two of its swings.",
+         Mean(window=window, of=down)),
+        ("block", "It tilts to the dock from which the vehicle comes, then to the other, and recovers.",
+         Then(events=events, windows=(None, None))),
+        ("block", f"Left alone it comes up again, to {1e3 * near:.0f} mm of where it was.", again),
+    ]  # fmt: skip
+    found = [Objective(kind="formula", object=name, sentence=text, formula=of) for name, text, of in formulas]
+    found.append(Objective(kind="floats", object="block", ref="water", sentence="It floats at its draft in the end."))
+    stays = "The water stays in the basin."
+    return [*found, Objective(kind="stays_inside", object="water", ref="basin", sentence=stays)]
+
+
+def _views(site: Site) -> list[CameraPlan]:
+    """From the side, with both docks in it; of the block, from a corner."""
+    half, high = site.wall + site.dock, site.top
+    back = round(half / math.tan(math.radians(FIELD_OF_VIEW / 2)), 1)
+    side = CameraPlan(
+        name="side", eye=(0.0, -back, round(high + 0.2 * back, 2)), target=(0.0, 0.0, round(0.8 * high, 2))
+    )
+    near = (round(0.7 * half, 2), round(-1.1 * half, 2), round(high + 0.35 * half, 2))
+    return [side, CameraPlan(name="quarter", eye=near, target=(0.0, 0.0, round(0.8 * high, 2)))]
+
+
+def _assume(cast: Cast, thing: Thing, over: Thing, site: Site, wait: float) -> None:
+    block, spec = site.block, site.block.spec
+    size = " x ".join(f"{edge:g}" for edge in block.size)
+    cast.assume(
+        over.words, f"{size} m of {block.material.density:g} kg/m^3, held by nothing",
+        f"{block.free:.2g} m of it stay above the water with {spec.mass:g} kg's rear axle over an end",
+    )  # fmt: skip
+    cast.assume("docks", f"{BELOW:g} m lower than the empty block", "the load takes its ends below them")
+    cast.assume(thing.words, f"waits on its middle for {wait:g} s", "the block swings; its mean is what the load says")
+    if thing.speed is None:
+        cast.assume(thing.words, f"drives at {SPEED:g} m/s at most", "the prompt gives no speed")
