@@ -103,10 +103,9 @@ class ContactRows:
 def weigh_rows(data: Any, normal: Array, dim: Array, friction: Array) -> None:
     """Weights of the rows of spinning and rolling by their coefficients, as MuJoCo's cone has them."""
     wide = dim > 3
-    first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
-    for k in range(2, 5):
-        row, weight = first + k, data.efc_D[first] * share[:, k]
-        data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
-        if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
-            row = data.map_efc2iefc[row]
-            data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight
+    first, share = normal[wide, None] + 1, (friction[wide, 2:] / friction[wide, :1]) ** 2
+    row, weight = first + np.arange(2, 5), data.efc_D[first] * share
+    data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
+    if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+        row = data.map_efc2iefc[row]
+        data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight

@@ -47,16 +47,18 @@ class Led:
         found, now = np.zeros(self._count, dtype=bool), float(data.time)
         geoms = data.contact.geom[rows]
         ours = self._of_geom[geoms].any(axis=1)
+        pairs = [(one, two) for one, two in geoms[ours].tolist()]
+        turns = data.xmat[[self.root(one, two) for one, two in pairs]].reshape(-1, 3, 3)
+        seen = np.einsum("ni,nij->nj", data.contact.frame[rows[ours], :3], turns)
         normals: dict[tuple[int, int], Array] = {}
-        for (one, two), normal in zip(geoms[ours].tolist(), data.contact.frame[rows[ours], :3], strict=True):
-            turn = data.xmat[self.root(one, two)].reshape(3, 3)
-            normals[one, two] = normals.get((one, two), 0.0) + normal @ turn
+        for pair, normal in zip(pairs, seen, strict=True):
+            normals[pair] = normals.get(pair, 0.0) + normal
         for pair, normal in normals.items():
-            normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
+            normal = normal / max(math.hypot(*normal), 1e-12)
             since, last, turned, before = self._seen.get(pair, (now, -math.inf, 0.0, normal))
             if not 0.0 <= now - last <= AGAIN:
                 since, turned, before = now, 0.0, normal
-            turned += 2.0 * math.asin(min(0.5 * float(np.linalg.norm(normal - before)), 1.0))
+            turned += 2.0 * math.asin(min(0.5 * math.dist(normal, before), 1.0))
             self._seen[pair] = since, now, turned, normal
             if turned > FAR and now - since > LASTS:
                 found[self._of_geom[list(pair)]] = True

@@ -15,6 +15,7 @@ from wsim.kernels.convex import BOX, CAPSULE, CYLINDER, HULL, SPHERE, Convex
 from wsim.kernels.own_rows import add_found
 from wsim.kernels.surface import Found, touch
 from wsim.solvers.own_contacts import put_in_c, rows_of
+from wsim.solvers.packed import Packed
 from wsim.solvers.surface_mesh import Part, make_surface
 
 Array = np.ndarray
@@ -47,6 +48,7 @@ class SurfaceContacts:
 
     def __init__(self, model: Any, surfaces: SurfaceParts, reach: float) -> None:
         self.model, self.surfaces, self.reach = model, surfaces, reach
+        self._packed = Packed(model.device)
         self.surface, self._mesh = make_surface(surfaces.parts, model.device)
         shapes = _moving(model)
         self.shapes = np.array(shapes, dtype=np.int64)
@@ -88,12 +90,12 @@ class SurfaceContacts:
 
     def find(self, state: Any, ahead: Any, h: float) -> None:
         """Find what touches at a state, for a step of `h` [s]; at its end velocities are `ahead` of the state's."""
-        wp.launch(
+        self._packed.launch(
             touch,
             dim=len(self.shapes),
             inputs=[*self._inputs, state.body_q, state.body_qd, ahead, self.model.body_com, self.reach, h],
             outputs=[self.found],
-            device=self.model.device,
+            changing=(state.body_q, state.body_qd, ahead, h),
         )
 
     def bind_geoms(self, geom_shapes: Array) -> None:
