@@ -66,6 +66,7 @@ class MotionC:
     def _twists(self) -> Array:
         mujoco, model, data, ours = self._mujoco, self._model, self._data, self._ours
         mujoco.mj_comPos(model, data)
+        self._flight.keep()  # what it says is of what it keeps
         self._flight.say(centred=True)
         mujoco.mj_comVel(model, data)
         self._flight.say(centred=False)

@@ -87,6 +87,10 @@ class SurfaceContacts:
             self.found.position, self.found.normal = wp.zeros(size, dtype=wp.vec3), wp.zeros(size, dtype=wp.vec3)
             self.found.distance, self.found.bend = wp.zeros(size, dtype=float), wp.zeros(size, dtype=float)
             self.found.part = wp.zeros(size, dtype=int)
+        if self.model.device.is_cpu:
+            found = self.found
+            arrays = (found.count, found.position, found.normal, found.distance, found.bend, found.part)
+            self._seen = [array.numpy() for array in arrays]  # the same memory
 
     def find(self, state: Any, ahead: Any, h: float) -> None:
         """Find what touches at a state, for a step of `h` [s]; at its end velocities are `ahead` of the state's."""
@@ -109,9 +113,7 @@ class SurfaceContacts:
 
     def add_to_c(self, mujoco: Any, model: Any, data: Any) -> Array:
         """Add what was found to MuJoCo's contacts; what each of all of them loses to curvature, (contacts,) [m/s]."""
-        own, counts = data.ncon, self.found.count.numpy()
-        position, normal = self.found.position.numpy(), self.found.normal.numpy()
-        distance, bend, part = (a.numpy() for a in (self.found.distance, self.found.bend, self.found.part))
+        own, (counts, position, normal, distance, bend, part) = data.ncon, self._seen
         bends = np.zeros(own + int(counts.sum()))
         probe, slot = np.nonzero(np.arange(position.shape[1]) < counts[:, None])
         bends[own:] = bend[probe, slot]
