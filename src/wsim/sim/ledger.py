@@ -9,6 +9,7 @@ import numpy as np
 import warp as wp
 
 from wsim.kernels.work import accumulate_control, accumulate_drive, accumulate_push
+from wsim.sim.ledger_notes import Steps
 from wsim.solvers.packed import Packed
 
 
@@ -90,6 +91,27 @@ class Ledger:
             outputs=[self._last, self._drives, self._unsure],
             changing=(effort, control.joint_f, state.joint_qd, dt),
         )
+
+    def add(self, steps: Steps, force: Any, control: Any, dt: float) -> None:
+        """Add steps of `dt` [s] that a CPU took in one go, as `after` adds each; `force` and `control` were the same.
+
+        They are summed in double precision; `after` rounds at each step.
+        """
+        count, push = len(steps.efforts), force.numpy()  # of a CPU's arrays these are the arrays
+        self._impulse.numpy()[:] += count * dt * push
+        if self.control is not None:
+            self._controlled.numpy()[:] += count * dt * self.control.numpy()
+        if steps.twists is not None:
+            mean = 0.5 * (steps.twists[:-1] + steps.twists[1:])
+            self._work.numpy()[:] += dt * np.einsum("sbi,bi->b", mean, push)
+        dofs, last, effort = steps.dofs, self._last.numpy(), steps.efforts
+        change = np.diff(effort, axis=0, prepend=last[None, dofs])
+        mean, gain = 0.5 * (steps.rates[:-1] + steps.rates[1:]), np.diff(steps.rates, axis=0)
+        given = effort - 0.5 * change + control.joint_f.numpy()[dofs]
+        spun = self.model.joint_armature.numpy()[dofs] * gain
+        self._drives.numpy()[dofs] += ((dt * given - spun) * mean).sum(axis=0)
+        self._unsure.numpy()[dofs] += dt * np.abs(change * gain).sum(axis=0)
+        last[dofs] = effort[-1]
 
     def retarget(self, dofs: np.ndarray, moved: np.ndarray) -> None:
         """Note that drives' targets jumped between two steps, and their efforts with them.

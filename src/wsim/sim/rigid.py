@@ -20,6 +20,7 @@ from wsim.sim.devices import steps_in_c
 from wsim.sim.drives import drive_count
 from wsim.sim.kinematic import Kinematic
 from wsim.sim.ledger import Ledger
+from wsim.sim.ledger_notes import StepNotes
 from wsim.sim.pressed import Pressed
 from wsim.sim.ties import ties_of
 from wsim.sim.time_step import is_overdamped
@@ -107,7 +108,6 @@ class RigidBodies:
         jumps = any(joint.friction or joint.may_break for joint in world.joints)
         touching = SurfaceContacts(model, surfaces, ContactConfig().reach) if surfaces else None
         rims = CylinderContacts(cylinders, ContactConfig().reach) if cylinders else None
-        self._touching = touching
         may_touch = _may_touch(model) or bool(world.ropes or touching or rims) or jumps
         if touching:
             capacity += SLOTS * len(touching.shapes) // max(1, model.world_count)
@@ -130,6 +130,10 @@ class RigidBodies:
         self.pressed = Pressed(model, self.solver, self.on_c)
         pushed = driven or controlled or model.particle_count > 0
         self.ledger = Ledger(model, self.observables if driven else None) if pushed else None
+        self._notes: StepNotes | None = None
+        if self.ledger and self.on_c and model.particle_count == 0:
+            notes = StepNotes(model, self.solver)
+            self._notes = notes if notes.hold else None
 
     def step(self, state_in: Any, state_out: Any, control: Any, dt: float) -> None:
         """Advance the bodies by `dt` [s] under gravity, contacts, joints and `state_in.body_f`."""
@@ -151,12 +155,20 @@ class RigidBodies:
 
     @property
     def alone(self) -> bool:
-        """Whether nothing but the solver reads or writes the state between two frames."""
-        return self.on_c and self.ledger is None and self._touching is None and self._kinematic.idle
+        """Whether nothing but the solver reads or writes the state between two turns of others."""
+        return self.on_c and self._kinematic.idle and (self.ledger is None or self._notes is not None)
 
     def steps(self, state: Any, control: Any, dt: float, count: int) -> None:
-        """Advance by `count` steps of `dt` [s] in one go, if the bodies are `alone`."""
-        self.solver.steps(state, control, dt, count)
+        """Advance by `count` steps of `dt` [s] if the bodies are `alone`, in one go where books can be kept of it."""
+        if self.ledger is None or self._notes is None:
+            self.solver.steps(state, control, dt, count)
+        elif self._notes.tell_all(control):
+            self._notes.begin(state.body_f)
+            self.solver.steps(state, control, dt, count, self.observables, self._notes.note)
+            self.ledger.add(self._notes.end(), state.body_f, control, dt)
+        else:
+            for _ in range(count):
+                self.step(state, state, control, dt)
 
     def keep_contacts(self) -> None:
         """Sum from here on what the first world's pairs of shapes give each other; in C its joints and cords, too."""

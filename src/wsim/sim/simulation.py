@@ -215,7 +215,7 @@ class Simulation:
         On CUDA its steps are captured in a graph once and replayed; with a controller or sensors, those between two of
         their turns. So are those in C taken in one go that are the solver's alone.
         """
-        alone = self.rigid if self.rigid and self.rigid.alone and not self.fluid and not self._turns else None
+        alone = self.rigid if self.rigid and self.rigid.alone and not self.fluid else None
         if not alone and not self.device.is_cuda:
             for _ in range(self.substeps):
                 self.step()
@@ -224,7 +224,7 @@ class Simulation:
         while left:
             steps = min(left, self._until_control())
             if alone:
-                self.state.clear_forces()
+                self._push_and_flow()
                 alone.steps(self.state, self.control, self.dt, steps)
             else:
                 wp.capture_launch(self._captured(steps))

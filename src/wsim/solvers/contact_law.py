@@ -100,8 +100,9 @@ class ContactLawC:
         rows = mujoco.mjtConstraint
         self.stops = StopsC(mujoco, model, config)
         touches = (rows.mjCNSTR_CONTACT_FRICTIONLESS, rows.mjCNSTR_CONTACT_ELLIPTIC)
+        self._rubs = int(rows.mjCNSTR_FRICTION_DOF)
         self._jumping = np.zeros(len(rows.__members__), dtype=bool)  # of each kind of row
-        self._jumping[[*self.stops.kinds, int(rows.mjCNSTR_FRICTION_DOF), *map(int, touches)]] = True
+        self._jumping[[*self.stops.kinds, self._rubs, *map(int, touches)]] = True
         self._groups = tied_groups(mujoco, model)
         moves_as_one = np.zeros(model.nbody, dtype=int)
         if smooth:
@@ -332,7 +333,7 @@ class ContactLawC:
         """Ask what is no contact for the speeds that it should have."""
         self.stops.aim(data)
         self.closing.aim(data)
-        rubbing = np.flatnonzero(data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF)
+        rubbing = np.flatnonzero(data.efc_type == self._rubs)
         data.efc_aref[rubbing] = -data.efc_vel[rubbing] / self.model.opt.timestep
 
     def _ends_of_stops(self, data: Any) -> Array:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from wsim.geometry.rotations import lengths
 from wsim.solvers.contact_config import ContactConfig
 from wsim.solvers.targets import friction_pays
 
@@ -61,7 +62,7 @@ class ContactRows:
     @property
     def slip(self) -> Array:
         """Times friction, at the step's start [m/s], (contacts,)."""
-        return np.asarray(np.linalg.norm(self._weight * self._velocity, axis=1))
+        return lengths(self._weight * self._velocity)
 
     def aim(self, goal: Array, blow: Array) -> None:
         """Ask for normal speeds [m/s] at the step's end, of which some are blows, (contacts,)."""
@@ -76,7 +77,7 @@ class ContactRows:
         self._mujoco.mj_mulJacVec(self._model, data, self._image, data.qacc)
         data.qacc_warmstart[:] = data.qacc
         end = self._velocity + h * self._image[self._rows]
-        left = np.linalg.norm(self._weight * end, axis=1)
+        left = lengths(self._weight * end)
         if blow.any():
             rub = np.where(self._held, data.efc_force[self._rows], 0.0)
             left += friction_pays(blow, self._goal, self.push, rub, self._velocity, end)
@@ -87,8 +88,8 @@ class ContactRows:
         """Whether a slip ends in the step, or turns round, (contacts,), by the last solution."""
         start = self._velocity[:, :2]
         end = start + self._model.opt.timestep * self._image[self._rows[:, :2]]
-        slips = np.linalg.norm(self._weight[:, :2] * start, axis=1)
-        least = STILL * np.linalg.norm(self._weight[:, :2], axis=1) * self._model.opt.timestep
+        slips = lengths(self._weight[:, :2] * start)
+        least = STILL * lengths(self._weight[:, :2]) * self._model.opt.timestep
         goes_on = np.einsum("nr,nr->n", start, end) > ENDED * np.einsum("nr,nr->n", start, start)
         return np.asarray((self.push > 0.0) & (slips > least) & ~goes_on)
 
@@ -103,10 +104,9 @@ class ContactRows:
 def weigh_rows(data: Any, normal: Array, dim: Array, friction: Array) -> None:
     """Weights of the rows of spinning and rolling by their coefficients, as MuJoCo's cone has them."""
     wide = dim > 3
-    first, share = normal[wide] + 1, (friction[wide] / friction[wide, :1]) ** 2
-    for k in range(2, 5):
-        row, weight = first + k, data.efc_D[first] * share[:, k]
-        data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
-        if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
-            row = data.map_efc2iefc[row]
-            data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight
+    first, share = normal[wide, None] + 1, (friction[wide, 2:] / friction[wide, :1]) ** 2
+    row, weight = first + np.arange(2, 5), data.efc_D[first] * share
+    data.efc_D[row], data.efc_R[row] = weight, 1.0 / weight
+    if data.nisland:  # MuJoCo solves copies, sorted by what hangs together
+        row = data.map_efc2iefc[row]
+        data.iefc_D[row], data.iefc_R[row] = weight, 1.0 / weight

@@ -73,7 +73,9 @@ class DrivesC:
     def __init__(self, mujoco: Any, model: Any, rows: list[DriveRow], time_step: float) -> None:
         self.mujoco, self.model, self._rows = mujoco, model, rows
         self._dofs = np.array([row.dof for row in rows])
-        self._of_tendon = {row.tendon: k for k, row in enumerate(rows)}
+        self._of_tendon = np.full(model.ntendon, -1)
+        self._of_tendon[[row.tendon for row in rows]] = np.arange(len(rows))
+        self._kind = int(mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON)
         self._damping = np.array([row.damping for row in rows])
         self._moment = np.zeros((len(rows), model.nu))
         for k, row in enumerate(rows):
@@ -106,8 +108,8 @@ class DrivesC:
 
     def _drive_rows(self, data: Any) -> tuple[Array, Array]:
         """The rows of drives in a solution, and the drives that they are of."""
-        rows = np.flatnonzero(data.efc_type == self.mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON)
-        return rows, np.array([self._of_tendon[tendon] for tendon in data.efc_id[rows].tolist()], dtype=int)
+        rows = np.flatnonzero(data.efc_type == self._kind)
+        return rows, self._of_tendon[data.efc_id[rows]]
 
     def choose(self, data: Any, are_rows: bool) -> None:
         """Let the drives be rows in this step, or else MuJoCo's actuators, as Runge and Kutta's stages take them."""

@@ -17,6 +17,7 @@ import numpy as np
 from wsim.solvers.groups import joint_root
 
 Array = np.ndarray
+Normal = tuple[float, float, float]
 FAR = 0.2  # that a normal has turned by since its contact presses, of what is led [rad]
 LASTS = 0.1  # for which it has pressed then [s]: what a cable throws off is not led
 AGAIN = 0.02  # for which a contact may let go and still be the same [s]
@@ -33,7 +34,7 @@ class Led:
     def __init__(self, model: Any, of_geom: Array) -> None:
         self._model, self._of_geom, self._count = model, of_geom, int(of_geom.max(initial=0)) + 1
         self._roots: dict[tuple[int, int], int] = {}
-        self._seen: dict[tuple[int, int], tuple[float, float, float, Array]] = {}
+        self._seen: dict[tuple[int, int], tuple[float, float, float, Normal]] = {}
         # since when each presses, until when, how far it turned, its normal
 
     def root(self, one: int, two: int) -> int:
@@ -47,16 +48,20 @@ class Led:
         found, now = np.zeros(self._count, dtype=bool), float(data.time)
         geoms = data.contact.geom[rows]
         ours = self._of_geom[geoms].any(axis=1)
-        normals: dict[tuple[int, int], Array] = {}
-        for (one, two), normal in zip(geoms[ours].tolist(), data.contact.frame[rows[ours], :3], strict=True):
-            turn = data.xmat[self.root(one, two)].reshape(3, 3)
-            normals[one, two] = normals.get((one, two), 0.0) + normal @ turn
-        for pair, normal in normals.items():
-            normal = normal / max(float(np.linalg.norm(normal)), 1e-12)
+        pairs = [(one, two) for one, two in geoms[ours].tolist()]
+        turns = data.xmat[[self.root(one, two) for one, two in pairs]].reshape(-1, 3, 3)
+        seen = np.einsum("ni,nij->nj", data.contact.frame[rows[ours], :3], turns)
+        sums: dict[tuple[int, int], Normal] = {}
+        for pair, (x, y, z) in zip(pairs, seen.tolist(), strict=True):  # of a few NumPy's arrays cost more
+            a, b, c = sums.get(pair, (0.0, 0.0, 0.0))
+            sums[pair] = a + x, b + y, c + z
+        for pair, (x, y, z) in sums.items():
+            size = max(math.hypot(x, y, z), 1e-12)
+            normal = x / size, y / size, z / size
             since, last, turned, before = self._seen.get(pair, (now, -math.inf, 0.0, normal))
             if not 0.0 <= now - last <= AGAIN:
                 since, turned, before = now, 0.0, normal
-            turned += 2.0 * math.asin(min(0.5 * float(np.linalg.norm(normal - before)), 1.0))
+            turned += 2.0 * math.asin(min(0.5 * math.dist(normal, before), 1.0))
             self._seen[pair] = since, now, turned, normal
             if turned > FAR and now - since > LASTS:
                 found[self._of_geom[list(pair)]] = True

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from wsim.geometry.rotations import cross, lengths
 from wsim.kernels.own_rows import Rows
 
 Array = np.ndarray
@@ -26,18 +27,22 @@ def put_in_c(
         distance: Gaps [m], (n,).
         reach: Gap at which a contact is one [m].
     """
+    if not len(geoms):
+        return
     contact = mujoco.MjContact()
     contact.includemargin, contact.exclude, contact.efc_address = reach, 0, -1
     contact.solreffriction[:] = contact.adhesion = 0.0
     contact.flex[:] = contact.elem[:] = contact.vert[:] = -1
-    friction = model.geom_friction[geoms].max(axis=1)[:, [0, 0, 1, 2, 2]]
-    dims, frames = model.geom_condim[geoms].max(axis=1), _frames(normal).reshape(-1, 9)
-    for k, (one, two) in enumerate(geoms.tolist()):
-        contact.dist, contact.pos[:], contact.frame[:] = distance[k], position[k], frames[k]
-        contact.solref[:], contact.solimp[:] = model.geom_solref[two], model.geom_solimp[two]
-        contact.friction[:], contact.dim = friction[k], dims[k]
-        contact.geom[:] = contact.geom1, contact.geom2 = one, two
+    first = data.ncon
+    for _ in range(len(geoms)):
         mujoco.mj_addContact(model, data, contact)
+    added = data.ncon - first  # less where MuJoCo has no room for more, of which it has a warning
+    geoms, ours, own = geoms[:added], data.contact, slice(first, data.ncon)
+    ours.geom[own], ours.geom1[own], ours.geom2[own] = geoms, geoms[:, 0], geoms[:, 1]
+    ours.dist[own], ours.pos[own], ours.frame[own] = distance[:added], position[:added], _frames(normal[:added])
+    ours.solref[own], ours.solimp[own] = model.geom_solref[geoms[:, 1]], model.geom_solimp[geoms[:, 1]]
+    ours.friction[own] = model.geom_friction[geoms].max(axis=1)[:, [0, 0, 1, 2, 2]]
+    ours.dim[own] = model.geom_condim[geoms].max(axis=1)
 
 
 def rows_of(model: Any, data: Any, reach: float) -> Any:
@@ -55,10 +60,10 @@ def rows_of(model: Any, data: Any, reach: float) -> Any:
 
 
 def _frames(normal: Array) -> Array:
-    """Right-handed frames (n, 3, 3) whose first rows are normals (n, 3)."""
+    """Right-handed frames, row by row, (n, 9), whose first rows are normals (n, 3)."""
     first = normal.astype(float)
-    first /= np.linalg.norm(first, axis=1)[:, None]
+    first /= lengths(first)[:, None]
     other = np.where(np.abs(first[:, :1]) > 0.5, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
     second = other - (other * first).sum(axis=1)[:, None] * first
-    second /= np.linalg.norm(second, axis=1)[:, None]
-    return np.stack([first, second, np.cross(first, second)], axis=1)
+    second /= lengths(second)[:, None]
+    return np.concatenate([first, second, cross(first, second)], axis=1)

@@ -40,11 +40,13 @@ class Packed:
         if not self._device.is_cpu:
             wp.launch(kernel, dim=dim, inputs=inputs, outputs=outputs, device=self._device)
             return
+        if dim == 0 or (isinstance(dim, tuple) and 0 in dim):
+            return
         key = (kernel, dim, *(each.ptr if isinstance(each, wp.array) else each for each in changing))
         command = self._kept.get(key)
         if command is None:
             command = wp.launch(kernel, dim=dim, inputs=inputs, outputs=outputs, device=self._device, record_cmd=True)
-            if command is None:  # of no threads, or in a rehearsal (`wsim.sim.compiling`), of which nothing is kept
+            if command is None:  # in a rehearsal (`wsim.sim.compiling`), of which nothing is kept
                 return
             if len(self._kept) >= MOST:
                 self._kept.clear()

@@ -45,7 +45,8 @@ def seek_slip(
             return
         if change < nearest:
             nearest, best = change, slip
-        slip, before = extrapolated(slip, found, before or (slip, found), bodies), (slip, found)
+        goes = np.maximum(found, 0.0) if before is None else extrapolated(slip, found, before, bodies)
+        slip, before = goes, (slip, found)
     left(best)
 
 
@@ -61,7 +62,7 @@ def extrapolated(slip: Array, left: Array, before: tuple[Array, Array], bodies: 
     Args:
         slip: Guessed, times friction [m/s], (contacts,).
         left: By the solution with that guess.
-        before: The same two of the solution before; these two where there was none.
+        before: The same two of the solution before.
         bodies: (contacts, 2), 0 for the world.
     """
     rest = left - slip

@@ -320,17 +320,18 @@ class SmoothStepsC:
 
     def _pushes(self, data: Any, force: Array, rows: Array) -> Array:
         """What some contacts give each body, about its centre of mass, (bodies, 6)."""
-        contact, found = data.contact, np.zeros((self._model.nbody, 6))
+        contact, count = data.contact, self._model.nbody
         if not len(rows):
-            return found
+            return np.zeros((count, 6))
         at = contact.efc_address[rows, None] + np.arange(6)
         each = np.where(np.arange(6) < contact.dim[rows, None], force[np.minimum(at, len(force) - 1)], 0.0)
         push, spin = np.einsum("nri,nsr->sni", contact.frame[rows].reshape(-1, 3, 3), each.reshape(-1, 2, 3))
-        for side, sign in ((0, -1.0), (1, 1.0)):
-            bodies = self._model.geom_bodyid[contact.geom[rows, side]]
-            turn = cross(contact.pos[rows] - data.xipos[bodies], push) + spin
-            np.add.at(found, bodies, sign * np.concatenate([push, turn], axis=1))
-        return found
+        bodies = self._model.geom_bodyid[contact.geom[rows]].T  # (2, contacts)
+        turn = cross(contact.pos[rows] - data.xipos[bodies], push[None]) + spin
+        given = np.concatenate([np.broadcast_to(push, turn.shape), turn], axis=2)
+        given[0] *= -1.0
+        places = 6 * bodies[..., None] + np.arange(6)
+        return np.bincount(places.ravel(), given.ravel(), minlength=6 * count).reshape(count, 6)
 
     def take(self, data: Any, which: Array) -> None:
         """Take what was made for some mechanisms, (mechanisms,)."""

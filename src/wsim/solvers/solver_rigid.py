@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import newton
@@ -23,6 +23,7 @@ from wsim.solvers.flight import Flight
 from wsim.solvers.gears import gears_to_turn, turned
 from wsim.solvers.host_models import host_models
 from wsim.solvers.locking import LeadsC, LeadsWarp, lock
+from wsim.solvers.motion_c import MotionC
 from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
@@ -30,6 +31,7 @@ from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
 from wsim.solvers.yielding import yielding
 
 Array = np.ndarray
+Told = Callable[[], None]
 
 
 class SolverRigid(newton.solvers.SolverMuJoCo):
@@ -66,6 +68,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         self._leads: LeadsC | LeadsWarp | None = None
         self.impulses: ContactImpulsesC | ContactImpulsesWarp | None = None
         self.tie_impulses: TieImpulsesC | None = None
+        self.motion: Any = None  # what MuJoCo in C says of it
         super().__init__(
             model,
             use_mujoco_cpu=on_c,
@@ -96,11 +99,11 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
         if cylinders:
             cylinders.bind(self.mjc_geom_to_newton_shape.numpy()[0])
         mujoco = self.import_mujoco()[0]
-        self._free_bodies = self._not_led()
         self._flight = Flight(mujoco, self, self.mj_data if on_c else self.mjw_data, self._hosts())
         driven = drive_rows(mujoco, self.mj_model)
         self._law_warp: ContactLawWarp | None = None
         if on_c:
+            self.motion = MotionC(mujoco, self, self._flight)
             if cylinders:
                 cylinders.bind_c(self.mj_model, self.mj_data)
             drives: Any = DrivesC(mujoco, self.mj_model, driven, time_step) if driven else None
@@ -308,34 +311,50 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
     ) -> None:
         """Advance by `dt` [s]; see `newton.solvers.SolverMuJoCo.step`."""
         self._dt = dt
-        if self._touching and self._flight:
-            self._touching.find(state_in, self._flight.ahead, dt)
-        if not self.use_mujoco_cpu:
+        if self.use_mujoco_cpu:
+            self.validate_observables(observables, contacts)
+            self._steps_c(state_in, state_out, control, dt, 1, observables, lambda: None)
+        else:
+            self._find_touching(state_in)
             super().step(state_in, state_out, control, contacts, dt, observables=observables)
-            return
-        self.validate_observables(observables, contacts)
-        self._steps_c(state_in, state_out, control, dt, 1, observables)
 
-    def steps(self, state: Any, control: Any, dt: float, count: int) -> None:
-        """Advance by `count` steps of `dt` [s] in C, between which nobody reads or writes `state` and `control`.
+    def steps(
+        self, state: Any, control: Any, dt: float, count: int, observables: Any = None, told: Told = lambda: None
+    ) -> None:
+        """Advance by `count` steps of `dt` [s] in C, between which nobody else reads or writes `state` and `control`.
 
         Twice as quick as one by one: what Newton's state costs, with its kernels, is as much as a small world's step.
+
+        Observables are those of the end. `told` is called as the first step begins and as each ends, when MuJoCo's data
+        are those of that instant.
         """
         self._dt = dt
-        self._steps_c(state, state, control, dt, count, None)
+        self.validate_observables(observables)
+        self._steps_c(state, state, control, dt, count, observables, told)
 
-    def _steps_c(self, state_in: Any, state_out: Any, control: Any, dt: float, count: int, observables: Any) -> None:
+    def _steps_c(
+        self, state_in: Any, state_out: Any, control: Any, dt: float, count: int, observables: Any, told: Told
+    ) -> None:
         """As the parent's step, but for the steps themselves."""
         self._apply_mjc_control(self.model, state_in, control, self.mj_data)
         self._update_mjc_data(self.mj_data, self.model, state_in)
         self._update_kinematic_weld_references()
         self.mj_model.opt.timestep = dt
+        told()
         for k in range(count):
             if k and self._flight:
                 self._flight.keep()
+                if self._touching:
+                    self.motion.tell(state_out)
+            self._find_touching(state_out if k else state_in)
             self._law_c.step(self.mj_data)
+            told()
         self._update_newton_state(self.model, state_out, self.mj_data, state_prev=state_in, observables=observables)
         self._step += count
+
+    def _find_touching(self, state: Any) -> None:
+        if self._touching and self._flight:
+            self._touching.find(state, self._flight.ahead, self._dt)
 
     def reset(self, state: Any, *args: Any, **options: Any) -> None:
         """Start anew from `state`; see `newton.solvers.SolverMuJoCo.reset`."""
@@ -348,7 +367,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._update_mjc_data(self.mj_data if self.use_mujoco_cpu else self.mjw_data, self.model, state)
         if self.use_mujoco_cpu:
             self._law_c.closing.forget()
-            self._place_bodies(state)
+            self.motion.place(state)
 
     def _update_mjc_data(self, mj_data: Any, model: Any, state: Any = None, *args: Any, **options: Any) -> None:
         super()._update_mjc_data(mj_data, model, state, *args, **options)
@@ -366,26 +385,7 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             self._flight.say(centred=False)
             self._flight.tell(state)
             if self.use_mujoco_cpu:
-                self._place_bodies(state)
-
-    def _place_bodies(self, state: Any) -> None:
-        """Put bodies where MuJoCo in C has them, in double precision.
-
-        Newton works poses out of joint coordinates in single precision, by turns that lose their length from joint to
-        joint: the end of a chain of 30 links of 7 cm is 4 um off.
-        """
-        self._mujoco.mj_kinematics(self.mj_model, self.mj_data)
-        ours, newtons = self._free_bodies
-        poses = state.body_q.numpy()  # of a CPU's array it is the array
-        poses[newtons, :3] = self.mj_data.xpos[ours]
-        poses[newtons, 3:] = self.mj_data.xquat[ours][:, [1, 2, 3, 0]]
-
-    def _not_led(self) -> tuple[Array, Array]:
-        """MuJoCo's and Newton's numbers of the bodies of the first world that hang on no kinematic one."""
-        newtons, flags = self.mjc_body_to_newton.numpy()[0], self.model.body_flags.numpy()
-        led = (newtons >= 0) & ((flags[newtons] & int(newton.BodyFlags.KINEMATIC)) != 0)
-        ours = np.flatnonzero((newtons >= 0) & ~led[self.mj_model.body_rootid])
-        return ours, newtons[ours]
+                self.motion.place(state)
 
     def _mujoco_warp_step(self) -> None:
         """MuJoCo Warp's step under the law; by itself where nothing touches and steps are smooth."""

@@ -15,6 +15,7 @@ from wsim.kernels.convex import BOX, CAPSULE, CYLINDER, HULL, SPHERE, Convex
 from wsim.kernels.own_rows import add_found
 from wsim.kernels.surface import Found, touch
 from wsim.solvers.own_contacts import put_in_c, rows_of
+from wsim.solvers.packed import Packed
 from wsim.solvers.surface_mesh import Part, make_surface
 
 Array = np.ndarray
@@ -47,6 +48,7 @@ class SurfaceContacts:
 
     def __init__(self, model: Any, surfaces: SurfaceParts, reach: float) -> None:
         self.model, self.surfaces, self.reach = model, surfaces, reach
+        self._packed = Packed(model.device)
         self.surface, self._mesh = make_surface(surfaces.parts, model.device)
         shapes = _moving(model)
         self.shapes = np.array(shapes, dtype=np.int64)
@@ -85,15 +87,19 @@ class SurfaceContacts:
             self.found.position, self.found.normal = wp.zeros(size, dtype=wp.vec3), wp.zeros(size, dtype=wp.vec3)
             self.found.distance, self.found.bend = wp.zeros(size, dtype=float), wp.zeros(size, dtype=float)
             self.found.part = wp.zeros(size, dtype=int)
+        if self.model.device.is_cpu:
+            found = self.found
+            arrays = (found.count, found.position, found.normal, found.distance, found.bend, found.part)
+            self._seen = [array.numpy() for array in arrays]  # the same memory
 
     def find(self, state: Any, ahead: Any, h: float) -> None:
         """Find what touches at a state, for a step of `h` [s]; at its end velocities are `ahead` of the state's."""
-        wp.launch(
+        self._packed.launch(
             touch,
             dim=len(self.shapes),
             inputs=[*self._inputs, state.body_q, state.body_qd, ahead, self.model.body_com, self.reach, h],
             outputs=[self.found],
-            device=self.model.device,
+            changing=(state.body_q, state.body_qd, ahead, h),
         )
 
     def bind_geoms(self, geom_shapes: Array) -> None:
@@ -107,9 +113,7 @@ class SurfaceContacts:
 
     def add_to_c(self, mujoco: Any, model: Any, data: Any) -> Array:
         """Add what was found to MuJoCo's contacts; what each of all of them loses to curvature, (contacts,) [m/s]."""
-        own, counts = data.ncon, self.found.count.numpy()
-        position, normal = self.found.position.numpy(), self.found.normal.numpy()
-        distance, bend, part = (a.numpy() for a in (self.found.distance, self.found.bend, self.found.part))
+        own, (counts, position, normal, distance, bend, part) = data.ncon, self._seen
         bends = np.zeros(own + int(counts.sum()))
         probe, slot = np.nonzero(np.arange(position.shape[1]) < counts[:, None])
         bends[own:] = bend[probe, slot]
