@@ -228,7 +228,9 @@ class Signals:
     def _known(self) -> dict[str, None]:
         """The prims of all that has a name, in order."""
         world = self.world
-        return {each.prim: None for each in (*world.bodies, *world.statics, *world.containers, *world.fluids)}
+        known = [body.prim for body in world.bodies] + [static.prim for static in world.statics]
+        known += [container.prim for container in world.containers] + [fluid.prim for fluid in world.fluids]
+        return dict.fromkeys(known)
 
     @cached_property
     def _rows(self) -> dict[str, int]:
