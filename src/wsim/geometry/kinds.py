@@ -24,6 +24,22 @@ Ends = tuple[Floats, Floats]
 MOST_PROBES = 200  # vertices of a mesh that are probed
 
 
+def _probed(points: Sequence[Sequence[float]]) -> Floats:
+    """Points of a kind's surface (P, 3), in shares of its edges: the same of all that are of it."""
+    found = np.array(points)
+    found.flags.writeable = False
+    return found
+
+
+_TICKS, _RING = (-0.5, 0.0, 0.5), np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+_OF_BOX = _probed([[x, y, z] for x in _TICKS for y in _TICKS for z in _TICKS if (x, y, z) != (0.0, 0.0, 0.0)])
+_OF_CYLINDER = _probed(
+    [[x, y, z] for z in _TICKS for x, y in zip(np.cos(_RING), np.sin(_RING), strict=True)]
+    + [[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]
+)
+_OF_CAPSULE = _probed([[0.0, 0.0, z] for z in np.linspace(-0.5, 0.5, 9)])
+
+
 @dataclass(frozen=True)
 class Kind:
     """A shape, by what is asked of it."""
@@ -89,11 +105,6 @@ def box(*edges: float) -> Kind:
         x, y, z = np.abs(np.moveaxis(axes, -1, 0))
         return _both(np.asarray((x * edges[0] + y * edges[1] + z * edges[2]) / 2))
 
-    def probes() -> tuple[Floats, float]:
-        ticks = (-0.5, 0.0, 0.5)
-        grid = np.array([[x, y, z] for x in ticks for y in ticks for z in ticks if (x, y, z) != (0.0, 0.0, 0.0)])
-        return _scaled(grid, *edges), 0.0
-
     return Kind(
         edges=edges,
         radius_about=_about(*edges) / 2,
@@ -103,7 +114,7 @@ def box(*edges: float) -> Kind:
         heights=lambda up: _both(np.abs(up) @ (np.array(edges) / 2)),
         leaves=lambda start, way: leaves(*(between(start[:, k], way[k], edge / 2) for k, edge in enumerate(edges))),
         surface=lambda: box_surface(edges),
-        probes=probes,
+        probes=lambda: (_scaled(_OF_BOX, *edges), 0.0),
         volume=math.prod(edges),
     )
 
@@ -140,11 +151,6 @@ def cylinder(radius: float, height: float) -> Kind:
     def heights(up: Floats) -> Ends:
         return _both(np.abs(up[:, 2]) * height / 2 + radius * np.sqrt(np.maximum(0.0, 1.0 - up[:, 2] ** 2)))
 
-    def probes() -> tuple[Floats, float]:
-        angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-        rings = [np.column_stack([np.cos(angle), np.sin(angle), np.full(24, z)]) for z in (-0.5, 0.0, 0.5)]
-        return _scaled(np.concatenate([*rings, [[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]]), radius, radius, height), 0.0
-
     def surface() -> Surface:
         profile = (np.array([0.0, radius, radius, 0.0]), np.array([-1.0, -1.0, 1.0, 1.0]) * height / 2)
         return revolved(*profile, volume=volume, radial=True)
@@ -158,7 +164,7 @@ def cylinder(radius: float, height: float) -> Kind:
         heights=heights,
         leaves=lambda p, way: leaves(within(p[:, :2], way[:2], radius), between(p[:, 2], way[2], height / 2)),
         surface=surface,
-        probes=probes,
+        probes=lambda: (_scaled(_OF_CYLINDER, radius, radius, height), 0.0),
         volume=volume,
     )
 
@@ -189,7 +195,7 @@ def capsule(radius: float, height: float) -> Kind:
         leaves=last,
         surface=lambda: revolved(*arc(radius, height), volume=volume),
         probes=lambda: (
-            _scaled(np.column_stack([np.zeros((9, 2)), np.linspace(-0.5, 0.5, 9)]), radius, radius, height),
+            _scaled(_OF_CAPSULE, radius, radius, height),
             radius,
         ),
         volume=volume,

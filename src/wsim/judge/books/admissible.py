@@ -9,6 +9,7 @@ without ties in a way of its own (`wsim.judge.books.pushing`).
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Bools = NDArray[np.bool_]
     Rows = NDArray[np.intp]
+    Known = dict[bytes, Floats]
 
 ROUNDS = 12  # of alternating projections
 ALIKE = 16  # columns of problems that are solved at once differ by less
@@ -64,7 +66,7 @@ class Problems:
 
 def explain(
     columns: Columns, judged: Bools, wanted: Floats, scale: Floats, enough: float, bent: Floats | None = None,
-    hit: Bools | None = None,
+    hit: Bools | None = None, known: Known | None = None,
 ) -> tuple[Floats, Floats, Bools]:  # fmt: skip
     """What is left of changes (N, 6) of N bodies, to within `enough`, and what may be missing of both parts, (N, 2).
 
@@ -82,6 +84,7 @@ def explain(
         enough: A rest of a body that is as good as none.
         bent: Share of what ties give a body that may be wrong, (N,); None: nothing is.
         hit: Bodies that something hits, (N,); None: none is.
+        known: What explained large problems before, kept for when one is asked again; None: none is kept.
 
     Returns:
         These two, and the bodies that took impulses of what is apart, or are not explained, (N,).
@@ -94,7 +97,7 @@ def explain(
         asked = np.zeros_like(judged)
         asked[np.concatenate([bodies for bodies, each in zip(problems.bodies, some, strict=True) if each])] = True
         near = Problems.of(columns, asked, first)
-        _solve(columns, near, rest, missing, scale, enough, None, wholly=True)
+        _solve(columns, near, rest, missing, scale, enough, None, known, wholly=True)
         done = np.linalg.norm(rest, axis=1) <= enough
         for bodies, chosen in zip(near.bodies, near.columns, strict=True):
             apart[bodies] = not columns.near[chosen].all()
@@ -103,7 +106,7 @@ def explain(
                               for parts in (problems.bodies, problems.columns)))  # fmt: skip
         for bodies in problems.bodies:
             rest[bodies] = wanted[bodies]
-    _solve(columns, problems, rest, missing, scale, enough, bent)
+    _solve(columns, problems, rest, missing, scale, enough, bent, known)
     for bodies, chosen in zip(problems.bodies, problems.columns, strict=True):
         apart[bodies] = not columns.near[chosen].all()
     return rest, missing, apart | (judged & (np.linalg.norm(rest, axis=1) > enough))
@@ -117,14 +120,20 @@ def _on(columns: Columns, some: Bools) -> Bools:
 
 def _solve(
     columns: Columns, problems: Problems, rest: Floats, missing: Floats, scale: Floats, enough: float,
-    bent: Floats | None, *, wholly: bool = False,
+    bent: Floats | None, known: Known | None, *, wholly: bool = False,
 ) -> None:  # fmt: skip
     """Take from what is left what the columns of some problems explain; of use may be `wholly` alone."""
     for k, made in _easy(columns, problems, rest, scale, enough):
         bodies, chosen = problems.bodies[k], problems.columns[k]
         if len(bodies) > SMALL and not columns.both[chosen].any():
             sparse = _sparse(columns, bodies, chosen, scale)
-            strength = pushing(sparse, rest[bodies].ravel(), enough, wholly=wholly)
+            wanted = rest[bodies].ravel()
+            problem = _digest(sparse, wanted, wholly)
+            strength = known.get(problem) if known is not None else None
+            if strength is None:
+                strength = pushing(sparse, wanted, enough, wholly=wholly)
+            if known is not None:
+                known[problem] = strength
             rest[bodies] -= (sparse @ strength).reshape(-1, 6)
             continue
         matrix = _matrices(columns, bodies[None], [chosen], scale)[0] if made is None else made
@@ -137,6 +146,14 @@ def _solve(
             each *= bent[bodies, None]
             most = np.array([each[:, :3].max(), each[:, 3:].max()]) * scale[bodies][:, [0, 3]]
             missing[bodies] = np.minimum(most, np.linalg.norm(each * scale[bodies]))
+
+
+def _digest(matrix: csr_matrix, wanted: Floats, wholly: bool) -> bytes:
+    """That of a problem, to the bit."""
+    found = hashlib.blake2b(bytes([wholly]), digest_size=16)
+    for array in (matrix.data, matrix.indices, matrix.indptr, wanted):
+        found.update(array.tobytes())
+    return found.digest()
 
 
 def least(matrix: Floats, wanted: Floats, both: Bools, most: Floats) -> Floats:

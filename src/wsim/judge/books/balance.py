@@ -74,6 +74,7 @@ class Balance:
     def __init__(self, *copies: Evidence) -> None:
         self._copies = copies
         self._ties = [Ties(evidence) for evidence in copies]
+        self._known: dict[bytes, Floats] = {}  # strengths of large problems: many are asked again
         self._struck: list[Struck] = []  # of each copy, as soon as it is known what was hit
         motions = [evidence.motion for evidence in copies]
         count = len(motions[0].h)
@@ -212,7 +213,7 @@ class Balance:
             turned = np.flatnonzero(np.stack([unseen(evidence) for evidence in self._copies])[self._copy[ks]])
             all_ = Columns.of([*columns, turns(turned)] if len(turned) else columns)
             scale, enough, bent = self._scale(ks).reshape(-1, 6), ENOUGH * self._unit, self._bent[ks].ravel()
-            rest, missing, apart = explain(all_, judged.ravel(), rest, scale, enough, bent, hit.ravel())
+            rest, missing, apart = explain(all_, judged.ravel(), rest, scale, enough, bent, hit.ravel(), self._known)
         return rest.reshape(count, bodies, 6), missing.reshape(count, bodies, 2), apart.reshape(count, bodies)
 
 

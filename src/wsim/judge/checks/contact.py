@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -160,8 +161,7 @@ class CheckSupport(Check):
             some = []
             for n, evidence in enumerate(copies):
                 frames = np.flatnonzero(evidence.motion.touched[:, i])
-                moments = np.linspace(0, len(frames) - 1, min(self.moments, len(frames)))
-                frames = frames[np.unique(moments.astype(int))]
+                frames = frames[_spread(len(frames), self.moments)]
                 if len(frames):
                     some.append((n, frames, self._limit(evidence, int(i), frames)))
             if not some:
@@ -194,6 +194,14 @@ class CheckSupport(Check):
             limit_from=f"{self.share:g} of its smallest extent, and the way of both in {self.steps:g} time steps",
             target=target,
         )  # fmt: skip
+
+
+@lru_cache(256)
+def _spread(count: int, most: int) -> Indices:
+    """Which of so many frames are looked at, where that is not all."""
+    found: Indices = np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.intp))
+    found.flags.writeable = False
+    return found
 
 
 def _nearest(evidence: Recorded, i: int, frames: Indices, limit: Floats) -> Floats:

@@ -306,7 +306,11 @@ class CheckEnergy(Check):
         size = motion.smallest
         height = (np.abs(motion.com) @ np.abs(evidence.up)).max(axis=0)
         # What hangs on a joint and touches nothing all run is lifted out of nothing.
-        settles = self._give(evidence, size) * (motion.touched.any(axis=0) | ~motion.jointed)
+        if (CheckEnergy, self.settling) not in evidence.kept:  # asked of each mechanism, and of all
+            evidence.kept[CheckEnergy, self.settling] = self._give(evidence, size)
+        settles = cast("Floats", evidence.kept[CheckEnergy, self.settling]) * (
+            motion.touched.any(axis=0) | ~motion.jointed
+        )
         lift = weight * (settles + 4.0 * FLOAT32 * height)
         return self.share * scale + lift @ of, scale
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from wsim.geometry.rotations import UP, lengths, rotate
 from wsim.geometry.shapes import reach
 from wsim.judge.books.driven import given_within
 from wsim.judge.checks.check import Check, Checks
+from wsim.judge.checks.deepest import Deepest, deepest_of, held_through
 from wsim.judge.evidence.carriers import surface_speed
 from wsim.judge.evidence.contact import given_way, overlaps
 from wsim.judge.evidence.recorded import MissingError
@@ -183,23 +183,6 @@ def _lowest(shape: Shape, up: Floats) -> float:
     return float(low[0])
 
 
-@dataclass(frozen=True)
-class Deepest:
-    """Where two shapes are deepest in each other, by the limit of that."""
-
-    value: float  # [m]
-    limit: float
-    time: float  # [s]
-    lasts: bool
-    size: float  # smallest extent [m]
-    soft: float  # that contacts yield [m]
-
-    @property
-    def share(self) -> float:
-        """Of the limit."""
-        return self.value / self.limit if self.limit else math.inf
-
-
 @dataclass
 class CheckPenetration(Check):
     """Solids are not in each other: not deeply at any time, not slightly for long."""
@@ -212,10 +195,13 @@ class CheckPenetration(Check):
         """The worst pair by its poses, and the solver's own deepest contact if it is recorded."""
         if not evidence.world.bodies:
             return []
-        deep = [(self._deepest(evidence, pair.depth, *_of_pair(evidence, pair)), pair) for pair in overlaps(evidence)]
+        pairs = overlaps(evidence)
         found = [self.passed("No body is in another, or in a static object")]
-        if deep:
-            worst, pair = max(deep, key=lambda each: each[0].share)
+        if pairs:
+            sizes, gives = zip(*(_of_pair(evidence, pair) for pair in pairs), strict=True)
+            deep, shares = np.array([pair.depth for pair in pairs]), (self.lasting, self.brief)
+            n = deepest_of(deep, np.array(sizes), np.array(gives), shares, self._frames(evidence))
+            worst, pair = self._deepest(evidence, pairs[n].depth, sizes[n], gives[n]), pairs[n]
             found = [self._finding(worst, f"{pair.a.owner} in {pair.b.owner}", pair.a.owner)]
         depth = evidence.recording.scalars.get("contact/penetration")
         if depth is not None:
@@ -227,11 +213,14 @@ class CheckPenetration(Check):
             found.append(self._finding(deepest, "the solver's contacts", None))
         return found
 
+    def _frames(self, evidence: Evidence) -> int:
+        """How many are longer than a moment."""
+        return max(1, math.ceil(self.seconds / evidence.motion.dt_frames)) + 1
+
     def _deepest(self, evidence: Evidence, depth: Floats, size: float, give: Floats) -> Deepest:
         """By how much a depth (T,) is most, for long or for a moment, beside what soft contacts `give` (T,)."""
         depth = depth - give
-        frames = min(len(depth), max(1, math.ceil(self.seconds / evidence.motion.dt_frames)) + 1)
-        held = functools.reduce(np.minimum, (depth[k : len(depth) - frames + 1 + k] for k in range(frames)))
+        held = held_through(depth, self._frames(evidence))
         lasting, brief = (float(each.max()) for each in (held, depth))
         lasts = lasting / self.lasting > brief / self.brief
         at = int(np.argmax(held if lasts else depth))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -75,7 +76,7 @@ class ObjectiveCheck(Check):
         for n, evidence in enumerate(copies):
             evidence.kept[self._key] = Asked(signals, outcomes, n)
 
-    @property
+    @cached_property
     def _key(self) -> tuple[type, str]:
         return ObjectiveCheck, self.objective.model_dump_json()
 
@@ -87,8 +88,9 @@ class ObjectiveCheck(Check):
             said = self.objective.formula
             longer = uncovered(said, evidence) if said is not None else None
             found = [self.failed(f"{prim}: {error.args[0]}", target=longer)]
+        asks = self.asks
         for finding in found:
-            finding.objective = self.asks
+            finding.objective = asks
             finding.prim = finding.prim or prim
             finding.line = finding.line or evidence.line(finding.prim)
         return found

@@ -215,28 +215,38 @@ class Signals:
             MissingError: There is none; it names all that are known.
         """
         prim = name if name.startswith("/") else Evidence.prim(name)
+        if prim in self._known:
+            return prim
+        world = self.world
+        within = [body.prim for body in world.bodies if body.prim.startswith(f"{prim}/")]
+        if within:
+            hung = {joint.child for joint in world.joints if joint.parent in within}
+            return next((each for each in within if each not in hung), within[0])
+        raise MissingError(f"the world has no {name!r}; it has {', '.join(self._known) or 'nothing'}")
+
+    @cached_property
+    def _known(self) -> dict[str, None]:
+        """The prims of all that has a name, in order."""
         world = self.world
         known = [body.prim for body in world.bodies] + [static.prim for static in world.statics]
         known += [container.prim for container in world.containers] + [fluid.prim for fluid in world.fluids]
-        within = [body.prim for body in world.bodies if body.prim.startswith(f"{prim}/")]
-        if within and prim not in known:
-            hung = {joint.child for joint in world.joints if joint.parent in within}
-            return next((each for each in within if each not in hung), within[0])
-        if prim not in known:
-            raise MissingError(f"the world has no {name!r}; it has {', '.join(dict.fromkeys(known)) or 'nothing'}")
-        return prim
+        return dict.fromkeys(known)
+
+    @cached_property
+    def _rows(self) -> dict[str, int]:
+        """The row of each body by its prim."""
+        return {body.prim: k for k, body in enumerate(self.world.bodies)}
 
     def row(self, name: str) -> int:
         """The row of a body; MissingError naming the bodies."""
         prim = self.prim(name)
-        prims = [body.prim for body in self.world.bodies]
-        if prim not in prims:
-            raise MissingError(f"{name!r} is no body that moves; those are {', '.join(prims) or 'none'}")
-        return prims.index(prim)
+        if prim not in self._rows:
+            raise MissingError(f"{name!r} is no body that moves; those are {', '.join(self._rows) or 'none'}")
+        return self._rows[prim]
 
     def moves(self, name: str) -> bool:
         """Whether a name is a body's."""
-        return any(body.prim == self.prim(name) for body in self.world.bodies)
+        return self.prim(name) in self._rows
 
     def body(self, name: str) -> Body:
         """A body's description."""
