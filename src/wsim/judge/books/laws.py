@@ -2,8 +2,8 @@
 
 Each is taken as the mean of what its law gives at the frames at both ends of an interval, where these are near enough
 to tell: a mode of phase `p` between frames leaves p^2 / 12 of it (the trapezoidal rule's error), and of a spring, whose
-length and rate are known at both ends, p^4 / 720, up to 1.2 rad. Where they are not, and where somebody sets the law's numbers while
-the world runs, the force is unknown, and any along its line may act.
+length and rate are known at both ends, p^4 / 720, up to 1.2 rad. Where they are not, and where somebody
+sets the law's numbers while the world runs, the force is unknown, and any along its line may act.
 """
 
 from __future__ import annotations
