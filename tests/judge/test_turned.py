@@ -56,10 +56,10 @@ def test_a_turned_recording_is_judged_as_an_upright_one(name):
         assert found(turned(upright, q)) == found(upright)
 
 
-def simulated(folder, build, seconds):
+def simulated(folder, build, seconds, rate=60):
     scene = Scene()
     build(scene)
-    scene.simulation(duration=seconds, frame_rate=60)
+    scene.simulation(duration=seconds, frame_rate=rate)
     Simulation(scene.save(folder / "stage.usda"), "cpu").run(folder / "run.rrd")
     return read(folder / "run.rrd")
 

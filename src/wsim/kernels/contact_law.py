@@ -128,8 +128,9 @@ def coefficients(pair: wp.vec3, bend: float, smallest: float) -> vec5:
     if pair[2] > 0.0 and bend > 0.0:
         roll = pair[2] / bend
     slide = wp.max(pair[0], smallest)
-    rolling = wp.max(roll, smallest)
-    return vec5(slide, slide, wp.max(wp.pi * pair[0] * roll, smallest), rolling, rolling)
+    least = smallest / wp.max(bend, 1.0)  # of the radius: what is small rolls as freely
+    rolling = wp.max(roll, least)
+    return vec5(slide, slide, wp.max(wp.pi * pair[0] * roll, least), rolling, rolling)
 
 
 @wp.kernel(enable_backward=False)
@@ -265,10 +266,9 @@ def aim(
     target[k] = goal
 
     bend = float(0.0)
-    if pair[2] > 0.0:
-        for side in range(2):
-            round = curvature[own, geom[side]]
-            bend += bent(geom_turn[world, geom[side]], contact_frame[k], round, geom_kind[geom[side]])
+    for side in range(2):
+        round = curvature[own, geom[side]]
+        bend += bent(geom_turn[world, geom[side]], contact_frame[k], round, geom_kind[geom[side]])
     friction = coefficients(pair, bend, smallest)
     pair_friction[k] = friction
     contact_friction[k] = friction

@@ -73,4 +73,4 @@ class ContactConfig:
     blow_time: float = 1.25e-3
     """Time that a blow lasts for what may break [s]: that of a rigid world has none. It is the longest step's."""
     smallest_friction: float = 1e-5
-    """MuJoCo's least, and ours for none."""
+    """MuJoCo's least, and ours for none; of rolling and spinning, of a metre, or of the radius where that is less."""

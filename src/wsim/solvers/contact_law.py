@@ -387,12 +387,14 @@ class ContactLawC:
     def _coefficients(self, data: Any, chosen: Array, geoms: Array, law: Array) -> Array:
         """Of the rows of friction, (contacts, 5): two of sliding, one of spinning [m], two of rolling [m]."""
         slide, roll = law[:, 0], np.zeros(len(geoms))
+        least = np.full(len(geoms), self.config.smallest_friction)
         if self.rolls:
             axes = data.geom_xmat[geoms].reshape(-1, 2, 3, 3)[..., 2]
             leans = np.abs(np.einsum("nsi,ni->ns", axes, data.contact.frame[chosen, :3]))
             on_end = self.flat_ended[geoms] & (leans > ON_END)
             bend = np.where(on_end, 0.0, self.curvature[geoms]).sum(axis=1)
             np.divide(law[:, 2], bend, out=roll, where=bend > 0.0)
-        return np.maximum(
-            np.stack([slide, slide, math.pi * slide * roll, roll, roll], axis=1), self.config.smallest_friction
-        )
+            least /= np.maximum(bend, 1.0)  # of the radius: what is small rolls as freely
+        spin = np.maximum(math.pi * slide * roll, least)
+        slide, roll = np.maximum(slide, self.config.smallest_friction), np.maximum(roll, least)
+        return np.stack([slide, slide, spin, roll, roll], axis=1)

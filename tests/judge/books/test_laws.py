@@ -7,6 +7,7 @@ import pytest
 
 from tests.judge.test_turned import simulated
 from tests.judge.theory import ask, with_world
+from wsim.judge.checks.energy import CheckEnergy
 from wsim.judge.checks.forces import CheckForces
 from wsim.judge.checks.recorded_ties import CheckRecordedTies
 from wsim.scene import Drive
@@ -73,6 +74,32 @@ def test_what_is_a_tenth_off_is_found(tmp_path, build, wrong):
         assert off(ask(check, recording)) == []
     assert off(ask(CheckForces(), replace(wrong(recording), ties=None))) != []
     assert off(ask(CheckRecordedTies(), wrong(recording))) != []
+
+
+def net(scene):
+    """A light ball between heavier ones, under the ceiling: it swings by 1.1 rad a frame, at 40 of them a second."""
+    for name, mass, place in (
+        ("heavy", 1.0, (0.1, 0, 1.4)), ("light", 0.05, (0.5, 0.2, 1.1)), ("low", 0.3, (0.2, 0.1, 0.7)),
+    ):  # fmt: skip
+        scene.sphere(name, radius=0.04, mass=mass, position=place, velocity=(0.5, -1.0, 0.2 / mass**0.5))
+    scene.spring("a", None, "heavy", stiffness=60, rest_length=0.5, anchor_a=(0, 0, 2))
+    scene.spring("b", "heavy", "light", stiffness=80, rest_length=0.35)
+    scene.spring("c", "light", "low", stiffness=25, rest_length=0.4)
+
+
+@pytest.mark.parametrize("bare", [True, False])
+def test_light_balls_between_springs_swing_by_a_radian_a_frame(tmp_path, bare):
+    """They are right, and a spring that is a tenth stiffer is not: by its energy, if not by its force."""
+    recording = simulated(tmp_path, net, 1.5, 40)
+    recording = replace(recording, ties=None) if bare else recording
+    checks = (CheckForces(), CheckRecordedTies(), CheckEnergy())
+
+    def wrong(found):
+        return [message for check in checks for message in off(ask(check, found))]
+
+    assert wrong(recording) == []
+    for name, spring in (("a", 60), ("b", 80), ("c", 25)):
+        assert wrong(changed(recording, "springs", name, stiffness=1.1 * spring)) != []
 
 
 def test_a_stop_pushes_and_does_not_pull(tmp_path):

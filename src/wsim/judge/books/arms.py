@@ -146,3 +146,25 @@ def _of_joint(evidence: Evidence, joint: Joint, rows: list[int], size: Floats) -
         axis = rotate(anchors.above_turn, np.eye(3)[AXES[joint.axis]][None])
         angle = np.maximum(angle, np.linalg.norm(np.diff(axis, axis=0), axis=1))
     return angle
+
+
+def ranging(force: Floats) -> Floats:
+    """What a force (T,) ranges over in each interval, by the frames at its ends and beside these, (T - 1,)."""
+    around = np.pad(force, 1, mode="edge")
+    four = np.stack([around[k : k + len(force) - 1] for k in range(4)])
+    found = np.pad(np.ptp(four, axis=0), 1, mode="edge")
+    found[[1, -2]] = np.maximum(found[[1, -2]], found[[2, -3]])  # of what is beyond the first and the last nobody knows
+    return np.asarray(found[1:-1])
+
+
+def bent(way: Floats) -> Floats:
+    """What the mean of both ends may miss of ways (T, 6) in the mean of each interval, (T - 1, 2).
+
+    Of one that turns with its end at a corner by j a quarter of what it turns by more than before, or after, at most;
+    of one that bends evenly a twelfth.
+    """
+    if len(way) < 3:
+        return np.zeros((len(way) - 1, 2))
+    bends = np.linalg.norm(np.diff(way, n=2, axis=0).reshape(-1, 2, 3), axis=2)
+    bends = np.pad(bends, ((1, 1), (0, 0)), mode="edge")
+    return np.asarray(0.25 * np.maximum(bends[1:], bends[:-1]))

@@ -2,8 +2,8 @@
 
 Each is taken as the mean of what its law gives at the frames at both ends of an interval, where these are near enough
 to tell: a mode of phase `p` between frames leaves p^2 / 12 of it (the trapezoidal rule's error), and of a spring, whose
-length and rate are known at both ends, p^4 / 720. Where they are not, and where somebody sets the law's numbers while
-the world runs, the force is unknown, and any along its line may act.
+length and rate are known at both ends, p^4 / 720, up to 1.2 rad. Where they are not, and where somebody
+sets the law's numbers while the world runs, the force is unknown, and any along its line may act.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 
 from wsim.geometry.rotations import rotate
 from wsim.judge.books import jolts
+from wsim.judge.books.arms import bent, ranging
 from wsim.judge.books.lateness import steps_at_most
 from wsim.judge.books.mobility import mobilities
 from wsim.judge.books.ways import Course, eased, off_the_way
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 RESOLVED = 0.5  # of a mode's phase between two frames [rad]: what is faster is not known from the frames
+SPRUNG = 1.2  # the same of springs [rad], of which p^4 / 720 is left, 0.3 %
 USUAL_STEP = 2e-3  # [s], of engines that do not tell theirs
 
 
@@ -154,7 +156,7 @@ class Laws:
         for row, way in ((law.one, unit.back), (law.two, unit.wrench)):
             if row >= 0:
                 total[:, row] += law.mean[:, None] * 0.5 * (way[1:] + way[:-1])
-                turned = 0.5 * np.linalg.norm(np.diff(way, axis=0).reshape(-1, 2, 3), axis=2) + _bent(way)
+                turned = 0.5 * np.linalg.norm(np.diff(way, axis=0).reshape(-1, 2, 3), axis=2) + bent(way)
                 wrong[:, row] += most[:, None] * turned
 
     def _told_by_way(self, joint: Joint, law: Law) -> Law:
@@ -221,6 +223,7 @@ class Laws:
         unsure = np.where(law.known, may, 0.0)
         change = np.where(law.known, np.diff(track.pull), 0.0)
         most = np.where(law.known, np.maximum(np.abs(track.pull[1:]), np.abs(track.pull[:-1])), 0.0)
+        ranges = np.where(law.known, 0.0, ranging(track.pull))
         for guide, row, sign in zip(spring.path, (law.one, law.two), (1.0, -1.0), strict=True):
             if row >= 0:
                 arm = self.arm(row, self.end(guide))
@@ -228,7 +231,11 @@ class Laws:
                 middle = 0.5 * (way[1:] + way[:-1])
                 total[:, row] += more[:, None] * middle - change[:, None] * np.diff(way, axis=0) / 6.0
                 wrong[:, row] += unsure[:, None] * np.linalg.norm(middle.reshape(-1, 2, 3), axis=2)
-                wrong[:, row] += most[:, None] * _bent(way)
+                wrong[:, row] += most[:, None] * bent(way)
+                # Along the mean of its way it may be any; the mean of both's product is less than a quarter of what
+                # they range over, times each other, off the product of their means (Gruess 1935).
+                turns = np.linalg.norm(np.diff(way, axis=0).reshape(-1, 2, 3), axis=2) + bent(way)
+                wrong[:, row] += 0.25 * ranges[:, None] * turns
 
     def _step(self, law: Law) -> float:
         """The engine's time step for what a law acts on, or the longest that it may be [s]."""
@@ -254,7 +261,26 @@ class Laws:
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
         law = self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
         coarse = max((self._steps[1][row] for row in rows if row >= 0), default=1.0)
-        return replace(law, error=coarse * law.error + law.error**2 / 5.0)  # p^4 / 720 (`_refine`)
+        # Its ends swing on all springs that hold them: no local mode is faster than the sum of both ends' own.
+        pulled = np.sum([self._sprung[:, row] for row in set(rows) if row >= 0], axis=0) * np.ones(len(loose))
+        swing = (np.maximum(pulled[1:], pulled[:-1]) - spring.stiffness * np.maximum(loose[1:], loose[:-1])) * (
+            self._motion.h**2
+        ) + 12.0 * law.error
+        error = coarse * law.error + (swing / 12.0) ** 2 / 5.0  # p^4 / 720 (`_refine`)
+        return replace(law, error=error, known=swing < SPRUNG**2)
+
+    @cached_property
+    def _sprung(self) -> Floats:
+        """The square of the rate at which its springs swing each body, their other ends at rest, (T, B) [1/s^2]."""
+        found = np.zeros((len(self._evidence.time), len(self._row)))
+        for spring in self._evidence.world.springs:
+            along = track_of_spring(self._evidence, spring).along
+            for guide in spring.path:
+                if guide.body in self._row:
+                    row = self._row[guide.body]
+                    loose = self._looseness(row, self.arm(row, self.end(guide)), along)
+                    found[:, row] += spring.stiffness * loose
+        return found
 
     def end(self, guide: Guide) -> Floats:
         """Where a point of a spring's way is, (T, 3) [m]."""
@@ -398,16 +424,3 @@ def _effort(drive: Motor, position: Floats, rate: Floats) -> Floats:
     most = np.inf if drive.max_effort is None else drive.max_effort
     asked = drive.stiffness * (drive.position - position) + drive.damping * (drive.velocity - rate)
     return np.asarray(np.clip(asked, -most, most))
-
-
-def _bent(way: Floats) -> Floats:
-    """What the mean of both ends may miss of ways (T, 6) in the mean of each interval, (T - 1, 2).
-
-    Of one that turns with its end at a corner by j a quarter of what it turns by more than before, or after, at most;
-    of one that bends evenly a twelfth.
-    """
-    if len(way) < 3:
-        return np.zeros((len(way) - 1, 2))
-    bends = np.linalg.norm(np.diff(way, n=2, axis=0).reshape(-1, 2, 3), axis=2)
-    bends = np.pad(bends, ((1, 1), (0, 0)), mode="edge")
-    return np.asarray(0.25 * np.maximum(bends[1:], bends[:-1]))

@@ -140,7 +140,7 @@ class RecordedTies:
         anchors = anchors_of(self._evidence, joint)
         push, about = (array[1:, k].astype(np.float64) for array in (track.impulse, track.about_anchor))
         reach, off, moved = np.linalg.norm(about, axis=1), np.zeros(len(push)), np.zeros(len(push))
-        slides, at = np.zeros(len(push)), self._evidence.joint(joint)
+        slides, at, longest = np.zeros(len(push)), self._evidence.joint(joint), 0.0
         if at is not None and joint.kind == "prismatic":  # an arm that swings between frames
             slides = jolts.strayed(at.position, self.laws.rate(joint), motion.h)
         for side, (row, sign) in enumerate(zip(self.pairs[k], (-1.0, 1.0), strict=True)):
@@ -153,16 +153,20 @@ class RecordedTies:
             uneven = self._uneven[:, row] + 0.5 * _turn(push)
             strays = slides * np.linalg.norm(push, axis=1)
             moved = np.maximum(moved, np.linalg.norm(np.diff(arms, axis=0), axis=1) * uneven + strays)
-            reach = np.maximum(reach, np.linalg.norm(arms, axis=1).max() * np.linalg.norm(push, axis=1))
+            longest = max(longest, float(np.linalg.norm(arms, axis=1).max()))
+            reach = np.maximum(reach, longest * np.linalg.norm(push, axis=1))
         if joint.kind in OWN:
             axes = self.laws.axis(joint)
             axis = axes[1:] + axes[:-1]
             axis /= np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-12)
             own = np.einsum("ti,ti->t", push if joint.kind == "prismatic" else about, axis)
-            gap = np.abs(own - track.along[1:, k])
-            off = np.maximum(off, gap * (np.linalg.norm(about, axis=1) + reach) / np.maximum(reach, 1e-30))
+            gap, row = np.abs(own - track.along[1:, k]), self.pairs[k][1]
+            if joint.kind == "prismatic":  # a force, where all else here is a moment
+                lever = max(longest, float(motion.radius[row]))
+                reach = np.maximum(reach, lever * np.linalg.norm(push, axis=1))
+                gap = lever * gap
+            off = np.maximum(off, gap)
             # What a blow twists a joint by, the whirl after it may twist back: each is about the axis of its own time.
-            row = self.pairs[k][1]
             twisted = self._uneven[:, row] * motion.radius[row]
             moved = np.maximum(moved, np.linalg.norm(np.diff(axes, axis=0), axis=1) * twisted)
         return off, self._turned(k) * reach + moved
@@ -308,12 +312,17 @@ class RecordedTies:
         # most an eighth of its change, where that comes at once halfway, and a twelfth where it comes evenly.
         uneven = np.maximum(0.5 * np.minimum(change, np.abs(tension)), self._swings(cord) / 8.0)
         may = (uneven + (late + turned / 12.0) * np.abs(tension)) * turned
+        springs = evidence.world.springs
+        if cord < len(springs):  # a ninth of what its way bends by, where that swings by 1.2 rad a frame
+            along = track_of_spring(evidence, springs[cord]).along
+            may = may + 0.5 * np.abs(tension) * arms.bent(np.tile(along, 2))[:, 0]
         return off, may, np.abs(tension)
 
     def _swept(self, cord: int, row: int, arm: float) -> Floats:
         """How far a spring's way on a body turns within each interval, there and back too, (T - 1,).
 
-        As fast as the body turns at its ends or in the intervals beside, and by what it shakes; torques by the arm.
+        As fast as the body turns at its ends or in the intervals beside, and by what it shakes; torques by the arm. Or
+        as far as its ends take it, and it bends there.
         """
         springs, evidence = self._evidence.world.springs, self._evidence
         if cord >= len(springs):
@@ -323,9 +332,10 @@ class RecordedTies:
         far = max(float(np.linalg.norm(np.subtract(place, com))) for place in held)
         rate = np.pad(self._turning[:, row], 1, mode="edge")
         angle = np.max([rate[:-2], rate[1:-1], rate[2:]], axis=0) * evidence.motion.h + self._shaken[:, row]
-        length = track_of_spring(evidence, springs[cord]).length
+        track = track_of_spring(evidence, springs[cord])
+        length, turn = track.length, np.linalg.norm(np.diff(track.along, axis=0), axis=1)
         found: Floats = angle * far * (1.0 / arm + 1.0 / np.maximum(np.minimum(length[1:], length[:-1]), arm))
-        return np.minimum(found, 2.0)
+        return np.minimum(np.maximum(found, turn + arms.bent(np.tile(track.along, 2))[:, 0]), 2.0)
 
     def _swings(self, cord: int) -> Floats:
         """By how much the impulse of a spring's law changes where it turns from push to pull, or back, (T - 1,)."""
@@ -334,7 +344,9 @@ class RecordedTies:
             return np.zeros(len(h))
         pull = track_of_spring(self._evidence, springs[cord]).pull
         found: Floats = np.where(pull[1:] * pull[:-1] < 0.0, np.abs(np.diff(pull)) * h, 0.0)
-        return found
+        # Of two that range over a and b the mean of the product is less than a b / 4 off that of the means (Gruess).
+        fast = self.laws.springs[cord].error > RESOLVED**4 / 720.0
+        return np.maximum(found, np.where(fast, 2.0 * arms.ranging(pull) * h, 0.0))
 
     def _ways(self, cord: int, row: int) -> tuple[Floats, Floats, Floats]:
         """What a tension of one gives a body at the start, at the end and as a mean of each interval, (T - 1, 6)."""
@@ -363,11 +375,14 @@ class RecordedTies:
         rounding = 8.0 * FLOAT32 * (spring.stiffness * far + spring.damping * fast)
         mean, unsure = 0.5 * (track.pull[1:] + track.pull[:-1]), self._by_frames(track.pull)
         rows = [row for end, row in self.ends if end == cord]
-        hit = self.struck[:, rows].any(axis=1)
+        fast = law.error > RESOLVED**4 / 720.0  # what its length and its rate tell better than its pull at both ends
+        hit = self.struck[:, rows].any(axis=1) | fast
         if hit.any():
             gains, stretch = (spring.stiffness, spring.damping), track.length - spring.rest_length
             jolted, may = jolts.mean_force(gains, stretch, track.rate, motion.h, motion.dt)
-            may = may + 8.0 * FLOAT32 * spring.damping * far / motion.h
+            may = (
+                may + 8.0 * FLOAT32 * spring.damping * far / motion.h + np.where(fast, law.error * np.abs(jolted), 0.0)
+            )
             mean, unsure = np.where(hit, jolted, mean), np.where(hit, may, unsure)
         return Stated(mean, unsure + rounding, law.known)
 
