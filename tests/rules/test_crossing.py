@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wsim.defaults import GRAVITY
+from wsim.defaults import GRAVITY, WALL
 from wsim.errors import UserError
 from wsim.judge.language import sentence
 from wsim.plan.schema import Material
@@ -17,8 +17,9 @@ from wsim.plan.store import load
 from wsim.program.compose import compose
 from wsim.program.validator import validate
 from wsim.rules.grammar import NotUnderstood
+from wsim.rules.lexicon import lexicon
 from wsim.rules.planner import plan
-from wsim.rules.scenes.crossing import FREE, Block
+from wsim.rules.scenes.afloat import FREE, Block
 from wsim.scene.vehicle_spec import preset, presets
 
 SAYS = "A Polaris-class vehicle leaves one dock, crosses a floating block, and reaches the other dock."
@@ -31,13 +32,18 @@ def made():
 
 
 def test_it_is_the_world_that_the_example_has(made) -> None:
-    """That was worked out by hand."""
-    by_hand = load(EXAMPLE)
-    for name in ("basin", "block", "dock_near", "apron_near", "dock_far", "apron_far"):
+    """That was worked out by hand, with walls and a floor of 0.1 m."""
+    by_hand, thinner = load(EXAMPLE), 0.1 - WALL
+    for name in ("basin", "block"):
         one, other = made.object(name), by_hand.object(name)
         assert one.size == pytest.approx(other.size), name
-        assert one.pose.position == pytest.approx(other.pose.position), name
         assert one.material.density == other.material.density, name
+    assert made.object("block").pose.position[2] == pytest.approx(by_hand.object("block").pose.position[2] - thinner)
+    for name in ("dock_near", "dock_far"):
+        one, other = made.object(name), by_hand.object(name)
+        assert one.size == pytest.approx((*other.size[:2], other.size[2] - thinner))
+        assert abs(one.pose.position[0]) == pytest.approx(abs(other.pose.position[0]) - thinner)
+    assert made.object("water").registration.spacing == 0.1
     assert {(each.object, each.ref, each.friction) for each in made.contacts} == {
         ("block", "apron_near", 0.1), ("block", "apron_far", 0.1),
     }  # fmt: skip
@@ -80,7 +86,13 @@ def test_every_vehicle_gets_a_block_that_carries_it(kind: str, density: int | No
     top = block.pose.position[2] + size[2] / 2
     dock, basin = found.object("dock_near"), found.object("basin")
     assert dock.size[2] == pytest.approx(top - 0.1)
-    assert basin.size[2] + 0.1 <= dock.size[2] - 0.1 + 1e-9
+    assert basin.size[2] + WALL <= dock.size[2] - 0.1 + 1e-9
+    spacing = found.object("water").registration.spacing
+    level = found.object("water").relations[1].value
+    draft = level + WALL - (block.pose.position[2] - size[2] / 2)
+    assert draft == pytest.approx(rho / 1000.0 * size[2], abs=1e-5)
+    for length in (*size[:2], *basin.size[:2], level, draft):  # what particles fill is what is said
+        assert length / spacing == pytest.approx(round(length / spacing), abs=1e-3)
     assert (
         abs(found.object(kind).pose.position[0]) + spec.length / 2 < dock.size[0] - dock.pose.position[0] * 2 / 2 + 0.1
     )
@@ -146,6 +158,11 @@ def test_one_that_goes_under_is_said_to_and_another_is_proposed() -> None:
     assert "1 m of 400 kg/m^3 would carry it" in warning.why
 
 
+def test_its_colour_is_the_one_that_is_said() -> None:
+    found = plan("A Polaris crosses a red floating block.").object("block")
+    assert found.material.color == lexicon().colors["red"] and found.material.density == 250.0
+
+
 @pytest.mark.parametrize(
     "says",
     [
@@ -165,7 +182,9 @@ def test_it_is_said_in_other_words(says: str) -> None:
 @pytest.mark.parametrize(
     ("says", "why"),
     [
-        ("A Polaris crosses a steel pontoon.", "no block of 7850 kg/m^3"),
+        ("A Polaris crosses a steel pontoon.", "of 7850 kg/m^3 it does not float"),
+        ("A truck crosses a pontoon with a density of 900 kg/m3.", "no block of 900 kg/m^3"),
+        ("A Polaris crosses a 40 x 40 x 1 m pontoon.", "particles would be around it; give a smaller one"),
         ("A Polaris crosses a floating block, and a crate stands on the ground.", "leave it out"),
         ("Two Polaris cross a floating block.", "one vehicle crosses"),
         ("A Polaris crosses two floating blocks.", "leave it out"),

@@ -7,10 +7,9 @@ both how thick it has to be. Held by nothing but the aprons of the docks, it goe
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, get_args
 
-from wsim.defaults import FIELD_OF_VIEW, FLUID_DENSITY, GRAVITY
+from wsim.defaults import FIELD_OF_VIEW, FLUID_DENSITY
 from wsim.errors import UserError
 from wsim.plan.layout.drives import drive_time
 from wsim.plan.schema import (
@@ -24,7 +23,6 @@ from wsim.plan.schema import (
     Pose,
     Registration,
     Relation,
-    Vec3,
 )
 from wsim.plan.schema.constructions import VehicleKind
 from wsim.plan.schema.formula import Mean
@@ -32,7 +30,9 @@ from wsim.plan.schema.formula_place import GoneBetween, Reaches, StaysWithin, Ti
 from wsim.plan.schema.nodes import Eventually, Finally, Then
 from wsim.rules.cast import Cast, Thing
 from wsim.rules.grammar import NotUnderstood
+from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import GLASS_LOOK, WATER, material_named
+from wsim.rules.scenes.afloat import APRON, THINNEST, Block, Site, carries, site_of
 from wsim.rules.scenes.part import Part, tidy
 
 if TYPE_CHECKING:
@@ -41,16 +41,7 @@ if TYPE_CHECKING:
 FAMILIES = ("dock", "pontoon")
 DOCKS = 2
 LONG, WIDE = 1.25, 1.65  # of the vehicle's length and width: the block's
-THINNEST, THICKEST, STEP = 0.4, 2.0, 0.1  # of the block [m]
-FREE = 0.2  # of the block that stays above the water with an axle over its end, at least [m]
-GAP, OVER, BESIDE = 0.1, 0.3, 0.8  # between block and apron; of that over the water; beside it to the walls [m]
-SPACING, MOST_PARTICLES = 0.1, 24_000  # of the water [m]
-LEVEL, UNDER, RIM = 1.0, 0.4, 0.3  # of the water at least, under the leaning block, and of the walls above it [m]
-WALL, APRON = 0.1, 0.1  # thickness of the basin's walls, and of what of the docks is over its water [m]
-BELOW = 0.1  # that the docks are lower than the empty block, which the load takes down [m]
-STANDS_BACK = 0.75  # of its length on its dock, behind the vehicle's middle [m]
 SPEED, LEAST_SPEED, MOST_SPEED = 1.5, 0.5, 2.0  # [m/s]: usual, and what the prompt may give
-ADDED_MASS = 1.3  # of what heaves: of its own and the load's mass, what water goes along with a wide block
 SWINGS, ARRIVES, RECOVERS = 2.0, 0.5, 3.5  # its mean is over two swings, after a while; and to come to rest [s]
 CLOSE, HOME, SINKS, BACK = 0.15, 0.1, 0.1, 0.15  # [m], [m], of the way down, of a spacing
 LEANS, LEVELS, MOST_LEAN = 0.5, 3.0, 15.0  # of the lean at rest, at the end [deg], and at any time [deg]
@@ -58,111 +49,6 @@ FRAME_RATE = 20.0  # [1/s]
 _FOAM = Material(name="foam", density=250.0, friction=0.9, color=(0.85, 0.62, 0.03))
 _CONCRETE = Material(name="concrete", density=2400.0, friction=0.9, color=(0.45, 0.44, 0.42))
 _FENDER = 0.1  # friction of the block on the aprons
-
-
-@dataclass(frozen=True)
-class Block:
-    """What floats, and the vehicle on it.
-
-    Attributes:
-        size: (X, Y, Z) [m].
-        material: Its own.
-        spec: Of the vehicle.
-    """
-
-    size: Vec3
-    material: Material
-    spec: VehicleSpec
-
-    @property
-    def area(self) -> float:
-        """Seen from above [m^2]."""
-        return self.size[0] * self.size[1]
-
-    @property
-    def mass(self) -> float:
-        """Without the load [kg]."""
-        return self.material.density * self.area * self.size[2]
-
-    @property
-    def draft(self) -> float:
-        """Without the load [m]."""
-        return self.mass / (FLUID_DENSITY * self.area)
-
-    @property
-    def loaded(self) -> float:
-        """Draft with the load in the middle [m]."""
-        return self.draft + self.spec.mass / (FLUID_DENSITY * self.area)
-
-    @property
-    def lean(self) -> float:
-        """At rest with the rear axle over an end [rad], by the metacentric height; a right angle where that is none."""
-        whole, height = self.mass + self.spec.mass, self.size[2]
-        centre = (self.mass * height / 2 + self.spec.mass * (height + self.spec.com_height)) / whole
-        metacentre = self.loaded / 2 + self.size[0] ** 2 / (12.0 * self.loaded)
-        arm = self.size[0] / 2 - self.spec.front_share * self.spec.wheelbase
-        if metacentre <= centre:
-            return math.pi / 2
-        return math.atan(self.spec.mass * max(arm, 0.0) / (whole * (metacentre - centre)))
-
-    @property
-    def free(self) -> float:
-        """How far the end under the axle is above the water then [m]."""
-        return self.size[2] - self.loaded - self.size[0] / 2 * math.tan(min(self.lean, 1.5))
-
-    @property
-    def period(self) -> float:
-        """Of its heave with the load [s]."""
-        stiffness = FLUID_DENSITY * GRAVITY * self.area
-        return 2.0 * math.pi * math.sqrt((1.0 + ADDED_MASS) * (self.mass + self.spec.mass) / stiffness)
-
-
-@dataclass(frozen=True)
-class Site:
-    """The basin, and the docks at its ends; the block's middle is at x = y = 0. All in metres."""
-
-    block: Block
-    level: float
-    spacing: float
-    dock: float  # length of one
-
-    @property
-    def inner(self) -> Vec3:
-        """The basin's hollow."""
-        length, width, height = self.block.size
-        rim = max(RIM, height - self.block.draft - BELOW - APRON)
-        return tidy(length + 2 * (GAP + OVER)), tidy(width + 2 * BESIDE), tidy(self.level + rim)
-
-    @property
-    def edge(self) -> float:
-        """Where the docks' aprons end, on both sides."""
-        return self.block.size[0] / 2 + GAP
-
-    @property
-    def wall(self) -> float:
-        """Where the basin's walls end, on both sides."""
-        return self.inner[0] / 2 + WALL
-
-    @property
-    def top(self) -> float:
-        """Of the docks."""
-        return tidy(WALL + self.inner[2] + APRON)
-
-    @property
-    def bottom(self) -> float:
-        """Of the empty block."""
-        return WALL + self.level - self.block.draft
-
-    @property
-    def stands(self) -> float:
-        """How far from the block's middle the vehicle starts and ends."""
-        return round(self.wall + self.dock - STANDS_BACK * self.block.spec.length, 1)
-
-    @property
-    def sinks(self) -> float:
-        """How far the load takes the block down over the basin's floor: what sinks in lifts the water."""
-        basin = self.inner[0] * self.inner[1]
-        return self.block.spec.mass / FLUID_DENSITY * (1.0 / self.block.area - 1.0 / basin)
 
 
 def build_crossing(cast: Cast, taken: set[str]) -> Part:
@@ -182,7 +68,7 @@ def build_crossing(cast: Cast, taken: set[str]) -> Part:
         raise UserError(f"{speed:g} m/s is outside {LEAST_SPEED:g} to {MOST_SPEED:g} m/s, at which vehicles cross")
     from wsim.scene.vehicle_spec import preset  # with USD, and few prompts speak of vehicles
 
-    site = _site(_block(over, preset(kind), cast))
+    site = site_of(_block(over, preset(kind), cast), over.words, over.phrase.edges is not None)
     route, waits, arrives = _way(site, kind, speed)
     duration = float(math.ceil(_takes(site, kind, speed, route, waits) + RECOVERS))
     if cast.duration is not None and cast.duration < duration:
@@ -225,6 +111,10 @@ def _block(over: Thing, spec: VehicleSpec, cast: Cast) -> Block:
     material = _FOAM if said.material is None else material_named(said.material)
     if "density" in said.measures:
         material = material.model_copy(update={"name": "block_material", "density": said.measures["density"]})
+    if said.color is not None:
+        material = material.model_copy(update={"name": f"{said.color}_block", "color": lexicon().colors[said.color]})
+    if material.density >= FLUID_DENSITY:
+        raise UserError(f"{over.words!r}: of {material.density:g} kg/m^3 it does not float; give a lower density")
     length, width = round(LONG * spec.length, 1), round(WIDE * spec.width, 1)
     unknown = set(said.measures) - {"density", "z"}
     if unknown or said.scale is not None or said.length is not None:
@@ -234,40 +124,15 @@ def _block(over: Thing, spec: VehicleSpec, cast: Cast) -> Block:
     elif "z" in said.measures:
         given = Block((length, width, said.measures["z"]), material, spec)
     else:
-        return _carries(Block((length, width, THINNEST), material, spec), over)
+        return carries(Block((length, width, THINNEST), material, spec), over.words, material)
     if given.free < 0.0:
-        better = _carries(given, over)
+        better = carries(given, over.words, _FOAM)
         cast.assume(
             over.words, f"warning: {given.size[2]:g} m of {material.density:g} kg/m^3 go under the axle over an end",
             f"{given.free:.2g} m would stay above the water; {better.size[2]:g} m of "
             f"{better.material.density:g} kg/m^3 would carry it, {better.free:.2g} m above the water",
         )  # fmt: skip
     return given
-
-
-def _carries(block: Block, over: Thing) -> Block:
-    """As thick as is needed to carry the load; of foam, if its own material never does."""
-    (length, width, _), steps = block.size, round((THICKEST - THINNEST) / STEP)
-    for material in dict.fromkeys((block.material.density, _FOAM.density)):
-        of = block.material if material == block.material.density else _FOAM
-        for k in range(steps + 1):
-            found = Block((length, width, round(THINNEST + k * STEP, 3)), of, block.spec)
-            if found.free >= FREE and found.size[2] - found.draft >= RIM + BELOW + APRON - 1e-9:
-                return found
-        if over.phrase.edges is None and "z" not in over.phrase.measures:
-            break
-    raise UserError(
-        f"{over.words!r}: no block of {block.material.density:g} kg/m^3, {length:g} x {width:g} m, that is up to "
-        f"{THICKEST:g} m thick carries {block.spec.mass:g} kg; give a lower density, or none"
-    )
-
-
-def _site(block: Block) -> Site:
-    down = block.loaded + block.size[0] / 2 * math.tan(min(block.lean, 0.3))
-    level = max(LEVEL, math.ceil(10.0 * (min(down, block.size[2]) + UNDER)) / 10.0)
-    site = Site(block, level, SPACING, round(block.spec.length + 1.5, 1))
-    volume = site.inner[0] * site.inner[1] * level - block.area * block.draft
-    return Site(block, level, max(SPACING, round((volume / MOST_PARTICLES) ** (1 / 3), 3)), site.dock)
 
 
 def _way(site: Site, kind: str, speed: float) -> tuple[tuple[tuple[float, float], ...], tuple[float, ...], float]:
@@ -383,7 +248,9 @@ def _assume(cast: Cast, thing: Thing, over: Thing, site: Site, wait: float) -> N
         over.words, f"{size} m of {block.material.density:g} kg/m^3, held by nothing",
         f"{block.free:.2g} m of it stay above the water with {spec.mass:g} kg's rear axle over an end",
     )  # fmt: skip
-    cast.assume("docks", f"{BELOW:g} m lower than the empty block", "the load takes its ends below them")
+    over_docks = site.bottom + block.size[2] - site.top
+    height = f"{abs(over_docks):.2g} m {'lower' if over_docks > 0.0 else 'higher'} than the empty block"
+    cast.assume("docks", height, "the load takes its ends down, and water is not to come over the basin's walls")
     cast.assume(thing.words, f"waits on its middle for {wait:g} s", "the block swings; its mean is what the load says")
     if thing.speed is None:
         cast.assume(thing.words, f"drives at {SPEED:g} m/s at most", "the prompt gives no speed")
