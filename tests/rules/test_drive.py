@@ -137,3 +137,8 @@ def test_what_it_would_not_do_is_refused_and_not_read_otherwise(says: str, why: 
 
 def test_a_time_that_suffices_is_kept() -> None:
     assert plan("A truck drives 100 m for 60 s and stops.").simulation.duration == 60.0
+
+
+@pytest.mark.parametrize("over", ["a road", "a hill at 5 m/s", "rough ground", "the ground"])
+def test_it_drives_across_what_it_drives_over(over: str) -> None:
+    assert plan(f"A car drives across {over}.").objects[-1].primitive == "vehicle"

@@ -186,9 +186,46 @@ def test_it_waits_where_it_is_to_and_goes_on():
     assert found[:, 2].max() == pytest.approx(4.0, rel=0.02)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_it_waits_anywhere_on_its_path(seed):
+    """At up to four places, however near the start, the end or each other, and comes to the end."""
+    rng = np.random.default_rng(seed)
+    places = np.sort(rng.choice([0.01, 0.3, 0.49, 0.5, 5.0, 5.05, 5.4, 5.5, 9.7, 9.99, rng.uniform(1, 9)], 4, False))
+    places = places[np.concatenate([[True], np.diff(places) > 0.02])]
+    seconds = rng.uniform(0.5, 2.0, len(places))
+    waits = [(x, 0.0, t) for x, t in zip(places, seconds, strict=True)]
+    driver = Driver("truck", "hmmwv", path=straight(10.0), speed=float(rng.uniform(0.5, 6.0)), waits=waits)
+    found = driven(driver, 90.0)
+    assert found[-1, 0] == pytest.approx(10.0, abs=0.1)
+    for place, time in zip(places, seconds, strict=True):
+        near = (np.abs(found[:, 0] - place) < 0.05) & (np.abs(found[:, 2]) < 0.05)
+        assert 0.01 * np.count_nonzero(near) > time - 0.4
+    assert (driver._left == len(places)).all()
+
+
+@pytest.mark.parametrize(("lean", "more"), [(15.0, 1.2), (20.0, 1.1), (-15.0, 1.2), (10.0, 0.8)])
+def test_it_waits_on_a_slope_whatever_it_carries(lean, more):
+    """It knows its own weight alone, and stands to some centimetres."""
+    world, slope = Bicycle(slope=math.radians(lean)), math.radians(lean)
+    driver = Driver("truck", "hmmwv", path=straight(12.0), speed=2.0, waits=[(4.0, 0.0, 4.0)])
+    way = []
+    for k in range(3000):
+        driver.drive(world, 0.01 * k)
+        for _ in range(10):
+            world.step(0.001)
+            world.speed -= 0.001 * (more - 1.0) * SPEC.mass * G * math.sin(slope) / SPEC.effective_mass
+        way.append(world.x[0] / math.cos(slope))
+    way = np.array(way)
+    assert way[-1] > 11.0
+    stood = np.abs(way * math.cos(slope) - 4.0) < 0.1
+    assert 3.5 < 0.01 * np.count_nonzero(stood) < 9.0  # what it does not know of takes the sum of its lack some seconds
+
+
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
+        ({"waits": [5.0]}, "waits[0] = 5.0 must be (x, y, seconds)"),
+        ({"waits": 5.0}, "waits = 5.0 must be a list of (x, y, seconds)"),
         ({"waits": [(5.0, 0.0)]}, "waits[0] = (5.0, 0.0) must be (x, y, seconds)"),
         ({"waits": [(5.0, 0.5, 1.0)]}, "is not on the path"),
         ({"waits": [(5.0, 0.0, 1.0), (3.0, 0.0, 1.0)]}, "waits[1] = (3.0, 0.0, 1.0) is not on the path, after"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from wsim.rules.cast import Thing
 from wsim.rules.grammar import NOT_IN_THIS_ORDER, NotUnderstood
-from wsim.rules.phrases import Action, Phrase
+from wsim.rules.phrases import Action, Phrase, Place
 from wsim.rules.places import common, do, put, where
 from wsim.rules.reader import Reader
 
@@ -20,7 +20,7 @@ def drive(reader: Reader, thing: Thing, action: Action) -> None:
             thing.way = place.length
         elif place.preposition in ("over", "on", "along", "past", "in") and place.phrase is not None:
             over = where(reader, place.phrase)
-            if isinstance(over, Thing) and over.noun.family == "pontoon" and place.preposition == "over":
+            if isinstance(over, Thing) and over.noun.family == "pontoon" and place.preposition in ("over", "along"):
                 _over(thing, over)
             elif isinstance(over, Thing):
                 fits = ("over", "on", "along", "in") if over.noun.family == "land" else ("along", "past")
@@ -30,7 +30,7 @@ def drive(reader: Reader, thing: Thing, action: Action) -> None:
             elif over != "ground":
                 raise NotUnderstood([place.words], "lets a vehicle drive over land, not there:")
         elif place.preposition in ("from", "to") and place.phrase is not None:
-            _docks(reader, place.phrase)
+            _dock(reader, place.phrase, last=place.preposition == "to")
         elif place.direction != "front" and (
             place.preposition not in ("speed", "time") or not common(reader, thing, place)
         ):
@@ -46,34 +46,51 @@ def cross(reader: Reader, thing: Thing, action: Action) -> None:
         raise NotUnderstood([f"{thing.words} {action.words}"], "lets a vehicle cross a floating block, but not this:")
     for place in action.places:
         if place.preposition == "between" and place.phrase is not None:
-            for phrase in (place.phrase, place.other):
-                _docks(reader, phrase)
+            _between(reader, place)
         elif place.preposition in ("from", "to") and place.phrase is not None:
-            _docks(reader, place.phrase)
+            _dock(reader, place.phrase, last=place.preposition == "to")
         elif place.preposition not in ("speed", "time") or not common(reader, thing, place):
             raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
     _over(thing, over)
 
 
 def leave(reader: Reader, thing: Thing, action: Action) -> None:
-    """Come from a dock, or to one: what crosses a floating block does."""
-    if thing.noun.family != "vehicle" or action.target is None:
-        raise NotUnderstood(
-            [f"{thing.words} {action.words}"], "lets a vehicle leave a dock or reach one, but not this:"
+    """Come from a dock before it crosses what floats, or to the other one after that."""
+    last = action.verb == "reach"
+    if thing.noun.family != "vehicle" or action.target is None or ("cross" in thing.does) != last:
+        why = (
+            "lets a vehicle leave a dock, cross a floating block and reach the other dock, in this order, but not this:"
         )
-    _docks(reader, action.target)
+        raise NotUnderstood([f"{thing.words} {action.words}"], why)
+    _dock(reader, action.target, last=last)
     for place in action.places:
         if place.preposition not in ("speed", "time") or not common(reader, thing, place):
             raise NotUnderstood([place.words], NOT_IN_THIS_ORDER)
 
 
 def _over(thing: Thing, block: Thing) -> None:
+    if "cross" in thing.does:
+        raise NotUnderstood([block.words], "lets a vehicle cross one floating block, once, not this as well:")
     put(thing, "ground")
     put(block, "ground")
     do(thing, "cross")
 
 
-def _docks(reader: Reader, phrase: Phrase | None) -> None:
-    at = where(reader, phrase) if phrase is not None else None
-    if phrase is not None and (not isinstance(at, Thing) or at.noun.family != "dock"):
-        raise NotUnderstood([phrase.words], "lets a vehicle come from a dock and go to one, not there:")
+def _dock(reader: Reader, phrase: Phrase, *, last: bool) -> None:
+    """One dock: the first, or the last."""
+    at = where(reader, phrase)
+    if not isinstance(at, Thing) or at.noun.family != "dock" or at.count > 1 or (at.kind == "other_dock" and not last):
+        which = "to another dock" if last else "from a dock"
+        raise NotUnderstood([phrase.words], f"lets a vehicle come {which}, not there:")
+
+
+def _between(reader: Reader, place: Place) -> None:
+    """Both docks: "two docks", or "a dock and another"."""
+    assert place.phrase is not None
+    if place.other is None and place.phrase.plural and place.phrase.count is None:
+        place.phrase.count = 2  # "between docks"
+    things = [where(reader, phrase) for phrase in (place.phrase, place.other) if phrase is not None]
+    if any(not isinstance(at, Thing) or at.noun.family != "dock" for at in things) or (
+        sum(at.count for at in things if isinstance(at, Thing)) != len("ab")
+    ):
+        raise NotUnderstood([place.words], "lets a vehicle cross a floating block between two docks, not there:")

@@ -43,6 +43,7 @@ _LONGEST = 0.5  # [m] between points of the line for which a speed is planned
 _TURNED = 60.0  # [deg/s] that the bicycle's angle changes by at most
 _ARRIVED = 0.02  # [m] before a place where it waits, that it is there
 _HOLDS = 0.2  # [m/s]: what is faster there is braked by all that it may
+_BACK = 8.0  # [1/m]: what is farther off than the inverse of it is brought back by all that it may
 _OFF = 0.1  # [m] of the path, that a place where it waits is away from it at most
 
 
@@ -72,6 +73,8 @@ class Driver:
     _way: Floats  # along the path in each world, (W,) [m]
     _waited: Floats  # at the place where it waits next [s]
     _left: NDArray[np.int64]  # places where it has waited
+    _stands: NDArray[np.bool_]  # whether it is where it waits next, since it came there
+    _before: Floats  # how far that is ahead [m]
     _lack: Floats  # of speed, added up over time [m]
     _angle: Floats  # of the bicycle [rad]
     _fresh: bool
@@ -104,7 +107,8 @@ class Driver:
             braking: At most, for bends and the end [m/s^2].
             lateral: At most, in bends: the speed there is sqrt(lateral x radius) [m/s^2].
             stop: Whether to stop at the end of the path, or to go on straight.
-            waits: (x, y, seconds) in turn: places on the path [m] where it comes to stand, and for how long [s].
+            waits: (x, y, seconds) in turn: places on the path [m] where it comes to stand, and for how long [s]; for
+                0 s it goes by.
 
         Raises:
             SceneError: If the path is none, or a number is out of range.
@@ -152,22 +156,19 @@ class Driver:
         self._way = np.zeros(worlds)
         self._lack = np.zeros(worlds)
         self._waited, self._left = np.zeros(worlds), np.zeros(worlds, dtype=np.int64)
+        self._stands, self._before = np.zeros(worlds, dtype=bool), np.full(worlds, np.inf)
         self._angle = np.zeros(worlds)
         self._fresh, self._last = True, 0.0
 
-    @property
-    def _stands(self) -> NDArray[np.bool_]:
-        """Whether it is where it waits next, (W,)."""
-        places = np.array([*(place for place, _ in self._waits), np.inf])
-        return np.asarray(self._way >= places[self._left] - _ARRIVED)
-
     def _wait(self, step: float) -> None:
-        """Count how long it has been where it waits; go on to the next such place after that."""
-        there = self._stands
-        self._waited = np.where(there, self._waited + step, 0.0)
-        over = there & (self._waited >= np.array([*(seconds for _, seconds in self._waits), np.inf])[self._left])
+        """Come to where it waits next; count how long it has been there, and leave it after that."""
+        places = np.array([*(place for place, _ in self._waits), np.inf])
+        self._waited = np.where(self._stands, self._waited + step, 0.0)
+        self._before = places[self._left] - self._way
+        self._stands = self._stands | (self._before <= _ARRIVED)
+        over = self._stands & (self._waited >= np.array([*(times for _, times in self._waits), np.inf])[self._left])
         self._left = self._left + over
-        self._waited = np.where(over, 0.0, self._waited)
+        self._stands = self._stands & ~over
 
     def _nearest(self, at: Floats) -> Floats:
         """Along the path, the nearest place to each of (W, 2), near where it was; at first, the earliest close one.
@@ -219,11 +220,14 @@ class Driver:
         wanted = line.speed_at(self._way)
         here = np.clip(np.searchsorted(line.along, self._way, side="right") - 1, 0, len(line.gain) - 1)
         gain, stands = line.gain[here], self._stands
+        ended = (wanted <= 0.0) & self._stop & ~stands
         wanted = np.where(stands, 0.0, wanted)
         # To slow down from another speed within the same way takes (v / v_wanted)² of it.
         faster = np.minimum(np.abs(speed) / np.maximum(wanted, 1e-6), 1.5) ** 2
         gain = np.where(gain < 0.0, np.where(wanted > 0.0, gain * faster, 0.0), gain)
-        gain = np.where(stands, -self._braking * np.clip(speed / _HOLDS, -1.0, 1.0), gain)
+        slow = max(_HOLDS, 2.0 * self._braking * step)
+        held = np.clip(_BACK * self._before, -1.0, 1.0) - np.clip(speed / slow, -1.0, 1.0)
+        gain = np.where(stands, self._braking * held, gain)
         lack = wanted - speed
         weight = spec.mass * GRAVITY
         known = spec.effective_mass * gain + weight * (forward[:, 2] + spec.rolling * np.tanh(speed / 0.1))
@@ -235,7 +239,7 @@ class Driver:
         # The integral waits while a bound holds: else it would overshoot when that lets go.
         # And what a way took is not what standing takes.
         self._lack = np.where(bounded == force, self._lack + step * lack, self._lack)
-        self._lack = np.where(((wanted <= 0.0) & self._stop) | stands, 0.0, self._lack)
+        self._lack = np.where(ended, 0.0, self._lack)
         for corner in CORNERS:
             axle = world.joint(f"{self.vehicle}_axle_{corner}")
             share = np.where(bounded >= 0.0, (corner in spec.driven_corners) / len(spec.driven_corners), 0.25)
@@ -256,17 +260,21 @@ def _waits(call: Call, points: Floats, given: Sequence[Sequence[float]]) -> list
     length = np.linalg.norm(way, axis=1)
     along = np.concatenate([[0.0], np.cumsum(length)])
     found: list[tuple[float, float]] = []
+    last = 0.0
+    if not isinstance(given, list | tuple):
+        call.fail(f"waits = {shown(given)} must be a list of (x, y, seconds)")
     for k, each in enumerate(given):
-        if len(each) != len("xyt"):
+        if not isinstance(each, list | tuple) or len(each) != len("xyt"):
             call.fail(f"waits[{k}] = {shown(each)} must be (x, y, seconds)")
         x, y = (call.number(f"waits[{k}]", value) for value in each[:2])
         seconds = call.within(f"waits[{k}]", each[2], 0.0, 3600.0, "s")
         foot = np.clip(np.einsum("ni,ni->n", (x, y) - begin, way) / length**2, 0.0, 1.0)
         place, away = along[:-1] + foot * length, np.linalg.norm(begin + foot[:, None] * way - (x, y), axis=1)
-        after = place > (found[-1][0] if found else 0.0)
+        after = place > last
         if not (after & (away <= _OFF)).any():
             call.fail(f"waits[{k}] = {shown(each)} is not on the path, after where it starts and waits before")
-        found.append((float(place[np.flatnonzero(after & (away <= away[after].min() + 1e-9))[0]]), seconds))
+        last = float(place[np.flatnonzero(after & (away <= away[after].min() + 1e-9))[0]])
+        found += [(last, seconds)] if seconds > 0.0 else []
     return found
 
 
@@ -284,9 +292,9 @@ def _profile(
     heading = np.unwrap(np.arctan2(*np.diff(points, axis=0).T[::-1]))
     bend = np.zeros(len(points))
     bend[1:-1] = np.abs(np.diff(heading)) / (0.5 * (gaps[1:] + gaps[:-1]))
-    along = np.unique(
-        np.concatenate([np.linspace(a, b, math.ceil((b - a) / _LONGEST) + 1) for a, b in pairwise(given)] + [stands])
-    )
+    zero = [0.0, *stands, float(given[-1])]  # between any two of these there is a place where it may go
+    places = [np.linspace(a, b, math.ceil((b - a) / _LONGEST) + 1) for a, b in pairwise(given)]
+    along = np.unique(np.concatenate([*places, stands, [0.5 * (a + b) for a, b in pairwise(zero)] if stands else []]))
     points = np.stack([np.interp(along, given, points[:, k]) for k in (0, 1)], axis=1)
     speed, gaps = np.full(len(along), top), np.diff(along)
     speed[np.searchsorted(along, given)] = np.minimum(top, np.sqrt(lateral / np.maximum(bend, 1e-9)))

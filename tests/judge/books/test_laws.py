@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.judge.test_turned import simulated
@@ -85,6 +86,27 @@ def net(scene):
     scene.spring("a", None, "heavy", stiffness=60, rest_length=0.5, anchor_a=(0, 0, 2))
     scene.spring("b", "heavy", "light", stiffness=80, rest_length=0.35)
     scene.spring("c", "light", "low", stiffness=25, rest_length=0.4)
+
+
+def grid(scene):
+    """A plate on sixteen springs: it bounces by 0.8 rad a frame, at 40 of them a second, each spring alone by 0.2."""
+    scene.box("plate", size=(0.6, 0.6, 0.06), mass=4.0, position=(0, 0, 1), velocity=(0, 0, 0.6))
+    for k, x in enumerate(np.linspace(-0.28, 0.28, 4)):
+        for j, y in enumerate(np.linspace(-0.28, 0.28, 4)):
+            ends = {"anchor_a": (x, y, 0.4), "anchor_b": (x, y, -0.03)}
+            scene.spring(f"s{k}{j}", None, "plate", stiffness=256.0, rest_length=0.5, **ends)
+
+
+def test_one_of_many_springs_is_held_to_its_law(tmp_path):
+    """Together they turn and lift the plate by a mode each, and none of these is as fast as their sum."""
+    recording = simulated(tmp_path, grid, 0.6, 40)
+
+    def wrong(found):
+        return off(ask(CheckForces(), found)) + off(ask(CheckRecordedTies(), found))
+
+    assert wrong(recording) == []
+    for factor in (0.9, 1.1):
+        assert wrong(changed(recording, "springs", "s00", stiffness=factor * 256.0)) != []
 
 
 @pytest.mark.parametrize("bare", [True, False])

@@ -150,6 +150,8 @@ def _of_joint(evidence: Evidence, joint: Joint, rows: list[int], size: Floats) -
 
 def ranging(force: Floats) -> Floats:
     """What a force (T,) ranges over in each interval, by the frames at its ends and beside these, (T - 1,)."""
+    if len(force) <= 1:
+        return np.zeros(0)
     around = np.pad(force, 1, mode="edge")
     four = np.stack([around[k : k + len(force) - 1] for k in range(4)])
     found = np.pad(np.ptp(four, axis=0), 1, mode="edge")

@@ -261,26 +261,38 @@ class Laws:
         loose = np.sum([self._looseness(row, arm, track.along) for row, arm in zip(rows, arms, strict=True)], axis=0)
         law = self._law(rows, arms, force, np.zeros_like(force), (spring.stiffness, spring.damping), loose)
         coarse = max((self._steps[1][row] for row in rows if row >= 0), default=1.0)
-        # Its ends swing on all springs that hold them: no local mode is faster than the sum of both ends' own.
+        # Its ends swing on all springs that hold them: no mode of both is faster than their own together.
         pulled = np.sum([self._sprung[:, row] for row in set(rows) if row >= 0], axis=0) * np.ones(len(loose))
-        swing = (np.maximum(pulled[1:], pulled[:-1]) - spring.stiffness * np.maximum(loose[1:], loose[:-1])) * (
-            self._motion.h**2
-        ) + 12.0 * law.error
+        swing = np.maximum(np.maximum(pulled[1:], pulled[:-1]) * self._motion.h**2, 12.0 * law.error)
         error = coarse * law.error + (swing / 12.0) ** 2 / 5.0  # p^4 / 720 (`_refine`)
         return replace(law, error=error, known=swing < SPRUNG**2)
 
     @cached_property
     def _sprung(self) -> Floats:
-        """The square of the rate at which its springs swing each body, their other ends at rest, (T, B) [1/s^2]."""
+        """The square of the fastest rate at which all its springs swing each body, if else is at rest, (T, B) [1/s^2].
+
+        The greatest eigenvalue of its stiffness, by its mass and its inertia.
+        """
         found = np.zeros((len(self._evidence.time), len(self._row)))
+        ways: dict[int, list[Floats]] = {}
         for spring in self._evidence.world.springs:
             along = track_of_spring(self._evidence, spring).along
             for guide in spring.path:
-                if guide.body in self._row:
-                    row = self._row[guide.body]
-                    loose = self._looseness(row, self.arm(row, self.end(guide)), along)
-                    found[:, row] += spring.stiffness * loose
+                row = self._row.get(guide.body, -1)
+                if row >= 0 and not self._motion.kinematic[row]:
+                    way = np.sqrt(spring.stiffness) * self._by_mass(row, self.arm(row, self.end(guide)), along)
+                    ways.setdefault(row, []).append(way)
+        for row, each in ways.items():
+            way = np.stack(each, axis=2)
+            found[:, row] = np.linalg.eigvalsh(way @ way.transpose(0, 2, 1))[:, -1]
         return found
+
+    def _by_mass(self, row: int, arm: Floats, along: Floats) -> Floats:
+        """A unit force at an arm over the root of what it moves, (T, 6): its square is the looseness there."""
+        q = self._evidence.body_q[:, row, 3:]
+        own = rotate(q * np.array([-1.0, -1.0, -1.0, 1.0]), np.cross(arm, along))
+        share, axes = np.linalg.eigh(np.linalg.pinv(self._motion.inertia[row]))
+        return np.hstack([along / np.sqrt(self._motion.mass[row]), own @ axes * np.sqrt(np.maximum(share, 0.0))])
 
     def end(self, guide: Guide) -> Floats:
         """Where a point of a spring's way is, (T, 3) [m]."""

@@ -24,8 +24,9 @@ def rear_axle(item: PlanObject) -> Spot:
 
 
 def stops(route: Sequence[Sequence[float]], waits: Sequence[float]) -> list[tuple[float, float, float]]:
-    """A driver's (x, y, seconds), of a route's points where it waits."""
-    return [(point[0], point[1], seconds) for point, seconds in zip(route, waits, strict=False) if seconds > 0.0]
+    """A driver's (x, y, seconds), of a route's points up to the last where it waits."""
+    last = max((k for k, seconds in enumerate(waits) if seconds > 0.0), default=-1)
+    return [(point[0], point[1], seconds) for point, seconds in zip(route, waits[: last + 1], strict=False)]
 
 
 def drive_time(

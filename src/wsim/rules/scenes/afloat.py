@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 THINNEST, THICKEST, STEP = 0.4, 2.0, 0.1  # of the block [m]
 FREE = 0.2  # of the block that stays above the water with an axle over its end, at least [m]
 GAP, OVER, BESIDE = 0.1, 0.3, 0.8  # between block and apron; of that over the water; beside it to the walls [m]
-SPACING, LAYERS = 0.1, 2  # of the water [m], and in the block's draft at least
+SPACING, LAYERS = 0.1, 1  # of the water [m], and in the block's draft at least
 MOST_PARTICLES, TOO_MANY = 24_000, 4  # of which finer water is none, and how many times that is refused
-LEVEL, UNDER, RIM = 1.0, 0.4, 0.3  # of the water at least, under the leaning block, and of the walls above it [m]
+LEVEL, UNDER = 1.0, 0.4  # of the water at least, and under the leaning block [m]
+RIM, LEAST_RIM = 0.3, 0.15  # of the walls above the water, usually and at least [m]
 APRON = 0.1  # thickness of what of the docks is over the water [m]
 BELOW = 0.1  # that the docks are lower than the empty block, which the load takes down [m]
 STANDS_BACK = 0.75  # of its length on its dock, behind the vehicle's middle [m]
@@ -63,13 +64,15 @@ class Block:
     @property
     def lean(self) -> float:
         """At rest with the rear axle over an end [rad], by the metacentric height; a right angle where that is none."""
+        arm, whole = self.size[0] / 2 - self.spec.front_share * self.spec.wheelbase, self.mass + self.spec.mass
+        above = self.metacentric(self.size[0])
+        return math.atan(self.spec.mass * max(arm, 0.0) / (whole * above)) if above > 0.0 else math.pi / 2
+
+    def metacentric(self, breadth: float) -> float:
+        """Height of the metacentre over the centre of mass of both [m], leaning along one of the edges [m]."""
         whole, height = self.mass + self.spec.mass, self.size[2]
         centre = (self.mass * height / 2 + self.spec.mass * (height + self.spec.com_height)) / whole
-        metacentre = self.loaded / 2 + self.size[0] ** 2 / (12.0 * self.loaded)
-        arm = self.size[0] / 2 - self.spec.front_share * self.spec.wheelbase
-        if metacentre <= centre:
-            return math.pi / 2
-        return math.atan(self.spec.mass * max(arm, 0.0) / (whole * (metacentre - centre)))
+        return self.loaded / 2 + breadth**2 / (12.0 * self.loaded) - centre
 
     @property
     def free(self) -> float:
@@ -96,7 +99,7 @@ class Site:
     def inner(self) -> Vec3:
         """The basin's hollow."""
         length, width, height = self.block.size
-        rim = max(RIM, height - self.block.draft - BELOW - APRON)
+        rim = max(LEAST_RIM, height - self.block.draft - BELOW - APRON)
         x, y = (edge + 2 * up(room, self.spacing) for edge, room in ((length, GAP + OVER), (width, BESIDE)))
         return tidy(x), tidy(y), tidy(self.level + rim)
 
@@ -147,7 +150,8 @@ def carries(block: Block, words: str, other: Material) -> Block:
     for material in (block.material, other):
         for k in range(steps + 1):
             found = Block((length, width, round(THINNEST + k * STEP, 3)), material, block.spec)
-            if found.free >= FREE and found.size[2] - found.draft >= RIM + BELOW + APRON - 1e-9:
+            free = found.free >= FREE and found.size[2] - found.draft >= RIM + BELOW + APRON - 1e-9
+            if free and found.metacentric(width) > 0.0 and found.draft >= LAYERS * SPACING - 1e-9:
                 return found
     raise UserError(
         f"{words!r}: no block of {block.material.density:g} kg/m^3, {length:g} x {width:g} m, that is up to "

@@ -32,7 +32,7 @@ from wsim.rules.cast import Cast, Thing
 from wsim.rules.grammar import NotUnderstood
 from wsim.rules.lexicon import lexicon
 from wsim.rules.materials import GLASS_LOOK, WATER, material_named
-from wsim.rules.scenes.afloat import APRON, THINNEST, Block, Site, carries, site_of
+from wsim.rules.scenes.afloat import APRON, GAP, THINNEST, Block, Site, carries, site_of
 from wsim.rules.scenes.part import Part, tidy
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 FAMILIES = ("dock", "pontoon")
 DOCKS = 2
+LOWEST = 0.05  # [m] that a block may be under the docks, for wheels to come up again
 LONG, WIDE = 1.25, 1.65  # of the vehicle's length and width: the block's
 SPEED, LEAST_SPEED, MOST_SPEED = 1.5, 0.5, 2.0  # [m/s]: usual, and what the prompt may give
 SWINGS, ARRIVES, RECOVERS = 2.0, 0.5, 3.5  # its mean is over two swings, after a while; and to come to rest [s]
@@ -92,17 +93,30 @@ def _asked(cast: Cast, known: list[Thing]) -> tuple[Thing, Thing]:
         raise NotUnderstood(
             [known[0].words], "lets a vehicle cross a floating block between two docks, and needs both:"
         )
-    docks = sum(thing.count for thing in known if thing.noun.family == "dock")
-    others = [thing.words for thing in cast.things if thing not in (crossing[0], *known)]
-    if others or docks > DOCKS or over[0].count > 1 or len(over) > 1 or cast.pour is not None:
-        what = others[0] if others else known[-1].words
+    vehicle, block = crossing[0], over[0]
+    several = [thing for thing in (*crossing[1:], *over[1:]) if thing is not vehicle] + [
+        thing for thing in (vehicle, block) if thing.count > 1
+    ]
+    docks = [thing for thing in known if thing.noun.family == "dock"]
+    if sum(thing.count for thing in docks) > DOCKS:
+        several.append(docks[-1])
+    others = several + [thing for thing in cast.things if thing not in (vehicle, *known)]
+    if others or cast.pour is not None:
+        what = others[0].words if others else "what is poured"
         raise UserError(f"{what!r}: the builtin planner lets a vehicle cross one block between two docks; leave it out")
-    adorned = [thing for thing in (crossing[0], *known) if thing is not over[0]]
-    for thing in adorned:
-        own = (thing.phrase.material, thing.phrase.color, thing.phrase.measures, thing.phrase.edges)
-        if any(own) or (crossing[0].count > 1):
-            raise UserError(f"{thing.words!r}: one vehicle crosses as it was made, between docks that fit it")
-    return crossing[0], over[0]
+    for thing in (vehicle, *known):
+        said = thing.phrase
+        own = (
+            (said.material, said.color, said.scale, said.length, said.measures, said.edges)
+            if thing is not block
+            else ()
+        )
+        placed = (thing.beside, thing.support, thing.inside, thing.target, thing.way, thing.drop_height)
+        if any(own) or any(placed):
+            raise UserError(
+                f"{thing.words!r}: one vehicle crosses as it was made, from one dock to another that fit it"
+            )
+    return vehicle, block
 
 
 def _block(over: Thing, spec: VehicleSpec, cast: Cast) -> Block:
@@ -119,12 +133,15 @@ def _block(over: Thing, spec: VehicleSpec, cast: Cast) -> Block:
     unknown = set(said.measures) - {"density", "z"}
     if unknown or said.scale is not None or said.length is not None:
         raise UserError(f"{over.words!r}: give the block a density, a thickness, or all of its edges")
+    if min((*(said.edges or ()), *said.measures.values()), default=1.0) <= 0.0:
+        raise UserError(f"{over.words!r}: its edges and its density are more than 0")
     if said.edges is not None:
         given = Block(said.edges, material, spec)
     elif "z" in said.measures:
         given = Block((length, width, said.measures["z"]), material, spec)
     else:
         return carries(Block((length, width, THINNEST), material, spec), over.words, material)
+    _check_carries(given, over.words)
     if given.free < 0.0:
         better = carries(given, over.words, _FOAM)
         cast.assume(
@@ -133,6 +150,20 @@ def _block(over: Thing, spec: VehicleSpec, cast: Cast) -> Block:
             f"{better.material.density:g} kg/m^3 would carry it, {better.free:.2g} m above the water",
         )  # fmt: skip
     return given
+
+
+def _check_carries(block: Block, words: str) -> None:
+    """Whether a vehicle can stand on it at all, and it stays upright under that."""
+    (length, width, _), spec = block.size, block.spec
+    least = (spec.wheelbase + 2 * spec.wheel_radius, spec.track + spec.wheel_width + 2 * GAP)
+    if length < least[0] or width < least[1]:
+        raise UserError(f"{words!r}: the vehicle needs {least[0]:.2g} x {least[1]:.2g} m to stand on; give it more")
+    upright = min(block.metacentric(length), block.metacentric(width))
+    if upright <= 0.0 or math.degrees(block.lean) > MOST_LEAN:
+        raise UserError(
+            f"{words!r}: it turns over under {spec.mass:g} kg: its metacentre is {upright:.2g} m above the centre of "
+            f"mass, and it leans by {math.degrees(block.lean):.0f} deg; make it wider, longer, or less thick"
+        )
 
 
 def _way(site: Site, kind: str, speed: float) -> tuple[tuple[tuple[float, float], ...], tuple[float, ...], float]:
@@ -249,7 +280,8 @@ def _assume(cast: Cast, thing: Thing, over: Thing, site: Site, wait: float) -> N
         f"{block.free:.2g} m of it stay above the water with {spec.mass:g} kg's rear axle over an end",
     )  # fmt: skip
     over_docks = site.bottom + block.size[2] - site.top
-    height = f"{abs(over_docks):.2g} m {'lower' if over_docks > 0.0 else 'higher'} than the empty block"
+    warning = "" if over_docks > -LOWEST else "warning: "
+    height = f"{warning}{abs(over_docks):.2g} m {'lower' if over_docks > 0.0 else 'higher'} than the empty block"
     cast.assume("docks", height, "the load takes its ends down, and water is not to come over the basin's walls")
     cast.assume(thing.words, f"waits on its middle for {wait:g} s", "the block swings; its mean is what the load says")
     if thing.speed is None:
