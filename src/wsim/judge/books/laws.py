@@ -278,7 +278,7 @@ class Laws:
         for spring in self._evidence.world.springs:
             along = track_of_spring(self._evidence, spring).along
             for guide in spring.path:
-                row = self._row.get(guide.body, -1)
+                row = self._row.get(guide.body or "", -1)
                 if row >= 0 and not self._motion.kinematic[row]:
                     way = np.sqrt(spring.stiffness) * self._by_mass(row, self.arm(row, self.end(guide)), along)
                     ways.setdefault(row, []).append(way)
