@@ -79,7 +79,7 @@ def _over(thing: Thing, block: Thing) -> None:
 def _dock(reader: Reader, phrase: Phrase, *, last: bool) -> None:
     """One dock: the first, or the last."""
     at = where(reader, phrase)
-    if not isinstance(at, Thing) or at.noun.family != "dock" or at.count > 1 or (at.kind == "other_dock" and not last):
+    if not isinstance(at, Thing) or at.noun.family != "dock" or at.count > 1 or (at.kind == "opposite" and not last):
         which = "to another dock" if last else "from a dock"
         raise NotUnderstood([phrase.words], f"lets a vehicle come {which}, not there:")
 
