@@ -109,7 +109,9 @@ class DrivesC:
     def _drive_rows(self, data: Any) -> tuple[Array, Array]:
         """The rows of drives in a solution, and the drives that they are of."""
         rows = np.flatnonzero(data.efc_type == self._kind)
-        return rows, self._of_tendon[data.efc_id[rows]]
+        drives = self._of_tendon[data.efc_id[rows]]
+        own = drives >= 0  # another tendon's friction is no drive's
+        return rows[own], drives[own]
 
     def choose(self, data: Any, are_rows: bool) -> None:
         """Let the drives be rows in this step, or else MuJoCo's actuators, as Runge and Kutta's stages take them."""
