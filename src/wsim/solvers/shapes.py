@@ -39,6 +39,12 @@ class OpenBox:
     world: int = -1
     """The world that it stands in; -1 is every world."""
 
+    @property
+    def floor(self) -> float:
+        """Height of the lowest point of the hollow [m]."""
+        corners = np.array(np.meshgrid(*[[-0.5, 0.5]] * 3)).reshape(3, -1).T * np.array(self.size)
+        return float((rotate(np.array(self.rotation), corners) + np.array(self.center))[:, 2].min())
+
 
 @dataclass(frozen=True)
 class Boundary:

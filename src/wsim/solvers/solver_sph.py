@@ -18,6 +18,7 @@ from wsim.solvers.launch import launch_shared
 from wsim.solvers.shapes import OpenBox, sample_boundary
 from wsim.solvers.sph_config import ConfigSPH
 from wsim.solvers.sph_domain import domain_of
+from wsim.solvers.sph_faces import FixedFaces
 from wsim.solvers.sph_particles import SortedParticles
 from wsim.solvers.sph_search import ParticleSearch
 
@@ -143,6 +144,7 @@ class SolverSPH(SolverBase):
             self.world_count,
         )
         self.programs = self.search.programs
+        self.faces = FixedFaces(model, self.world_count, containers)
 
     def _allocate(self) -> None:
         bodies, walls = self.body_particle_count, self.search.walls
@@ -369,6 +371,9 @@ class SolverSPH(SolverBase):
             outputs=[state_out.particle_q, state_out.particle_qd, self._on_walls],
         )
         if self.wall_count:
+            if self.faces.count and self.config.dimensions == 3:
+                at = state_out.particle_q, state_out.particle_qd
+                self.faces.keep_out(self.search.fluid.world, dt, *at, self._on_walls)
             wp.launch(
                 boundary_kernels.sum_wall_lanes,
                 dim=self._wall_lanes.shape,

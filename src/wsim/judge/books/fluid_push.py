@@ -166,19 +166,16 @@ class FluidPush:
         tree, total = cKDTree(fluid.place), np.zeros(3)
         for start in range(0, len(place), AT_ONCE):
             part = slice(start, start + AT_ONCE)
-            near = tree.query_ball_point(place[part], reach)
-            total += self._force(fluid, place[part], velocity[part], samples.volume[part], near)
+            pairs = cKDTree(place[part]).sparse_distance_matrix(tree, reach, output_type="ndarray")
+            if len(pairs):
+                total += self._force(fluid, place[part], velocity[part], samples.volume[part], pairs)
         return total
 
-    def _force(self, fluid: Particles, place: Floats, velocity: Floats, volume: Floats, near: Any) -> Floats:
-        m, count = self._method, np.array([len(each) for each in near])
-        b = np.repeat(np.arange(len(place)), count)
-        if not len(b):
-            return np.zeros(3)
-        f = np.concatenate([np.array(each, dtype=np.intp) for each in near])
+    def _force(self, fluid: Particles, place: Floats, velocity: Floats, volume: Floats, pairs: Any) -> Floats:
+        m, b, f = self._method, pairs["i"], pairs["j"]
         way = place[b] - fluid.place[f]
-        r2 = np.einsum("ij,ij->i", way, way)
-        u = np.minimum(np.sqrt(r2) / (2.0 * m.h), 1.0)
+        r2 = pairs["v"] ** 2
+        u = np.minimum(pairs["v"] / (2.0 * m.h), 1.0)
         pressure, mirrored = self._taken(fluid, velocity, b, f, way, (1.0 - u) ** 4 * (1.0 + 4.0 * u))
         approach = np.einsum("ij,ij->i", mirrored[b] - fluid.velocity[f], way)
         viscous = np.where(approach < 0.0, m.artificial + m.laminar, m.laminar) * approach / (r2 + COINCIDENT * m.h**2)
