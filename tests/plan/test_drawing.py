@@ -189,6 +189,14 @@ def test_cost_of_a_tank_is_its_volume_over_the_spacing_cubed(tank: Plan) -> None
     assert "no fluid" in cost_of(made(body("box", "box", (1.0, 1.0, 1.0), (0, 0, 0.5)))).sentence()
 
 
+@pytest.mark.parametrize(("name", "steps"), [("go2_office", 32_000), ("hmmwv_offroad", 32_000)])
+def test_what_walks_or_drives_costs_milliseconds_a_step(name: str, steps: int) -> None:
+    """The two examples took 3.1 and 3.8 ms a step of one core."""
+    cost = cost_of(load(next(path for path in EXAMPLES if path.stem == name)))
+    assert cost.steps == steps
+    assert 2.5e-3 < cost.wall / cost.steps < 5e-3
+
+
 def test_there_are_seven_plans_written_by_hand() -> None:
     assert [path.stem for path in EXAMPLES] == [
         "buggy_floating_bridge",

@@ -8,7 +8,8 @@ Where the figures come from:
 - time step: 0.8 of a smoothing length (1.3 spacings) over the numerical speed of sound, ten times the speed of a
   shallow-water wave or of what falls in (docs/sph.md); never above 1/800 s.
 - speed: 1.3 M particle-steps/s on a CPU core (docs/sph.md, "Speed": 1.24 to 1.28 M in a block of fluid, 1.75 M on two
-  cores in the demo); 0.4 ms a step for a handful of bodies without fluid, 5 ms for a vehicle among rocks on terrain.
+  cores in the demo); 0.4 ms a step for a handful of bodies without fluid, 3.1 ms for a vehicle among rocks on terrain,
+  3.7 ms for a robot dog that walks by its policy.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from wsim.plan.spacing import spacing_of
 PARTICLE_STEPS = 1.3e6  # of one CPU core [1/s]
 BODY_STEP = 0.4e-3  # wall time of a step of five bodies [s]
 LARGEST_STEP = 1.0 / 800.0  # [s]
-VEHICLE_STEP = 5e-3  # wall time of a step of a vehicle on terrain [s]
+VEHICLE_STEP = 3.1e-3  # wall time of a step of a vehicle on terrain [s]
+ROBOT_STEP = 3.7e-3  # and of a robot of twelve joints and its policy [s]
 STEERED_STEP = 0.625e-3  # that the steering of a vehicle leaves [s]
 LAYERS = 2  # of wall particles
 COURANT = 0.8
@@ -75,8 +77,9 @@ def cost_of(plan: Plan) -> Cost:
     fluid = round(sum(math.prod(box) / apart**3 for box, apart in wet))
     others = round(_others(plan, boxes, spacing)) if wet else 0
     vehicles = sum(item.primitive == "vehicle" for item in plan.objects)
-    bodies = sum(item.state == "dynamic" for item in plan.objects) - vehicles
-    rigid = BODY_STEP * max(1.0, bodies / 5) + VEHICLE_STEP * vehicles
+    robots = sum(item.primitive == "robot" for item in plan.objects)
+    bodies = sum(item.state == "dynamic" for item in plan.objects) - vehicles - robots
+    rigid = BODY_STEP * max(1.0, bodies / 5) + VEHICLE_STEP * vehicles + ROBOT_STEP * robots
     wall = steps * ((fluid + others) / PARTICLE_STEPS + rigid)
     return Cost(fluid, others, plan.simulation.duration, steps, wall)
 
