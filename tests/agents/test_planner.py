@@ -20,6 +20,7 @@ from wsim.plan.schema.constructions import Construction
 from wsim.plan.schema.examples import EXAMPLES
 from wsim.plan.schema.objects import ROLE_PRIMITIVES
 from wsim.program.compose import compose
+from wsim.scene.vehicle_spec import preset, presets
 from wsim.tools.plan import plan_lines
 
 PICTURE = b"\xff\xd8\xff\xe0 a picture"
@@ -188,6 +189,7 @@ def test_the_prompt_names_every_construction_and_role_with_their_fields() -> Non
         (line,) = [line for line in told.splitlines() if line.startswith(f"- {kind}: ")]
         assert all(name in line for name in model.model_fields if name != "kind")
         assert json.dumps(EXAMPLES[kind], separators=(",", ":")) in told
+    assert all(f"{kind} {preset(kind).length:g} x " in told for kind in presets())
 
 
 def test_the_examples_of_the_prompt_are_a_plan_that_a_program_builds() -> None:

@@ -17,6 +17,7 @@ from wsim.agents.transcript import Transcript
 from wsim.errors import UserError
 from wsim.judge.language.sentence import vocabulary
 from wsim.plan.schema.examples import constructions, roles
+from wsim.scene.vehicle_spec import preset, presets
 
 if TYPE_CHECKING:
     from wsim.agents.relay import Replay
@@ -146,9 +147,21 @@ def _schema(schema: dict[str, Any]) -> dict[str, Any]:
 def instructions(role: str) -> str:
     """The prompt of a role; what objectives and objects may be is from the language's and the schema's own tables."""
     text = (Path(__file__).parent / "prompts" / f"{role}.md").read_text(encoding="utf-8")
-    for place, table in (("PREDICATES", vocabulary), ("CONSTRUCTIONS", constructions), ("ROLES", roles)):
+    for place, table in (
+        ("PREDICATES", vocabulary), ("CONSTRUCTIONS", constructions), ("ROLES", roles), ("VEHICLES", _vehicles),
+    ):  # fmt: skip
         text = text.replace(f"{{{place}}}", table())
     return text
+
+
+def _vehicles() -> str:
+    """Length, width and height of each kind of vehicle, the way between its axles [m], its mass."""
+    told = []
+    for kind in presets():
+        spec = preset(kind)
+        size = " x ".join(f"{edge:g}" for edge in (spec.length, spec.width, spec.height))
+        told.append(f"{kind} {size}, {spec.wheelbase:g}, {spec.mass:g} kg")
+    return "; ".join(told)
 
 
 def object_in(text: str) -> dict[str, Any]:

@@ -147,6 +147,9 @@ def test_python_operators_join_what_is_of_one_kind():
         ("always[500 ms, 2 s](settles(a))", "always[0.5, 2](settles(a))"),
         ("conserves(energy, share 5 %)", "conserves(energy, 0.05)"),
         ("upright(a, 3.141592653589793 rad)", "upright(a, 180)"),
+        ("touches_only(a, b, c)", "touches_only(a, [b, c])"),
+        ("counts(bowl, 2, a, b)", "counts(bowl, 2, objects [a, b])"),
+        ("gone_between(a, x, 1 m, 2 m)", "gone_between(a, X, 1 m, 2 m)"),
     ],
 )
 def test_sentences_that_say_the_same(text, same):
@@ -169,7 +172,8 @@ def test_sentences_that_say_the_same(text, same):
         ("crosses(a, w, 1 m)", "axis: Input should be 'x', 'y' or 'z'"),
         ("speed_between(a, 2 m/s, 1 m/s)", "low 2 m/s is above high 1 m/s; swap them"),
         ("conserves(mass)", "name one fluid, not 0 objects"),
-        ("settles(a", "character 9, it ends; here may stand comma"),
+        ("settles(a", "character 9, it ends; here may stand a comma"),
+        ("touches_only(a, [b)", "character 19, this does not go on; here may stand a comma"),
         ("settles(a) settles(b)", "character 12, this does not go on; here may stand its end, and"),
         ("settles(a) $", "character 12, this does not go on"),
         ("", "at its start"),

@@ -54,7 +54,7 @@ GRAMMAR = r"""
     | NAME "(" argument ("," argument)* ")" -> predicate
 window: "[" number "," (number | "end") "]"
 argument: value | NAME "="? value -> keyword
-?value: number | name | point | "[" point ("," point)* "]" -> path
+?value: number | name | point | "[" point ("," point)* "]" -> path | "[" name ("," name)* "]" -> names
 point: "(" number "," number "," number ")"
 name: NAME | QUOTED
 number: NUMBER UNIT?
@@ -87,11 +87,14 @@ def parse(text: str) -> Formula:
         raise ValueError(f"{text[:80]!r} is no objective: {shown}, character {error.column}, {_said(error)}") from error
 
 
+_TOKENS = {"$END": "its end", "LPAR": "(", "RPAR": ")", "LSQB": "[", "RSQB": "]", "COMMA": "a comma", "EQUAL": "="}
+
+
 def _said(error: UnexpectedInput) -> str:
     found = getattr(error, "token", None)
     what = "it ends" if found is not None and found.type == "$END" else "this does not go on"
     wanted = sorted(getattr(error, "accepts", None) or getattr(error, "allowed", None) or ())
-    words = ["its end" if name == "$END" else name.lower() for name in wanted]
+    words = [_TOKENS.get(name, name.lower()) for name in wanted]
     return f"{what}; here may stand {', '.join(words)}" if words else what
 
 
@@ -144,6 +147,9 @@ class _Build(Transformer[Token, Any]):
     def path(self, *points: tuple[float, ...]) -> list[tuple[float, ...]]:
         return list(points)
 
+    def names(self, *names: str) -> tuple[str, ...]:
+        return names
+
     def window(self, start: _Number, end: _Number | None = None) -> tuple[float, float | None]:
         return start.into("s", "a window"), None if end is None else end.into("s", "a window")
 
@@ -157,7 +163,12 @@ class _Build(Transformer[Token, Any]):
         kind = VOCABULARY.get(op)
         if kind is None:
             raise ValueError(f"no predicate {str(op)!r}; there are {', '.join(VOCABULARY)}")
-        return kind.model_validate(bind(kind, arguments))
+        each = [
+            (key, one)
+            for key, value in arguments
+            for one in (value if key is None and isinstance(value, tuple) and isinstance(value[0], str) else [value])
+        ]
+        return kind.model_validate(bind(kind, tuple(each)))
 
     def ordered(self, *events: Formula) -> Ordered:
         return Ordered(events=events)
@@ -225,6 +236,8 @@ def bind(kind: type[Predicate], arguments: tuple[tuple[str | None, Any], ...]) -
             raise ValueError(f"{op} has {named}; it has {', '.join(fields)}")
         if field in bound:
             raise ValueError(f"{op}: {field} is given twice")
+        if field == "axis" and isinstance(value, str):
+            value = value.lower()  # a joint's is written X, Y or Z
         bound[field] = value.into(numbers[field], field) if isinstance(value, _Number) and field in numbers else value
     return bound
 
