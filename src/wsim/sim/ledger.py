@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from wsim.kernels.work import accumulate_control, accumulate_drive, accumulate_push
+from wsim.kernels.work import accumulate_control, accumulate_drive, accumulate_push, shift_effort
 from wsim.sim.ledger_notes import Steps
 from wsim.solvers.packed import Packed
 
@@ -128,6 +128,16 @@ class Ledger:
         last = self._last.numpy()
         last[dofs] = np.clip(last[dofs] + stiffness * moved, -strength, strength)
         self._last.assign(last)
+
+    def retarget_on_device(self, dofs: Any, moved: Any) -> None:
+        """The same by a kernel, without a copy to the host; Warp's arrays (W, n)."""
+        wp.launch(
+            shift_effort,
+            dim=dofs.shape,
+            inputs=[dofs, moved, self.model.joint_target_ke, self.model.joint_effort_limit],
+            outputs=[self._last],
+            device=self.model.device,
+        )
 
     def take(self) -> Entry:
         """The sums since the last call, which start anew."""

@@ -29,13 +29,14 @@ from wsim.sim.measure import measure
 from wsim.sim.model import build_batch, build_model
 from wsim.sim.perturb import perturb
 from wsim.sim.pictures import Pictures
-from wsim.sim.policies import PolicyController
+from wsim.sim.policies import controller_of, launch_all
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
 from wsim.sim.sensors import Sensors, sees
 from wsim.sim.starts import start
 from wsim.sim.turns import Controller, Turns
+from wsim.sim.walked import walked
 from wsim.solvers.solver_sph import SolverSPH
 
 
@@ -131,8 +132,11 @@ class Simulation:
             self.rigid.ledger.control = self.control_force
         self.sensors = Sensors(self.built, self.dt, seeds, wanted=controller is not None)
         self._steered, self._turns = controller is not None, Turns(self.dt)
-        for k in range(len(self.world.policies)):
-            policy = PolicyController(self.model, self.built.worlds, self.built.bodies, k)
+        self.policies = [
+            controller_of(walked(self.model, self.built.worlds, self.built.bodies, k), self.device)
+            for k in range(len(self.world.policies))
+        ]
+        for policy in self.policies:
             self._turns.add(policy, policy.interval)
         if controller is not None:  # after the policies: it sees what they set
             self._turns.add(controller, control_interval)
@@ -180,6 +184,7 @@ class Simulation:
             needed = compiling.rehearse(self._push_and_move)
         else:
             needed = compiling.rehearse(self._push_and_flow)
+        needed += compiling.rehearse(lambda: launch_all(self.policies, self))
         if self._draws:
             needed += compiling.rehearse(lambda: CameraRenderer(self.model, self.world))
         self.fluid = kept
