@@ -10,6 +10,7 @@ from wsim.errors import UserError
 from wsim.plan.schema import Actuation, FromRobot, Material, Plan, PlanObject, Pose, Proxy, Registration
 from wsim.program.compose import compose
 from wsim.scene import Scene
+from wsim.scene.describe import describe
 
 
 def placed(id: str = "desk_arm", **more) -> PlanObject:
@@ -69,3 +70,54 @@ def test_what_a_robot_has_of_its_own_is_refused_with_a_way_out() -> None:
         )  # fmt: skip
     with pytest.raises(ValueError, match="primitive of a vehicle is"):
         placed().model_copy(update={"role": "vehicle"}).model_validate(placed().model_dump() | {"role": "vehicle"})
+
+
+REACHES = [
+    {"kind": "reach", "link": "hand", "point": [0.0, 0.0, 0.07], "path": [[1.0, 2.3, 0.2]], "times": [1.0],
+     "rotation_deg": [180.0, 0.0, 0.0]},
+    {"kind": "follow", "link": "hand", "path": [[1.0, 2.3, 0.1], [1.1, 2.3, 0.1]], "times": [1.5, 2.0]},
+    {"kind": "schedule", "joint": "left_finger", "target": [0.03, 0.01], "times": [0.0, 2.0]},
+]  # fmt: skip
+
+
+def test_it_goes_by_time(tmp_path) -> None:
+    item = placed(registration=Registration.model_validate({"actuation": REACHES}))
+    plan = Plan(title="A robot", prompt="", objects=[item])
+    assert Plan.model_validate_json(plan.model_dump_json()).objects[0].registration.actuation[0].times == (1.0,)
+    space: dict = {}
+    exec(compile(compose(plan), "program.py", "exec"), space)
+    scene = Scene()
+    space["build"](scene)
+    world = describe(scene.stage)
+    reach, follow = world.reaches
+    assert (reach.link, reach.positions, reach.times) == ("/World/worker/hand", [(1.0, 2.3, 0.2)], [1.0])
+    assert (reach.straight, follow.straight, follow.start, len(follow.positions)) == (False, True, 1.0, 2)
+    assert reach.rotations[0] == pytest.approx((1.0, 0.0, 0.0, 0.0))
+    (schedule,) = world.schedules
+    assert schedule.prim == "/World/worker/joints/left_finger"
+    assert schedule.positions == [0.03, 0.01]
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        (REACHES[0] | {"path": [[1.0, 2.3, 0.2]] * 2, "times": [1.0, 2.0]}, 'a "reach" goes to one place'),
+        (REACHES[1] | {"times": [2.0, 1.5]}, "path has 2 entries and times 2; give one for each, rising"),
+        (REACHES[1] | {"link": None}, 'a "follow" is of a "link"'),
+        (REACHES[2] | {"joint": None}, 'a "schedule" is of a "joint"'),
+        (REACHES[2] | {"link": "hand"}, 'link is of the kinds "reach" and "follow"'),
+        ({"kind": "position", "times": [1.0]}, "times are of the kinds"),
+    ],
+)
+def test_what_goes_by_time_is_said_whole(changed: dict, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Actuation.model_validate(changed)
+
+
+def test_robots_alone_reach() -> None:
+    with pytest.raises(ValueError, match="door: a reach is of a robot"):
+        PlanObject(
+            name="door", role="rigid_body", construction=Proxy(primitive="box", size=(1.0, 1.0, 1.0)),
+            material=Material(name="tin", density=900.0),
+            registration=Registration.model_validate({"actuation": REACHES[:1]}),
+        )  # fmt: skip

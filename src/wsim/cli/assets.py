@@ -82,7 +82,7 @@ def add_(
 
 @assets.command("robot")
 def robot(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="URDF or MJCF, with its meshes beside it.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="URDF, MJCF or USD, with its meshes beside it.")],
     name: Annotated[str, typer.Option("--name", help="What programs call it: scene.robot(..., NAME).")],
     replace: Annotated[bool, typer.Option("--replace", help="Take the place of the robot of that name.")] = False,
     json: Json = False,

@@ -49,9 +49,9 @@ class Curve:
         q = q / np.linalg.norm(q, axis=1, keepdims=True)
         h = np.diff(t)[:, None]
         step = np.diff(x, axis=0)
-        slope = _slopes(step / h, h, repeat)
+        slope = slopes(step / h, h, repeat)
         vector = logarithm(multiply(conjugate(q[:-1]), q[1:]))
-        rate = _slopes(vector / h, h, repeat)
+        rate = slopes(vector / h, h, repeat)
         ends = np.array([np.linalg.solve(_right_jacobian(v), w) for v, w in zip(vector, rate[1:], strict=True)])
         return cls(
             t,
@@ -96,8 +96,8 @@ class Curve:
         return found[0], found[1]
 
 
-def _slopes(secants: Floats, h: Floats, repeat: bool) -> Floats:
-    """Slopes at the keys, (K, 3), from those between them, (K - 1, 3)."""
+def slopes(secants: Floats, h: Floats, repeat: bool = False) -> Floats:
+    """Slopes at K keys, (K, ...), from those between them, (K - 1, ...), and the times between, (K - 1, ...) [s]."""
     before, after = secants, np.roll(secants, -1, axis=0)
     width, next_width = h, np.roll(h, -1, axis=0)
     share = (width + 2.0 * next_width) / (3.0 * (width + next_width))
@@ -108,7 +108,15 @@ def _slopes(secants: Floats, h: Floats, repeat: bool) -> Floats:
     if repeat:
         return np.concatenate([inner[-1:], inner])
     inner[-1] = 0.0
-    return np.concatenate([np.zeros((1, 3)), inner])
+    return np.concatenate([np.zeros_like(secants[:1]), inner])
+
+
+def hermite(s: Floats, step: ArrayLike, start: ArrayLike, end: ArrayLike, h: ArrayLike) -> Floats:
+    """How far what goes by `step` in `h`, with these slopes at its ends, has come at times `s` since; all broadcast."""
+    step, start, end, h = (np.asarray(each, dtype=np.float64) for each in (step, start, end, h))
+    square = (3.0 * step / h - 2.0 * start - end) / h
+    cube = (start + end - 2.0 * step / h) / h**2
+    return s * (start + s * (square + s * cube))
 
 
 def _cubic(step: Floats, start: Floats, end: Floats, h: Floats) -> Floats:

@@ -79,6 +79,7 @@ class RobotJoint:
     armature: float = 0.0
     motor: Motor | None = None
     effort: float | None = None  # the most that its motor may give
+    fastest: float | None = None  # [rad/s] or [m/s] that its maker lets it go
 
 
 @dataclass(frozen=True)

@@ -167,7 +167,11 @@ def _joint(stage: Usd.Stage, joint: RobotJoint, links: dict[str, Link]) -> None:
         made.CreateUpperLimitAttr(joint.high * unit)
     prim = made.GetPrim()
     prim.AddAppliedSchema("NewtonJointAPI")
-    for key, value in (("newton:armature", joint.armature), ("newton:friction", joint.friction)):
+    for key, value in (
+        ("newton:armature", joint.armature),
+        ("newton:friction", joint.friction),
+        ("newton:velocityLimit", (joint.fastest or 0.0) * unit),
+    ):
         if value:
             prim.CreateAttribute(key, Sdf.ValueTypeNames.Float, False).Set(value)
     motor = joint.motor

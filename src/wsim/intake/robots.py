@@ -1,4 +1,4 @@
-"""Take a robot in: from URDF or MJCF to a USD layer among the user's assets, which programs place by its id."""
+"""Take a robot in: from URDF, MJCF or USD to a USD layer among the user's assets, which programs place by its id."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from wsim.intake.model import IntakeError
 from wsim.intake.policies import id_of
 from wsim.intake.robot_model import Robot
 from wsim.intake.robot_read import read_robot
+from wsim.intake.robot_usd import read_usd_robot
 from wsim.intake.robot_write import write_robot
+
+USD = (".usd", ".usda", ".usdc", ".usdz")
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,7 @@ def take_in(
     """Make a robot of a file; its layer is there at the end, whole, or nothing is.
 
     Args:
-        file: URDF or MJCF, with its meshes where it names them.
+        file: URDF, MJCF or USD, with its meshes where it names them.
         name: What to call it.
         replace: Take the place of the one of that name.
         adapt: Changes what was read before it is written.
@@ -51,7 +54,7 @@ def take_in(
         raise IntakeError(f"name = {name!r} is that of a shipped robot; choose another, such as 'own {id}'")
     if path.exists() and not replace:
         raise IntakeError(f"name = {name!r} is there already; --replace takes its place")
-    robot = read_robot(file)
+    robot = read_usd_robot(file) if file.suffix.lower() in USD else read_robot(file)
     if adapt is not None:
         adapt(robot)
     path.parent.mkdir(parents=True, exist_ok=True)

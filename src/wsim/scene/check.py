@@ -46,6 +46,7 @@ from wsim.scene.errors import one_line
 from wsim.scene.skeleton import is_free
 from wsim.scene.usd_cameras import camera_problems
 from wsim.scene.usd_policies import policy_problems
+from wsim.scene.usd_reaches import reach_problems
 from wsim.scene.usd_sensors import sensor_problems
 from wsim.scene.usd_shapes import to_vec3
 
@@ -148,6 +149,7 @@ def _stage_problems(stage: Usd.Stage, known: bool) -> Iterator[str]:
             yield from cord_problems(prim)
         yield from joint_problems(stage)
         yield from policy_problems(ours)
+        yield from reach_problems(ours)
         yield from sensor_problems(ours)
         yield from camera_problems(prims)
         if any(schema.has(prim, schema.CONTACT) for prim in ours):

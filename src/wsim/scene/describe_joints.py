@@ -46,7 +46,7 @@ def read_joints(prims: list[Usd.Prim]) -> Iterator[Joint]:
                     "child": child,
                     "fixture": _fixture(prim, paths[0]) if parent is None else None,
                     "axis": axis,
-                    **_anchors(UsdPhysics.Joint(prim), parent, child),
+                    **anchors_of(UsdPhysics.Joint(prim), parent, child),
                     **_motion(prim, kind),
                     **_strength(UsdPhysics.Joint(prim)),
                     "line": line_of(prim),
@@ -61,7 +61,7 @@ def _fixture(joint: Usd.Prim, end: Sdf.Path) -> str | None:
     return None if path == WORLD_END else object_path(joint.GetStage().GetPrimAtPath(path), joint.GetStage())
 
 
-def _anchors(joint: UsdPhysics.Joint, parent: str | None, child: str) -> dict[str, Any]:
+def anchors_of(joint: UsdPhysics.Joint, parent: str | None, child: str) -> dict[str, Any]:
     """Where a joint's frame is in its parent and in its child."""
     stage = joint.GetPrim().GetStage()
     found: dict[str, Any] = {}
@@ -94,6 +94,9 @@ def _motion(prim: Usd.Prim, kind: str) -> dict[str, Any]:
         value = prim.GetAttribute(attribute).Get()
         if value is not None and math.isfinite(value):
             found[name] = float(value) * unit
+    fastest = float(_number(prim, "newton:velocityLimit", math.inf))
+    if 0.0 < fastest < math.inf:
+        found["fastest"] = fastest * unit
     drive = UsdPhysics.DriveAPI.Get(prim, "angular" if kind == "revolute" else "linear")
     if drive:
         most = float(drive.GetMaxForceAttr().Get())

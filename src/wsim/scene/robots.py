@@ -12,6 +12,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics
 
 from wsim.scene.articulation import mark_articulations
 from wsim.scene.authoring import Author, Handle, calling_folder, note_line, rotation, set_pose, world_pose
+from wsim.scene.reaches import rising, write_reach, write_schedule
 from wsim.scene.robot_drives import ROBOT, JointLaw, is_angular, write_drive
 from wsim.scene.robot_pose import followed, lowest, one_freedom, place_links
 from wsim.scene.validate import Call, shown, suggestion
@@ -50,10 +51,7 @@ class Robot(Handle):
 
     def link(self, name: str) -> Handle:
         """One of its links, for joints and cameras; `SceneError` with those that may be meant."""
-        call, child = Call("link", name), self._prim.GetChild(str(name))
-        if not child or not child.IsA(UsdGeom.Xform):
-            known = [each.GetName() for each in self._prim.GetChildren() if each.IsA(UsdGeom.Xform)]
-            call.fail(f"{self.name} has no such link; {suggestion(str(name), known)}")
+        child = self._link(Call("link", name), name)
         return Handle(child.GetName(), str(child.GetPath()), "body" if child.HasAPI(UsdPhysics.RigidBodyAPI) else
                       "static")  # fmt: skip
 
@@ -71,8 +69,12 @@ class Robot(Handle):
         stiffness: float | None = None,
         damping: float | None = None,
         max_force: float | None = None,
+        times: Sequence[float] | None = None,
+        positions: Sequence[float] | None = None,
     ) -> None:
-        """Let motors hold a position or a velocity, in the file's own coordinates; what is not given is the file's.
+        """Let motors hold a position or a velocity, or go by a schedule; in the file's own coordinates.
+
+        What is not given is the file's.
 
         A servo's effort is stiffness (position - q) + damping (velocity - q'), at most `max_force`; the file's springs
         and dampers act beside it. An effort by itself is what `control` sets: `world.joint(name).force`.
@@ -84,11 +86,19 @@ class Robot(Handle):
             stiffness: [N m/rad] or [N/m].
             damping: [N m s/rad] or [N s/m].
             max_force: [N m] or [N].
+            times: Of a schedule [s], rising, with `positions` and in place of a position and a velocity.
+            positions: At each of those times [deg] or [m]: it goes smoothly from one to the next, its speed too is the
+                servo's aim, and stands before the first and after the last.
 
         Raises:
             SceneError: If there is no such joint, or neither the file nor the call says a gain.
         """
         call = Call("drive", joint)
+        if (times is None) != (positions is None) or (times is not None and (position, velocity) != (None, None)):
+            call.fail("a schedule is times and positions, and no position or velocity beside; give one or the other")
+        when = [] if times is None else rising(call, "times", times)
+        where = [call.within(f"positions[{k}]", each, -36000.0, 36000.0) for k, each in
+                 enumerate(() if positions is None else call.listed("positions", positions, "numbers"))]  # fmt: skip
         fit = [prim for prim in _joints(self._prim) if one_freedom(prim) and fnmatchcase(prim.GetName(), str(joint))]
         for prim in fit or [_named(call, self._prim, str(joint))]:
             if not one_freedom(prim):
@@ -107,10 +117,79 @@ class Robot(Handle):
             unit = math.pi / 180.0 if is_angular(prim) else 1.0
             start = float(prim.GetCustomDataByKey(f"{ROBOT}Start") or 0.0)
             goal = start if position is None else call.within("position", position, -36000.0, 36000.0) * unit
+            if when:
+                goal = where[0] * unit if where else start
+                write_schedule(call, prim, when, where)
             speed = 0.0 if velocity is None else call.within("velocity", velocity, -1e6, 1e6) * unit
             law = law.tuned(gain, damp, most)
             law.note(prim)
             write_drive(prim, law, goal, speed)
+
+    def reach(
+        self,
+        link: str,
+        *,
+        position: Sequence[float],
+        by: float,
+        rotation_deg: Sequence[float] | None = None,
+        point: Sequence[float] = _HERE,
+        start: float | None = None,
+    ) -> None:
+        """Let servos bring a link to a place: the simulator finds how the joints must stand for it within their limits.
+
+        Of several ways it takes the nearest. The joints go there evenly, with what their load and their speed ask of
+        the servos, and stay until the next reach; calls come in the order of time. A place that cannot be reached ends
+        the run before it starts, and by how much it is missed is said.
+
+        Args:
+            link: Of a chain of hinges and sliders that begins at what is held, all of them with servos.
+            position: Where `point` is to be, in the world [m].
+            by: When [s].
+            rotation_deg: Roll, pitch, yaw of the link in the world [deg]; by default as it comes.
+            point: Of the link, in its frame [m]; its origin by default.
+            start: When it sets out [s]; by default when the reach before is done, or at 0.
+
+        Raises:
+            SceneError: If there is no such link, it is held, or the times are out of order.
+        """
+        call = Call("reach", link)
+        write_reach(call, self._prim, self._link(call, link), [by], [position], rotation_deg, point, start, False)
+
+    def follow(
+        self,
+        link: str,
+        *,
+        path: Sequence[Sequence[float]],
+        times: Sequence[float],
+        rotation_deg: Sequence[float] | None = None,
+        point: Sequence[float] = _HERE,
+        start: float | None = None,
+    ) -> None:
+        """Let servos take a point of a link along straight lines, as `reach` takes it to a place.
+
+        It goes straight from where it is to the first way-point, too. It rests at the last, and wherever the way turns
+        by more than 20 degrees; others it passes, at a speed that never jumps.
+
+        Args:
+            link: As of `reach`.
+            path: Way-points (x, y, z) in the world [m].
+            times: When it is at each [s], rising.
+            rotation_deg: As of `reach`, at all of them; it turns to it on the way to the first.
+            point: As of `reach`.
+            start: When it sets out for the first way-point [s]; by default when the reach before is done, or at 0.
+
+        Raises:
+            SceneError: As `reach`, or if there are not as many times as way-points.
+        """
+        call = Call("follow", link)
+        write_reach(call, self._prim, self._link(call, link), times, path, rotation_deg, point, start, True)
+
+    def _link(self, call: Call, name: str) -> Usd.Prim:
+        child = self._prim.GetChild(str(name))
+        if not child or not child.IsA(UsdGeom.Xform):
+            known = [each.GetName() for each in self._prim.GetChildren() if each.IsA(UsdGeom.Xform)]
+            call.fail(f"{self.name} has no such link; {suggestion(str(name), known)}")
+        return child
 
 
 class Robots(Author):

@@ -165,6 +165,7 @@ class Joint(_Model):
     friction: float = 0.0  # dry, of a hinge [N m] or a slider [N]
     give: Give = Give()  # of its stops
     armature: float = 0.0  # [kg m^2] or [kg]: inertia that moves by the joint's own position alone, as a rotor does
+    fastest: float | None = None  # [rad/s] or [m/s] that its maker lets it go; nothing holds it back
     closing: bool = False  # it closes a loop, or may break: a constraint, and none of the trees' joints
     break_force: float | None = None  # [N]; None: it holds any
     break_torque: float | None = None  # [N m]
@@ -200,6 +201,33 @@ class Policy(_Model):
     commands: list[Vec3] = [(0.0, 0.0, 0.0)]  # forward, to the left [m/s], turning to the left [rad/s]
     route: list[Vec3] = Field(default_factory=list)  # x, y [m], heading [rad]: gone along instead of the commands
     speed: float = 0.0  # [m/s] along the route
+    line: str | None = None
+
+
+class Schedule(_Model):
+    """Where a joint's servo goes by time: at each position at its time, smoothly from one to the next."""
+
+    prim: str  # of the joint
+    times: list[float]  # [s], rising
+    positions: list[float]  # [rad] or [m]
+    line: str | None = None
+
+
+class Reach(_Model):
+    """Where a point of a robot's link is to be by time; the simulator finds how its joints must stand for it.
+
+    At each of its times it is at the place of that time. It sets out at `start`, from where what came before has left
+    it. Straight, it goes along lines; else the joints go evenly, and the point where that leads it.
+    """
+
+    prim: str
+    link: str  # prim of a body
+    point: Vec3 = (0.0, 0.0, 0.0)  # [m], in the link's frame
+    start: float = 0.0  # [s]
+    times: list[float]  # [s], rising
+    positions: list[Vec3]  # [m], world
+    rotations: list[Quat] = Field(default_factory=list)  # of the link, world; none: it may turn as it likes
+    straight: bool = True
     line: str | None = None
 
 
@@ -317,6 +345,8 @@ class World(_Model):
     springs: list[Spring] = Field(default_factory=list)
     ropes: list[Rope] = Field(default_factory=list)
     policies: list[Policy] = Field(default_factory=list)
+    schedules: list[Schedule] = Field(default_factory=list)
+    reaches: list[Reach] = Field(default_factory=list)
     sensors: list[Sensor] = Field(default_factory=list)
     apart: list[tuple[str, str]] = Field(default_factory=list)  # objects or shapes that never touch
     foreign: list[Foreign] = Field(default_factory=list)

@@ -12,7 +12,22 @@ from pydantic import BaseModel
 
 from wsim.errors import UserError
 from wsim.scene.validate import shown
-from wsim.scene.world import Body, Contact, Fluid, Gear, Guide, Joint, Motor, Policy, Rope, Shape, Spring, World
+from wsim.scene.world import (
+    Body,
+    Contact,
+    Fluid,
+    Gear,
+    Guide,
+    Joint,
+    Motor,
+    Policy,
+    Reach,
+    Rope,
+    Schedule,
+    Shape,
+    Spring,
+    World,
+)
 from wsim.scene.world_sensors import SensorCamera, SensorContact, SensorIMU, SensorRange
 
 # Numbers that each world of a batch has of its own.
@@ -20,11 +35,13 @@ FREE: dict[type[BaseModel], frozenset[str]] = {
     World: frozenset({"gravity", "containers", "time_step"}),
     Shape: frozenset({"size", "position", "rotation", "friction", "restitution", "surface_velocity"}),
     Body: frozenset({"mass", "volume", "com", "inertia", "position", "rotation", "velocity", "angular_velocity"}),
-    Joint: frozenset({"parent_anchor", "parent_turn", "child_anchor", "child_turn"}),
+    Joint: frozenset({"parent_anchor", "parent_turn", "child_anchor", "child_turn", "fastest"}),
     Motor: frozenset({"position", "velocity"}),
     Gear: frozenset({"ratio", "offset"}),
     Contact: frozenset({"friction", "restitution"}),
     Policy: frozenset({"times", "commands", "speed"}),
+    Schedule: frozenset({"times", "positions"}),
+    Reach: frozenset({"point", "start", "times", "positions", "rotations"}),
     SensorIMU: frozenset(
         {"position", "rotation", "accelerometer_noise", "gyroscope_noise", "accelerometer_bias", "gyroscope_bias"}
     ),

@@ -1,6 +1,6 @@
 """Newton's kernels forwards only: wsim follows no gradient back through a step.
 
-Warp compiles a kernel's adjoint along with it unless told otherwise, and a machine that meets these three modules for
+Warp compiles a kernel's adjoint along with it unless told otherwise, and a machine that meets these modules for
 the first time would wait for their adjoints longer than for all else that a first run compiles.
 """
 
@@ -14,6 +14,9 @@ LARGE = (  # those of Newton's modules that have adjoints and are large; wsim's 
     "newton._src.solvers.mujoco.kernels",
     "newton._src.sim.articulation",
     "mujoco_warp._src.set_const",
+    "newton._src.sim.ik.ik_common",
+    "newton._src.sim.ik.ik_objectives",
+    "newton._src.sim.ik.ik_lm_optimizer",
 )
 
 

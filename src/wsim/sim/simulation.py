@@ -33,6 +33,7 @@ from wsim.sim.policies import controller_of, launch_all
 from wsim.sim.result import SimulationResult
 from wsim.sim.rigid import RigidBodies
 from wsim.sim.rope_ways import lost_ropes
+from wsim.sim.schedules import ScheduleController
 from wsim.sim.sensors import Sensors, sees
 from wsim.sim.starts import start
 from wsim.sim.turns import Controller, Turns
@@ -114,7 +115,7 @@ class Simulation:
                 self.model,
                 self.built.worlds,
                 self.dt,
-                controller is not None or bool(self.world.policies),
+                controller is not None or bool(self.world.policies or self.world.schedules or self.world.reaches),
                 self.built.breakable,
                 self.built.surfaces,
                 self.built.cylinders,
@@ -138,7 +139,10 @@ class Simulation:
         ]
         for policy in self.policies:
             self._turns.add(policy, policy.interval)
-        if controller is not None:  # after the policies: it sees what they set
+        if self.world.schedules or self.world.reaches:
+            schedules = ScheduleController(self.model, self.built.worlds, self.dt)
+            self._turns.add(schedules, schedules.interval)
+        if controller is not None:  # after these: it sees what they set
             self._turns.add(controller, control_interval)
         self._graphs: dict[int, Any] = {}  # by how many steps they are
         self._asked: tuple[Any, ...] = ()
@@ -150,7 +154,7 @@ class Simulation:
 
     @property
     def controlled(self) -> bool:
-        """Whether a controller or a policy drives joints."""
+        """Whether a controller, a policy, a schedule or a reach drives joints."""
         return bool(self._turns)
 
     def _warm_up(self, progress: Progress) -> None:

@@ -6,9 +6,8 @@ from tests.judge.checks.test_plan import a_plan, a_world
 from tests.judge.theory import ask, with_world
 from wsim.assets.policies import Observation, PolicySpec
 from wsim.judge.checks.run import CheckPlanControl
-from wsim.plan.schema import FromRobot, Plan, PlanObject, Registration, Step
-from wsim.plan.schema.objects import Actuation
-from wsim.scene.world import Joint, Policy
+from wsim.plan.schema import Actuation, FromRobot, Plan, PlanObject, Registration, Step
+from wsim.scene.world import Joint, Policy, Reach, Schedule
 
 SPEC = PolicySpec(joints=["hip"], rate=50.0, observations=[Observation(of="command")])
 STEP = Step(title="push", shows="control pushes the ball", controls=True)
@@ -59,3 +58,29 @@ def test_a_policy_that_the_plan_names_and_the_world_lacks_is_said_so():
     assert (found.target.kind, found.target.parameter, found.target.direction) == ("controller", "policy", "add")
     walks = Policy(prim="/World/walk", base="/World/dog/base", joints=[], spec=SPEC, network="", sha256="")
     assert all(each.passed for each in ask(CheckPlanControl(), with_world(a_world(), policies=[walks]), plan))
+
+
+TIMED = [
+    ({"kind": "reach", "link": "hand", "path": [[0.3, 0.0, 0.2]], "times": [1.0]}, "reach"),
+    ({"kind": "schedule", "joint": "grip", "target": [0.03, 0.0], "times": [1.0, 2.0]}, "schedule"),
+]
+
+
+@pytest.mark.parametrize(("actuation", "kind"), TIMED)
+def test_what_a_plan_lets_a_robot_do_by_time_is_on_the_stage(actuation, kind):
+    arm = PlanObject(
+        name="arm", role="robot", construction=FromRobot(robot="desk_arm", size=(0.3, 0.3, 0.5)),
+        registration=Registration.model_validate({"actuation": [actuation]}),
+    )  # fmt: skip
+    plan = Plan(title="", prompt="", objects=[arm])
+    reach = Reach(prim="/World/arm/reaches/reach_0", link="/World/arm/hand", times=[1.0], positions=[(0.3, 0.0, 0.2)])
+    grip = Schedule(prim="/World/arm/joints/grip", times=[1.0, 2.0], positions=[0.03, 0.0])
+    both = with_world(a_world(), reaches=[reach], schedules=[grip])
+    assert all(each.passed for each in ask(CheckPlanControl(), both, plan))
+    elsewhere = with_world(
+        a_world(), reaches=[reach.model_copy(update={"link": "/World/arm/wrist"})],
+        schedules=[grip.model_copy(update={"prim": "/World/other/joints/grip"})],
+    )  # fmt: skip
+    (found,) = ask(CheckPlanControl(), elsewhere, plan)
+    assert (found.passed, found.message) == (False, f"The plan has a {kind} of arm, and the stage has none")
+    assert (found.target.kind, found.target.parameter) == ("controller", kind)

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
+    from wsim.judge.evidence.motion import Motion
 
     Floats = NDArray[np.float64]
 
@@ -152,7 +153,7 @@ def _drifts(
     rate = length / (time[frames[:, -1]] - time[firsts])[at]
     steady = gone.min(axis=1) > EACH * length / INTERVALS
     steady &= (rate > np.maximum(CREEP, _soft(copies, touching, contacts, copy[at], at))) & (rate < 2.0 * STILL)
-    steady &= length > INTERVALS * rounding
+    steady &= length > np.maximum(INTERVALS * rounding, _late(copies, contacts, spans, at))
     relative, absolute = _turned(contacts, at, q)
     steady &= (relative < TURN) & (absolute < ROUND)
     # Resisted rolling shares the cone with the slip, and goes with one: friction is then inside it.
@@ -177,6 +178,30 @@ def _soft(
     loads = (mass @ ~copies[0].motion.kinematic)[copy] / lightest[at]
     found: Floats = give.creep * touching.laws(contacts.shapes)[0] * copies[0].gravity * loads
     return found
+
+
+def _late(copies: Sequence[Evidence], contacts: Contacts, spans: Sequence[Span], at: NDArray[np.intp]) -> Floats:
+    """The slip that steps leave where joints lead what friction holds, (n,) [m]: what is gained in speed, for a step.
+
+    A loose body's velocity is of half a step before its place, just after a jolt of a whole one; a mechanism's is not.
+    What a mechanism gains beside is that of its links' turning: it goes round where its speed leads straight on.
+    """
+    motions = [copies[span.copy].motion for span in spans]
+    gained = np.stack([_gained(motion, span) for motion, span in zip(motions, spans, strict=True)])  # (spans, B)
+    rows = contacts.one, contacts.two
+    most = np.maximum(*(np.where(each >= 0, gained[at, each], 0.0) for each in rows))
+    jointed = np.stack([motion.jointed for motion in motions])
+    led = np.logical_xor(*(np.where(each >= 0, jointed[at, each], False) for each in rows))
+    return np.where(led, most, 0.0)
+
+
+def _gained(motion: Motion, span: Span) -> Floats:
+    """What a step of all that bodies gain in a span comes to, (B,) [m]."""
+    frames = slice(span.first, span.last + 1)
+    v, spin, h = motion.v[frames], lengths(motion.w[frames]), motion.h[span.first : span.last, None]
+    turning = spin[:, motion.jointed].max(axis=1, initial=0.0)
+    round_ = (h * turning[1:, None] * lengths(v)[1:]).sum(axis=0)
+    return np.asarray((lengths(np.diff(v, axis=0)).sum(axis=0) + round_) * motion.late)
 
 
 def _path(touching: Touching, contacts: Contacts, side: int, at: NDArray[np.intp], q: Floats, time: Floats) -> Floats:

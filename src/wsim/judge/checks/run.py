@@ -15,6 +15,7 @@ from wsim.scene.contact import within
 if TYPE_CHECKING:
     from wsim.judge.evidence.evidence import Evidence
     from wsim.judge.verdict import Finding
+    from wsim.plan.schema import Actuation
 
 
 @dataclass
@@ -220,6 +221,9 @@ def _linked(evidence: Evidence, whole: str) -> bool:
     return len(links) > 1 and links <= {end for joint in held for end in (joint.parent, joint.child)}
 
 
+_TIMED = ("reach", "follow", "schedule")  # kinds of actuation
+
+
 @dataclass
 class CheckPlanControl(Check):
     """A world is steered by `control` where the plan asks for it, and only there: unseen hands could do anything."""
@@ -235,7 +239,7 @@ class CheckPlanControl(Check):
             item.name
             for item in plan.objects
             for each in item.registration.actuation
-            if each.kind != "drive"  # its engine and its steering are set on the stage
+            if each.kind != "drive" and not _by_time(evidence, item.name, each)  # that is set on the stage
             if each.joint is None or evidence.prim(each.joint) not in driven  # else its drive does it
             if controlled or not _by_policy(evidence, item.name, each.joint)
         ]
@@ -249,6 +253,16 @@ class CheckPlanControl(Check):
         if idle:
             target = RepairTarget(kind="controller", prim=evidence.prim(idle[0]), parameter="policy", direction="add")
             return [self.failed(f"The plan lets a policy walk {idle[0]}, and none does", target=target)]
+        late = [
+            (item.name, each.kind)
+            for item in plan.objects
+            for each in item.registration.actuation
+            if not controlled and each.kind in _TIMED and not _by_time(evidence, item.name, each)
+        ]
+        if late:
+            name, kind = late[0]
+            target = RepairTarget(kind="controller", prim=evidence.prim(name), parameter=kind, direction="add")
+            return [self.failed(f"The plan has a {kind} of {name}, and the stage has none", target=target)]
         if bool(asked) == controlled:
             return [self.passed(f"The plan asks for control: {asked[0]}")] if asked else []
         message = (
@@ -265,6 +279,16 @@ class CheckPlanControl(Check):
                 ),
             )
         ]
+
+
+def _by_time(evidence: Evidence, name: str, actuation: Actuation) -> bool:
+    """Whether the stage says by time what the plan lets a robot's link or joint do."""
+    robot, world = evidence.prim(name), evidence.world
+    if actuation.kind == "schedule":
+        return any(each.prim == f"{robot}/joints/{actuation.joint}" for each in world.schedules)
+    return actuation.kind in ("reach", "follow") and any(
+        each.link == f"{robot}/{actuation.link}" for each in world.reaches
+    )
 
 
 def _by_policy(evidence: Evidence, name: str, joint: str | None) -> bool:

@@ -7,7 +7,8 @@ from typing import Any, Literal
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
 
-from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
+from wsim.plan.schema.actuation import Actuation
+from wsim.plan.schema.base import Name, NotNegative, Positive, Strict, Text, Vec3
 from wsim.plan.schema.constructions import (
     CORNERS,
     ROCKS,
@@ -65,63 +66,6 @@ class Pose(Strict):
 
     position: Vec3
     rotation_deg: Vec3 = (0.0, 0.0, 0.0)
-
-
-WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
-_OF_SOME = ("policy", "route", "speed", "steer_deg", "waits")  # kinds of actuation
-
-
-class Actuation(Strict):
-    """What drives the object, or a joint of it."""
-
-    kind: Literal["position", "velocity", "force", "torque", "path", "policy", "driver", "drive"]
-    joint: Name | None = None
-    target: tuple[float, ...] = Field(
-        (), max_length=10_000
-    )  # of the kind's unit: rad or m, per second, N, N m; a path's points
-    words: Text = ""
-    policy: Word | None = None  # of the kind "policy": the id of the network that walks the robot
-    route: tuple[WayPoint, ...] = Field((), max_length=1000)  # of a policy or a driver, one point after the other
-    speed: Positive | None = None  # along the route, or of what is driven straight on [m/s]
-    steer_deg: Number | None = None  # of the kind "drive": of the front wheels, to the left
-    waits: tuple[NotNegative, ...] = Field((), max_length=1000)  # of a driver: at each point of the route, in turn [s]
-
-    @model_validator(mode="after")
-    def _drives(self) -> Actuation:
-        if self.steer_deg is not None and self.kind != "drive":
-            raise ValueError(f'steer_deg is of the kind "drive"; this is of {self.kind!r}')
-        if self.waits and self.kind != "driver":
-            raise ValueError(f'waits are of the kind "driver"; this is of {self.kind!r}')
-        if len(self.waits) > len(self.route):
-            raise ValueError(f"waits has {len(self.waits)} times for the route's {len(self.route)} points")
-        if self.kind not in ("driver", "drive"):
-            return self
-        if self.speed is None or self.joint or self.target or self.policy:
-            raise ValueError(f'a {self.kind} is a vehicle\'s, with its "speed"; it takes no joint, target or policy')
-        if self.kind == "driver" and not self.route:
-            raise ValueError('a driver follows a "route" from where the vehicle starts; it has none')
-        if self.kind == "driver" and any(len(point) > 2 for point in self.route):
-            raise ValueError("a driver passes a route's points as its way goes; leave their headings out")
-        if self.kind == "drive" and self.route:
-            raise ValueError('what is driven straight on, or in a circle, has no route; a "driver" follows one')
-        return self
-
-    @model_validator(mode="after")
-    def _walks(self) -> Actuation:
-        if self.kind in ("driver", "drive"):
-            return self
-        if self.kind != "policy" and (self.policy or self.route or self.speed):
-            raise ValueError(f'policy, route and speed are of the kind "policy"; this is of {self.kind!r}')
-        if (self.route or self.speed) and not self.policy:
-            raise ValueError("route and speed are walked by a policy; name it, or leave them out")
-        if self.speed and not self.route:
-            raise ValueError(f"speed {self.speed:g} m/s is along a route; give one, or leave speed out")
-        return self
-
-    @model_serializer(mode="wrap")
-    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without what only some kinds have where it has it not, so that a plan without it reads as it always did."""
-        return {name: value for name, value in write(self).items() if value or name not in _OF_SOME}
 
 
 class Registration(Strict):
@@ -301,6 +245,9 @@ class PlanObject(Strict):
             raise ValueError(
                 f'{self.name}: policy {policies[0]!r} walks a robot; it is no construction of kind "robot"'
             )
+        timed = [each.kind for each in self.registration.actuation if each.kind in ("reach", "follow", "schedule")]
+        if timed and self.primitive != "robot":
+            raise ValueError(f'{self.name}: a {timed[0]} is of a robot; it is no construction of kind "robot"')
         if len(policies) > 1:
             raise ValueError(
                 f"{self.name}: it has the policies {', '.join(policies)}; one walks it, leave the others out"

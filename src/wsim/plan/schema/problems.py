@@ -201,6 +201,8 @@ def _actuation(plan: Draft) -> Iterator[str]:
     joints = {joint.name: joint for joint in plan.joints}
     for i, item in enumerate(plan.objects):
         for j, actuation in enumerate(item.registration.actuation):
+            if actuation.kind == "schedule":  # of a joint that the robot has of its own
+                continue
             where = f"objects.{i}.registration.actuation.{j}.joint"
             if actuation.joint is not None and actuation.joint not in joints:
                 yield f"{where}: no joint {actuation.joint!r}; the plan has {', '.join(joints) or 'none'}"

@@ -28,7 +28,7 @@ def statements(draft: Draft) -> list[str]:
             lines += land.scatter(draft, item, item.built)
             continue
         target = "scene." + item.primitive
-        if item.name in containers | jointed or robots.walked(item) or vehicles.driven(item):
+        if item.name in containers | jointed or robots.moved(item) or vehicles.driven(item):
             draft.handles[item.name] = draft.variable(item.name)
             target = f"{draft.handles[item.name]} = {target}"
         lines += call(target, [f'"{item.name}"', *_arguments(draft, item)])

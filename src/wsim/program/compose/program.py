@@ -30,6 +30,7 @@ def compose(plan: Plan) -> str:
         *objects.statements(draft),
         *joints.statements(draft),
         *robots.policies(draft),
+        *robots.motions(draft),
         *vehicles.set_off(draft),
         *contacts.statements(plan),
         *cameras.statements(plan),

@@ -1,0 +1,103 @@
+"""What drives an object of a plan, or a joint of it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any, Literal
+
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer, model_validator
+
+from wsim.plan.schema.base import Name, NotNegative, Number, Positive, Strict, Text, Vec3, Word
+
+WayPoint = tuple[Number, Number] | tuple[Number, Number, Number]  # x, y [m], and the heading there [deg] if it matters
+_REACHES = ("reach", "follow", "schedule")  # kinds that say where a robot is by time
+_OF_SOME = (  # kinds of actuation
+    "policy", "route", "speed", "steer_deg", "waits", "link", "point", "path", "times", "rotation_deg", "start",
+)  # fmt: skip
+
+
+class Actuation(Strict):
+    """What drives the object, or a joint of it."""
+
+    kind: Literal[
+        "position", "velocity", "force", "torque", "path", "policy", "driver", "drive", "reach", "follow", "schedule"
+    ]
+    joint: Name | None = None
+    target: tuple[float, ...] = Field(
+        (), max_length=10_000
+    )  # of the kind's unit: rad or m, per second, N, N m; a path's points; a schedule's [deg] or [m]
+    words: Text = ""
+    policy: Word | None = None  # of the kind "policy": the id of the network that walks the robot
+    route: tuple[WayPoint, ...] = Field((), max_length=1000)  # of a policy or a driver, one point after the other
+    speed: Positive | None = None  # along the route, or of what is driven straight on [m/s]
+    steer_deg: Number | None = None  # of the kind "drive": of the front wheels, to the left
+    waits: tuple[NotNegative, ...] = Field((), max_length=1000)  # of a driver: at each point of the route, in turn [s]
+
+    link: Name | None = None  # of a robot, of the kinds "reach" and "follow"
+    point: Vec3 | None = None  # of the link, in its own frame [m]
+    path: tuple[Vec3, ...] = Field((), max_length=1000)  # where that point is to be [m]; one place of a reach
+    times: tuple[NotNegative, ...] = Field((), max_length=1000)  # when it is at each, or a joint at each target [s]
+    start: NotNegative | None = None  # when it sets out [s]; by default when what it does before is done
+    rotation_deg: Vec3 | None = None  # how the link is turned there: roll, pitch, yaw in the world [deg]
+
+    @model_validator(mode="after")
+    def _reaches(self) -> Actuation:
+        given = [name for name in ("link", "point", "path", "rotation_deg", "start") if getattr(self, name)]
+        if self.kind not in ("reach", "follow") and given:
+            raise ValueError(f'{given[0]} is of the kinds "reach" and "follow"; this is of {self.kind!r}')
+        if self.kind not in _REACHES:
+            if self.times:
+                raise ValueError(f"times are of the kinds {', '.join(_REACHES)}; this is of {self.kind!r}")
+            return self
+        if self.kind == "schedule":
+            count, name = len(self.target), "target"
+            if not self.joint:
+                raise ValueError('a "schedule" is of a "joint" of the robot; name it')
+        else:
+            count, name = len(self.path), "path"
+            if not self.link or self.joint or self.target:
+                raise ValueError(f'a "{self.kind}" is of a "link" of the robot; it takes no joint and no target')
+            if self.kind == "reach" and len(self.path) != 1:
+                raise ValueError(
+                    f'a "reach" goes to one place, and path has {len(self.path)}; a "follow" goes along it'
+                )
+        if not count or count != len(self.times) or any(b <= a for a, b in pairwise(self.times)):
+            raise ValueError(f"{name} has {count} entries and times {len(self.times)}; give one for each, rising")
+        return self
+
+    @model_validator(mode="after")
+    def _drives(self) -> Actuation:
+        if self.steer_deg is not None and self.kind != "drive":
+            raise ValueError(f'steer_deg is of the kind "drive"; this is of {self.kind!r}')
+        if self.waits and self.kind != "driver":
+            raise ValueError(f'waits are of the kind "driver"; this is of {self.kind!r}')
+        if len(self.waits) > len(self.route):
+            raise ValueError(f"waits has {len(self.waits)} times for the route's {len(self.route)} points")
+        if self.kind not in ("driver", "drive"):
+            return self
+        if self.speed is None or self.joint or self.target or self.policy:
+            raise ValueError(f'a {self.kind} is a vehicle\'s, with its "speed"; it takes no joint, target or policy')
+        if self.kind == "driver" and not self.route:
+            raise ValueError('a driver follows a "route" from where the vehicle starts; it has none')
+        if self.kind == "driver" and any(len(point) > 2 for point in self.route):
+            raise ValueError("a driver passes a route's points as its way goes; leave their headings out")
+        if self.kind == "drive" and self.route:
+            raise ValueError('what is driven straight on, or in a circle, has no route; a "driver" follows one')
+        return self
+
+    @model_validator(mode="after")
+    def _walks(self) -> Actuation:
+        if self.kind in ("driver", "drive"):
+            return self
+        if self.kind != "policy" and (self.policy or self.route or self.speed):
+            raise ValueError(f'policy, route and speed are of the kind "policy"; this is of {self.kind!r}')
+        if (self.route or self.speed) and not self.policy:
+            raise ValueError("route and speed are walked by a policy; name it, or leave them out")
+        if self.speed and not self.route:
+            raise ValueError(f"speed {self.speed:g} m/s is along a route; give one, or leave speed out")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without what only some kinds have where it has it not, so that a plan without it reads as it always did."""
+        return {name: value for name, value in write(self).items() if value or name not in _OF_SOME}
