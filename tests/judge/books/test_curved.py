@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from wsim.judge.books.meshes import Triangles, touching
@@ -40,20 +40,20 @@ def nearest(mesh, centre):
     return found.gap[k], found.normal[k]
 
 
+@settings(deadline=None)
 @given(x=st.floats(-0.25, 0.25), y=st.floats(-0.25, 0.25))
 def test_a_balls_gap_grows_along_its_normal(x, y):
-    """The gap's gradient by differences: up to 0.02 off by the corners' normals, interpolated, where the bend changes.
-
-    Between two triangles the surface has a kink, of 0.003 here.
-    """
+    """The gap's gradient by differences: up to 0.02 off by the corners' normals, interpolated, where the bend changes."""
     z = 0.08 * math.sin(5.0 * x + 1.0) + 0.03 * math.sin(4.0 * y) + RADIUS
-    step, middle = 1e-4, np.array([x, y, z + 0.01])
+    step, middle = 1e-5, np.array([x, y, z + 0.01])
     _, normal = nearest(WAVES, middle)
-    gradient = [(nearest(WAVES, middle + step * e)[0] - nearest(WAVES, middle - step * e)[0]) / (2 * step)
-                for e in np.eye(3)]  # fmt: skip
-    assert gradient == pytest.approx(normal, abs=4e-3)
+    sides = [[nearest(WAVES, middle + way * step * e) for way in (-1, 1)] for e in np.eye(3)]
+    assume(all(np.abs(there - normal).max() < 1e-3 for side in sides for _, there in side))  # no kink between two
+    gradient = [(above - below) / (2 * step) for (below, _), (above, _) in sides]
+    assert gradient == pytest.approx(normal, abs=1e-4)
 
 
+@settings(deadline=None)
 @given(x=st.floats(-0.25, 0.25), y=st.floats(-0.25, 0.25))
 def test_what_is_round_is_met_as_what_is_round(x, y):
     """To the fourth order of a facet's angle, and with no kink between two."""

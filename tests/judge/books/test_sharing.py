@@ -6,7 +6,7 @@ u)^2 + (rho w)^2): the two are one ellipsoid's, which is widest against both spe
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
@@ -76,6 +76,7 @@ def test_a_tenth_more_or_less_of_either_is_found_there_too(rubs, resists):
     assert not all(finding.passed for finding in found)
 
 
+@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_friction_and_what_resists_rolling_share_a_ball_of_their_shares(seed):
     """On it all is explained, and nothing of a sixth more: of any way of the turning, of friction and of the normal."""
