@@ -43,7 +43,7 @@ def nearest(mesh, centre):
 @settings(deadline=None)
 @given(x=st.floats(-0.25, 0.25), y=st.floats(-0.25, 0.25))
 def test_a_balls_gap_grows_along_its_normal(x, y):
-    """The gap's gradient by differences: up to 0.02 off by the corners' normals, interpolated, where the bend changes."""
+    """The gap's gradient by differences: up to 0.02 off by the corners' normals, interpolated."""
     z = 0.08 * math.sin(5.0 * x + 1.0) + 0.03 * math.sin(4.0 * y) + RADIUS
     step, middle = 1e-5, np.array([x, y, z + 0.01])
     _, normal = nearest(WAVES, middle)

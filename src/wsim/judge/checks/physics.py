@@ -90,8 +90,8 @@ class CheckExplosion(Check):
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
             value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
             limit_from=f"{factor[i]:.3g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
-            "by a far heavier body, or all that its mechanism has in this body alone, and the work of drives, with what "
-            "they held a frame before, control and springs",
+            "by a far heavier body, or all that its mechanism has in this body alone, and the work of drives, with "
+            "what they held a frame before, control and springs",
         )  # fmt: skip
 
     def _handed_on(self, evidence: Evidence) -> Floats:
