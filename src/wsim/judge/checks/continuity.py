@@ -290,7 +290,8 @@ def _whirling(evidence: Evidence) -> tuple[Floats, Floats]:
     going, turning = (np.zeros((len(motion.h), len(world.bodies))) for _ in range(2))
     if not world.joints and not world.ropes:
         return going, turning
-    rate, hung = np.maximum(motion.rate[1:], motion.rate[:-1]), {j.child for j in world.joints if j.parent is None}
+    rate = np.maximum(motion.rate[1:], motion.rate[:-1])
+    hung: set[str | None] = {j.child for j in world.joints if j.parent is None}
     hung |= {guide.body for rope in world.ropes if any(end.body is None for end in rope.path) for guide in rope.path}
     for unit in np.unique(motion.unit[motion.jointed]):
         rows = np.flatnonzero(motion.unit == unit)
