@@ -33,6 +33,39 @@ def slides(scene):
     scene.box("crate", size=(0.3,) * 3, density=400, position=at, rotation_deg=(0, -20, 0), friction=0.2)
 
 
+def waves(scene):
+    """A ball in a trough and a box across one, on ground whose bend changes along a cell of a seventh of a wave."""
+    scene.height_field("land", size=(3.5, 2.2), cells=(48, 30), friction=0.4, thickness=0.2,
+                       heights=lambda x, y: 0.11 * math.sin(4.8 * x))  # fmt: skip
+    scene.sphere("ball", radius=0.11, density=400, position=(0.41, 0.5, 0.225), friction=0.6)
+    scene.box("crate", size=(0.22, 0.18, 0.11), density=600, position=(0.7, -0.3, 0.1), friction=0.4,
+              rotation_deg=(0, 28, 0), velocity=(1.5, 0, -0.8))  # fmt: skip
+
+
+def stated(recording, **surface):
+    """Beside a world whose surfaces have other coefficients, each by so many times its own."""
+
+    def changed(item):
+        shapes = [s.model_copy(update={name: (getattr(s, name) or 0.0) * by for name, by in surface.items()})
+                  for s in item.shapes]  # fmt: skip
+        return item.model_copy(update={"shapes": shapes})
+
+    world = recording.world
+    both = {name: [changed(item) for item in getattr(world, name)] for name in ("bodies", "statics")}
+    return replace(recording, world=world.model_copy(update=both))
+
+
+def test_waves_lead_what_rolls_and_slides_as_their_bend_goes(tmp_path):
+    """The push is square to the curve that its triangles stand for; friction leans as a box's corners do there."""
+    sound = simulated(tmp_path, waves, 0.8, rate=120)
+    for run in (sound, replace(sound, contacts=None)):
+        assert failing(run) == set()
+        lighter = run.world.model_copy(update={"gravity": (0.0, 0.0, -0.9 * 9.81)})
+        assert {"CheckEnergy", "CheckForces"} & failing(replace(run, world=lighter))
+        for by in (0.9, 1.1):
+            assert {"CheckForces", "CheckRecordedForces"} & failing(stated(run, friction=by))
+
+
 def test_a_ball_beside_its_track_is_carried_by_nothing(tmp_path):
     sound = simulated(tmp_path, rolls, 1.0)
     assert failing(sound) == set()

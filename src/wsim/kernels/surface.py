@@ -3,9 +3,11 @@
 Three things may touch: a corner of the shape a face, a convex edge of the surface the shape, and a corner of the
 surface the shape (an edge's end). An edge between faces of one plane is none, so nothing catches on it.
 
-A surface whose corners have normals is a curved one, of the second order: normals are interpolated, and a point q of a
-triangle is lifted to the mean of its projections on the tangent planes at the corners, half of the way (Boubekeur and
-Alexa, Phong tessellation, 2008: half is a circle's arc). Its curvature makes a gap that closes along a straight way:
+A surface whose corners have normals is a curved one, of the second order: a point q of a triangle is lifted to the mean
+of its projections on the tangent planes at the corners, half of the way (Boubekeur and Alexa, Phong tessellation, 2008:
+half is a circle's arc). Its normal is that of the surface so made, along which the gap grows, so that a push does no
+work on what keeps its gap; the corners' normals, interpolated, lean from it where the bend changes along the triangle.
+Its curvature makes a gap that closes along a straight way:
 of the speed v along it the gap has lost v^2 / (2 R) h^2 at the end of a step of h. So what goes along a curve is asked
 for a speed from the surface of v^2 h / (2 R) at a step's end, as it has one of that into the surface at its start:
 the contact turns the velocity and takes none of it (the leapfrog of a constraint; Ryckaert et al. 1977).
@@ -22,6 +24,7 @@ INSIDE_CURVED = wp.constant(1.0e-2)  # two curved ones meet at their line to the
 GUARD = wp.constant(1.0e-4)  # [m]: nearer than this to a convex edge the edge touches, not the face
 LEVEL = wp.constant(1.0e-5)  # [m]: faces of two objects that differ by less are one plane
 ASIDE = wp.constant(1.0e-4)  # [m]: how far beyond an edge another object's face must begin to carry on its plane
+STEEPEST = wp.constant(0.2)  # cosine between a triangle's normal and one at its corners, at least
 LEANS = wp.constant(0.01)  # [rad] into the surface, at most
 ALONG = wp.constant(0.9995)  # cosine: one direction
 
@@ -96,17 +99,13 @@ def _shares(a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3, q: wp.vec3) -> 
 
 
 @wp.func
-def _lift(corner: wp.vec3, own: wp.vec3, normal: wp.vec3, q: wp.vec3) -> float:
-    return -0.5 * wp.dot(q - corner, own) * wp.dot(own, normal)
-
-
-@wp.func
-def _normal_change(
-    a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3, way: wp.vec3, m0: wp.vec3, m1: wp.vec3, m2: wp.vec3
-) -> wp.vec3:
-    """By how much the normal of a curved triangle changes along a way in its plane."""
-    turned = _shares(a, b, c, normal, a + way)
-    return (turned[0] - 1.0) * m0 + turned[1] * m1 + turned[2] * m2
+def _slope(
+    turned: wp.vec3, way: wp.vec3, shares: wp.vec3, lifts: wp.vec3, s0: wp.vec3, s1: wp.vec3, s2: wp.vec3
+) -> float:
+    """How fast the lift grows along a way in the plane, on which shares change by `turned`."""
+    return wp.dot(turned, lifts) + 0.5 * (
+        shares[0] * wp.dot(way, s0) + shares[1] * wp.dot(way, s1) + shares[2] * wp.dot(way, s2)
+    )
 
 
 @wp.func
@@ -204,12 +203,19 @@ def _touch_face(
         if surface.curved[face] != 0:
             e1 = wp.normalize(b - a)
             e2 = wp.cross(normal, e1)
-            n1 = _normal_change(a, b, c, side * normal, e1, m0, m1, m2)
-            n2 = _normal_change(a, b, c, side * normal, e2, m0, m1, m2)
+            t1 = _shares(a, b, c, side * normal, a + e1) - wp.vec3(1.0, 0.0, 0.0)
+            t2 = _shares(a, b, c, side * normal, a + e2) - wp.vec3(1.0, 0.0, 0.0)
+            n1 = t1[0] * m0 + t1[1] * m1 + t1[2] * m2
+            n2 = t2[0] * m0 + t2[1] * m1 + t2[2] * m2
+            s0 = -m0 / wp.max(wp.dot(m0, normal), STEEPEST)
+            s1 = -m1 / wp.max(wp.dot(m1, normal), STEEPEST)
+            s2 = -m2 / wp.max(wp.dot(m2, normal), STEEPEST)
             for _step in range(FOOT_STEPS):
-                up = wp.normalize(shares[0] * m0 + shares[1] * m1 + shares[2] * m2)
-                lift = shares[0] * _lift(a, m0, normal, q) + shares[1] * _lift(b, m1, normal, q)
-                foot = q + (lift + shares[2] * _lift(c, m2, normal, q)) * normal
+                lifts = 0.5 * wp.vec3(wp.dot(q - a, s0), wp.dot(q - b, s1), wp.dot(q - c, s2))
+                foot = q + wp.dot(shares, lifts) * normal
+                rise1 = _slope(t1, e1, shares, lifts, s0, s1, s2)
+                rise2 = _slope(t2, e2, shares, lifts, s0, s1, s2)
+                up = wp.normalize(normal - rise1 * e1 - rise2 * e2)
                 miss = p - foot
                 above = wp.dot(miss, up)
                 miss = miss - above * up

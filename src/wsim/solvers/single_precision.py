@@ -77,6 +77,22 @@ def last_tolerance(model: Any, usual: float, config: ContactConfig) -> float:
     return usual * min(1.0, enough / config.solver_tolerance_warp)
 
 
+def tolerance_in_c(model: Any, config: ContactConfig) -> float:
+    """MuJoCo's tolerance in C, at which forces leave at most `config.unbalanced_in_c` of any body's acceleration.
+
+    The usual one is a share of the trace of M: beside what is heavy it leaves what is light more (`last_tolerance`).
+    """
+    if np.bincount(model.body_treeid[model.body_treeid >= 0]).max(initial=0) > 1:
+        return config.chain_tolerance
+    trace = float(model.stat.meaninertia * model.nv)
+    masses = model.body_mass[(model.body_treeid >= 0) & (model.body_mass > 0.0)]
+    if not len(masses) or trace <= 0.0:
+        return config.solver_tolerance
+    harder = config.impedance / (1.0 - config.impedance)
+    enough = float(config.unbalanced_in_c**2 * masses.min() / (2.0 * harder * trace))
+    return float(np.clip(enough, config.chain_tolerance, config.solver_tolerance))
+
+
 def soften_contacts_for_single_precision(mujoco: Any, model: Any, config: ContactConfig) -> bool:
     """Soften the contacts of long trees of light links; whether there are such, which Newton's method cannot solve.
 

@@ -24,7 +24,11 @@ from wsim.solvers.gears import gears_to_turn, turned
 from wsim.solvers.host_models import host_models
 from wsim.solvers.locking import LeadsC, LeadsWarp, lock
 from wsim.solvers.motion_c import MotionC
-from wsim.solvers.single_precision import soften_contacts_for_single_precision, soften_for_single_precision
+from wsim.solvers.single_precision import (
+    soften_contacts_for_single_precision,
+    soften_for_single_precision,
+    tolerance_in_c,
+)
 from wsim.solvers.surface_contacts import SurfaceContacts
 from wsim.solvers.surfaces import Surfaces
 from wsim.solvers.tie_impulses import TiedCord, TiedJoint, TieImpulsesC
@@ -80,8 +84,8 @@ class SolverRigid(newton.solvers.SolverMuJoCo):
             tolerance=self.contact_config.solver_tolerance if on_c else self.contact_config.solver_tolerance_warp,
             **options,
         )
-        if on_c and np.bincount(self.mj_model.body_treeid[self.mj_model.body_treeid >= 0]).max(initial=0) > 1:
-            self.mj_model.opt.tolerance = self.contact_config.chain_tolerance
+        if on_c:
+            self.mj_model.opt.tolerance = tolerance_in_c(self.mj_model, self.contact_config)
         self._differ = len(surfaces.classes) > 1
         of_geoms = surfaces.taken(self.mjc_geom_to_newton_shape.numpy())
         reach = np.full(self.mj_model.ngeom, 0.5 * self.contact_config.reach)

@@ -9,6 +9,7 @@ from tests.judge.test_turned import simulated
 from tests.judge.theory import EDGE, G, ask, box, record, slab, times, with_world
 from wsim.judge import judge
 from wsim.judge.checks.forces import CheckForces
+from wsim.scene import Drive
 
 
 def creeping(rate, slope=0.0, friction=0.5, belt=0.0, told=True, seconds=1.0):
@@ -61,6 +62,23 @@ def test_a_slip_that_comes_and_goes_may_stick_meanwhile():
     steps = np.repeat(np.arange(16), 4)[: len(recording.time)]
     recording.body_q[:, 0, 0] += 1e-4 * steps
     assert not any("creeps" in finding.message for finding in ask(CheckForces(), recording))
+
+
+def turntable(scene):
+    """A box lies on a table that a motor brings to its speed."""
+    scene.simulation(gravity=(0, 0, -2.8))
+    scene.cylinder("table", radius=1.6, height=0.16, density=400, position=(0, 0, -0.08), friction=0.4)
+    scene.joint_revolute("axle", None, "table", axis="Z", drive=Drive(velocity=35.0, damping=20000.0))
+    scene.box("box", size=(0.44, 0.27, 0.27), density=700, position=(-0.3, 0.44, 0.135), friction=0.4)
+
+
+def test_what_a_turntable_carries_may_lag_by_the_order_of_its_steps_and_no_more(tmp_path):
+    """By half a time step of its acceleration, 0.12 mm/s: outwards and back; friction would hold what slips by more."""
+    recording = simulated(tmp_path, turntable, 0.6, rate=120)
+    assert off(recording) == []
+    out = recording.body_q[:, 1, :2] / np.linalg.norm(recording.body_q[:, 1, :2], axis=1)[:, None]
+    recording.body_q[:, 1, :2] += 4e-4 * (recording.time[:, None] * out)
+    assert any("creeps" in finding.message for finding in off(recording))
 
 
 def wheel(scene):

@@ -60,6 +60,21 @@ def test_it_bears_on_nothing_beside_the_edge():
     assert len(found) and found.point[:, 0].max() <= 0.1 + 1e-6
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.013])
+@pytest.mark.parametrize("aside", [0.0, 0.0031, 0.009])
+def test_a_roller_across_two_boxes_bears_to_the_end_of_each(gap, aside):
+    """Where they meet, too: there two belts that run against each other hold it without turning it."""
+    roller = solid("cylinder", (R, H), "roller")
+    for side in (-1, 1):
+        table = solid("box", (0.2, 0.2, 0.1), "table")
+        found = touching(table, roller, [(0, side * (0.1 + gap / 2), 0), (0.01, aside, 0.05 + R)], LYING)
+        inner, outer = side * gap / 2, aside + side * H / 2
+        low, high = sorted((inner, outer))
+        assert found.point[:, 1].min() == pytest.approx(low, abs=1e-6)
+        assert found.point[:, 1].max() == pytest.approx(high, abs=1e-6)
+        assert np.abs(found.gap).max() < 1e-6
+
+
 @pytest.mark.parametrize("apart", [0.0, 5e-5])
 def test_a_face_on_a_face_bears_at_its_corners(apart):
     """Whatever a search finds of it, here one point in the middle."""

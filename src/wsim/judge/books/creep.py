@@ -17,6 +17,7 @@ from wsim.geometry.rotations import conjugate, lengths, multiply, rotate
 from wsim.judge.books.admissible import explain
 from wsim.judge.books.balance import Books
 from wsim.judge.books.forces import STILL, Poses, pushes
+from wsim.judge.books.phases import latest
 from wsim.judge.books.touching import NEAR, Contacts, Touching, touching_of
 from wsim.judge.evidence.motion import FLOAT32
 
@@ -36,6 +37,7 @@ TURN = 0.02  # [rad]: what turns by more against what it touches rolls
 ROUND = 0.1  # [rad]: what turns both by more, as a turntable does, turns the friction's way with it
 SHARED = 0.2  # what resists rolling over friction, by the ways of both: the slip has all but 2 % of the cone's edge
 CREEP = 2e-5  # [m/s]: what wsim leaves of what friction holds is below 1e-6
+ORDERS = 1.1  # times what steps of two orders leave between what leads and what is led, found: 0.99
 ENOUGH = 1e-3  # of gravity: a rest that is as good as none
 
 
@@ -153,7 +155,8 @@ def _drifts(
     rate = length / (time[frames[:, -1]] - time[firsts])[at]
     steady = gone.min(axis=1) > EACH * length / INTERVALS
     steady &= (rate > np.maximum(CREEP, _soft(copies, touching, contacts, copy[at], at))) & (rate < 2.0 * STILL)
-    steady &= length > np.maximum(INTERVALS * rounding, _late(copies, contacts, spans, at))
+    steady &= length > INTERVALS * rounding
+    steady &= rate > _behind(copies, paths, (time[frames[:, -1]] - time[firsts])[at])
     relative, absolute = _turned(contacts, at, q)
     steady &= (relative < TURN) & (absolute < ROUND)
     # Resisted rolling shares the cone with the slip, and goes with one: friction is then inside it.
@@ -162,6 +165,24 @@ def _drifts(
     arm = sizes[copy[at], np.where(contacts.two >= 0, contacts.two, contacts.one)]
     steady &= np.maximum(rolling, np.pi * friction * rolling) * arm * relative <= SHARED * friction * length
     return np.where(steady[:, None], drift, 0.0)
+
+
+def _behind(copies: Sequence[Evidence], paths: Sequence[Floats], span: Floats) -> Floats:
+    """The slip that steps leave between what is led round and what it carries, (n,) [m/s].
+
+    Steps of the first order take what goes at v from one to the next by the velocity at the end, those of the second by
+    the mean: where one body goes by each, at an acceleration a, one is a t ahead, t half a time step. What lies on a
+    turntable so drifts out by w^2 r t, and back by w' r t as that gains speed.
+
+    Args:
+        copies: Of similar worlds, over the same times.
+        paths: Of the points of both bodies at each contact, (n, F, 3) each [m].
+        span: How long these are, (n,) [s].
+    """
+    middle = paths[0].shape[1] // 2
+    bends = [lengths(path[:, 0] - 2.0 * path[:, middle] + path[:, -1]) for path in paths]
+    found: Floats = ORDERS * latest(copies[0]) * np.maximum(*bends) / (0.5 * span) ** 2
+    return found
 
 
 def _soft(
@@ -178,30 +199,6 @@ def _soft(
     loads = (mass @ ~copies[0].motion.kinematic)[copy] / lightest[at]
     found: Floats = give.creep * touching.laws(contacts.shapes)[0] * copies[0].gravity * loads
     return found
-
-
-def _late(copies: Sequence[Evidence], contacts: Contacts, spans: Sequence[Span], at: NDArray[np.intp]) -> Floats:
-    """The slip that steps leave where joints lead what friction holds, (n,) [m]: what is gained in speed, for a step.
-
-    A loose body's velocity is of half a step before its place, just after a jolt of a whole one; a mechanism's is not.
-    What a mechanism gains beside is that of its links' turning: it goes round where its speed leads straight on.
-    """
-    motions = [copies[span.copy].motion for span in spans]
-    gained = np.stack([_gained(motion, span) for motion, span in zip(motions, spans, strict=True)])  # (spans, B)
-    rows = contacts.one, contacts.two
-    most = np.maximum(*(np.where(each >= 0, gained[at, each], 0.0) for each in rows))
-    jointed = np.stack([motion.jointed for motion in motions])
-    led = np.logical_xor(*(np.where(each >= 0, jointed[at, each], False) for each in rows))
-    return np.where(led, most, 0.0)
-
-
-def _gained(motion: Motion, span: Span) -> Floats:
-    """What a step of all that bodies gain in a span comes to, (B,) [m]."""
-    frames = slice(span.first, span.last + 1)
-    v, spin, h = motion.v[frames], lengths(motion.w[frames]), motion.h[span.first : span.last, None]
-    turning = spin[:, motion.jointed].max(axis=1, initial=0.0)
-    round_ = (h * turning[1:, None] * lengths(v)[1:]).sum(axis=0)
-    return np.asarray((lengths(np.diff(v, axis=0)).sum(axis=0) + round_) * motion.late)
 
 
 def _path(touching: Touching, contacts: Contacts, side: int, at: NDArray[np.intp], q: Floats, time: Floats) -> Floats:

@@ -33,6 +33,7 @@ LEANS = 0.1  # [rad]: an end, a side or a face that leans by more touches with o
 RIM = 16  # points of a rim,
 ALONG = 9  # and of a line
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
+HAIR = 1e-9  # of a line, by which points stay within a rim or an edge
 FACE = 4  # corners of a box's face
 KINDS = {("cylinder", other) for other in ("sphere", "capsule", "box", "cylinder", "plane")}
 Z = np.array([0.0, 0.0, 1.0])
@@ -116,7 +117,8 @@ def _shared(own: tuple[Shape, Floats], other: tuple[Shape, Floats], outwards: Fl
     if lies and against.kind != "box" and rounded:  # a cylinder's end is no ball's
         found.append(_on_side(shape, pose, *_round(against, there)))
     if (upright or lies) and against.kind == "box":
-        found.append(_on_face(_facing(shape, pose, outwards), against, there, outwards))
+        points = _facing(shape, pose, outwards)
+        found.append(_on_face(_over(points, against, there, outwards) if lies else points, against, there, outwards))
     if lies and against.kind == "box":
         for edge in _edges(against, there, -outwards):
             found.append(_on_side(shape, pose, _beside(edge, axis, pose, shape.size[1]), 0.0))
@@ -172,9 +174,24 @@ def _across(ends: Floats, axis: Floats, pose: Floats, radius: float) -> Floats:
     inside = radius**2 - float(np.sum((flat[0] + nearest * way) ** 2))
     if inside <= 0.0:
         return _POINTS
-    half = (1.0 - 1e-9) * np.sqrt(inside / length)  # a hair within the rim
+    half = (1.0 - HAIR) * np.sqrt(inside / length)
     share = np.linspace(np.clip(nearest - half, 0.0, 1.0), np.clip(nearest + half, 0.0, 1.0), 3)
     return np.asarray(ends[0] + share[:, None] * (ends[1] - ends[0]))
+
+
+def _over(line: Floats, box: Shape, pose: Floats, outwards: Floats) -> Floats:
+    """Points of a line (n, 3) from end to end of what of it is over the face of a box that is turned to it.
+
+    What lies across two boxes bears at the seam between them, too.
+    """
+    face = np.arange(3) != int(np.argmax(np.abs(rotate(conjugate(pose[3:]), outwards))))
+    first, last = rotate(conjugate(pose[3:]), line[[0, -1]] - pose[:3])[:, face]
+    way, edges = last - first, 0.5 * np.asarray(box.size)[face]
+    way = np.where(np.abs(way) < 1e-12, 1e-12, way)
+    ends = np.sort(np.stack([(-edges - first) / way, (edges - first) / way]), axis=0)
+    low, high = max(ends[0].max(), 0.0), min(ends[1].min(), 1.0)
+    share = np.linspace(low + HAIR, high - HAIR, ALONG)
+    return np.asarray(line[0] + share[:, None] * (line[-1] - line[0])) if high > low + 2.0 * HAIR else _POINTS
 
 
 def _on_plane(points: Floats, plane: Floats) -> Points:

@@ -122,12 +122,18 @@ def pushes(
     force = np.concatenate([cone[keep], *edges])
     which = np.concatenate([which[keep], *([np.flatnonzero(lasting)] * len(edges))])
     spin = np.zeros_like(force)
-    turns = np.flatnonzero(rolling > 0.0)
-    for axis in (n, t1, t2):
-        for way in (-1.0, 1.0):
-            force = np.concatenate([force, (n - friction[:, None] * along[:, 0])[turns]])
-            spin = np.concatenate([spin, way * (rolling[:, None] * axis)[turns]])
-            which = np.concatenate([which, turns])
+    turned, rolls = np.flatnonzero(rolling > 0.0), np.flatnonzero((rolling > 0.0) & ~lasting)
+    axes = _turning(contacts, poses, friction) if len(turned) else ()
+    rubs, slides = friction[:, None] * ring, friction[:, None] * along[:, 0]
+    more = [(turned, -slides, way * axis) for axis in axes for way in (-1.0, 1.0)]
+    # What rolls with a slight slip takes a little of the one beside nearly all of the other: their cone is round, and
+    # an octagon about it has the corners (1, tan(pi / 8)), (tan(pi / 8), 1).
+    little = np.tan(np.pi / EDGES)
+    for axis in (*axes[:1], *(-each for each in axes[:1])):
+        more += [(rolls, edge, little * axis) for edge in rubs] + [(rolls, little * edge, axis) for edge in rubs]
+    force = np.concatenate([force, *((n + rub)[rows] for rows, rub, _ in more)])
+    spin = np.concatenate([spin, *((rolling[:, None] * axis)[rows] for rows, _, axis in more)])
+    which = np.concatenate([which, *(rows for rows, *_ in more)])
     both = enumerate((contacts.one, contacts.two))
     arms = [contacts.surface(side) - poses.com[np.maximum(rows, 0)] for side, rows in both]
     on_two = np.concatenate([force, cross(arms[1][which], force) + spin], axis=1)
@@ -135,6 +141,21 @@ def pushes(
     close = None if near is None else near[which]
     none = np.zeros(len(which), dtype=bool)
     return Columns(contacts.one[which], contacts.two[which], on_one, on_two, none, close=close)
+
+
+def _turning(contacts: Contacts, poses: Poses, friction: Floats) -> tuple[Floats, Floats, Floats]:
+    """Axes for the torques that resist turning, square to each other, (n, 3) each: the first against it, or with it."""
+    turning, normal = np.zeros_like(contacts.normal), contacts.normal
+    for rows, sign in ((contacts.one, -1.0), (contacts.two, 1.0)):
+        turning += sign * np.where((rows >= 0)[:, None], poses.w[np.maximum(rows, 0)], 0.0)
+    spins = np.einsum("ni,ni->n", turning, normal)[:, None]
+    turning += ((np.pi * friction[:, None]) ** 2 - 1.0) * spins * normal  # each by its speed and its share of the cone
+    length = np.linalg.norm(turning, axis=1, keepdims=True)
+    first = np.where(length > 0.0, turning / np.maximum(length, 1e-300), normal)
+    other = np.where(np.abs(first[:, :1]) < 0.9, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    second = cross(first, other)
+    second /= np.linalg.norm(second, axis=1, keepdims=True)
+    return first, second, cross(first, second)
 
 
 def holds(one: int, two: int, arms: tuple[Floats, Floats], forces: Floats, torques: Floats) -> Columns:

@@ -31,6 +31,8 @@ ALONG = 9  # points of an edge
 OUTSIDE = 1e-3  # of a triangle: how far beside it a point still counts as over it
 OUTSIDE_CURVED = 1e-2  # two that stand for what is curved meet at their line to the second order only
 FOOT_STEPS = 8  # to the nearest point of what is curved
+EVEN = 1e-5  # by which a normal at a corner may differ from that of a flat triangle
+STEEPEST = 0.2  # cosine between a triangle's normal and one at its corners, at least
 FLAT = 1e-3  # sine between two faces whose edge does not stick out
 DEEPEST = 0.5  # of a shape's radius: what is deeper under a face is not pushed out by it
 MOST = 256  # corners of a mesh that are asked for over another's faces
@@ -141,6 +143,13 @@ class Triangles:
             rows = np.arange(len(self.vertices))
         return self.vertices[rows[:: -(-len(rows) // MOST)]]
 
+    @cached_property
+    def curved(self) -> NDArray[np.bool_]:
+        """Faces that stand for what is curved, (f,)."""
+        if self.smooth is None:
+            return np.zeros(len(self.faces), dtype=bool)
+        return np.asarray(np.abs(self.smooth - self.normals[:, None]).max(axis=(1, 2)) > EVEN)
+
     def beyond(self, points: Floats) -> Floats:
         """How far points (n, 3) are from its bounding box, (n,) [m]."""
         return lengths(np.maximum(np.maximum(self.low - points, points - self.high), 0.0))
@@ -172,9 +181,12 @@ def touching(mesh: Triangles, shape: Shape, other: Triangles | None, pose: Float
         return None
     lowest = _lowest(shape, other, pose, mesh.normals[faces])
     rounded = shape.size[0] if shape.kind in ("sphere", "capsule", "cylinder") else 0.0
-    found = [_over_faces(mesh, faces, lowest, rounded, reach, DEEPEST * radius)]
-    if shape.kind == "sphere" and mesh.smooth is not None:
-        found.append(_over_bulges(mesh, faces, pose[:3], radius, reach))
+    found, curved = [], mesh.curved[faces] & (shape.kind == "sphere")
+    if not curved.all():
+        flat = lowest if len(lowest) == 1 else lowest[~curved]
+        found.append(_over_faces(mesh, faces[~curved], flat, rounded, reach, DEEPEST * radius))
+    if curved.any():
+        found.append(_over_curves(mesh, faces[curved], pose[:3], radius, reach))
     if other is None:
         found.append(_edges_in(mesh, faces, kind_of(shape).depth, pose, radius, reach))
     return _thinned(Near.of(found))
@@ -214,19 +226,42 @@ def _over_faces(mesh: Triangles, faces: Rows, points: Floats, rounded: float, re
     fronted = ~_behind(corners, normals, face, at, gap)
     face, shares, gap, at = face[fronted], shares[fronted], gap[fronted], at[fronted]
     normal = normals[face]
-    at = at - 0.5 * gap[:, None] * normal
     if mesh.smooth is not None:
-        curved = np.einsum("nk,nki->ni", shares, mesh.smooth[faces][face])
-        curved /= np.maximum(np.linalg.norm(curved, axis=1, keepdims=True), 1e-12)
+        foot, curved = _lifted(corners[face], normal, mesh.smooth[faces][face], at - gap[:, None] * normal)
         at, normal = at + rounded * (normal - curved), curved  # what is round touches where its side has the normal
-    return Near(at, normal, gap)
+        gap = np.einsum("ni,ni->n", at - foot, curved)
+    return Near(at - 0.5 * gap[:, None] * normal, normal, gap)
 
 
-def _over_bulges(mesh: Triangles, faces: Rows, centre: Floats, radius: float, reach: float) -> Near:
-    """Where a ball touches triangles that stand for what bulges, as a rod does, of the second order.
+def _lifted(corners: Floats, normals: Floats, own: Floats, at: Floats) -> tuple[Floats, Floats]:
+    """Points of curved triangles over points of flat ones, and their normals, (n, 3) each.
 
-    A ball that is large beside the rod is over none of its sides, and over an edge it is up to a side's sagitta off.
-    A triangle's points are lifted half of the way to the tangent planes at its corners (Boubekeur and Alexa 2008).
+    A point is lifted half of the way to the tangent planes at the corners (Boubekeur and Alexa 2008). Its normal is
+    that of the surface so made: those of the corners, interpolated, are so only where these lean evenly from the face.
+
+    Args:
+        corners: Of the triangles, (n, 3, 3), and their
+        normals: (n, 3).
+        own: Normals at the corners, (n, 3, 3).
+        at: Points in their planes, (n, 3).
+    """
+    shares = _shares(corners, normals, at)[..., None]
+    upright = np.maximum(np.einsum("nki,ni->nk", own, normals), STEEPEST)
+    slopes = -own / upright[..., None]
+    lifts = 0.5 * np.einsum("nki,nki->nk", at[:, None] - corners, slopes)[..., None]
+    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = np.einsum("ni,ni->n", cross(one, two), normals)[:, None]
+    second, third = cross(two, normals) / area, cross(normals, one) / area  # by which shares grow, along each axis
+    rise = np.sum(np.stack([-second - third, second, third], axis=1) * lifts + 0.5 * shares * slopes, axis=1)
+    rise -= np.einsum("ni,ni->n", rise, normals)[:, None] * normals
+    up = normals - rise
+    return at + np.sum(shares * lifts, axis=1) * normals, up / lengths(up)[:, None]
+
+
+def _over_curves(mesh: Triangles, faces: Rows, centre: Floats, radius: float, reach: float) -> Near:
+    """Where a ball touches triangles that stand for what is curved, of the second order.
+
+    A ball that is large beside a rod is over none of its sides, and over an edge it is up to a side's sagitta off.
     """
     assert mesh.smooth is not None
     corners, normals, own = mesh.corners[faces], mesh.normals[faces], mesh.smooth[faces]
@@ -240,22 +275,20 @@ def _over_bulges(mesh: Triangles, faces: Rows, centre: Floats, radius: float, re
     bend = np.einsum("nai,nbi->nab", ways, changes)
     bend = 0.5 * (bend + np.swapaxes(bend, 1, 2))
     height = np.einsum("ni,ni->n", centre - corners[:, 0], normals)
-    some = (np.trace(bend, axis1=1, axis2=2) > 1e-6 / max(radius, 1e-9)) & (height > 0.0)
+    bend[np.trace(bend, axis1=1, axis2=2) <= 0.0] = 0.0  # into a hollow the foot goes all of what is missed
+    some = height > 0.0
     corners, normals, own, ways, bend = (array[some] for array in (corners, normals, own, ways, bend))
     foot = at = centre - height[some, None] * normals
-    up, shares = normals, _shares(corners, normals, at)
+    up = normals
     for _ in range(FOOT_STEPS):
-        up = np.einsum("nk,nki->ni", shares, own)
-        up = up / np.maximum(lengths(up), 1e-12)[:, None]
-        out = np.einsum("nki,nki->nk", at[:, None] - corners, own) * np.einsum("nki,ni->nk", own, normals)
-        foot = at - 0.5 * np.einsum("nk,nk->n", shares, out)[:, None] * normals
+        foot, up = _lifted(corners, normals, own, at)
         miss = centre - foot
         above = np.einsum("ni,ni->n", miss, up)
         aside = np.einsum("nai,ni->na", ways, miss - above[:, None] * up)
         part = np.eye(2) + np.maximum(above, 0.0)[:, None, None] * bend
         part[np.linalg.det(part) < 0.1] = np.eye(2)  # what is hollow along one way, as deep as it is wide
         at = at + np.einsum("na,nai->ni", np.linalg.solve(part, aside[..., None])[..., 0], ways)
-        shares = _shares(corners, normals, at)
+    shares = _shares(corners, normals, at)
     gap = np.einsum("ni,ni->n", centre - foot, up) - radius
     over = (shares.min(axis=1) > -OUTSIDE_CURVED) & (gap < reach) & (gap > -DEEPEST * radius)
     return Near(foot[over] + 0.5 * gap[over, None] * up[over], up[over], gap[over])

@@ -281,25 +281,30 @@ def _driven(evidence: Evidence) -> tuple[Floats, Floats]:
 
 
 def _whirling(evidence: Evidence) -> tuple[Floats, Floats]:
-    """How much faster bodies on joints may have gone and turned between frames as links whip, (T - 1, B) each.
+    """How much faster bodies on joints and ropes may have gone and turned between frames as they whip, (T - 1, B) each.
 
-    The velocities of a mechanism's bodies against each other turn by as much as its fastest link does, and so does what
-    they hand on: by all of it where that is a radian or more.
+    The velocities of a mechanism's bodies against each other turn by as much as its fastest link does, or its shortest
+    rope, and so does what they hand on: by all of it where that is a radian or more.
     """
     motion, world = evidence.motion, evidence.world
     going, turning = (np.zeros((len(motion.h), len(world.bodies))) for _ in range(2))
-    if not world.joints:
+    if not world.joints and not world.ropes:
         return going, turning
-    rate, hung = np.maximum(motion.rate[1:], motion.rate[:-1]), {j.child for j in world.joints if j.parent is None}
+    rate = np.maximum(motion.rate[1:], motion.rate[:-1])
+    hung: set[str | None] = {j.child for j in world.joints if j.parent is None}
+    hung |= {guide.body for rope in world.ropes if any(end.body is None for end in rope.path) for guide in rope.path}
     for unit in np.unique(motion.unit[motion.jointed]):
         rows = np.flatnonzero(motion.unit == unit)
         v = motion.v[:, rows]
         apart = np.linalg.norm(v[:, :, None] - v[:, None], axis=3).max(axis=2)
         if any(world.bodies[row].prim in hung for row in rows):
             apart = np.maximum(apart, motion.speed[:, rows])
-        fastest = rate[:, rows].max(axis=1, keepdims=True)
-        share = np.minimum(fastest * motion.h[:, None], 1.0)
-        going[:, rows], turning[:, rows] = share * np.maximum(apart[1:], apart[:-1]), share * fastest
+        apart, fastest = np.maximum(apart[1:], apart[:-1]), rate[:, rows].max(axis=1, keepdims=True)
+        held = {world.bodies[row].prim for row in rows}
+        ropes = [rope.length for rope in world.ropes if held & {guide.body for guide in rope.path}]
+        swings = apart.max(axis=1, keepdims=True) / min(ropes, default=np.inf)
+        share = np.minimum(np.maximum(fastest, swings) * motion.h[:, None], 1.0)
+        going[:, rows], turning[:, rows] = share * apart, share * fastest
     return going, turning
 
 

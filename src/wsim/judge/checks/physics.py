@@ -81,7 +81,7 @@ class CheckExplosion(Check):
         moved -= motion.rate * lengths(motion.arms)
         fastest = np.maximum(reported, moved)
         factor = self._handed_on(evidence)
-        bound = np.sqrt(max(factor * free, self.least) ** 2 + self._driven(evidence))
+        bound = np.sqrt(np.maximum(factor * free, self.least) ** 2 + self._driven(evidence))
         frame, i = np.unravel_index(int(np.argmax(fastest / bound)), fastest.shape)
         body = evidence.world.bodies[i]
         value, limit, time = float(fastest[frame, i]), float(bound[frame, i]), float(evidence.time[frame])
@@ -89,18 +89,25 @@ class CheckExplosion(Check):
         return self.measured(
             f"{body.prim} {how} {value:.3g} m/s at {time:.3f} s, the fastest for what moves it",
             value, limit, "m/s", prim=body.prim, time=self._first(evidence.time, fastest[:, i] > bound[:, i], time),
-            limit_from=f"{factor:g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
-            "by a far heavier body, and the work of drives, with what they held a frame before, control and springs",
+            limit_from=f"{factor[i]:.3g} sqrt(v0^2 + 2 g dz): the longest fall in the scene, then an elastic hit "
+            "by a far heavier body, or all that its mechanism has in this body alone, and the work of drives, with "
+            "what they held a frame before, control and springs",
         )  # fmt: skip
 
-    def _handed_on(self, evidence: Evidence) -> float:
-        """What a light body may leave with, hit by a far heavier one: twice its speed, thrice where both fell.
+    def _handed_on(self, evidence: Evidence) -> Floats:
+        """How many times the speed of a fall each body may get of others, (B,).
 
-        A ball on a ball that bounces first goes up at 3 v (Harter, American Journal of Physics 39, 1971).
+        What a far heavier one hits leaves with twice its speed, with thrice where both fell: a ball on a ball that
+        bounces first goes up at 3 v (Harter, American Journal of Physics 39, 1971). What hangs together may pass all of
+        its energy to a light link, as a whip does: of a mass m of M that falls at v, v sqrt(M / m).
         """
-        loose = int((~evidence.motion.kinematic & ~evidence.motion.jointed).sum())
+        motion = evidence.motion
+        loose = int((~motion.kinematic & ~motion.jointed).sum())
         bouncy = any(shape.restitution for body in evidence.world.bodies for shape in body.shapes)
-        return self.body_factor + 1.0 if loose > 1 and bouncy else self.body_factor
+        factor = self.body_factor + 1.0 if loose > 1 and bouncy else self.body_factor
+        together = (motion.unit[:, None] == motion.unit) @ np.where(motion.kinematic, 0.0, motion.mass)
+        whipped = np.sqrt(together / motion.mass)
+        return np.where(motion.jointed, np.maximum(factor, whipped), factor)
 
     @staticmethod
     def _driven(evidence: Evidence) -> Floats:

@@ -128,13 +128,16 @@ class CheckRecordedForces(Check):
         way = mean / np.linalg.norm(mean, axis=1, keepdims=True)
         rubs = np.einsum("ni,ni->n", (track.impulse - track.along)[rows].astype(np.float64), -way) / pressed[rows]
         friction, (least, most) = contacts.friction[rows], contacts.rubs(normal, speed)[:, rows]
+        resists = least < friction
+        # Of points whose normals lean apart along the slip, as a box's on a hill, friction leans as they do.
+        least = least * np.minimum(np.linalg.norm(normal[rows], axis=1), 1.0)
         turned = contacts.swing(normal, speed.min(axis=1))[rows]
         round_ = 1.0 - np.sqrt(1.0 - aside[rows] ** 2)
         slack = (self.edge + 1.0 - cosine[rows] + 0.5 * turned**2 + round_) * friction + self.cone
         given = np.clip(rubs, least, most)
         worst = int(np.argmax(np.abs(rubs - given) / slack))
         k, value, expected, limit = int(rows[worst]), float(rubs[worst]), float(given[worst]), float(slack[worst])
-        resisted = ", with what resists rolling," if least[worst] < friction[worst] else ""
+        resisted = ", with what resists rolling," if resists[worst] else ""
         return [
             *held,
             self._of_row(
