@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wsim.judge.evidence.evidence import Evidence
-    from wsim.judge.evidence.motion import Motion
 
     Floats = NDArray[np.float64]
 
