@@ -23,6 +23,7 @@ from wsim.judge.books.impacts import ACROSS, APART, SHOWS, SLOW, STAYS, Blow, Ru
 from wsim.judge.books.pressed import answers
 from wsim.judge.books.recorded import RecordedContacts
 from wsim.judge.books.touching import Contacts, Touching, together
+from wsim.judge.evidence.motion import FLOAT32
 from wsim.scene.contact import pair_law
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ STEADY = 2.0  # times what a contact gives in the intervals around: more than th
 SHARED = 0.02  # of friction's impulse by the size of a body: points that rub different ways turn it by more
 FLAT = 1e-3  # of a push: normals that differ by less are one
 VEERS = 0.01  # [m]: surfaces that have met are no farther apart a step later
+UNSEEN = 4.0  # times the rounding of a body's momentum: no blow
 NONE = 2e-5  # of a push: surfaces without friction have 1e-5, the least that MuJoCo knows
 
 
@@ -61,7 +63,7 @@ class RecordedBlows:
         self._normal = track.along.astype(np.float64) / self._pressed[:, None]
         count = np.int64(len(contacts.shapes))
         self._key = (track.frame.astype(np.int64) * count + track.pair[:, 0]) * count + track.pair[:, 1]
-        self._hits = self._pressed > STEADY * np.minimum(self._at(-1), self._at(1))
+        self._hits = self._pressed > np.maximum(STEADY * np.minimum(self._at(-1), self._at(1)), self._unseen())
         unit = np.append(np.where(self._motion.kinematic, -1, self._motion.unit), -1)
         self._unit = unit[contacts.body]  # (n, 2) of each row's mechanisms, -1 for what gives no way
         self._followed = Followed(evidence, self._struck)
@@ -79,6 +81,13 @@ class RecordedBlows:
         other = key + later * np.int64(len(self._contacts.shapes)) ** 2
         place = order[np.minimum(np.searchsorted(key[order], other), len(key) - 1)]
         return np.where(key[place] == other, self._pressed[place], 0.0)
+
+    def _unseen(self) -> Floats:
+        """An impulse that is lost in the rounding of its bodies' momentum, (n,) [N s]: what grazes has any normal."""
+        bodies, motion = self._contacts.body, self._motion
+        momentum = motion.mass * motion.speed[self._contacts.track.frame]  # (n, B)
+        of_each = np.take_along_axis(momentum, np.maximum(bodies, 0), axis=1)
+        return np.asarray(UNSEEN * FLOAT32 * np.where(bodies >= 0, of_each, 0.0).max(axis=1))
 
     @cached_property
     def _struck(self) -> Bools:
