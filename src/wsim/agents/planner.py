@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wsim.agents.ask import object_in
+from wsim.agents.robots import robots_for
 from wsim.assets import search
-from wsim.assets.robots import robots
-from wsim.assets.sources import sources
 from wsim.errors import UserError
 from wsim.judge.language import parse
 from wsim.plan.store import made
@@ -46,7 +45,7 @@ def plan_with(desk: Desk, prompt: str, pictures: Sequence[bytes] = (), image: st
     if pictures:
         known = {"path": image, "sha256": sha256(pictures[0]).hexdigest()}
         request.append(f"A reference picture is attached ({image}); fill image.hints from it: {HINTS}")
-    request += [_catalogue(prompt), _robots()]
+    request += [_catalogue(prompt), robots_for(prompt)]
     return desk.ask(
         "planner", "\n\n".join(request), lambda text: read_plan(object_in(text), prompt, known), pictures=pictures
     )
@@ -112,14 +111,3 @@ def _catalogue(prompt: str) -> str:
         size = " x ".join(f"{edge:.3g}" for edge in hit.asset.size)
         lines.append(f"{hit.asset.id}: {hit.asset.names[0]}, {size} m")
     return "Assets of the catalogue that may fit:\n" + ("\n".join(lines) or "none")
-
-
-def _robots() -> str:
-    """The robots that are here or can be pulled, those with their sizes and policies."""
-    told = []
-    for robot in sorted({*robots(), *sources()}):
-        source = sources().get(robot)
-        size = f", {' x '.join(f'{edge:g}' for edge in source.size)} m" if source is not None and source.size else ""
-        walks = f", policies {', '.join(source.policies)}" if source is not None and source.policies else ""
-        told.append(f"{robot}{size}{walks}")
-    return f"Robots: {'; '.join(told) or 'none'}"
